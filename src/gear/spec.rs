@@ -1,0 +1,155 @@
+//! What a designer states about a pair, in SI. `Pair::new` turns it into geometry or says why it cannot.
+
+use serde::{Deserialize, Serialize};
+
+/// One of the two helix halves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Half {
+    Left,
+    Right,
+}
+
+impl Half {
+    pub const BOTH: [Half; 2] = [Half::Left, Half::Right];
+
+    /// 0 for left, 1 for right: the order of every two-element array over halves.
+    pub fn index(self) -> usize {
+        match self {
+            Half::Left => 0,
+            Half::Right => 1,
+        }
+    }
+}
+
+/// Which ends of the teeth enter the mesh first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rotation {
+    /// Each tooth enters at the inner ends, towards the apex.
+    ApexLeading,
+    /// Each tooth enters at the outer ends.
+    ApexTrailing,
+}
+
+/// Linear-elastic material of both gears.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Material {
+    pub youngs_modulus_pa: f64,
+    pub poissons_ratio: f64,
+    pub density_kg_m3: f64,
+}
+
+/// Course of a tip relief over its roll length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ReliefShape {
+    /// amount · (u / length), u the roll length counted from the start of the relief.
+    Linear,
+    /// amount · (u / length)².
+    Parabolic,
+}
+
+/// Material removed at the tip, along the transverse base tangent. Zero length: no relief.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TipRelief {
+    pub amount_m: f64,
+    /// Roll length of the relief, from the tip along the path of contact.
+    pub length_m: f64,
+    pub shape: ReliefShape,
+}
+
+/// Material removed at both ends of the face width (parabolic from its start), along the transverse base tangent.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct EndRelief {
+    pub amount_m: f64,
+    /// Axial length of the relief at each end.
+    pub length_m: f64,
+}
+
+/// Flank modifications of one member on one half: amounts removed in the transverse plane along the base tangent.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FlankModification {
+    pub tip_relief: TipRelief,
+    /// Zero at mid-width, this value at both ends (parabola).
+    pub lead_crowning_m: f64,
+    /// Zero at the inner end, this value at the outer end (linear).
+    pub helix_slope_m: f64,
+    pub end_relief: EndRelief,
+}
+
+impl FlankModification {
+    /// The unmodified flank.
+    pub const NONE: FlankModification = FlankModification {
+        tip_relief: TipRelief { amount_m: 0.0, length_m: 0.0, shape: ReliefShape::Parabolic },
+        lead_crowning_m: 0.0,
+        helix_slope_m: 0.0,
+        end_relief: EndRelief { amount_m: 0.0, length_m: 0.0 },
+    };
+}
+
+/// One member of the pair. Coefficients are multiples of the normal module.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct GearSpec {
+    pub teeth: u32,
+    pub profile_shift: f64,
+    pub addendum: f64,
+    pub dedendum: f64,
+    pub fillet_radius: f64,
+    /// Tip alteration coefficient k (ISO 21771; negative shortens the tooth).
+    pub tip_alteration: f64,
+    /// Radius of the bore.
+    pub bore_radius_m: f64,
+    /// Modifications of the left and the right half.
+    pub flanks: [FlankModification; 2],
+}
+
+/// Assembly errors of the pair; see docs/DESIGN.md for the sign conventions.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Assembly {
+    pub center_distance_error_m: f64,
+    pub in_plane_misalignment_m: f64,
+    pub out_of_plane_misalignment_m: f64,
+    pub apex_offset_m: f64,
+}
+
+/// A double-helical pair as designed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PairSpec {
+    pub normal_module_m: f64,
+    /// Pressure angle in the normal section.
+    pub normal_pressure_angle_rad: f64,
+    pub helix_angle_rad: f64,
+    /// Face width of one half.
+    pub face_width_m: f64,
+    /// Gap between the halves.
+    pub gap_width_m: f64,
+    /// Working centre distance; derived from the profile shifts when `None`.
+    pub center_distance_m: Option<f64>,
+    pub material: Material,
+    pub rotation: Rotation,
+    pub pinion: GearSpec,
+    pub gear: GearSpec,
+    pub assembly: Assembly,
+}
+
+/// Why a design cannot be solved: the quantity, its value, its limit. `pointer` is the field of the job document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Infeasibility {
+    /// Stable code: `tip-interference`, `pointed-tip`, `contact-ratio-below-one`, …
+    pub code: String,
+    pub pointer: String,
+    /// One sentence with value, limit and unit.
+    pub detail: String,
+    pub value: f64,
+    pub limit: f64,
+    pub unit: String,
+}
+
+/// What an engineer should know about a design that is solved all the same.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Warning {
+    pub code: String,
+    pub pointer: String,
+    pub detail: String,
+}

@@ -1,0 +1,37 @@
+//! How a long calculation is watched: it reports its progress and asks whether it is still wanted.
+//!
+//! The physics takes a [`Watch`] and nothing else from the outside world. Invariant: a calculation passes a
+//! [`Watch::checkpoint`] at least every 50 ms of work.
+
+/// The calculation was asked to stop before it ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the calculation was canceled")]
+pub struct Canceled;
+
+/// Two callbacks: where progress goes, and whether to stop.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    progress: &'a (dyn Fn(f64) + Sync),
+    canceled: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl<'a> Watch<'a> {
+    /// A watch over the given callbacks. `progress` receives the fraction done (0 to 1) of the current stage.
+    pub fn new(progress: &'a (dyn Fn(f64) + Sync), canceled: &'a (dyn Fn() -> bool + Sync)) -> Self {
+        Self { progress, canceled }
+    }
+
+    /// A watch that nobody looks at and that never stops anything.
+    pub fn none() -> Watch<'static> {
+        Watch { progress: &|_| {}, canceled: &|| false }
+    }
+
+    /// Reports the fraction done (0 to 1) and fails when the calculation is no longer wanted.
+    pub fn checkpoint(&self, fraction: f64) -> Result<(), Canceled> {
+        if (self.canceled)() {
+            return Err(Canceled);
+        }
+        (self.progress)(fraction);
+        Ok(())
+    }
+}
