@@ -1,1 +1,11 @@
-//! (room under construction)
+//! A job: the document that goes in, and the result that comes out. No physics, no I/O.
+
+pub mod document;
+mod fields;
+mod reader;
+pub mod result;
+pub mod schema;
+mod violation;
+
+pub use fields::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_value};
+pub use violation::{DocumentError, Violation};

@@ -1,0 +1,358 @@
+//! The job document: what goes in. Names and units are the public contract; every default is filled in, so that a
+//! document written out again says everything that was used.
+
+use serde::Serialize;
+
+/// How much a job computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub enum Kind {
+    /// Geometry, loaded contact and impact.
+    Mesh,
+    /// One operating point up to its vibration response.
+    Response,
+    /// A response over the values of one or two inputs.
+    Sweep,
+}
+
+impl Kind {
+    pub const ALL: [(&'static str, Kind); 3] =
+        [("mesh", Kind::Mesh), ("response", Kind::Response), ("sweep", Kind::Sweep)];
+
+    pub fn word(self) -> &'static str {
+        Self::ALL.iter().find(|(_, kind)| *kind == self).map_or("response", |(word, _)| word)
+    }
+}
+
+/// A job document with every default filled in and every value within its range.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JobDocument {
+    pub kind: Kind,
+    pub name: Option<String>,
+    pub label: Option<String>,
+    pub design: Design,
+    pub operation: Operation,
+    pub model: Model,
+    pub analysis: Analysis,
+    /// Only for sweeps.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub axes: Vec<Axis>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub continuation: Option<Continuation>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Design {
+    pub normal_module_mm: f64,
+    pub pressure_angle_deg: f64,
+    pub pressure_angle_plane: PressureAnglePlane,
+    pub helix_angle_deg: f64,
+    pub face_width_mm: f64,
+    pub gap_width_mm: f64,
+    pub center_distance_mm: Option<f64>,
+    pub backlash_um: f64,
+    pub half_stagger: f64,
+    pub material: Material,
+    pub pinion: Gear,
+    pub gear: Gear,
+    pub supports: Supports,
+    pub assembly: Assembly,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PressureAnglePlane {
+    Normal,
+    Transverse,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Material {
+    pub youngs_modulus_gpa: f64,
+    pub poissons_ratio: f64,
+    pub density_kg_m3: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Hand {
+    Left,
+    Right,
+}
+
+impl Hand {
+    pub fn opposite(self) -> Hand {
+        match self {
+            Hand::Left => Hand::Right,
+            Hand::Right => Hand::Left,
+        }
+    }
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Gear {
+    pub teeth: u32,
+    pub left_half_hand: Hand,
+    pub profile_shift: f64,
+    pub addendum: f64,
+    pub dedendum: f64,
+    pub fillet_radius: f64,
+    pub tip_alteration: f64,
+    pub bore_diameter_mm: Option<f64>,
+    pub mass_kg: Option<f64>,
+    pub inertia_kg_m2: Option<f64>,
+    #[serde(flatten)]
+    pub flank: Flank,
+    /// Modifications of one half where they differ from those of both.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left: Option<Flank>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub right: Option<Flank>,
+}
+
+/// Flank modifications: material removed, measured in the transverse plane along the base tangent.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Flank {
+    pub tip_relief: TipRelief,
+    pub lead_crowning_um: f64,
+    pub helix_slope_um: f64,
+    pub end_relief: EndRelief,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TipRelief {
+    pub amount_um: f64,
+    pub length_mm: f64,
+    pub shape: ReliefShape,
+}
+
+pub use crate::gear::{ReliefShape, Rotation};
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EndRelief {
+    pub amount_um: f64,
+    pub length_mm: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Supports {
+    pub pinion_lateral_n_per_um: f64,
+    pub gear_lateral_n_per_um: f64,
+    pub pinion_halves_axial_n_per_um: f64,
+    pub gear_axial_n_per_um: f64,
+    pub gear_halves_axial_n_per_um: f64,
+    pub damping_ratio: f64,
+    pub pinion_halves_torsional_nm_per_rad: f64,
+    pub gear_halves_torsional_nm_per_rad: f64,
+    pub pinion_halves_lateral_n_per_um: f64,
+    pub gear_halves_lateral_n_per_um: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Assembly {
+    pub center_distance_error_um: f64,
+    pub in_plane_misalignment_um: f64,
+    pub out_of_plane_misalignment_um: f64,
+    pub apex_offset_um: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Operation {
+    pub pinion_speed_rpm: f64,
+    pub pinion_torque_nm: f64,
+    pub rotation: Rotation,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Model {
+    pub plane: Plane,
+    pub mesh_damping_ratio: f64,
+    pub damping_in_gap: bool,
+    pub mesh_stiffness: MeshStiffness,
+    pub impact: Impact,
+}
+
+/// Plane in which the equations of motion are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Plane {
+    Base,
+    Pitch,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "source", rename_all = "snake_case")]
+pub enum MeshStiffness {
+    Ltca(Ltca),
+    Iso6336,
+    Given(GivenStiffness),
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Ltca {
+    pub fidelity: Fidelity,
+    pub body: Body,
+    pub corner_contact: bool,
+    /// Positions over one mesh period; chosen from the accuracy when null.
+    pub positions: Option<u32>,
+    /// Slices over the face width of one half; chosen from the geometry when null.
+    pub slices: Option<u32>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fidelity {
+    Analytic,
+    Fe,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Body {
+    Rim,
+    Bore,
+}
+
+/// A given mesh stiffness of one half: Fourier series or samples over one mesh period.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum GivenStiffness {
+    Harmonics { mean_n_per_um: f64, harmonics: Vec<Harmonic> },
+    Samples { samples_n_per_um: Vec<f64> },
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Harmonic {
+    /// Amplitude as a fraction of the mean.
+    pub amplitude: f64,
+    pub phase_rad: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "source", rename_all = "snake_case")]
+pub enum Impact {
+    CornerContact(CornerImpact),
+    Zhou2008(CornerImpact),
+    None,
+    Given(GivenImpact),
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CornerImpact {
+    pub duration: ImpactDuration,
+    /// Start of the pulse after the theoretical start of contact; when the pair enters (the corner contact) if null.
+    pub start_mesh_periods: Option<f64>,
+    pub base_pitch_error_um: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ImpactDuration {
+    /// Half the period of the equivalent mass on the compliance of the impact.
+    EnergyBalance,
+    /// From the first corner contact to the theoretical start of contact.
+    CornerToStart,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GivenImpact {
+    pub force_n: f64,
+    pub duration_mesh_periods: f64,
+    pub start_mesh_periods: f64,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Analysis {
+    pub accuracy: f64,
+    pub method: Method,
+    pub integrator: Integrator,
+    pub mesh_periods: u32,
+    pub record_mesh_periods: u32,
+    pub samples_per_mesh_period: u32,
+    /// Channels to record beside those that are always there; all when null.
+    pub channels: Option<Vec<String>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub initial_state: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    Auto,
+    Periodic,
+    Integrate,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Integrator {
+    /// Event-exact Taylor series on the piecewise-linear equations.
+    Taylor,
+    /// Variable-step fourth-order Runge–Kutta, as the source paper used.
+    RungeKutta4,
+}
+
+/// One swept input: where it stands in the document, and the values it takes, in the order in which they are solved.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Axis {
+    pub pointer: String,
+    #[serde(flatten)]
+    pub points: AxisPoints,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum AxisPoints {
+    Range { from: f64, to: f64, points: u32, spacing: Spacing },
+    Values { values: Vec<f64> },
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Spacing {
+    Linear,
+    Logarithmic,
+}
+
+impl Axis {
+    pub fn len(&self) -> usize {
+        match &self.points {
+            AxisPoints::Range { points, .. } => *points as usize,
+            AxisPoints::Values { values } => values.len(),
+        }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The value at position `index`; both ends of a range are met exactly.
+    pub fn value(&self, index: usize) -> f64 {
+        match &self.points {
+            AxisPoints::Values { values } => values[index],
+            AxisPoints::Range { from, to, points, spacing } => {
+                let last = points.saturating_sub(1) as usize;
+                if index == 0 {
+                    return *from;
+                }
+                if index >= last {
+                    return *to;
+                }
+                let fraction = index as f64 / last as f64;
+                match spacing {
+                    Spacing::Linear => from + (to - from) * fraction,
+                    Spacing::Logarithmic => from * (to / from).powf(fraction),
+                }
+            }
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Continuation {
+    None,
+    Up,
+    Down,
+}

@@ -1,0 +1,247 @@
+//! The result document: what comes out. Names and units are the public contract; stages that did not run are null.
+
+use crate::gear::Warning;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct JobResult {
+    pub geometry: Option<Geometry>,
+    pub mesh: Option<Mesh>,
+    pub impact: Option<Impact>,
+    pub response: Option<Response>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub sweep: Option<Sweep>,
+    pub numerics: Numerics,
+    #[cfg_attr(feature = "server", schema(value_type = Vec<WarningEntry>))]
+    pub warnings: Vec<Warning>,
+}
+
+/// A warning: what an engineer should know, and which field it is about.
+#[cfg(feature = "server")]
+#[derive(utoipa::ToSchema)]
+pub struct WarningEntry {
+    pub code: String,
+    pub detail: String,
+    pub pointer: String,
+}
+
+/// Two values, one per helix half.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct PerHalf {
+    pub left: f64,
+    pub right: f64,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Geometry {
+    pub transverse_contact_ratio: f64,
+    pub overlap_ratio: f64,
+    pub total_contact_ratio: f64,
+    pub working_pressure_angle_deg: f64,
+    pub center_distance_mm: f64,
+    pub mesh_frequency_hz: f64,
+    pub transverse_pressure_angle_deg: f64,
+    pub normal_pressure_angle_deg: f64,
+    pub base_helix_angle_deg: f64,
+    pub transverse_base_pitch_mm: f64,
+    pub path_of_contact_mm: f64,
+    pub pinion: GearGeometry,
+    pub gear: GearGeometry,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct GearGeometry {
+    pub reference_diameter_mm: f64,
+    pub base_diameter_mm: f64,
+    pub tip_diameter_mm: f64,
+    pub root_diameter_mm: f64,
+    pub root_form_diameter_mm: f64,
+    pub tip_thickness_normal_mm: f64,
+    pub bore_diameter_mm: f64,
+    pub mass_kg: f64,
+    pub inertia_kg_m2: f64,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Mesh {
+    /// Tangent stiffness dF_bt/dδ of one half in the base plane (mean of both halves where they differ).
+    pub stiffness_mean_n_per_um: f64,
+    pub stiffness_min_n_per_um: f64,
+    pub stiffness_max_n_per_um: f64,
+    pub secant_stiffness_mean_n_per_um: f64,
+    pub transmission_error_mean_um: f64,
+    pub transmission_error_pp_um: f64,
+    pub load_share_at_mesh_in: f64,
+    pub loaded_contact_ratio: f64,
+    /// Amplitudes of the first harmonics of the transmission error.
+    pub transmission_error_harmonics_um: Vec<f64>,
+    pub max_line_load_n_per_mm: f64,
+    pub max_contact_pressure_mpa: f64,
+    pub pairs_in_contact_min: u32,
+    pub pairs_in_contact_max: u32,
+    /// Transverse base-tangent force of one half.
+    pub force_n: f64,
+    pub axial_force_n: PerHalf,
+    /// Axial position that the floating pinion takes, mean over the mesh period.
+    pub pinion_axial_shift_um: f64,
+    /// Where the stiffness came from: `ltca`, `iso6336` or `given`.
+    pub source: String,
+    pub curve: MeshCurve,
+    /// Curves of the right half where the halves differ.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub right_curve: Option<MeshCurve>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct MeshCurve {
+    /// Position in the mesh period, 0 to 1; 0 is the theoretical start of contact of a pair.
+    pub phase: Vec<f64>,
+    pub stiffness_n_per_um: Vec<f64>,
+    pub transmission_error_um: Vec<f64>,
+    /// Share of the load of one pair over its whole path, one list per half solved.
+    pub load_share: Vec<Vec<f64>>,
+    /// Base pitches since the theoretical start of contact of the pair, for `load_share`.
+    pub load_share_phase: Vec<f64>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub flank: Option<FlankLoad>,
+}
+
+/// Line load over the flank, for a heat map: rows along the face width, columns along the roll path.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct FlankLoad {
+    pub face_mm: Vec<f64>,
+    pub roll_mm: Vec<f64>,
+    pub line_load_n_per_mm: Vec<Vec<f64>>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Impact {
+    pub force_n: f64,
+    pub zhou2008_force_n: f64,
+    pub reduction_percent: f64,
+    pub velocity_m_s: f64,
+    pub duration_us: f64,
+    pub theta_deg: f64,
+    pub equivalent_mass_kg: f64,
+    pub single_pair_stiffness_n_per_um: f64,
+    pub other_pairs_stiffness_n_per_um: f64,
+    /// Deflection of the pairs in mesh at the first contact, which the corner gap equals.
+    pub corner_deflection_um: f64,
+    /// Roll before the theoretical start of contact at which the tip corner touches.
+    pub corner_overrun_mm: f64,
+    pub start_mesh_periods: f64,
+    /// Which law excites the response: `corner_contact`, `zhou2008`, `none` or `given`.
+    pub source: String,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Response {
+    pub rms: Rms,
+    pub dynamic_factor: f64,
+    pub regime: String,
+    pub contact: String,
+    pub min_displacement_um: f64,
+    pub natural_frequencies_hz: Vec<f64>,
+    pub error_estimate: f64,
+    pub method: String,
+    pub fraction_in_contact: f64,
+    /// Whether the mesh damper acted in the gap (the printed law) or not.
+    pub damping_in_gap: bool,
+    pub plane: String,
+    pub mesh_frequency_hz: f64,
+    /// Mesh periods over which the means were taken.
+    pub averaged_mesh_periods: u32,
+    /// Displacement and velocity of the left mesh at each mesh period's start.
+    pub poincare: Poincare,
+    /// Amplitudes of the left half's circumferential acceleration by frequency.
+    pub spectrum: Option<Spectrum>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Rms {
+    pub mesh_circumferential_acceleration_m_s2: PerHalf,
+    pub pinion_axial_acceleration_m_s2: PerHalf,
+    /// Every recorded channel, in its SI unit (the catalogue of series names it).
+    pub channels: BTreeMap<String, f64>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Poincare {
+    pub x_left_m: Vec<f64>,
+    pub v_x_left_m_s: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Spectrum {
+    pub frequency_hz: Vec<f64>,
+    pub amplitude_m_s2: Vec<f64>,
+}
+
+/// A sweep: one row per point, in the order solved.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Sweep {
+    pub axes: Vec<SweepAxis>,
+    pub points: Vec<SweepPoint>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct SweepAxis {
+    pub pointer: String,
+    pub values: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct SweepPoint {
+    /// Value of each axis.
+    pub values: Vec<f64>,
+    pub mesh_circumferential_acceleration_rms_m_s2: Option<PerHalf>,
+    pub pinion_axial_acceleration_rms_m_s2: Option<PerHalf>,
+    pub dynamic_factor: Option<f64>,
+    pub regime: Option<String>,
+    pub contact: Option<String>,
+    pub min_displacement_um: Option<f64>,
+    pub stiffness_mean_n_per_um: Option<f64>,
+    pub impact_force_n: Option<f64>,
+    pub total_contact_ratio: Option<f64>,
+    pub loaded_contact_ratio: Option<f64>,
+    /// Why this point has no response.
+    pub error: Option<String>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Numerics {
+    pub wall_ms: WallMs,
+    /// Stages that were taken from the store instead of computed: `result`, `mesh`.
+    pub reused: Vec<String>,
+    pub steps: u64,
+    pub rejected_steps: u64,
+    pub force_evaluations: u64,
+    pub degrees_of_freedom: u32,
+    pub solver_version: String,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct WallMs {
+    pub geometry: f64,
+    pub mesh: f64,
+    pub impact: f64,
+    pub response: f64,
+}
