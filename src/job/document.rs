@@ -194,10 +194,21 @@ pub struct Ltca {
     pub fidelity: Fidelity,
     pub body: Body,
     pub corner_contact: bool,
+    pub law: StiffnessLaw,
     /// Positions over one mesh period; chosen from the accuracy when null.
     pub positions: Option<u32>,
     /// Slices over the face width of one half; chosen from the geometry when null.
     pub slices: Option<u32>,
+}
+
+/// Which stiffness of the loaded contact enters the equations of motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StiffnessLaw {
+    /// F/δ: the static displacement of the equations is the loaded transmission error, errors and reliefs included.
+    Secant,
+    /// dF/dδ at the working load: right for small vibrations about it.
+    Tangent,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -384,6 +384,13 @@ fn mesh_stiffness(object: Object) -> MeshStiffness {
     );
     let corner_contact =
         object.boolean("corner_contact", true, "ltca: whether tip corners may touch outside the path of contact.");
+    let law = object.choice(
+        "law",
+        &[("secant", StiffnessLaw::Secant), ("tangent", StiffnessLaw::Tangent)],
+        StiffnessLaw::Secant,
+        "secant",
+        "ltca: stiffness of the equations of motion: secant (carries errors and reliefs into the excitation) or tangent.",
+    );
     let positions =
         object.optional_integer("positions", 8, 1024, "ltca: positions over one mesh period.").map(|n| n as u32);
     let slices =
@@ -391,7 +398,7 @@ fn mesh_stiffness(object: Object) -> MeshStiffness {
     let given = given_stiffness(&object, source == 2);
     object.finish();
     match source {
-        0 => MeshStiffness::Ltca(Ltca { fidelity, body, corner_contact, positions, slices }),
+        0 => MeshStiffness::Ltca(Ltca { fidelity, body, corner_contact, law, positions, slices }),
         1 => MeshStiffness::Iso6336,
         _ => MeshStiffness::Given(given),
     }

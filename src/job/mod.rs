@@ -5,6 +5,8 @@ mod fields;
 mod reader;
 pub mod result;
 pub mod schema;
+#[cfg(test)]
+mod tests;
 mod violation;
 
 pub use fields::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_value};

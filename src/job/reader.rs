@@ -90,17 +90,8 @@ pub struct Object<'a> {
 }
 
 impl<'a> Object<'a> {
-    pub fn pointer(&self) -> &str {
-        &self.pointer
-    }
-
     pub fn reading(&self) -> &'a Reading {
         self.reading
-    }
-
-    /// Whether the document has this object.
-    pub fn is_present(&self) -> bool {
-        self.present || self.reading.describing
     }
 
     pub fn pointer_to(&self, name: &str) -> String {

@@ -1,0 +1,39 @@
+//! What `solve` and `check` share: reading a document from a file or standard input, and failing in the service's form.
+
+use herringbone::job::document::JobDocument;
+use herringbone::job::{self, DocumentError};
+use std::io::Read;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Largest document read, as over HTTP.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// Reads and parses the document at `path` (`-`: standard input); on failure the exit code, with the problem already
+/// on standard error.
+pub fn read_document(path: &Path) -> Result<JobDocument, ExitCode> {
+    let bytes = read_bytes(path).map_err(|error| {
+        eprintln!("{}: {error}", path.display());
+        ExitCode::from(2)
+    })?;
+    job::parse(&bytes).map_err(invalid)
+}
+
+/// Prints why a document is invalid, as problem+json; the exit code for invalid input is 2.
+pub fn invalid(error: DocumentError) -> ExitCode {
+    super::problem::print(&herringbone::api::Problem::from(error));
+    ExitCode::from(2)
+}
+
+fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    if path == Path::new("-") {
+        std::io::stdin().lock().take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    } else {
+        std::fs::File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    }
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(std::io::Error::other(format!("larger than {MAX_BYTES} bytes")));
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,210 @@
+//! From a document to physics in SI: the pair, its inertias, its operating point, and whether all of it can exist.
+
+use super::CheckReport;
+use crate::gear::{self, Infeasibility, Pair, PairSpec, Warning};
+use crate::job::document::{self as doc, JobDocument, PressureAnglePlane};
+use crate::job::result::{GearGeometry, Geometry};
+use crate::job::{DocumentError, Violation};
+
+/// Default bore as a fraction of the reference diameter, where none is given.
+const DEFAULT_BORE_FRACTION: f64 = 0.4;
+
+/// A document whose gear can exist: geometry, inertias and operating point in SI.
+#[derive(Debug, Clone)]
+pub struct Prepared {
+    pub pair: Pair,
+    pub warnings: Vec<Warning>,
+    /// Whole-gear masses and moments of inertia (both halves), pinion and gear.
+    pub mass_kg: [f64; 2],
+    pub inertia_kg_m2: [f64; 2],
+    pub mesh_frequency_hz: f64,
+    pub pinion_speed_rad_s: f64,
+    /// Base-tangent force of one half, T/2 / r_b1.
+    pub half_force_n: f64,
+}
+
+/// Derives everything about the gear that costs no solving.
+///
+/// # Errors
+/// [`DocumentError::Invalid`] with every reason why the gear cannot exist; [`DocumentError::Unsupported`] for what this
+/// version does not compute.
+pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
+    supported(document)?;
+    let mut warnings = Vec::new();
+    let spec = pair_spec(document, &mut warnings);
+    let (pair, pair_warnings) = Pair::new(&spec).map_err(|reasons| {
+        DocumentError::Invalid(reasons.into_iter().map(violation).collect())
+    })?;
+    warnings.extend(pair_warnings);
+    let design = &document.design;
+    let [pinion_disc, gear_disc] = [&pair.pinion, &pair.gear].map(|member| disc(member, &pair));
+    let speed_rad_s = document.operation.pinion_speed_rpm * std::f64::consts::TAU / 60.0;
+    Ok(Prepared {
+        mass_kg: [design.pinion.mass_kg.unwrap_or(pinion_disc.0), design.gear.mass_kg.unwrap_or(gear_disc.0)],
+        inertia_kg_m2: [
+            design.pinion.inertia_kg_m2.unwrap_or(pinion_disc.1),
+            design.gear.inertia_kg_m2.unwrap_or(gear_disc.1),
+        ],
+        mesh_frequency_hz: document.operation.pinion_speed_rpm / 60.0 * f64::from(pair.pinion.teeth),
+        pinion_speed_rad_s: speed_rad_s,
+        half_force_n: document.operation.pinion_torque_nm / 2.0 / pair.pinion.base_radius_m,
+        pair,
+        warnings,
+    })
+}
+
+/// The report of `check`: geometry and warnings.
+///
+/// # Errors
+/// As [`prepare`].
+pub fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
+    let prepared = prepare(document)?;
+    Ok(CheckReport { geometry: geometry(&prepared), warnings: prepared.warnings })
+}
+
+fn supported(document: &JobDocument) -> Result<(), DocumentError> {
+    let mut unsupported = Vec::new();
+    let mut refuse = |pointer: &str, detail: &str| unsupported.push(Violation::new(pointer, "unsupported", detail));
+    if let doc::MeshStiffness::Ltca(ltca) = &document.model.mesh_stiffness {
+        if ltca.fidelity == doc::Fidelity::Fe {
+            refuse("/model/mesh_stiffness/fidelity", "\"fe\" is not available in this version; use \"analytic\"");
+        }
+    }
+    let given = matches!(document.model.mesh_stiffness, doc::MeshStiffness::Given(_));
+    if !given && document.operation.pinion_torque_nm <= 0.0 {
+        let detail = "is zero or negative; the contact analysis needs a driving torque above 0 N m (a given mesh stiffness does not)";
+        refuse("/operation/pinion_torque_nm", detail);
+    }
+    let calculated = matches!(document.model.impact, doc::Impact::CornerContact(_) | doc::Impact::Zhou2008(_));
+    if calculated && document.operation.pinion_torque_nm <= 0.0 && given {
+        let detail = "is zero or negative; the corner-contact impact needs a driving torque above 0 N m (a given impact, or none, does not)";
+        refuse("/operation/pinion_torque_nm", detail);
+    }
+    if unsupported.is_empty() { Ok(()) } else { Err(DocumentError::Unsupported(unsupported)) }
+}
+
+fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
+    let design = &document.design;
+    let helix_angle_rad = design.helix_angle_deg.to_radians();
+    let pressure_angle_rad = design.pressure_angle_deg.to_radians();
+    PairSpec {
+        normal_module_m: design.normal_module_mm * 1e-3,
+        normal_pressure_angle_rad: match design.pressure_angle_plane {
+            PressureAnglePlane::Normal => pressure_angle_rad,
+            PressureAnglePlane::Transverse => (pressure_angle_rad.tan() * helix_angle_rad.cos()).atan(),
+        },
+        helix_angle_rad,
+        face_width_m: design.face_width_mm * 1e-3,
+        gap_width_m: design.gap_width_mm * 1e-3,
+        center_distance_m: design.center_distance_mm.map(|mm| mm * 1e-3),
+        material: gear::Material {
+            youngs_modulus_pa: design.material.youngs_modulus_gpa * 1e9,
+            poissons_ratio: design.material.poissons_ratio,
+            density_kg_m3: design.material.density_kg_m3,
+        },
+        rotation: document.operation.rotation,
+        pinion: gear_spec(design, &design.pinion, "/design/pinion", warnings),
+        gear: gear_spec(design, &design.gear, "/design/gear", warnings),
+        assembly: gear::Assembly {
+            center_distance_error_m: design.assembly.center_distance_error_um * 1e-6,
+            in_plane_misalignment_m: design.assembly.in_plane_misalignment_um * 1e-6,
+            out_of_plane_misalignment_m: design.assembly.out_of_plane_misalignment_um * 1e-6,
+            apex_offset_m: design.assembly.apex_offset_um * 1e-6,
+        },
+    }
+}
+
+fn gear_spec(design: &doc::Design, gear: &doc::Gear, pointer: &str, warnings: &mut Vec<Warning>) -> gear::GearSpec {
+    let bore_diameter_mm = gear.bore_diameter_mm.unwrap_or_else(|| {
+        let reference_mm = design.normal_module_mm * f64::from(gear.teeth) / design.helix_angle_deg.to_radians().cos();
+        let assumed_mm = DEFAULT_BORE_FRACTION * reference_mm;
+        warnings.push(Warning {
+            code: "bore-assumed".to_owned(),
+            pointer: format!("{pointer}/bore_diameter_mm"),
+            detail: format!("not given: {assumed_mm:.1} mm assumed ({DEFAULT_BORE_FRACTION} of the reference diameter)"),
+        });
+        assumed_mm
+    });
+    let both = &gear.flank;
+    gear::GearSpec {
+        teeth: gear.teeth,
+        profile_shift: gear.profile_shift,
+        addendum: gear.addendum,
+        dedendum: gear.dedendum,
+        fillet_radius: gear.fillet_radius,
+        tip_alteration: gear.tip_alteration,
+        bore_radius_m: bore_diameter_mm * 0.5e-3,
+        flanks: [gear.left.as_ref().unwrap_or(both), gear.right.as_ref().unwrap_or(both)].map(flank),
+    }
+}
+
+fn flank(flank: &doc::Flank) -> gear::FlankModification {
+    gear::FlankModification {
+        tip_relief: gear::TipRelief {
+            amount_m: flank.tip_relief.amount_um * 1e-6,
+            length_m: flank.tip_relief.length_mm * 1e-3,
+            shape: flank.tip_relief.shape,
+        },
+        lead_crowning_m: flank.lead_crowning_um * 1e-6,
+        helix_slope_m: flank.helix_slope_um * 1e-6,
+        end_relief: gear::EndRelief {
+            amount_m: flank.end_relief.amount_um * 1e-6,
+            length_m: flank.end_relief.length_mm * 1e-3,
+        },
+    }
+}
+
+fn violation(reason: Infeasibility) -> Violation {
+    Violation {
+        pointer: reason.pointer,
+        code: reason.code,
+        detail: reason.detail,
+        minimum: None,
+        maximum: None,
+        unit: Some(reason.unit),
+    }
+}
+
+/// Mass and moment of inertia of a solid disc of reference diameter, less its bore, over both face widths.
+fn disc(member: &gear::Member, pair: &Pair) -> (f64, f64) {
+    let (outer_sq, inner_sq) = (member.reference_radius_m.powi(2), member.bore_radius_m.powi(2));
+    let width_m = 2.0 * pair.spec.face_width_m;
+    let mass_kg = pair.spec.material.density_kg_m3 * std::f64::consts::PI * (outer_sq - inner_sq) * width_m;
+    (mass_kg, 0.5 * mass_kg * (outer_sq + inner_sq))
+}
+
+/// The geometry block of the result.
+pub fn geometry(prepared: &Prepared) -> Geometry {
+    let pair = &prepared.pair;
+    let member = |member: &gear::Member, index: usize| GearGeometry {
+        reference_diameter_mm: member.reference_radius_m * 2e3,
+        base_diameter_mm: member.base_radius_m * 2e3,
+        tip_diameter_mm: member.tip_radius_m * 2e3,
+        root_diameter_mm: member.root_radius_m * 2e3,
+        root_form_diameter_mm: member.root_form_radius_m * 2e3,
+        tip_thickness_normal_mm: normal_tip_thickness_m(member, pair) * 1e3,
+        bore_diameter_mm: member.bore_radius_m * 2e3,
+        mass_kg: prepared.mass_kg[index],
+        inertia_kg_m2: prepared.inertia_kg_m2[index],
+    };
+    Geometry {
+        transverse_contact_ratio: pair.transverse_contact_ratio,
+        overlap_ratio: pair.overlap_ratio,
+        total_contact_ratio: pair.transverse_contact_ratio + pair.overlap_ratio,
+        working_pressure_angle_deg: pair.working_pressure_angle_rad.to_degrees(),
+        center_distance_mm: pair.center_distance_m * 1e3,
+        mesh_frequency_hz: prepared.mesh_frequency_hz,
+        transverse_pressure_angle_deg: pair.transverse_pressure_angle_rad.to_degrees(),
+        normal_pressure_angle_deg: pair.spec.normal_pressure_angle_rad.to_degrees(),
+        base_helix_angle_deg: pair.base_helix_angle_rad.to_degrees(),
+        transverse_base_pitch_mm: pair.base_pitch_m * 1e3,
+        path_of_contact_mm: (pair.path_end_m - pair.path_start_m) * 1e3,
+        pinion: member(&pair.pinion, 0),
+        gear: member(&pair.gear, 1),
+    }
+}
+
+fn normal_tip_thickness_m(member: &gear::Member, pair: &Pair) -> f64 {
+    let helix_tangent = pair.spec.helix_angle_rad.tan() * member.tip_radius_m / member.reference_radius_m;
+    member.transverse_thickness_m(member.tip_radius_m) * helix_tangent.atan().cos()
+}
