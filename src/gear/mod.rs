@@ -11,11 +11,24 @@
 //!   rotation `ApexLeading` teeth enter at the inner end (`entry = b - y`), with `ApexTrailing` at the outer (`entry = y`).
 //! - Tooth pair `k` touches along `x = x0 + k p_bt + entry tan(beta_b)`: pair `k + 1` entered before pair `k`.
 
+mod corner;
+mod feasibility;
+mod involute;
+mod lines;
+mod member;
+mod modification;
 mod pair;
 mod spec;
+mod tooth;
 
-pub use pair::{Member, Pair};
+pub use corner::CornerContact;
+pub use lines::ContactLine;
+pub use member::Member;
+pub use pair::Pair;
 pub use spec::{
     Assembly, EndRelief, FlankModification, GearSpec, Half, Infeasibility, Material, PairSpec, ReliefShape, Rotation,
     TipRelief, Warning,
 };
+
+#[cfg(test)]
+mod tests;

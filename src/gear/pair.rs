@@ -1,40 +1,10 @@
 //! The pair: derived geometry of both members and of their engagement.
 
-use super::spec::{Half, Infeasibility, Material, PairSpec, Rotation, Warning};
-
-/// One member with its derived geometry (ISO 21771). Lengths in m, angles in rad.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Member {
-    pub teeth: u32,
-    pub profile_shift: f64,
-    pub reference_radius_m: f64,
-    pub base_radius_m: f64,
-    pub tip_radius_m: f64,
-    pub root_radius_m: f64,
-    /// Where fillet and involute join.
-    pub root_form_radius_m: f64,
-    pub bore_radius_m: f64,
-    /// Half tooth angle at the base circle, psi_b.
-    pub base_half_angle_rad: f64,
-}
-
-impl Member {
-    /// Half angle of the tooth (from its centreline to the flank) at radius `r_m`, between root and tip circle: the
-    /// trochoidal fillet below the root form circle, the involute above it.
-    pub fn half_angle_rad(&self, _r_m: f64) -> f64 {
-        todo!()
-    }
-
-    /// Transverse arc thickness of the tooth at radius `r_m`.
-    pub fn transverse_thickness_m(&self, r_m: f64) -> f64 {
-        2.0 * r_m * self.half_angle_rad(r_m)
-    }
-
-    /// Half angle of the tooth at the root circle (end of the fillet).
-    pub fn root_half_angle_rad(&self) -> f64 {
-        todo!()
-    }
-}
+use super::feasibility::Findings;
+use super::involute::{inv, inverse_inv};
+use super::member::Member;
+use super::spec::{GearSpec, Infeasibility, Material, PairSpec, Rotation, Warning};
+use super::tooth::Cutter;
 
 /// A feasible pair: every length of the engagement is known and finite.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +15,7 @@ pub struct Pair {
     pub transverse_pressure_angle_rad: f64,
     pub working_pressure_angle_rad: f64,
     pub base_helix_angle_rad: f64,
+    /// Working centre distance, its error included.
     pub center_distance_m: f64,
     pub transverse_module_m: f64,
     /// Transverse base pitch p_bt.
@@ -57,16 +28,95 @@ pub struct Pair {
     pub path_end_m: f64,
     pub transverse_contact_ratio: f64,
     pub overlap_ratio: f64,
+    /// Play along the transverse base tangent that the nominal tooth thicknesses leave at the working centre distance,
+    /// j_bt; zero where the centre distance follows from the profile shifts. The play of the dynamics is an input of its own.
+    pub geometric_backlash_m: f64,
 }
 
+/// The members as the job document names them.
+const SIDES: [&str; 2] = ["pinion", "gear"];
+
 impl Pair {
-    /// Derives the geometry, or says every reason why the design cannot run.
-    pub fn new(_spec: &PairSpec) -> Result<(Pair, Vec<Warning>), Vec<Infeasibility>> {
-        todo!()
+    /// Derives the geometry (ISO 21771), or says every reason why the design cannot run.
+    ///
+    /// A given centre distance that does not follow from the profile shifts changes the working pressure angle, the path of
+    /// contact and the play between the flanks, not the teeth: those are the rack's at the given profile shifts.
+    pub fn new(spec: &PairSpec) -> Result<(Pair, Vec<Warning>), Vec<Infeasibility>> {
+        let mut findings = Findings::default();
+        findings.check_values(spec);
+        if !findings.reasons.is_empty() {
+            return Err(findings.reasons);
+        }
+        let alpha_n = spec.normal_pressure_angle_rad;
+        let beta = spec.helix_angle_rad;
+        let alpha_t = (alpha_n.tan() / beta.cos()).atan();
+        let m_t = spec.normal_module_m / beta.cos();
+        let mut cutters = [&spec.pinion, &spec.gear].map(|gear| cutter(spec, gear, alpha_t));
+        for (side, cutter) in SIDES.into_iter().zip(&mut cutters) {
+            findings.check_cutter(side, cutter);
+        }
+        if cutters.iter().any(|cutter| cutter.root_radius_m() <= 0.0) {
+            return Err(findings.reasons);
+        }
+        let pinion = Member::new(&cutters[0], &spec.pinion);
+        let gear = Member::new(&cutters[1], &spec.gear);
+        for (side, member) in SIDES.into_iter().zip([&pinion, &gear]) {
+            findings.check_member(side, member, spec);
+        }
+
+        // Involute function of the working pressure angle without play.
+        let zero_play_inv = inv(alpha_t)
+            + 2.0 * alpha_n.tan() * (pinion.profile_shift + gear.profile_shift) / f64::from(pinion.teeth + gear.teeth);
+        let base_sum = pinion.base_radius_m + gear.base_radius_m;
+        let Some(center_distance_m) = findings.center_distance_m(spec, base_sum, inverse_inv(zero_play_inv)) else {
+            return Err(findings.reasons);
+        };
+        let alpha_wt = (base_sum / center_distance_m).acos();
+        let base_helix = (beta.tan() * alpha_t.cos()).atan();
+        let base_pitch_m = std::f64::consts::PI * m_t * alpha_t.cos();
+        let line_of_action_m = base_sum * alpha_wt.tan();
+        let path_start_m = (line_of_action_m - gear.tip_roll_m()).max(pinion.root_form_roll_m());
+        let path_end_m = pinion.tip_roll_m().min(line_of_action_m - gear.root_form_roll_m());
+        let pair = Pair {
+            spec: *spec,
+            transverse_pressure_angle_rad: alpha_t,
+            working_pressure_angle_rad: alpha_wt,
+            base_helix_angle_rad: base_helix,
+            center_distance_m,
+            transverse_module_m: m_t,
+            base_pitch_m,
+            line_of_action_m,
+            path_start_m,
+            path_end_m,
+            transverse_contact_ratio: (path_end_m - path_start_m) / base_pitch_m,
+            overlap_ratio: spec.face_width_m * base_helix.tan() / base_pitch_m,
+            // The play on the working pitch circles, unrolled on the base circles.
+            geometric_backlash_m: 2.0 * base_sum * (inv(alpha_wt) - zero_play_inv),
+            pinion,
+            gear,
+        };
+        findings.check_pair(&pair);
+        if findings.reasons.is_empty() { Ok((pair, findings.warnings)) } else { Err(findings.reasons) }
     }
 
     pub fn material(&self) -> &Material {
         &self.spec.material
+    }
+
+    /// Transverse plus overlap ratio of the unloaded pair.
+    pub fn total_contact_ratio(&self) -> f64 {
+        self.transverse_contact_ratio + self.overlap_ratio
+    }
+
+    /// Number of virtual spur teeth `z / (cos²(beta_b) cos(beta))` of the pinion and of the gear.
+    pub fn virtual_teeth(&self) -> [f64; 2] {
+        let per_tooth = 1.0 / (self.base_helix_angle_rad.cos().powi(2) * self.spec.helix_angle_rad.cos());
+        [&self.pinion, &self.gear].map(|member| f64::from(member.teeth) * per_tooth)
+    }
+
+    /// Roll coordinate of the pitch point C.
+    pub fn pitch_point_m(&self) -> f64 {
+        self.pinion.base_radius_m * self.working_pressure_angle_rad.tan()
     }
 
     /// Axial distance from the mesh-out end of a station at `y_m` from the inner end.
@@ -76,22 +126,17 @@ impl Pair {
             Rotation::ApexTrailing => y_m,
         }
     }
+}
 
-    /// Initial gap between the flanks at a point of the plane of action, in the transverse plane along the base
-    /// tangent: flank modifications of both members and the assembly errors, before load and apart from corner gaps.
-    pub fn initial_gap_m(&self, _half: Half, _x_m: f64, _y_m: f64) -> f64 {
-        todo!()
-    }
-
-    /// Kinematic gap of a contact outside the path of contact, `overrun_m >= 0` before its start: the gear's tip corner
-    /// against the pinion flank, measured along the transverse base tangent of the pinion (physics briefing, corner contact).
-    /// `None` where the corner has no flank to meet.
-    pub fn mesh_in_corner_gap_m(&self, _overrun_m: f64) -> Option<f64> {
-        todo!()
-    }
-
-    /// The same after the end of the path: the pinion's tip corner against the gear flank.
-    pub fn mesh_out_corner_gap_m(&self, _overrun_m: f64) -> Option<f64> {
-        todo!()
+fn cutter(spec: &PairSpec, gear: &GearSpec, transverse_pressure_angle_rad: f64) -> Cutter {
+    Cutter {
+        teeth: gear.teeth,
+        normal_module_m: spec.normal_module_m,
+        normal_pressure_angle_rad: spec.normal_pressure_angle_rad,
+        transverse_pressure_angle_rad,
+        helix_angle_rad: spec.helix_angle_rad,
+        profile_shift: gear.profile_shift,
+        dedendum: gear.dedendum,
+        fillet_radius: gear.fillet_radius,
     }
 }

@@ -1,0 +1,430 @@
+//! What makes a design infeasible and what an engineer should know about it.
+//!
+//! Values and limits carry the units of the job document, which the pointers name. Checks run in three steps (stated
+//! values, teeth of each member, engagement); a step that needs the result of a failed one is left out, everything else
+//! is reported at once.
+
+use super::corner::Corner;
+use super::member::Member;
+use super::pair::Pair;
+use super::spec::{FlankModification, GearSpec, Infeasibility, PairSpec, Warning};
+use super::tooth::Cutter;
+
+/// Thinnest tip, in normal modules, that is accepted without a warning (usual practice; 0.4 when case-hardened).
+const TIP_THICKNESS_WARNING: f64 = 0.2;
+/// Tip clearance, in normal modules, below which a warning is given (ISO 53 racks leave 0.25, the usual least is 0.1).
+const CLEARANCE_WARNING: f64 = 0.1;
+/// Rim thickness over tooth height below which a tooth root sees the rim (ISO 6336-3, rim thickness factor above 1).
+const RIM_WARNING: f64 = 1.2;
+/// Depth, in normal modules, to which a tip corner may dip into the mate's nominal fillet before the design is refused:
+/// below it tolerances, tip edge breaks and play decide, and a warning is given.
+const FILLET_CUT_LIMIT: f64 = 0.02;
+/// Cut into the fillet, in normal modules, that is taken as none (rounding of the sampled path).
+const FILLET_CUT_NOTICE: f64 = 1e-6;
+/// Negative play along the base tangent that is not yet reported: below the resolution of gear inspection.
+const JAM_NOTICE_M: f64 = 1e-6;
+/// Play along the base tangent, in normal modules, above which the given centre distance is reported as not belonging to the
+/// profile shifts (backlash allowances of ISO/TR 10064-2 stay below it).
+const PLAY_NOTICE: f64 = 0.1;
+
+const MM: f64 = 1e3;
+const UM: f64 = 1e6;
+
+/// Everything found so far.
+#[derive(Debug, Default)]
+pub(super) struct Findings {
+    pub reasons: Vec<Infeasibility>,
+    pub warnings: Vec<Warning>,
+}
+
+impl Findings {
+    fn refuse(&mut self, code: &str, pointer: String, detail: String, value: f64, limit: f64, unit: &str) {
+        self.reasons.push(Infeasibility { code: code.into(), pointer, detail, value, limit, unit: unit.into() });
+    }
+
+    fn warn(&mut self, code: &str, pointer: String, detail: String) {
+        self.warnings.push(Warning { code: code.into(), pointer, detail });
+    }
+
+    /// A stated value outside `[low, high]`; not a number is outside.
+    fn range(&mut self, pointer: &str, value: f64, [low, high]: [f64; 2], unit: &str) {
+        if !(value >= low && value <= high) {
+            let limit = if value > high { high } else { low };
+            self.refuse(
+                "value-out-of-range",
+                format!("/design/{pointer}"),
+                format!("{value} {unit} is outside {low} … {high} {unit}"),
+                value,
+                limit,
+                unit,
+            );
+        }
+    }
+
+    /// Stated values one by one: finite, and in the range in which the formulas of this room hold.
+    pub fn check_values(&mut self, spec: &PairSpec) {
+        self.range("normal_module_mm", spec.normal_module_m * MM, [0.01, 200.0], "mm");
+        self.range("pressure_angle_deg", spec.normal_pressure_angle_rad.to_degrees(), [5.0, 45.0], "deg");
+        self.range("helix_angle_deg", spec.helix_angle_rad.to_degrees(), [0.0, 45.0 + 1e-9], "deg");
+        self.range("face_width_mm", spec.face_width_m * MM, [0.01, 1e4], "mm");
+        self.range("gap_width_mm", spec.gap_width_m * MM, [0.0, 1e4], "mm");
+        if let Some(a) = spec.center_distance_m {
+            self.range("center_distance_mm", a * MM, [1e-3, 1e6], "mm");
+        }
+        let material = &spec.material;
+        self.range("material/youngs_modulus_gpa", material.youngs_modulus_pa * 1e-9, [0.01, 2000.0], "GPa");
+        self.range("material/poissons_ratio", material.poissons_ratio, [0.0, 0.499], "1");
+        self.range("material/density_kg_m3", material.density_kg_m3, [1.0, 50_000.0], "kg/m3");
+        let assembly = &spec.assembly;
+        for (name, value) in [
+            ("center_distance_error_um", assembly.center_distance_error_m),
+            ("in_plane_misalignment_um", assembly.in_plane_misalignment_m),
+            ("out_of_plane_misalignment_um", assembly.out_of_plane_misalignment_m),
+            ("apex_offset_um", assembly.apex_offset_m),
+        ] {
+            self.range(&format!("assembly/{name}"), value * UM, [-1e4, 1e4], "um");
+        }
+        for (side, gear) in [("pinion", &spec.pinion), ("gear", &spec.gear)] {
+            self.check_gear_values(side, gear, spec);
+        }
+    }
+
+    fn check_gear_values(&mut self, side: &str, gear: &GearSpec, spec: &PairSpec) {
+        let at = |name: &str| format!("{side}/{name}");
+        self.range(&at("teeth"), f64::from(gear.teeth), [5.0, 1000.0], "1");
+        self.range(&at("profile_shift"), gear.profile_shift, [-5.0, 5.0], "m_n");
+        self.range(&at("addendum"), gear.addendum, [0.0, 5.0], "m_n");
+        self.range(&at("dedendum"), gear.dedendum, [0.01, 5.0], "m_n");
+        self.range(&at("fillet_radius"), gear.fillet_radius, [0.0, 2.0], "m_n");
+        self.range(&at("tip_alteration"), gear.tip_alteration, [-5.0, 5.0], "m_n");
+        self.range(&at("bore_diameter_mm"), gear.bore_radius_m * 2.0 * MM, [0.0, 1e5], "mm");
+        let half_width_mm = 0.5 * spec.face_width_m * MM;
+        for FlankModification { tip_relief, lead_crowning_m, helix_slope_m, end_relief } in &gear.flanks {
+            self.range(&at("tip_relief/amount_um"), tip_relief.amount_m * UM, [0.0, 1e4], "um");
+            self.range(&at("tip_relief/length_mm"), tip_relief.length_m * MM, [0.0, 1e4], "mm");
+            self.range(&at("lead_crowning_um"), lead_crowning_m * UM, [-1e4, 1e4], "um");
+            self.range(&at("helix_slope_um"), helix_slope_m * UM, [-1e4, 1e4], "um");
+            self.range(&at("end_relief/amount_um"), end_relief.amount_m * UM, [0.0, 1e4], "um");
+            self.range(&at("end_relief/length_mm"), end_relief.length_m * MM, [0.0, half_width_mm], "mm");
+        }
+        self.reasons.dedup();
+    }
+
+    /// The cutter's tip rounding must fit its tip; a larger one is reduced to what fits, so that the rest can be checked.
+    pub fn check_cutter(&mut self, side: &str, cutter: &mut Cutter) {
+        let limit = cutter.fillet_radius_limit();
+        if limit < 0.0 {
+            self.refuse(
+                "rack-tip-pointed",
+                format!("/design/{side}/dedendum"),
+                format!(
+                    "the rack that cuts the {side} is pointed before it reaches a dedendum of {} m_n",
+                    cutter.dedendum
+                ),
+                cutter.dedendum,
+                std::f64::consts::FRAC_PI_4 / cutter.normal_pressure_angle_rad.tan(),
+                "m_n",
+            );
+        } else if cutter.fillet_radius > limit {
+            self.refuse(
+                "fillet-radius-too-large",
+                format!("/design/{side}/fillet_radius"),
+                format!(
+                    "a tip rounding of {} m_n does not fit the rack that cuts the {side}: at most {limit:.4} m_n",
+                    cutter.fillet_radius
+                ),
+                cutter.fillet_radius,
+                limit,
+                "m_n",
+            );
+        }
+        cutter.fillet_radius = cutter.fillet_radius.min(limit.max(0.0));
+        let root_m = cutter.root_radius_m();
+        if root_m < 0.05 * cutter.normal_module_m {
+            self.refuse(
+                "root-circle-vanishes",
+                format!("/design/{side}/dedendum"),
+                format!("the root circle of the {side} has a radius of {:.4} mm", root_m * MM),
+                root_m * MM,
+                0.05 * cutter.normal_module_m * MM,
+                "mm",
+            );
+        }
+    }
+
+    /// The teeth of one member, whatever it meshes with.
+    pub fn check_member(&mut self, side: &str, member: &Member, spec: &PairSpec) {
+        let m = spec.normal_module_m;
+        let least = member.root_form_radius_m.max(member.base_radius_m);
+        if member.tip_radius_m <= least {
+            self.refuse(
+                "no-involute",
+                format!("/design/{side}/addendum"),
+                format!(
+                    "the {side} has no involute flank: its tip radius {:.4} mm is not above {:.4} mm, where the flank starts",
+                    member.tip_radius_m * MM,
+                    least * MM
+                ),
+                member.tip_radius_m * MM,
+                least * MM,
+                "mm",
+            );
+        } else {
+            self.check_tip_thickness(side, member, m);
+        }
+        if member.root_half_angle_rad() <= 0.0 || member.half_angle_rad(member.root_form_radius_m) <= 0.0 {
+            self.refuse(
+                "tooth-cut-off",
+                format!("/design/{side}/teeth"),
+                format!("the cutter leaves no tooth on the {side}: undercut takes its whole thickness"),
+                member.half_angle_rad(member.root_form_radius_m) * 2.0 * member.root_form_radius_m / m,
+                0.0,
+                "m_n",
+            );
+        }
+        if member.is_undercut() {
+            self.warn(
+                "undercut",
+                format!("/design/{side}/profile_shift"),
+                format!(
+                    "the {side} is undercut: its profile shift {:.4} is below {:.4}; the involute starts at {:.4} mm diameter",
+                    member.profile_shift,
+                    member.undercut_profile_shift,
+                    2.0 * member.root_form_radius_m * MM
+                ),
+            );
+        }
+        self.check_bore(side, member);
+    }
+
+    fn check_tip_thickness(&mut self, side: &str, member: &Member, normal_module_m: f64) {
+        let thickness = member.normal_thickness_m(member.tip_radius_m) / normal_module_m;
+        if thickness <= 0.0 {
+            self.refuse(
+                "pointed-tip",
+                format!("/design/{side}/addendum"),
+                format!("the {side}'s tooth ends pointed below its tip circle: tip thickness {thickness:.4} m_n"),
+                thickness,
+                0.0,
+                "m_n",
+            );
+        } else if thickness < TIP_THICKNESS_WARNING {
+            self.warn(
+                "thin-tip",
+                format!("/design/{side}/addendum"),
+                format!("the {side}'s tip is {thickness:.4} m_n thick in the normal section, less than {TIP_THICKNESS_WARNING} m_n"),
+            );
+        }
+    }
+
+    fn check_bore(&mut self, side: &str, member: &Member) {
+        let rim = member.root_radius_m - member.bore_radius_m;
+        if rim <= 0.0 {
+            self.refuse(
+                "bore-too-large",
+                format!("/design/{side}/bore_diameter_mm"),
+                format!(
+                    "the bore of the {side}, {:.4} mm, reaches the root circle of {:.4} mm",
+                    2.0 * member.bore_radius_m * MM,
+                    2.0 * member.root_radius_m * MM
+                ),
+                2.0 * member.bore_radius_m * MM,
+                2.0 * member.root_radius_m * MM,
+                "mm",
+            );
+        } else if rim < RIM_WARNING * (member.tip_radius_m - member.root_radius_m) {
+            self.warn(
+                "thin-rim",
+                format!("/design/{side}/bore_diameter_mm"),
+                format!(
+                    "the rim of the {side} is {:.4} mm thick, less than {RIM_WARNING} tooth heights: its teeth are softer than those of a solid gear",
+                    rim * MM
+                ),
+            );
+        }
+    }
+
+    /// Working centre distance with its error, or `None` when no line of action exists.
+    pub fn center_distance_m(&mut self, spec: &PairSpec, base_sum_m: f64, zero_play_rad: Option<f64>) -> Option<f64> {
+        let nominal = match (spec.center_distance_m, zero_play_rad) {
+            (Some(a), _) => a,
+            (None, Some(alpha)) => base_sum_m / alpha.cos(),
+            (None, None) => {
+                let sum = spec.pinion.profile_shift + spec.gear.profile_shift;
+                let z = f64::from(spec.pinion.teeth + spec.gear.teeth);
+                let alpha_t = (spec.normal_pressure_angle_rad.tan() / spec.helix_angle_rad.cos()).atan();
+                let limit = -super::involute::inv(alpha_t) * z / (2.0 * spec.normal_pressure_angle_rad.tan());
+                self.refuse(
+                    "profile-shift-sum-too-small",
+                    "/design/pinion/profile_shift".into(),
+                    format!("no centre distance brings both flanks into contact: the profile shifts add up to {sum:.4}, at least {limit:.4} is needed"),
+                    sum,
+                    limit,
+                    "m_n",
+                );
+                return None;
+            }
+        };
+        let working = nominal + spec.assembly.center_distance_error_m;
+        if working > base_sum_m * (1.0 + 1e-9) {
+            return Some(working);
+        }
+        let pointer =
+            if spec.center_distance_m.is_some() { "center_distance_mm" } else { "assembly/center_distance_error_um" };
+        self.refuse(
+            "center-distance-too-small",
+            format!("/design/{pointer}"),
+            format!(
+                "the working centre distance {:.4} mm is not above the sum of the base radii, {:.4} mm",
+                working * MM,
+                base_sum_m * MM
+            ),
+            working * MM,
+            base_sum_m * MM,
+            "mm",
+        );
+        None
+    }
+
+    /// The engagement of the two members.
+    pub fn check_pair(&mut self, pair: &Pair) {
+        self.check_interference("gear", "pinion", &pair.gear, &Corner::mesh_in(pair), pair);
+        self.check_interference("pinion", "gear", &pair.pinion, &Corner::mesh_out(pair), pair);
+        self.check_clearance("pinion", "gear", &pair.pinion, &pair.gear, pair);
+        self.check_clearance("gear", "pinion", &pair.gear, &pair.pinion, pair);
+        self.check_contact_ratio(pair);
+        self.check_play(pair);
+        self.check_relief(pair);
+    }
+
+    fn check_interference(&mut self, side: &str, other: &str, member: &Member, corner: &Corner<'_>, pair: &Pair) {
+        let m = pair.spec.normal_module_m;
+        let at_tip = if side == "pinion" { &pair.spec.pinion } else { &pair.spec.gear };
+        let pointer = format!("/design/{side}/addendum");
+        let limit_radius = pair.line_of_action_m.hypot(member.base_radius_m);
+        if member.tip_radius_m > limit_radius {
+            let limit = at_tip.addendum - (member.tip_radius_m - limit_radius) / m;
+            self.refuse(
+                "tip-interference",
+                pointer,
+                format!(
+                    "the {side}'s tip passes the point where the line of action leaves the {other}'s base circle: addendum {:.4} m_n, at most {limit:.4} m_n",
+                    at_tip.addendum
+                ),
+                at_tip.addendum,
+                limit,
+                "m_n",
+            );
+            return;
+        }
+        let cut = corner.fillet_cut_m() / m;
+        if cut > FILLET_CUT_LIMIT {
+            self.refuse(
+                "fillet-interference",
+                pointer,
+                format!("the {side}'s tip cuts {cut:.4} m_n deep into the {other}'s root fillet, more than {FILLET_CUT_LIMIT} m_n"),
+                cut,
+                FILLET_CUT_LIMIT,
+                "m_n",
+            );
+        } else if cut > FILLET_CUT_NOTICE {
+            self.warn(
+                "fillet-interference",
+                pointer,
+                format!(
+                    "the {side}'s tip dips {:.2} um into the {other}'s nominal root fillet: the tips need an edge break or the root more depth",
+                    cut * m * UM
+                ),
+            );
+        }
+    }
+
+    fn check_clearance(&mut self, side: &str, other: &str, member: &Member, mate: &Member, pair: &Pair) {
+        let clearance = (pair.center_distance_m - member.tip_radius_m - mate.root_radius_m) / pair.spec.normal_module_m;
+        let pointer = format!("/design/{side}/addendum");
+        if clearance < 0.0 {
+            self.refuse(
+                "no-tip-clearance",
+                pointer,
+                format!("the {side}'s tip reaches {:.4} m_n into the {other}'s root circle", -clearance),
+                clearance,
+                0.0,
+                "m_n",
+            );
+        } else if clearance < CLEARANCE_WARNING {
+            self.warn(
+                "small-tip-clearance",
+                pointer,
+                format!("between the {side}'s tip and the {other}'s root {clearance:.4} m_n are left, less than {CLEARANCE_WARNING} m_n"),
+            );
+        }
+    }
+
+    fn check_contact_ratio(&mut self, pair: &Pair) {
+        let ratio = pair.transverse_contact_ratio;
+        if ratio >= 1.0 {
+            return;
+        }
+        let undercut = pair.pinion.is_undercut() || pair.gear.is_undercut();
+        let why = if undercut { ", undercut included" } else { "" };
+        self.refuse(
+            "contact-ratio-below-one",
+            "/design/pinion/addendum".into(),
+            format!("the transverse contact ratio is {ratio:.4}{why}; below 1 the teeth do not hand over"),
+            ratio,
+            1.0,
+            "1",
+        );
+    }
+
+    fn check_play(&mut self, pair: &Pair) {
+        let play = pair.geometric_backlash_m;
+        let pointer = || {
+            let field = if pair.spec.center_distance_m.is_some() {
+                "center_distance_mm"
+            } else {
+                "assembly/center_distance_error_um"
+            };
+            format!("/design/{field}")
+        };
+        if play < -JAM_NOTICE_M {
+            self.warn(
+                "negative-play",
+                pointer(),
+                format!(
+                    "at the working centre distance {:.4} mm teeth of nominal thickness overlap by {:.1} um along the base tangent: they must be thinner by that and the play",
+                    pair.center_distance_m * MM,
+                    -play * UM
+                ),
+            );
+        } else if play > PLAY_NOTICE * pair.spec.normal_module_m {
+            self.warn(
+                "large-play",
+                pointer(),
+                format!(
+                    "at the working centre distance {:.4} mm teeth of nominal thickness have {:.0} um play along the base tangent; the dynamics take the play stated as backlash_um",
+                    pair.center_distance_m * MM,
+                    play * UM
+                ),
+            );
+        }
+    }
+
+    fn check_relief(&mut self, pair: &Pair) {
+        let path = pair.path_end_m - pair.path_start_m;
+        for (side, gear) in [("pinion", &pair.spec.pinion), ("gear", &pair.spec.gear)] {
+            let longest = gear.flanks.iter().map(|flank| flank.tip_relief.length_m).fold(0.0, f64::max);
+            if longest > path && path > 0.0 {
+                self.warn(
+                    "tip-relief-over-whole-path",
+                    format!("/design/{side}/tip_relief/length_mm"),
+                    format!(
+                        "the tip relief of the {side} is {:.4} mm long, the path of contact only {:.4} mm",
+                        longest * MM,
+                        path * MM
+                    ),
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Corner contact against the tables of two independent derivations.
+
+use super::fixtures::{close, gear, pair, source_pair, spec, worked_pair};
+use crate::gear::{CornerContact, Pair};
+
+/// Overrun with the given gap, by bisection.
+fn at_gap(p: &Pair, gap_m: f64) -> CornerContact {
+    let (mut lo, mut hi) = (0.0, 0.2 * p.base_pitch_m);
+    for _ in 0..200 {
+        let mid = 0.5 * (lo + hi);
+        if p.mesh_in_corner_gap_m(mid).is_some_and(|gap| gap < gap_m) {
+            lo = mid;
+        } else {
+            hi = mid;
+        }
+    }
+    match p.mesh_in_corner(lo) {
+        Some(corner) => corner,
+        None => panic!("no corner contact"),
+    }
+}
+
+/// Table 1 geometry at 2000 rpm: gap, turn of the gear, inclination, effective base radius, velocity.
+#[test]
+fn source_pair_table() {
+    let p = pair(&source_pair(1.0));
+    let speed = 2000.0 * std::f64::consts::PI / 30.0 * p.pinion.base_radius_m;
+    for (gap_um, turn_deg, theta_deg, ratio, velocity) in [
+        (5.0, 0.172, 2.533, 0.97635, 0.2607),
+        (10.0, 0.246, 3.444, 0.96719, 0.3617),
+        (20.0, 0.354, 4.650, 0.95453, 0.5013),
+        (40.0, 0.508, 6.237, 0.93697, 0.6949),
+    ] {
+        let corner = at_gap(&p, gap_um * 1e-6);
+        close(corner.corner_turn_rad.to_degrees(), turn_deg, 5e-4);
+        close(corner.theta_rad.to_degrees(), theta_deg, 5e-4);
+        let actual = corner.effective_base_radius_m / p.gear.base_radius_m;
+        close(actual, ratio, 5e-6);
+        close(speed * (1.0 - actual), velocity, 5e-5);
+    }
+}
+
+/// The worked example: z 17/44, m_n 6, helix 24.43 deg, normal pressure angle 20 deg, 3000 rpm.
+#[test]
+fn worked_example() {
+    let p = pair(&worked_pair());
+    close(p.center_distance_m * 1e3, 200.9957, 5e-5);
+    close(p.working_pressure_angle_rad.to_degrees(), 21.78965, 5e-6);
+    close(p.pinion.base_radius_m * 1e3, 52.01307, 5e-6);
+    close(p.gear.base_radius_m * 1e3, 134.62206, 5e-6);
+    close(p.gear.tip_radius_m * 1e3, 150.98051, 5e-6);
+    close(p.transverse_contact_ratio, 1.43124, 5e-6);
+    let speed = 100.0 * std::f64::consts::PI * p.pinion.base_radius_m;
+    for (gap_um, turn_rad, effective_mm, velocity_mm_s) in [
+        (5.0, 0.00353, 131.8116, 341.13),
+        (10.0, 0.00501, 130.6634, 480.50),
+        (20.0, 0.00711, 129.0465, 676.76),
+        (40.0, 0.01009, 126.7648, 953.71),
+    ] {
+        let corner = at_gap(&p, gap_um * 1e-6);
+        close(corner.corner_turn_rad, turn_rad, 5e-6);
+        close(corner.effective_base_radius_m * 1e3, effective_mm, 5e-5);
+        close(speed * (1.0 - corner.effective_base_radius_m / p.gear.base_radius_m) * 1e3, velocity_mm_s, 5e-3);
+    }
+    close(at_gap(&p, 1e-5).theta_rad.to_degrees(), 2.86237, 5e-6);
+}
+
+/// Near the path the gap is `kappa x² / 2` with `kappa = a sin(alpha_wt) rho_2A / (r_b2² rho_1A)`: 0.044969 / mm.
+#[test]
+fn starts_quadratically() {
+    let p = pair(&worked_pair());
+    let rho_1 = p.path_start_m;
+    let rho_2 = p.line_of_action_m - rho_1;
+    let kappa = p.line_of_action_m * rho_2 / (p.gear.base_radius_m.powi(2) * rho_1);
+    close(kappa * 1e-3, 0.044969, 5e-7);
+    let x = 1e-5;
+    let gap = p.mesh_in_corner_gap_m(x).unwrap_or(f64::NAN);
+    close(gap / (0.5 * kappa * x * x), 1.0, 2e-3);
+    close(p.mesh_in_corner_gap_m(0.0).unwrap_or(f64::NAN), 0.0, 1e-16);
+}
+
+/// The velocity the gap closes with is the derivative of the gap over time: `v_s = omega_1 r_b1 (1 - r'_b2 / r_b2)`.
+#[test]
+fn effective_radius_is_the_slope_of_the_gap() {
+    let p = pair(&worked_pair());
+    for x in [2e-4, 5e-4, 1e-3] {
+        let h = 1e-7;
+        let gap = |x| p.mesh_in_corner_gap_m(x).unwrap_or(f64::NAN);
+        let slope = (gap(x + h) - gap(x - h)) / (2.0 * h);
+        let corner = p.mesh_in_corner(x).unwrap_or(CornerContact { theta_rad: f64::NAN, ..at_gap(&p, 1e-6) });
+        close(slope, 1.0 - corner.effective_base_radius_m / p.gear.base_radius_m, 1e-7);
+    }
+}
+
+#[test]
+fn mesh_out_mirrors_mesh_in() {
+    let p = pair(&spec(4.0, 20.0, 12.0, 30.0, gear(31, 0.0), gear(31, 0.0)));
+    for x in [0.0, 1e-4, 1e-3, 2e-3] {
+        let (a, b) = (p.mesh_in_corner_gap_m(x), p.mesh_out_corner_gap_m(x));
+        close(a.unwrap_or(f64::NAN), b.unwrap_or(f64::NAN), 1e-15);
+    }
+}
+
+#[test]
+fn no_flank_beyond_the_mates_tip() {
+    let p = pair(&worked_pair());
+    assert_eq!(p.mesh_in_corner_gap_m(0.5 * p.gear.base_radius_m), None);
+}

@@ -1,0 +1,71 @@
+//! Pairs that several tests use.
+
+use crate::gear::{Assembly, FlankModification, GearSpec, Material, Pair, PairSpec, Rotation};
+
+pub const NO_ERROR: Assembly = Assembly {
+    center_distance_error_m: 0.0,
+    in_plane_misalignment_m: 0.0,
+    out_of_plane_misalignment_m: 0.0,
+    apex_offset_m: 0.0,
+};
+
+pub fn gear(teeth: u32, profile_shift: f64) -> GearSpec {
+    GearSpec {
+        teeth,
+        profile_shift,
+        addendum: 1.0,
+        dedendum: 1.25,
+        fillet_radius: 0.38,
+        tip_alteration: 0.0,
+        bore_radius_m: 0.0,
+        flanks: [FlankModification::NONE; 2],
+    }
+}
+
+pub fn spec(
+    module_mm: f64,
+    alpha_n_deg: f64,
+    beta_deg: f64,
+    width_mm: f64,
+    pinion: GearSpec,
+    gear: GearSpec,
+) -> PairSpec {
+    PairSpec {
+        normal_module_m: module_mm * 1e-3,
+        normal_pressure_angle_rad: alpha_n_deg.to_radians(),
+        helix_angle_rad: beta_deg.to_radians(),
+        face_width_m: width_mm * 1e-3,
+        gap_width_m: 0.03,
+        center_distance_m: None,
+        material: Material { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 },
+        rotation: Rotation::ApexLeading,
+        pinion,
+        gear,
+        assembly: NO_ERROR,
+    }
+}
+
+/// Table 1 of the source paper: z 17/44, m_n 6 mm, transverse pressure angle 20 deg, helix 24.43 deg, b 75 mm per half.
+pub fn source_pair(addendum: f64) -> PairSpec {
+    let beta: f64 = 24.43_f64.to_radians();
+    let alpha_n = (20.0_f64.to_radians().tan() * beta.cos()).atan();
+    let with = |teeth| GearSpec { addendum, dedendum: addendum + 0.25, fillet_radius: 0.2, ..gear(teeth, 0.0) };
+    spec(6.0, alpha_n.to_degrees(), 24.43, 75.0, with(17), with(44))
+}
+
+/// The worked example of the corner formulas: z 17/44, m_n 6, helix 24.43 deg, normal pressure angle 20 deg, b 55.
+pub fn worked_pair() -> PairSpec {
+    spec(6.0, 20.0, 24.43, 55.0, gear(17, 0.0), gear(44, 0.0))
+}
+
+pub fn pair(spec: &PairSpec) -> Pair {
+    match Pair::new(spec) {
+        Ok((pair, _)) => pair,
+        Err(reasons) => panic!("{reasons:#?}"),
+    }
+}
+
+#[track_caller]
+pub fn close(value: f64, expected: f64, tolerance: f64) {
+    assert!((value - expected).abs() <= tolerance, "{value} is not {expected} within {tolerance}");
+}
