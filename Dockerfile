@@ -1,0 +1,29 @@
+# Build: the compiler and nothing else. Run: a bare Debian with the one binary, as a user of its own.
+FROM rust:1.95-bookworm AS build
+WORKDIR /build
+COPY Cargo.toml Cargo.lock build.rs ./
+COPY src src
+COPY migrations migrations
+COPY openapi openapi
+COPY examples examples
+COPY benches benches
+COPY tests tests
+RUN cargo build --release --locked --bin herringbone \
+ && cp target/release/herringbone /herringbone
+
+FROM debian:bookworm-slim
+RUN apt-get update \
+ && apt-get install --yes --no-install-recommends curl \
+ && rm -rf /var/lib/apt/lists/* \
+ && useradd --system --create-home --home-dir /var/lib/herringbone --shell /usr/sbin/nologin herringbone
+COPY --from=build /herringbone /usr/local/bin/herringbone
+USER herringbone
+WORKDIR /var/lib/herringbone
+VOLUME /var/lib/herringbone
+ENV HERRINGBONE_LISTEN=0.0.0.0:8080 \
+    HERRINGBONE_DATABASE=/var/lib/herringbone/herringbone.db
+EXPOSE 8080
+HEALTHCHECK --interval=10s --timeout=3s --start-period=5s \
+  CMD curl --fail --silent http://127.0.0.1:8080/healthz || exit 1
+ENTRYPOINT ["herringbone"]
+CMD ["serve"]
