@@ -18,13 +18,35 @@ pub fn mesh_hash(document: &JobDocument) -> Option<String> {
     let MeshStiffness::Ltca(ltca) = &document.model.mesh_stiffness else { return None };
     let design = &document.design;
     let member = |gear: &crate::job::document::Gear| {
-        json!([gear.teeth, gear.profile_shift, gear.addendum, gear.dedendum, gear.fillet_radius, gear.tip_alteration,
-            gear.bore_diameter_mm, gear.flank, gear.left, gear.right])
+        json!([
+            gear.teeth,
+            gear.profile_shift,
+            gear.addendum,
+            gear.dedendum,
+            gear.fillet_radius,
+            gear.tip_alteration,
+            gear.bore_diameter_mm,
+            gear.flank,
+            gear.left,
+            gear.right
+        ])
     };
-    let key = json!([design.normal_module_mm, design.pressure_angle_deg, design.pressure_angle_plane,
-        design.helix_angle_deg, design.face_width_mm, design.center_distance_mm, design.half_stagger, design.material,
-        member(&design.pinion), member(&design.gear), design.assembly, document.operation.rotation,
-        document.operation.pinion_torque_nm, ltca]);
+    let key = json!([
+        design.normal_module_mm,
+        design.pressure_angle_deg,
+        design.pressure_angle_plane,
+        design.helix_angle_deg,
+        design.face_width_mm,
+        design.center_distance_mm,
+        design.half_stagger,
+        design.material,
+        member(&design.pinion),
+        member(&design.gear),
+        design.assembly,
+        document.operation.rotation,
+        document.operation.pinion_torque_nm,
+        ltca
+    ]);
     Some(hash("mesh", &key))
 }
 

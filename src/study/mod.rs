@@ -1,12 +1,19 @@
 //! What a job needs: which stages run, what can be reused, in which order; and the only place where documents
 //! meet physics.
 
+mod hash;
+mod prepare;
+
 use crate::gear::Warning;
+use crate::job::DocumentError;
 use crate::job::document::JobDocument;
 use crate::job::result::{Geometry, JobResult};
-use crate::job::{DocumentError, Violation};
+
 use crate::watch::{Canceled, Watch};
 use serde::{Deserialize, Serialize};
+
+pub use hash::input_hash;
+pub use prepare::check;
 
 /// Version of the calculation: results and stages stored under another version are not reused.
 pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-1");
@@ -110,20 +117,6 @@ pub struct CheckReport {
     pub warnings: Vec<Warning>,
 }
 
-/// Checks that the gear of a document can exist and be solved.
-///
-/// # Errors
-/// [`DocumentError::Invalid`] with every reason why the gear cannot exist, [`DocumentError::Unsupported`] for what this
-/// version does not compute.
-pub fn check(_document: &JobDocument) -> Result<CheckReport, DocumentError> {
-    Err(DocumentError::Unsupported(vec![Violation::new("", "unsupported", "under construction")]))
-}
-
-/// Content hash of everything that decides a document's result (name and label do not), with the solver's version.
-pub fn input_hash(_document: &JobDocument) -> String {
-    String::new()
-}
-
 /// Solves a job.
 ///
 /// # Errors
@@ -132,3 +125,6 @@ pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outc
     let _ = (Watch::none(), surroundings.clock_ms, check(document)?);
     Ok(Outcome { result: JobResult::default(), series: Vec::new() })
 }
+
+#[cfg(test)]
+mod tests;

@@ -32,12 +32,14 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
     supported(document)?;
     let mut warnings = Vec::new();
     let spec = pair_spec(document, &mut warnings);
-    let (pair, pair_warnings) = Pair::new(&spec).map_err(|reasons| {
-        DocumentError::Invalid(reasons.into_iter().map(violation).collect())
-    })?;
+    let (pair, pair_warnings) =
+        Pair::new(&spec).map_err(|reasons| DocumentError::Invalid(reasons.into_iter().map(violation).collect()))?;
     warnings.extend(pair_warnings);
     let design = &document.design;
-    let [pinion_disc, gear_disc] = [&pair.pinion, &pair.gear].map(|member| disc(member, &pair));
+    let [pinion_disc, gear_disc] = [&pair.pinion, &pair.gear].map(|member| {
+        let (material, width_m) = (pair.material(), pair.spec.face_width_m);
+        (member.mass_kg(material, width_m), member.inertia_kg_m2(material, width_m))
+    });
     let speed_rad_s = document.operation.pinion_speed_rpm * std::f64::consts::TAU / 60.0;
     Ok(Prepared {
         mass_kg: [design.pinion.mass_kg.unwrap_or(pinion_disc.0), design.gear.mass_kg.unwrap_or(gear_disc.0)],
@@ -121,7 +123,9 @@ fn gear_spec(design: &doc::Design, gear: &doc::Gear, pointer: &str, warnings: &m
         warnings.push(Warning {
             code: "bore-assumed".to_owned(),
             pointer: format!("{pointer}/bore_diameter_mm"),
-            detail: format!("not given: {assumed_mm:.1} mm assumed ({DEFAULT_BORE_FRACTION} of the reference diameter)"),
+            detail: format!(
+                "not given: {assumed_mm:.1} mm assumed ({DEFAULT_BORE_FRACTION} of the reference diameter)"
+            ),
         });
         assumed_mm
     });
@@ -165,14 +169,6 @@ fn violation(reason: Infeasibility) -> Violation {
     }
 }
 
-/// Mass and moment of inertia of a solid disc of reference diameter, less its bore, over both face widths.
-fn disc(member: &gear::Member, pair: &Pair) -> (f64, f64) {
-    let (outer_sq, inner_sq) = (member.reference_radius_m.powi(2), member.bore_radius_m.powi(2));
-    let width_m = 2.0 * pair.spec.face_width_m;
-    let mass_kg = pair.spec.material.density_kg_m3 * std::f64::consts::PI * (outer_sq - inner_sq) * width_m;
-    (mass_kg, 0.5 * mass_kg * (outer_sq + inner_sq))
-}
-
 /// The geometry block of the result.
 pub fn geometry(prepared: &Prepared) -> Geometry {
     let pair = &prepared.pair;
@@ -182,7 +178,7 @@ pub fn geometry(prepared: &Prepared) -> Geometry {
         tip_diameter_mm: member.tip_radius_m * 2e3,
         root_diameter_mm: member.root_radius_m * 2e3,
         root_form_diameter_mm: member.root_form_radius_m * 2e3,
-        tip_thickness_normal_mm: normal_tip_thickness_m(member, pair) * 1e3,
+        tip_thickness_normal_mm: member.normal_thickness_m(member.tip_radius_m) * 1e3,
         bore_diameter_mm: member.bore_radius_m * 2e3,
         mass_kg: prepared.mass_kg[index],
         inertia_kg_m2: prepared.inertia_kg_m2[index],
@@ -202,9 +198,4 @@ pub fn geometry(prepared: &Prepared) -> Geometry {
         pinion: member(&pair.pinion, 0),
         gear: member(&pair.gear, 1),
     }
-}
-
-fn normal_tip_thickness_m(member: &gear::Member, pair: &Pair) -> f64 {
-    let helix_tangent = pair.spec.helix_angle_rad.tan() * member.tip_radius_m / member.reference_radius_m;
-    member.transverse_thickness_m(member.tip_radius_m) * helix_tangent.atan().cos()
 }
