@@ -1,0 +1,31 @@
+//! `herringbone check`: geometry and warnings of a document, nothing solved.
+
+use super::input::{invalid, read_document};
+use clap::Args;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub struct Check {
+    /// Job document (JSON); `-` reads standard input.
+    file: PathBuf,
+}
+
+pub fn run(arguments: Check) -> ExitCode {
+    let document = match read_document(&arguments.file) {
+        Ok(document) => document,
+        Err(code) => return code,
+    };
+    match herringbone::study::check(&document) {
+        Ok(report) => {
+            let mut out = std::io::stdout().lock();
+            let written = serde_json::to_writer_pretty(&mut out, &report).map_err(std::io::Error::from);
+            match written.and_then(|()| writeln!(out)) {
+                Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => ExitCode::FAILURE,
+                _ => ExitCode::SUCCESS,
+            }
+        }
+        Err(error) => invalid(error),
+    }
+}

@@ -1,0 +1,125 @@
+//! `herringbone solve`: one document solved in place, without service or database.
+
+use super::input::{invalid, read_document};
+use super::{problem, table};
+use clap::Args;
+use herringbone::api::Problem;
+use herringbone::job::document::JobDocument;
+use herringbone::study::{self, Channel, NoStageStore, SolveError, Stage, Surroundings};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+#[derive(Debug, Args)]
+pub struct Solve {
+    /// Job document (JSON); `-` reads standard input.
+    file: PathBuf,
+    /// Write a recorded channel, full resolution, as CSV (`t_s,value`); may be given several times.
+    #[arg(long, value_name = "CHANNEL=FILE.csv", value_parser = series_target)]
+    series: Vec<(String, PathBuf)>,
+    /// Print the headline numbers for people instead of the result JSON.
+    #[arg(long)]
+    table: bool,
+}
+
+fn series_target(text: &str) -> Result<(String, PathBuf), String> {
+    match text.split_once('=') {
+        Some((channel, file)) if !channel.is_empty() && !file.is_empty() => Ok((channel.to_owned(), file.into())),
+        _ => Err("give CHANNEL=FILE.csv".to_owned()),
+    }
+}
+
+pub fn run(arguments: Solve) -> ExitCode {
+    let mut document = match read_document(&arguments.file) {
+        Ok(document) => document,
+        Err(code) => return code,
+    };
+    record(&mut document, &arguments.series);
+    let outcome = match solve(&document) {
+        Ok(outcome) => outcome,
+        Err(SolveError::Document(error)) => return invalid(error),
+        Err(error) => {
+            problem::print(&Problem::from(error));
+            return ExitCode::FAILURE;
+        }
+    };
+    for (channel, path) in &arguments.series {
+        let Some(series) = outcome.series.iter().find(|series| study::is_channel(channel, &series.name)) else {
+            let known: Vec<_> = outcome.series.iter().map(|series| series.name.as_str()).collect();
+            let known = if known.is_empty() { "none in this kind of job".to_owned() } else { known.join(", ") };
+            eprintln!("--series {channel}: no such channel; recorded: {known}");
+            return ExitCode::from(2);
+        };
+        if let Err(error) = write_csv(series, path) {
+            eprintln!("{}: {error}", path.display());
+            return ExitCode::FAILURE;
+        }
+    }
+    let written = if arguments.table {
+        table::write(&mut std::io::stdout().lock(), &outcome.result)
+    } else {
+        write_json(&outcome.result)
+    };
+    // A reader that closed the pipe early has what it wanted.
+    match written {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            eprintln!("standard output: {error}");
+            ExitCode::FAILURE
+        }
+        _ => ExitCode::SUCCESS,
+    }
+}
+
+/// Records just the channels asked for: without `--series` no time series is built.
+fn record(document: &mut JobDocument, series: &[(String, PathBuf)]) {
+    if document.analysis.channels.is_none() || !series.is_empty() {
+        let mut channels = document.analysis.channels.take().unwrap_or_default();
+        channels.extend(series.iter().map(|(channel, _)| channel.clone()));
+        document.analysis.channels = Some(channels);
+    }
+}
+
+fn solve(document: &JobDocument) -> Result<study::Outcome, SolveError> {
+    let started = Instant::now();
+    let bar = bar();
+    let progress = |stage: Stage, fraction: f64| {
+        bar.set_message(stage.word());
+        bar.set_position((fraction * 1000.0) as u64);
+    };
+    let outcome = study::solve(
+        document,
+        &Surroundings {
+            stages: &NoStageStore,
+            progress: &progress,
+            canceled: &|| false,
+            clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,
+        },
+    );
+    bar.finish_and_clear();
+    outcome
+}
+
+fn bar() -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{msg:>9} {bar:40} {percent:>3} % {elapsed}");
+    ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+fn write_json(result: &herringbone::job::result::JobResult) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    serde_json::to_writer_pretty(&mut out, result)?;
+    writeln!(out)
+}
+
+fn write_csv(series: &Channel, path: &PathBuf) -> std::io::Result<()> {
+    let mut out = std::io::BufWriter::new(std::fs::File::create(path)?);
+    writeln!(out, "t_s,value")?;
+    for (index, value) in series.values.iter().enumerate() {
+        writeln!(out, "{:.12e},{value:.17e}", series.t0_s + index as f64 * series.dt_s)?;
+    }
+    out.flush()
+}
