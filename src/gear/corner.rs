@@ -1,48 +1,64 @@
-//! Contact outside the path of contact: the tip corner of one member against the flank of the other.
+//! Contact outside the path of contact: a corner of one member against the flank of the other.
 //!
-//! Exact kinematics in the transverse plane. The corner of the driven member's tip at polar angle `gamma` about its own
-//! centre, from the line of centres, meets the mate's circle of radius `r'` at polar angle `phi`. The separation, along the
-//! base tangent of the mate, is the mate's base radius times the angle by which its flank at `r'` still has to turn.
+//! Exact kinematics in the transverse plane. A corner of one member (its tip edge; where undercut shortens the path, the edge
+//! its involute starts with) at polar angle `gamma` about its own centre, from the line of centres, meets the mate's circle
+//! of radius `r'` at polar angle `phi`. The separation, along the base tangent of the mate, is the mate's base radius times
+//! the angle by which its flank at `r'` still has to turn.
 
+use super::involute::inv_at_radius;
 use super::member::Member;
 use super::pair::Pair;
 
-/// One tip corner outside its theoretical path: where it is and what it does to the line of action.
+/// A corner contact outside the theoretical path: how far apart, and the instantaneous line of action.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CornerContact {
     /// Separation of corner and flank along the transverse base tangent of the flank's member.
     pub gap_m: f64,
-    /// Turn of the corner's member from the end of the theoretical path to this position.
-    pub corner_turn_rad: f64,
-    /// Radius on the mate at which the corner meets its flank.
+    /// Turn of the gear from the near end of the theoretical path to this position, positive away from it.
+    pub gear_turn_rad: f64,
+    /// Radius at which the corner meets the flank, on the flank's member.
     pub flank_radius_m: f64,
-    /// Inclination of the instantaneous line of action less the working pressure angle.
+    /// Inclination of the instantaneous line of action less the working pressure angle; positive: steeper.
     pub theta_rad: f64,
-    /// Effective base radius of the corner's member on the instantaneous line of action.
-    pub effective_base_radius_m: f64,
+    /// Distance of the instantaneous line of action from the pinion's axis: its base radius where its flank is touched.
+    pub pinion_arm_m: f64,
+    /// Distance of the instantaneous line of action from the gear's axis: its base radius where its flank is touched.
+    pub gear_arm_m: f64,
 }
 
-/// A tip corner of `corner` against the flank of `mate`.
+/// The edge at `radius_m` of `corner` against the flank of `mate`.
 pub(super) struct Corner<'a> {
     corner: &'a Member,
+    radius_m: f64,
     mate: &'a Member,
     center_distance_m: f64,
     working_pressure_angle_rad: f64,
     line_of_action_m: f64,
 }
 
+/// Where a corner stands against its mate.
+struct Standing {
+    gap_m: f64,
+    flank_radius_m: f64,
+    theta_rad: f64,
+    arm_m: f64,
+}
+
 impl<'a> Corner<'a> {
+    /// The gear's tip against the pinion.
     pub fn mesh_in(pair: &'a Pair) -> Corner<'a> {
-        Corner::new(pair, &pair.gear, &pair.pinion)
+        Corner::new(pair, &pair.gear, pair.gear.tip_radius_m, &pair.pinion)
     }
 
+    /// The pinion's tip against the gear.
     pub fn mesh_out(pair: &'a Pair) -> Corner<'a> {
-        Corner::new(pair, &pair.pinion, &pair.gear)
+        Corner::new(pair, &pair.pinion, pair.pinion.tip_radius_m, &pair.gear)
     }
 
-    fn new(pair: &'a Pair, corner: &'a Member, mate: &'a Member) -> Corner<'a> {
+    fn new(pair: &'a Pair, corner: &'a Member, radius_m: f64, mate: &'a Member) -> Corner<'a> {
         Corner {
             corner,
+            radius_m,
             mate,
             center_distance_m: pair.center_distance_m,
             working_pressure_angle_rad: pair.working_pressure_angle_rad,
@@ -50,40 +66,50 @@ impl<'a> Corner<'a> {
         }
     }
 
-    /// Polar angle of the corner where its tip circle crosses the line of action.
-    pub fn start_angle_rad(&self) -> f64 {
-        let cos = self.corner.base_radius_m / self.corner.tip_radius_m;
-        cos.clamp(-1.0, 1.0).acos() - self.working_pressure_angle_rad
+    /// Polar angle of the corner where its circle crosses the line of action.
+    fn start_angle_rad(&self) -> f64 {
+        (self.corner.base_radius_m / self.radius_m).clamp(-1.0, 1.0).acos() - self.working_pressure_angle_rad
     }
 
     /// Roll length of the mate at which the corner crosses the line of action.
-    pub fn start_roll_m(&self) -> f64 {
-        self.line_of_action_m - self.corner.tip_roll_m()
+    fn start_roll_m(&self) -> f64 {
+        self.line_of_action_m - self.corner.roll_length_m(self.radius_m)
     }
 
-    /// The corner after `turn_rad` away from the line of centres (negative: towards it).
-    pub fn at(&self, turn_rad: f64) -> CornerContact {
-        let (a, r_tip) = (self.center_distance_m, self.corner.tip_radius_m);
+    /// The corner's member turned by `turn_rad` from where the corner crosses the line of action, positive away from the line
+    /// of centres where the corner is a tip.
+    fn at(&self, turn_rad: f64) -> Standing {
+        let (a, r) = (self.center_distance_m, self.radius_m);
         let start = self.start_angle_rad();
         let gamma = start + turn_rad;
-        // sin² of the half angle keeps a - r_tip cos(gamma) exact near the line of centres.
-        let radius = ((a - r_tip).powi(2) + 4.0 * a * r_tip * (0.5 * gamma).sin().powi(2)).sqrt();
-        let phi = (r_tip * gamma.sin()).atan2(a - r_tip * gamma.cos());
-        let start_radius = self.start_roll_m().hypot(self.mate.base_radius_m);
-        let phi_start = (r_tip * start.sin()).atan2(a - r_tip * start.cos());
+        let phi = |gamma: f64| (r * gamma.sin()).atan2(a - r * gamma.cos());
+        // sin² of the half angle keeps a - r cos(gamma) exact near the line of centres.
+        let flank_radius = ((a - r).powi(2) + 4.0 * a * r * (0.5 * gamma).sin().powi(2)).sqrt();
+        let base = self.mate.base_radius_m;
+        let start_half_angle = self.mate.base_half_angle_rad - inv_at_radius(self.start_roll_m().hypot(base), base);
+        let flank_ahead = start_half_angle - self.mate.half_angle_rad(flank_radius);
         let ratio = f64::from(self.corner.teeth) / f64::from(self.mate.teeth);
-        let start_half_angle =
-            self.mate.base_half_angle_rad - super::involute::inv_at_radius(start_radius, self.mate.base_radius_m);
-        let flank_ahead = start_half_angle - self.mate.half_angle_rad(radius);
-        let gap = self.mate.base_radius_m * (ratio * turn_rad - (phi - phi_start) + flank_ahead);
-        let inclination = phi + (self.mate.base_radius_m / radius).clamp(-1.0, 1.0).acos();
-        CornerContact {
-            gap_m: gap,
-            corner_turn_rad: turn_rad,
-            flank_radius_m: radius,
+        let inclination = phi(gamma) + (base / flank_radius).clamp(-1.0, 1.0).acos();
+        Standing {
+            gap_m: base * (ratio * turn_rad - (phi(gamma) - phi(start)) + flank_ahead),
+            flank_radius_m: flank_radius,
             theta_rad: inclination - self.working_pressure_angle_rad,
-            effective_base_radius_m: a * inclination.cos() - self.mate.base_radius_m,
+            arm_m: a * inclination.cos() - base,
         }
+    }
+
+    /// The standing after `turn_rad`, if the corner then faces the usable flank of the mate. With `past_tip` the flank goes on
+    /// past its tip by the separation itself: two edges that pass each other at that distance hand over without a break.
+    fn on_flank(&self, turn_rad: f64, past_tip: bool) -> Option<Standing> {
+        // Beyond a right angle from the line of centres the corner has left the mate for good.
+        if (self.start_angle_rad() + turn_rad).abs() > std::f64::consts::FRAC_PI_2 {
+            return None;
+        }
+        let standing = self.at(turn_rad);
+        let low = self.mate.root_form_radius_m * (1.0 - ROUNDING);
+        let beyond = if past_tip { standing.gap_m.max(0.0) } else { 0.0 };
+        let high = self.mate.tip_radius_m * (1.0 + ROUNDING) + beyond;
+        (low..=high).contains(&standing.flank_radius_m).then_some(standing)
     }
 
     /// Depth by which the corner would cut into the mate's tooth on its way from the start of the line of action to the line
@@ -96,36 +122,70 @@ impl<'a> Corner<'a> {
     }
 }
 
+/// Relative rounding of radii at the ends of a flank.
+const ROUNDING: f64 = 1e-12;
+
 /// Positions of the corner between the line of action and the line of centres at which its way is checked.
 const FILLET_SAMPLES: u32 = 96;
 
 impl Pair {
-    /// The gear's tip corner before the start of contact, `overrun_m` of roll before the path starts, against the pinion's
-    /// flank. `None` where the corner has no flank to meet: beyond the pinion's tip, or still below the usable involute.
+    /// Contact `overrun_m >= 0` of roll before the path of contact starts: the gear's tip corner against the pinion's flank;
+    /// where the path starts at the pinion's form circle instead, the first point of the pinion's involute against the gear's
+    /// flank until the gear's tip takes over. `None` where the corner has no flank to meet.
     pub fn mesh_in_corner(&self, overrun_m: f64) -> Option<CornerContact> {
-        let corner = Corner::mesh_in(self);
-        let clipped = self.path_start_m - corner.start_roll_m();
-        self.corner_contact(&corner, overrun_m - clipped)
-    }
-
-    /// The pinion's tip corner after the end of contact, `overrun_m` of roll after the path ends, against the gear's flank.
-    /// Angles and the effective base radius are the pinion's.
-    pub fn mesh_out_corner(&self, overrun_m: f64) -> Option<CornerContact> {
-        let corner = Corner::mesh_out(self);
-        let clipped = self.line_of_action_m - self.path_end_m - corner.start_roll_m();
-        self.corner_contact(&corner, overrun_m - clipped)
-    }
-
-    fn corner_contact(&self, corner: &Corner<'_>, roll_m: f64) -> Option<CornerContact> {
-        let turn = roll_m / corner.corner.base_radius_m;
-        // Beyond a right angle from the line of centres the corner leaves the mate for good.
-        if !(corner.start_angle_rad() + turn).abs().le(&std::f64::consts::FRAC_PI_2) {
-            return None;
+        let tip = Corner::mesh_in(self);
+        let edge = Corner::new(self, &self.pinion, self.pinion.root_form_radius_m, &self.gear);
+        let clipped_m = self.path_start_m - tip.start_roll_m();
+        let turn_rad = overrun_m / self.gear.base_radius_m;
+        let by_tip = tip.on_flank((overrun_m - clipped_m) / self.gear.base_radius_m, false).map(|s| CornerContact {
+            gap_m: s.gap_m,
+            gear_turn_rad: turn_rad,
+            flank_radius_m: s.flank_radius_m,
+            theta_rad: s.theta_rad,
+            pinion_arm_m: self.pinion.base_radius_m,
+            gear_arm_m: s.arm_m,
+        });
+        if clipped_m <= ROUNDING * self.line_of_action_m {
+            return by_tip;
         }
-        let contact = corner.at(turn);
-        let on_flank = contact.flank_radius_m <= corner.mate.tip_radius_m
-            && contact.flank_radius_m >= corner.mate.root_form_radius_m * (1.0 - 1e-12);
-        on_flank.then_some(contact)
+        let by_edge = edge.on_flank(-overrun_m / self.pinion.base_radius_m, true).map(|s| CornerContact {
+            gap_m: s.gap_m,
+            gear_turn_rad: turn_rad,
+            flank_radius_m: s.flank_radius_m,
+            theta_rad: s.theta_rad,
+            pinion_arm_m: s.arm_m,
+            gear_arm_m: self.gear.base_radius_m,
+        });
+        nearer(by_tip, by_edge)
+    }
+
+    /// The same `overrun_m` after the end of the path: the pinion's tip corner against the gear's flank, or the first point of
+    /// the gear's involute against the pinion's.
+    pub fn mesh_out_corner(&self, overrun_m: f64) -> Option<CornerContact> {
+        let tip = Corner::mesh_out(self);
+        let edge = Corner::new(self, &self.gear, self.gear.root_form_radius_m, &self.pinion);
+        let clipped_m = self.line_of_action_m - self.path_end_m - tip.start_roll_m();
+        let turn_rad = overrun_m / self.gear.base_radius_m;
+        let by_tip = tip.on_flank((overrun_m - clipped_m) / self.pinion.base_radius_m, false).map(|s| CornerContact {
+            gap_m: s.gap_m,
+            gear_turn_rad: turn_rad,
+            flank_radius_m: s.flank_radius_m,
+            theta_rad: s.theta_rad,
+            pinion_arm_m: s.arm_m,
+            gear_arm_m: self.gear.base_radius_m,
+        });
+        if clipped_m <= ROUNDING * self.line_of_action_m {
+            return by_tip;
+        }
+        let by_edge = edge.on_flank(-overrun_m / self.gear.base_radius_m, true).map(|s| CornerContact {
+            gap_m: s.gap_m,
+            gear_turn_rad: turn_rad,
+            flank_radius_m: s.flank_radius_m,
+            theta_rad: s.theta_rad,
+            pinion_arm_m: self.pinion.base_radius_m,
+            gear_arm_m: s.arm_m,
+        });
+        nearer(by_tip, by_edge)
     }
 
     /// Kinematic gap of a contact outside the path of contact, `overrun_m >= 0` before its start: the gear's tip corner
@@ -139,5 +199,12 @@ impl Pair {
     /// The same after the end of the path: the pinion's tip corner against the gear flank.
     pub fn mesh_out_corner_gap_m(&self, overrun_m: f64) -> Option<f64> {
         self.mesh_out_corner(overrun_m).map(|corner| corner.gap_m)
+    }
+}
+
+fn nearer(a: Option<CornerContact>, b: Option<CornerContact>) -> Option<CornerContact> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if a.gap_m <= b.gap_m { a } else { b }),
+        (a, b) => a.or(b),
     }
 }

@@ -20,6 +20,7 @@ mod modification;
 mod pair;
 mod spec;
 mod tooth;
+mod values;
 
 pub use corner::CornerContact;
 pub use lines::ContactLine;

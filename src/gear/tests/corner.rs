@@ -1,6 +1,6 @@
 //! Corner contact against the tables of two independent derivations.
 
-use super::fixtures::{close, gear, pair, source_pair, spec, worked_pair};
+use super::fixtures::{close, gear, pair, source_pair, spec, undercut_pair, worked_pair};
 use crate::gear::{CornerContact, Pair};
 
 /// Overrun with the given gap, by bisection.
@@ -32,9 +32,9 @@ fn source_pair_table() {
         (40.0, 0.508, 6.237, 0.93697, 0.6949),
     ] {
         let corner = at_gap(&p, gap_um * 1e-6);
-        close(corner.corner_turn_rad.to_degrees(), turn_deg, 5e-4);
+        close(corner.gear_turn_rad.to_degrees(), turn_deg, 5e-4);
         close(corner.theta_rad.to_degrees(), theta_deg, 5e-4);
-        let actual = corner.effective_base_radius_m / p.gear.base_radius_m;
+        let actual = corner.gear_arm_m / p.gear.base_radius_m;
         close(actual, ratio, 5e-6);
         close(speed * (1.0 - actual), velocity, 5e-5);
     }
@@ -58,9 +58,9 @@ fn worked_example() {
         (40.0, 0.01009, 126.7648, 953.71),
     ] {
         let corner = at_gap(&p, gap_um * 1e-6);
-        close(corner.corner_turn_rad, turn_rad, 5e-6);
-        close(corner.effective_base_radius_m * 1e3, effective_mm, 5e-5);
-        close(speed * (1.0 - corner.effective_base_radius_m / p.gear.base_radius_m) * 1e3, velocity_mm_s, 5e-3);
+        close(corner.gear_turn_rad, turn_rad, 5e-6);
+        close(corner.gear_arm_m * 1e3, effective_mm, 5e-5);
+        close(speed * (1.0 - corner.gear_arm_m / p.gear.base_radius_m) * 1e3, velocity_mm_s, 5e-3);
     }
     close(at_gap(&p, 1e-5).theta_rad.to_degrees(), 2.86237, 5e-6);
 }
@@ -88,7 +88,7 @@ fn effective_radius_is_the_slope_of_the_gap() {
         let gap = |x| p.mesh_in_corner_gap_m(x).unwrap_or(f64::NAN);
         let slope = (gap(x + h) - gap(x - h)) / (2.0 * h);
         let corner = p.mesh_in_corner(x).unwrap_or(CornerContact { theta_rad: f64::NAN, ..at_gap(&p, 1e-6) });
-        close(slope, 1.0 - corner.effective_base_radius_m / p.gear.base_radius_m, 1e-7);
+        close(slope, 1.0 - corner.gear_arm_m / p.gear.base_radius_m, 1e-7);
     }
 }
 
@@ -105,4 +105,27 @@ fn mesh_out_mirrors_mesh_in() {
 fn no_flank_beyond_the_mates_tip() {
     let p = pair(&worked_pair());
     assert_eq!(p.mesh_in_corner_gap_m(0.5 * p.gear.base_radius_m), None);
+}
+
+/// Where undercut shortens the path, contact before it starts with the edge of the pinion's involute: the gap starts at zero,
+/// grows without a step when the gear's tip takes over, and closes with the speed the arms give.
+#[test]
+fn undercut_edge_takes_the_tips_place() {
+    let mut s = undercut_pair();
+    s.gear.addendum = 0.82;
+    s.pinion.teeth = 13;
+    let p = pair(&s);
+    assert!(p.path_start_m > p.line_of_action_m - p.gear.tip_roll_m() + 1e-6, "the path is not shortened");
+    close(p.mesh_in_corner_gap_m(0.0).unwrap_or(f64::NAN), 0.0, 1e-15);
+    let gap = |x: f64| p.mesh_in_corner_gap_m(x).unwrap_or(f64::NAN);
+    let (ratio, h) = (f64::from(p.pinion.teeth) / f64::from(p.gear.teeth), 1e-8);
+    let mut arms = std::collections::BTreeSet::new();
+    for i in 1..400 {
+        let x = 0.1 * p.base_pitch_m * f64::from(i) / 400.0;
+        let Some(corner) = p.mesh_in_corner(x) else { panic!("no contact at {x}") };
+        let closing = (corner.pinion_arm_m - corner.gear_arm_m * ratio) / p.pinion.base_radius_m;
+        close((gap(x + h) - gap(x - h)) / (2.0 * h), closing, 0.02 * closing.abs() + 2e-6);
+        arms.insert(corner.pinion_arm_m > p.pinion.base_radius_m);
+    }
+    assert_eq!(arms.len(), 2, "both kinds of contact should occur");
 }

@@ -1,6 +1,6 @@
 //! Designs that cannot run, each with its reason and limit; and no design, however wild, makes the room fail otherwise.
 
-use super::fixtures::{close, gear, pair, source_pair, spec, worked_pair};
+use super::fixtures::{close, gear, pair, source_pair, spec, undercut_pair, worked_pair};
 use crate::gear::{FlankModification, GearSpec, Half, Infeasibility, Pair, PairSpec, ReliefShape, TipRelief};
 use proptest::prelude::*;
 
@@ -20,17 +20,17 @@ fn warning_codes(spec: &PairSpec) -> Vec<String> {
     Pair::new(spec).map(|(_, warnings)| warnings.into_iter().map(|w| w.code).collect()).unwrap_or_default()
 }
 
-/// The source's pair: the gear's tip meets the pinion's base tangent point at an addendum of 1.267, total ratio 3.48.
+/// The source's pair: the gear's tip meets the pinion's base tangent point where `r_a2² = r_b2² + (T1T2)²`, at an addendum
+/// of 1.2697 (a total contact ratio of 3.48).
 #[test]
 fn interference_limit_of_the_source_pair() {
     let refused = reason(&source_pair(1.30), "tip-interference");
     assert_eq!(refused.pointer, "/design/gear/addendum");
-    close(refused.limit, 1.267, 5e-4);
+    close(refused.limit, 1.26970, 5e-6);
     close(refused.value, 1.30, 1e-12);
-    let at_limit = source_pair(refused.limit - 1e-9);
     let unclipped = {
-        let m = at_limit.normal_module_m;
         let p = pair(&source_pair(1.0));
+        let m = p.spec.normal_module_m;
         let roll = |r: f64, rb: f64| (r * r - rb * rb).sqrt();
         let e = roll(p.pinion.reference_radius_m + m * refused.limit, p.pinion.base_radius_m);
         e / p.base_pitch_m + p.overlap_ratio
@@ -79,8 +79,7 @@ fn center_distance_below_the_base_circles() {
 
 #[test]
 fn warns_about_undercut_thin_tips_rims_and_jamming_teeth() {
-    let cut = GearSpec { addendum: 0.9, ..gear(13, 0.0) };
-    assert!(warning_codes(&spec(5.0, 20.0, 5.0, 40.0, cut, gear(67, 0.0))).contains(&"undercut".into()));
+    assert!(warning_codes(&undercut_pair()).contains(&"undercut".into()));
     let mut thin = worked_pair();
     thin.pinion.bore_radius_m = 0.040;
     assert!(warning_codes(&thin).contains(&"thin-rim".into()));
@@ -89,6 +88,19 @@ fn warns_about_undercut_thin_tips_rims_and_jamming_teeth() {
     let pointed = GearSpec { addendum: 1.0, ..gear(14, 0.75) };
     assert!(warning_codes(&spec(5.0, 20.0, 5.0, 40.0, pointed, gear(67, 0.0))).contains(&"thin-tip".into()));
     assert_eq!(warning_codes(&worked_pair()), Vec::<String>::new());
+}
+
+/// A tip that reaches below the form circle meets the fillet: the cut grows with the addendum until it is refused.
+#[test]
+fn fillet_interference_grows_with_the_addendum() {
+    let with = |addendum| {
+        let side = |teeth| GearSpec { addendum, ..gear(teeth, 0.0) };
+        PairSpec { pinion: side(17), gear: side(44), ..source_pair(1.0) }
+    };
+    assert_eq!(warning_codes(&with(1.10)), Vec::<String>::new());
+    assert_eq!(warning_codes(&with(1.14)), ["fillet-interference"]);
+    let cut = |addendum| reason(&with(addendum), "fillet-interference").value;
+    assert!(cut(1.18) < cut(1.20) && cut(1.20) < cut(1.22));
 }
 
 fn any_gear() -> impl Strategy<Value = GearSpec> {

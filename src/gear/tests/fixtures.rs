@@ -58,6 +58,12 @@ pub fn worked_pair() -> PairSpec {
     spec(6.0, 20.0, 24.43, 55.0, gear(17, 0.0), gear(44, 0.0))
 }
 
+/// A pinion of 15 teeth that the rack undercuts, and a gear short enough to stay clear of its base circle.
+pub fn undercut_pair() -> PairSpec {
+    let short = GearSpec { addendum: 0.8, ..gear(67, 0.0) };
+    spec(5.0, 20.0, 5.0, 40.0, gear(15, 0.0), short)
+}
+
 pub fn pair(spec: &PairSpec) -> Pair {
     match Pair::new(spec) {
         Ok((pair, _)) => pair,

@@ -1,6 +1,6 @@
 //! The tooth form against a brute-force cutter envelope.
 
-use super::fixtures::{close, gear, pair, spec};
+use super::fixtures::{close, gear, pair, spec, undercut_pair};
 use crate::gear::{GearSpec, Member, PairSpec};
 
 /// Half angle of the space at radius `r_m` left by the rack, from its profile alone: the rack rolls, and every point of the
@@ -88,8 +88,7 @@ fn equals_the_envelope_of_the_cutter() {
 
 #[test]
 fn undercut_equals_the_envelope_of_the_cutter() {
-    let cut = GearSpec { addendum: 0.9, ..gear(13, 0.0) };
-    let s = spec(5.0, 20.0, 5.0, 40.0, cut, gear(67, 0.0));
+    let s = undercut_pair();
     let p = pair(&s);
     assert!(p.pinion.is_undercut());
     assert!(p.pinion.root_form_radius_m > p.pinion.base_radius_m);
