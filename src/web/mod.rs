@@ -1,1 +1,47 @@
-//! (room under construction)
+//! The web pages: server-rendered shells and the files they load. Stateless: all data comes from `/api/v1`, fetched by
+//! the pages' own scripts.
+//!
+//! Invariant: no page loads anything from another host, and none has an inline script or style, so that
+//! [`CONTENT_SECURITY_POLICY`] holds without exceptions for scripts.
+
+mod assets;
+mod form;
+mod pages;
+mod plotly;
+
+pub use pages::not_found;
+
+use axum::Router;
+use axum::http::{HeaderName, HeaderValue, header};
+use axum::routing::get;
+
+/// What the pages may load and do. Every page is sent with it.
+///
+/// `img-src data: blob:` is what plotly needs for heat maps (a canvas turned into an image) and for saving a plot as an
+/// image. Its style rules come as a linked stylesheet, so inline style elements stay forbidden.
+pub const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; \
+                                           base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
+
+/// The pages `/`, `/jobs`, `/jobs/{id}` and the files under `/assets/`.
+pub fn routes() -> Router {
+    Router::new()
+        .route("/", get(pages::design))
+        .route("/jobs", get(pages::jobs))
+        .route("/jobs/{id}", get(pages::job))
+        .route("/assets/plotly.js", get(plotly::script))
+        .route("/assets/plotly.css", get(plotly::stylesheet))
+        .route("/assets/{file}", get(assets::file))
+}
+
+/// Headers of every page.
+fn page_headers() -> [(HeaderName, HeaderValue); 4] {
+    [
+        (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(CONTENT_SECURITY_POLICY)),
+        (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
+        (header::REFERRER_POLICY, HeaderValue::from_static("same-origin")),
+        (header::CACHE_CONTROL, HeaderValue::from_static("no-cache")),
+    ]
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,52 @@
+//! Stylesheets, script modules and the icon, built into the binary.
+
+use axum::extract::Path;
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use rust_embed::{EmbeddedFile, RustEmbed};
+use std::fmt::Write;
+
+#[derive(RustEmbed)]
+#[folder = "src/web/assets/"]
+struct Files;
+
+/// `/assets/{file}`: revalidated by entity tag, so that a new version is seen at once.
+pub async fn file(Path(name): Path<String>, headers: HeaderMap) -> Response {
+    let Some((file, media_type)) = find(&name) else {
+        return super::not_found().await;
+    };
+    let tag = entity_tag(&file);
+    let fresh = headers
+        .get(header::IF_NONE_MATCH)
+        .and_then(|value| value.to_str().ok())
+        .is_some_and(|known| known.split(',').any(|known| known.trim().trim_start_matches("W/") == tag));
+    let caching = [(header::ETAG, tag), (header::CACHE_CONTROL, "no-cache".to_owned())];
+    if fresh {
+        return (StatusCode::NOT_MODIFIED, caching).into_response();
+    }
+    let content = [
+        (header::CONTENT_TYPE, HeaderValue::from_static(media_type)),
+        (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
+    ];
+    (caching, content, file.data.into_owned()).into_response()
+}
+
+fn find(name: &str) -> Option<(EmbeddedFile, &'static str)> {
+    let media_type = match name.rsplit_once('.')?.1 {
+        "css" => "text/css; charset=utf-8",
+        "js" => "text/javascript; charset=utf-8",
+        "svg" => "image/svg+xml",
+        _ => return None,
+    };
+    Some((Files::get(name)?, media_type))
+}
+
+fn entity_tag(file: &EmbeddedFile) -> String {
+    let mut tag = String::from("\"");
+    for byte in &file.metadata.sha256_hash()[..12] {
+        // Writing to a String cannot fail.
+        let _ = write!(tag, "{byte:02x}");
+    }
+    tag.push('"');
+    tag
+}

@@ -1,0 +1,70 @@
+// The client of the HTTP API. Every failure becomes a Problem.
+
+const BASE = "/api/v1";
+
+/** A failed request: `problem` is the problem+json body, made up where the server gave none. */
+export class Problem extends Error {
+  constructor(problem) {
+    super(problem.title ?? "The request failed");
+    this.problem = problem;
+    this.status = problem.status ?? 0;
+    this.errors = problem.errors ?? [];
+  }
+}
+
+async function request(method, path, { body, headers = {}, signal } = {}) {
+  const options = { method, headers: { Accept: "application/json, application/problem+json", ...headers }, signal };
+  if (body !== undefined) {
+    options.body = JSON.stringify(body);
+    options.headers["Content-Type"] = "application/json";
+  }
+  let response;
+  try {
+    response = await fetch(BASE + path, options);
+  } catch (error) {
+    if (error.name === "AbortError") throw error;
+    throw new Problem({ title: "The server does not answer", status: 0, code: "unreachable" });
+  }
+  if (response.ok) return response.status === 204 ? null : response.json();
+  let problem;
+  try {
+    problem = await response.json();
+  } catch {
+    problem = { title: `The server answered with status ${response.status}` };
+  }
+  throw new Problem({ ...problem, status: response.status });
+}
+
+const at = (id) => `/jobs/${encodeURIComponent(id)}`;
+
+function query(parameters) {
+  const given = Object.entries(parameters).filter(([, value]) => value !== undefined && value !== null && value !== "");
+  return given.length ? `?${new URLSearchParams(given)}` : "";
+}
+
+export const validate = (document, signal) => request("POST", "/jobs/validate", { body: document, signal });
+export const submit = (document, key) =>
+  request("POST", "/jobs", { body: document, headers: { "Idempotency-Key": key } });
+export const jobs = (parameters, signal) => request("GET", `/jobs${query(parameters)}`, { signal });
+export const job = (id) => request("GET", at(id));
+export const cancel = (id) => request("POST", `${at(id)}/cancel`);
+export const remove = (id) => request("DELETE", at(id));
+export const input = (id) => request("GET", inputUrl(id).slice(BASE.length));
+export const result = (id) => request("GET", resultUrl(id).slice(BASE.length));
+export const catalogue = (id) => request("GET", `${at(id)}/series`);
+export const series = (id, channel, parameters, signal) =>
+  request("GET", `${at(id)}/series/${encodeURIComponent(channel)}${query(parameters)}`, { signal });
+
+export const inputUrl = (id) => `${BASE}${at(id)}/input`;
+export const resultUrl = (id) => `${BASE}${at(id)}/result`;
+export const seriesUrl = (id, channel) => `${BASE}${at(id)}/series/${encodeURIComponent(channel)}`;
+export const submitUrl = () => `${window.location.origin}${BASE}/jobs`;
+
+export const isEnded = (job) => ["succeeded", "failed", "canceled"].includes(job.state);
+
+/** The CSV text of a whole channel. */
+export async function seriesCsv(id, channel) {
+  const response = await fetch(`${seriesUrl(id, channel)}?method=none`, { headers: { Accept: "text/csv" } });
+  if (!response.ok) throw new Problem({ title: `The server answered with status ${response.status}`, status: response.status });
+  return response.text();
+}

@@ -1,0 +1,87 @@
+// The page of one job: follows it while it is live and shows its result when it has succeeded.
+
+import * as api from "./api.js";
+import { byId, fillValues, fillWarnings, notify, show } from "./dom.js";
+import { instant, number, seconds } from "./format.js";
+import { describeState } from "./state.js";
+import { watchJob } from "./watch.js";
+import { showHeadline } from "./job-headline.js";
+import { showGeometry, showImpact, showNumerics } from "./job-tables.js";
+import { showMesh } from "./job-mesh.js";
+import { showResponse } from "./job-response.js";
+import { showSeries } from "./job-series.js";
+import { showSweep } from "./job-sweep.js";
+
+const { id } = byId("job").dataset;
+const notice = byId("notice");
+let shown = false;
+
+function showLife(job) {
+  const title = job.name ?? `Job ${job.id}`;
+  byId("title").textContent = title;
+  document.title = `${title} · herringbone`;
+  show(byId("life"));
+  const badge = byId("state");
+  if (badge.textContent !== job.state) badge.textContent = job.state;
+  badge.className = `badge ${job.state}`;
+  byId("stage").textContent = describeState(job);
+  const progress = byId("progress");
+  show(progress, !api.isEnded(job));
+  if (job.state === "queued") progress.removeAttribute("value");
+  else progress.value = job.progress?.fraction ?? 0;
+  show(byId("cancel"), !api.isEnded(job));
+  byId("cancel").disabled = Boolean(job.cancel_requested_at);
+  byId("download-input").href = api.inputUrl(id);
+  const solved = job.started_at && job.ended_at ? seconds(job.started_at, job.ended_at) : null;
+  fillValues(byId("life-values"), [
+    ["Kind", job.kind],
+    ["Label", job.label],
+    ["Created", instant(job.created_at)],
+    ["Ended", job.ended_at ? instant(job.ended_at) : null],
+    ["Solved in", solved === null ? null : number(solved, 3), "s"],
+  ]);
+}
+
+function follow(job) {
+  showLife(job);
+  if (job.state === "failed") notify(notice, { problem: { title: "The job failed", ...(job.error ?? {}) } });
+  if (job.state === "succeeded" && !shown) {
+    shown = true;
+    showResult(job).catch((error) => notify(notice, error));
+  }
+}
+
+async function showResult(job) {
+  const link = byId("download-result");
+  link.href = api.resultUrl(id);
+  show(link);
+  const result = await api.result(id);
+  fillWarnings(byId("warnings"), result.warnings);
+  showHeadline(result);
+  showGeometry(result);
+  showImpact(result);
+  showNumerics(result);
+  const catalogue = result.response ? channelsOf(await api.catalogue(id)) : [];
+  showResponse(result, catalogue);
+  await Promise.all([showMesh(result), showSweep(result), catalogue.length ? showSeries(id, job, result, catalogue) : null]);
+  byId("job").dataset.ready = "true";
+}
+
+const channelsOf = (catalogue) => catalogue.channels ?? catalogue.items ?? catalogue;
+
+byId("cancel").addEventListener("click", async () => {
+  byId("cancel").disabled = true;
+  try {
+    follow(await api.cancel(id));
+  } catch (error) {
+    notify(notice, error);
+  }
+});
+
+try {
+  const job = await api.job(id);
+  follow(job);
+  if (!api.isEnded(job)) watchJob(id, follow);
+} catch (error) {
+  notify(notice, error);
+}

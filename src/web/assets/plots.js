@@ -1,0 +1,95 @@
+// Plots with Plotly: loaded on first use, coloured by the stylesheet, redrawn when light turns dark.
+
+import { byId, el } from "./dom.js";
+
+const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"], toImageButtonOptions: { scale: 2 } };
+const drawn = new Map();
+let loading = null;
+
+function load() {
+  loading ??= new Promise((resolve, reject) => {
+    const script = el("script", { src: byId("job").dataset.plotly, async: true });
+    script.addEventListener("load", () => resolve(window.Plotly));
+    script.addEventListener("error", () => reject(new Error("The plotting script could not be loaded")));
+    document.head.append(script);
+  });
+  return loading;
+}
+
+export const line = (x, y, name) => ({ type: "scatter", mode: "lines", x, y, name, line: { width: 1.6 }, showlegend: Boolean(name) });
+
+export const points = (x, y, name) => ({ type: "scatter", mode: "markers", x, y, name, marker: { size: 7, symbol: "circle-open", line: { width: 2 } } });
+
+/** Vertical lines from zero. */
+export function stems(x, y, name) {
+  return { type: "bar", x, y, name, showlegend: false, marker: { line: { width: 1.4 } }, stems: true };
+}
+
+export const heatMap = (x, y, z, unit) => ({ type: "heatmap", x, y, z, colorbar: { title: { text: unit }, thickness: 14, outlinewidth: 0 }, colorscale: "Viridis", hoverongaps: false });
+
+/** Draws traces into a box; `axes` has the titles `x`, `y` (and `y2`), and perhaps the `range` of x. */
+export async function draw(node, traces, axes) {
+  const plotly = await load();
+  drawn.set(node, { traces, axes });
+  const colours = palette();
+  const coloured = traces.map((trace, index) => withColour(trace, colours.lines[index % colours.lines.length]));
+  await plotly.react(node, coloured, layoutOf(axes, colours, node), CONFIG);
+  node.setAttribute("role", "img");
+  node.setAttribute("aria-label", `Plot: ${axes.title ?? axes.y} over ${axes.x}`);
+  return node;
+}
+
+export async function autorange(node) {
+  const plotly = await load();
+  if (node.layout) await plotly.relayout(node, { "xaxis.autorange": true, "yaxis.autorange": true });
+}
+
+/** Calls `zoomed` with [from, to] when the user changes the range of x, and with null when it is set free. */
+export function onZoom(node, zoomed) {
+  node.removeAllListeners?.("plotly_relayout");
+  node.on("plotly_relayout", (change) => {
+    const range = change["xaxis.range"] ?? [change["xaxis.range[0]"], change["xaxis.range[1]"]];
+    if (range[0] !== undefined && range[1] !== undefined) zoomed(range.map(Number));
+    else if (change["xaxis.autorange"]) zoomed(null);
+  });
+}
+
+function withColour(trace, colour) {
+  if (trace.type === "heatmap") return trace;
+  if (trace.stems) return { ...trace, stems: undefined, marker: { ...trace.marker, color: colour, line: { ...trace.marker.line, color: colour } } };
+  return { ...trace, line: { ...trace.line, color: colour }, marker: { ...trace.marker, color: colour } };
+}
+
+function layoutOf({ x, y, y2, range, title, fromZero }, colours, node) {
+  const axis = (text) => ({
+    title: { text, standoff: 8 }, gridcolor: colours.grid, zerolinecolor: colours.grid, linecolor: colours.grid, automargin: true, exponentformat: "power",
+  });
+  const layout = {
+    autosize: true,
+    height: node.clientHeight || 320,
+    margin: { l: 56, r: 16, t: title ? 36 : 16, b: 44 },
+    paper_bgcolor: "rgba(0,0,0,0)",
+    plot_bgcolor: "rgba(0,0,0,0)",
+    font: { color: colours.text, family: "system-ui, sans-serif", size: 12 },
+    xaxis: axis(x),
+    yaxis: axis(y),
+    legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+    hovermode: "closest",
+    bargap: 0,
+  };
+  if (title) layout.title = { text: title, font: { size: 13 } };
+  if (range) layout.xaxis.range = range;
+  if (fromZero) Object.assign(layout.xaxis, { rangemode: "tozero" });
+  if (y2) layout.yaxis2 = { ...axis(y2), overlaying: "y", side: "right", showgrid: false };
+  return layout;
+}
+
+function palette() {
+  const style = getComputedStyle(document.documentElement);
+  const value = (name) => style.getPropertyValue(name).trim();
+  return { text: value("--text"), grid: value("--line"), lines: ["--plot-1", "--plot-2", "--plot-3", "--plot-4"].map(value) };
+}
+
+window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  for (const [node, { traces, axes }] of drawn) draw(node, traces, axes);
+});

@@ -1,0 +1,115 @@
+//! Plotly.js and its style rules, cut out of the `plotly` crate at the first request: nothing is vendored in this
+//! repository and nothing is fetched from another host.
+
+use axum::body::Bytes;
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use sha2::{Digest, Sha256};
+use std::sync::LazyLock;
+
+const FOR_A_YEAR: &str = "public, max-age=31536000, immutable";
+
+struct Plotly {
+    script: Bytes,
+    stylesheet: String,
+    /// Changes with the content; part of the script's address.
+    version: String,
+}
+
+static PLOTLY: LazyLock<Plotly> = LazyLock::new(|| {
+    let sources = plotly::Plot::offline_js_sources();
+    let script = first_script(&sources).unwrap_or_default();
+    let version = Sha256::digest(script.as_bytes())[..6].iter().map(|byte| format!("{byte:02x}")).collect();
+    let stylesheet = style_rules(script).unwrap_or_default();
+    Plotly { script: Bytes::copy_from_slice(script.as_bytes()), stylesheet, version }
+});
+
+/// Where the pages find the script: with its version, so that it can be cached for long.
+pub fn script_url() -> String {
+    format!("/assets/plotly.js?v={}", PLOTLY.version)
+}
+
+/// `/assets/plotly.js`.
+pub async fn script() -> Response {
+    let headers = [(header::CONTENT_TYPE, "text/javascript; charset=utf-8"), (header::CACHE_CONTROL, FOR_A_YEAR)];
+    (headers, PLOTLY.script.clone()).into_response()
+}
+
+/// `/assets/plotly.css`: the rules that the script would otherwise insert as an inline style element, which the
+/// content security policy forbids. The script leaves them out when it finds an element with the id
+/// `plotly.js-style-global` and the class `no-inline-styles`; the page's link to this file is that element.
+pub async fn stylesheet() -> Response {
+    let headers = [(header::CONTENT_TYPE, "text/css; charset=utf-8"), (header::CACHE_CONTROL, "no-cache")];
+    (headers, PLOTLY.stylesheet.as_str()).into_response()
+}
+
+/// The text of the first script element.
+fn first_script(html: &str) -> Option<&str> {
+    let start = html.find("<script")?;
+    let start = start + html[start..].find('>')? + 1;
+    // The script itself has no "</script>" in it, or it could not stand in a page.
+    let end = start + html[start..].find("</script>")?;
+    Some(&html[start..end])
+}
+
+/// The style rules in the script: an object literal `{"X,X div":"…", …, Y:"…"}` of selectors and declarations, in
+/// which `X` stands for the plot and `Y` for its notices.
+fn style_rules(script: &str) -> Option<String> {
+    let start = script.find(r#"{"X,X div":"#)? + 1;
+    let mut rest = &script[start..];
+    let mut sheet = String::new();
+    loop {
+        let (selector, after) = literal(rest)?;
+        let (declarations, after) = literal(after.strip_prefix(':')?)?;
+        let selector = selector.replace('X', ".js-plotly-plot .plotly").replace('Y', ".plotly-notifier");
+        sheet.push_str(&format!("{selector}{{{declarations}}}\n"));
+        match after.as_bytes().first()? {
+            b',' => rest = &after[1..],
+            b'}' => return Some(sheet),
+            _ => return None,
+        }
+    }
+}
+
+/// A string literal without escapes, or a bare name, at the start of `text`; and what follows it.
+fn literal(text: &str) -> Option<(&str, &str)> {
+    let quote = text.chars().next()?;
+    if quote == '"' || quote == '\'' {
+        let end = 1 + text[1..].find(quote)?;
+        Some((&text[1..end], &text[end + 1..]))
+    } else {
+        let end = text.find(':')?;
+        Some((&text[..end], &text[end..]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn script_is_plotly_and_nothing_else() {
+        let text = std::str::from_utf8(&PLOTLY.script).unwrap();
+        assert!(text.trim_start().starts_with("/**\n* plotly.js v"), "starts with {:?}", &text[..40]);
+        assert!(text.len() > 1_000_000 && !text.contains("MathJax.loader"), "{} bytes", text.len());
+        assert!(text.contains("no-inline-styles"), "the script no longer looks for its stylesheet");
+    }
+
+    #[test]
+    fn stylesheet_has_every_rule_of_the_script() {
+        let sheet = &PLOTLY.stylesheet;
+        assert!(sheet.contains(".js-plotly-plot .plotly .main-svg{position:absolute;"), "{sheet}");
+        assert!(sheet.contains(".plotly-notifier .notifier-close:hover{"), "{sheet}");
+        assert_eq!(sheet.matches('{').count(), sheet.lines().count());
+    }
+
+    #[test]
+    fn style_rules_are_found_between_other_code() {
+        let script = r#"var a=1,G={"X,X div":'font:"A",b;',"X a:hover":"c:d;",Y:"e:f;"};for(k in G)"#;
+        let expected = ".js-plotly-plot .plotly,.js-plotly-plot .plotly div{font:\"A\",b;}\n\
+                        .js-plotly-plot .plotly a:hover{c:d;}\n.plotly-notifier{e:f;}\n";
+        assert_eq!(style_rules(script).as_deref(), Some(expected));
+        assert_eq!(style_rules("no rules here"), None);
+        assert_eq!(style_rules(r#"{"X,X div":"cut off"#), None);
+    }
+}

@@ -1,0 +1,82 @@
+//! The routes: pages, files, headers.
+
+use super::*;
+use axum::http::StatusCode;
+use axum_test::TestServer;
+
+fn server() -> TestServer {
+    TestServer::new(routes().fallback(not_found))
+}
+
+#[tokio::test]
+async fn pages_are_html_under_the_policy() {
+    for path in ["/", "/jobs", "/jobs/0190"] {
+        let answer = server().get(path).await;
+        answer.assert_status_ok();
+        assert_eq!(answer.header(header::CONTENT_TYPE), "text/html; charset=utf-8", "{path}");
+        assert_eq!(answer.header(header::CONTENT_SECURITY_POLICY), CONTENT_SECURITY_POLICY, "{path}");
+    }
+}
+
+#[tokio::test]
+async fn unknown_addresses_get_a_page_that_says_so() {
+    for path in ["/nowhere", "/assets/nothing.js", "/assets/example.json"] {
+        let answer = server().get(path).await;
+        answer.assert_status_not_found();
+        assert!(answer.text().contains("Nothing here"), "{path}");
+    }
+}
+
+#[tokio::test]
+async fn no_page_has_inline_code_or_outside_addresses() {
+    for path in ["/", "/jobs", "/jobs/0190", "/nowhere"] {
+        let text = server().get(path).await.text();
+        for forbidden in ["http://", "https://", "style=", "<style", "onclick=", "javascript:"] {
+            assert!(!text.contains(forbidden), "{forbidden} in {path}");
+        }
+        for script in text.split("<script").skip(1) {
+            assert!(script.contains(" src=\"/assets/"), "{path}: {script:.60}");
+            assert!(script.split_once('>').is_some_and(|(_, rest)| rest.starts_with("</script>")), "{path}");
+        }
+    }
+}
+
+#[tokio::test]
+async fn everything_a_page_links_to_exists() {
+    let server = server();
+    for path in ["/", "/jobs", "/jobs/0190", "/nowhere"] {
+        let text = server.get(path).await.text();
+        for (start, _) in text.match_indices("\"/assets/") {
+            let address = text[start + 1..].split('"').next().unwrap_or_default();
+            server.get(address).await.assert_status_ok();
+        }
+    }
+}
+
+#[tokio::test]
+async fn an_identifier_is_escaped() {
+    let text = server().get("/jobs/%22%3E%3Cscript%3Ealert(1)%3C%2Fscript%3E").await.text();
+    assert!(!text.contains("<script>alert"), "{text}");
+}
+
+#[tokio::test]
+async fn assets_are_revalidated_by_entity_tag() {
+    let server = server();
+    let first = server.get("/assets/style.css").await;
+    first.assert_status_ok();
+    let again = server.get("/assets/style.css").add_header(header::IF_NONE_MATCH, first.header(header::ETAG)).await;
+    assert_eq!(again.status_code(), StatusCode::NOT_MODIFIED);
+    assert!(again.text().is_empty());
+}
+
+#[tokio::test]
+async fn every_label_names_an_input_of_the_form() {
+    let text = server().get("/").await.text();
+    let mut labels = 0;
+    for (start, _) in text.match_indices(" for=\"") {
+        let id = text[start + 6..].split('"').next().unwrap_or_default();
+        assert_eq!(text.matches(&format!("id=\"{id}\"")).count(), 1, "{id}");
+        labels += 1;
+    }
+    assert!(labels > 80, "{labels} labels");
+}
