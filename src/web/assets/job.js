@@ -28,7 +28,7 @@ function showLife(job) {
   const progress = byId("progress");
   show(progress, !api.isEnded(job));
   if (job.state === "queued") progress.removeAttribute("value");
-  else progress.value = job.progress?.fraction ?? 0;
+  else progress.value = job.progress ?? 0;
   show(byId("cancel"), !api.isEnded(job));
   byId("cancel").disabled = Boolean(job.cancel_requested_at);
   byId("download-input").href = api.inputUrl(id);
@@ -36,7 +36,7 @@ function showLife(job) {
   fillValues(byId("life-values"), [
     ["Kind", job.kind],
     ["Label", job.label],
-    ["Created", instant(job.created_at)],
+    ["Submitted", instant(job.submitted_at)],
     ["Ended", job.ended_at ? instant(job.ended_at) : null],
     ["Solved in", solved === null ? null : number(solved, 3), "s"],
   ]);

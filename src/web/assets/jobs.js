@@ -60,14 +60,14 @@ function row(job) {
     el("th", { scope: "row" }, link, job.label ? el("span", { class: "label" }, job.label) : null),
     el("td", {}, job.kind),
     el("td", {}, stateBadge(job), " ", describeState(job), progressBar(job)),
-    el("td", { title: instant(job.created_at) }, age(job.created_at)),
+    el("td", { title: instant(job.submitted_at) }, age(job.submitted_at)),
     el("td", { class: "actions" }, api.isEnded(job) ? action(job, "Delete", api.remove) : action(job, "Cancel", api.cancel)),
   );
 }
 
 function progressBar(job) {
   if (job.state !== "running") return null;
-  return el("progress", { max: 1, value: job.progress?.fraction ?? 0, "aria-label": "Progress" });
+  return el("progress", { max: 1, value: job.progress ?? 0, "aria-label": "Progress" });
 }
 
 function action(job, text, run) {

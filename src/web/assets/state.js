@@ -8,6 +8,6 @@ export const stateBadge = (job) => el("span", { class: `badge ${job.state}` }, j
 /** What goes on beyond the state's name. */
 export function describeState(job) {
   if (job.cancel_requested_at && (job.state === "running" || job.state === "queued")) return "canceling …";
-  if (job.state === "running" && job.progress) return [job.progress.stage, percent(job.progress.fraction)].filter(Boolean).join(", ");
+  if (job.state === "running") return [job.stage, percent(job.progress)].filter(Boolean).join(", ");
   return "";
 }
