@@ -32,4 +32,6 @@ pub use spec::{
 };
 
 #[cfg(test)]
+pub(crate) mod fixtures;
+#[cfg(test)]
 mod tests;

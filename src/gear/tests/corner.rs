@@ -1,6 +1,6 @@
 //! Corner contact against the tables of two independent derivations.
 
-use super::fixtures::{close, gear, pair, source_pair, spec, undercut_pair, worked_pair};
+use crate::gear::fixtures::{close, gear, pair, source_pair, spec, undercut_pair, worked_pair};
 use crate::gear::{CornerContact, Pair};
 
 /// Overrun with the given gap, by bisection.

@@ -1,6 +1,6 @@
 //! Designs that cannot run, each with its reason and limit; and no design, however wild, makes the room fail otherwise.
 
-use super::fixtures::{close, gear, pair, source_pair, spec, undercut_pair, worked_pair};
+use crate::gear::fixtures::{close, gear, pair, source_pair, spec, undercut_pair, worked_pair};
 use crate::gear::{FlankModification, GearSpec, Half, Infeasibility, Pair, PairSpec, ReliefShape, TipRelief};
 use proptest::prelude::*;
 

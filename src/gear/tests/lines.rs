@@ -1,7 +1,7 @@
 //! Lines of contact: closed formulas against summation.
 
-use super::fixtures::{close, gear, pair, spec};
 use crate::gear::Pair;
+use crate::gear::fixtures::{close, gear, pair, spec};
 
 fn with_width(width_mm: f64) -> Pair {
     pair(&spec(6.0, 20.0, 24.43, width_mm, gear(17, 0.0), gear(44, 0.0)))

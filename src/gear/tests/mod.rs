@@ -2,7 +2,6 @@
 
 mod corner;
 mod feasibility;
-mod fixtures;
 mod lines;
 mod modification;
 mod published;

@@ -1,6 +1,6 @@
 //! Flank modifications and assembly errors as gaps.
 
-use super::fixtures::{close, pair, worked_pair};
+use crate::gear::fixtures::{close, pair, worked_pair};
 use crate::gear::{EndRelief, FlankModification, Half, PairSpec, ReliefShape, TipRelief};
 
 fn with(change: impl Fn(&mut PairSpec)) -> crate::gear::Pair {

@@ -1,6 +1,6 @@
 //! Published pairs, to their printed digits.
 
-use super::fixtures::{close, gear, pair, source_pair, spec};
+use crate::gear::fixtures::{close, gear, pair, source_pair, spec};
 use crate::gear::{GearSpec, PairSpec};
 
 /// ISO/TR 6336-30, annex A, example 1 (the standard states x1 = 0.14522; the reference contact ratio was calculated with

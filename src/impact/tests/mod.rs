@@ -1,0 +1,155 @@
+//! The impact against a worked example, its small-deflection limit, and its edge cases.
+
+use super::*;
+use crate::gear::fixtures::{close, pair, source_pair, worked_pair};
+use crate::gear::{Half, Pair, ReliefShape, TipRelief};
+use std::f64::consts::PI;
+
+mod pulse;
+
+/// The worked example: 3000 rpm, K L = 1.4e8 N/m, K (1 - L) = 1.12e9 N/m, steel discs of 2 x 55 mm.
+fn worked_entry() -> Entry {
+    Entry {
+        half: Half::Left,
+        pinion_speed_rad_s: 100.0 * PI,
+        inertia: Inertia { pinion_kg_m2: 0.013354, gear_kg_m2: 0.599267 },
+        mesh_stiffness_n_per_m: 1.26e9,
+        load_share: 1.0 / 9.0,
+        base_pitch_error_m: 0.0,
+    }
+}
+
+fn solved(p: &Pair, entry: &Entry, deflection_m: f64) -> Impact {
+    match mesh_in(p, entry, |_| deflection_m) {
+        Ok(impact) => impact,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn worked_example() {
+    let p = pair(&worked_pair());
+    let impact = solved(&p, &worked_entry(), 1e-5);
+    close(impact.theta_rad.to_degrees(), 2.86237, 5e-6);
+    close(impact.equivalent_mass_kg, 4.32750, 2e-4);
+    close(impact.zhou2008_force_n, 11827.0, 0.2);
+    close(impact.force_n, 11152.1, 0.2);
+    close(impact.duration_s * 1e6, 585.8, 0.05);
+    close(impact.velocity_m_s * 1e3, 480.50, 5e-3);
+    close(impact.delta_phi2_rad, 0.00501, 5e-6);
+    close(impact.effective_gear_base_radius_m * 1e3, 130.6634, 5e-5);
+    close(impact.single_pair_stiffness_n_per_m, 1.4e8, 1.0);
+    close(impact.other_pairs_stiffness_n_per_m, 1.12e9, 1.0);
+    close(impact.lead_s, impact.overrun_m / (100.0 * PI * p.pinion.base_radius_m), 1e-18);
+    close(impact.reduction_percent, 100.0 * (1.0 - 11152.1 / 11827.0), 1e-3);
+}
+
+/// Velocities of the source pair at 2000 rpm.
+#[test]
+fn source_pair_velocities() {
+    let p = pair(&source_pair(1.0));
+    let entry = Entry { pinion_speed_rad_s: 2000.0 * PI / 30.0, ..worked_entry() };
+    for (deflection_um, velocity, theta_deg) in
+        [(5.0, 0.2607, 2.533), (10.0, 0.3617, 3.444), (20.0, 0.5013, 4.650), (40.0, 0.6949, 6.237)]
+    {
+        let impact = solved(&p, &entry, deflection_um * 1e-6);
+        close(impact.velocity_m_s, velocity, 5e-5);
+        close(impact.theta_rad.to_degrees(), theta_deg, 5e-4);
+    }
+}
+
+/// The ratio of both forces is that of the compliances: `(F_zhou/F)² = 1 + L/(1 - L) cos² theta`.
+#[test]
+fn energy_is_balanced() {
+    let p = pair(&worked_pair());
+    for share in [0.01, 0.076, 0.5, 0.9] {
+        let entry = Entry { load_share: share, ..worked_entry() };
+        let impact = solved(&p, &entry, 1e-5);
+        let (q_s, q_r) = (1.0 / impact.single_pair_stiffness_n_per_m, 1.0 / impact.other_pairs_stiffness_n_per_m);
+        let kinetic = 0.5 * impact.equivalent_mass_kg * impact.velocity_m_s.powi(2);
+        let strain = 0.5 * impact.force_n.powi(2) * (q_s + q_r * impact.theta_rad.cos().powi(2));
+        close(strain / kinetic, 1.0, 1e-12);
+        let unbuffered = 0.5 * impact.zhou2008_force_n.powi(2) * q_s;
+        close(unbuffered / kinetic, 1.0, 1e-12);
+    }
+}
+
+/// `v_s -> omega_1 r_b1 sqrt(2 kappa delta)` for small deflections.
+#[test]
+fn small_deflection_limit() {
+    let p = pair(&worked_pair());
+    let rho_1 = p.path_start_m;
+    let kappa = p.line_of_action_m * (p.line_of_action_m - rho_1) / (p.gear.base_radius_m.powi(2) * rho_1);
+    for delta in [1e-9, 1e-8, 1e-7] {
+        let expected = 100.0 * PI * p.pinion.base_radius_m * (2.0 * kappa * delta).sqrt();
+        let error = solved(&p, &worked_entry(), delta).velocity_m_s / expected - 1.0;
+        assert!(error.abs() < 0.006 * (delta / 1e-7).sqrt(), "{delta}: {error}");
+    }
+}
+
+#[test]
+fn relief_delays_and_prevents_the_impact() {
+    let relieved = |amount_m| {
+        let mut spec = worked_pair();
+        spec.gear.flanks[0].tip_relief = TipRelief { amount_m, length_m: 3e-3, shape: ReliefShape::Linear };
+        pair(&spec)
+    };
+    let full = solved(&pair(&worked_pair()), &worked_entry(), 4e-6);
+    let less = solved(&relieved(6e-6), &worked_entry(), 1e-5);
+    // Six of ten micrometres are relieved: what is left is the impact of four.
+    close(less.force_n / full.force_n, 1.0, 1e-6);
+    let none = solved(&relieved(12e-6), &worked_entry(), 1e-5);
+    assert_eq!(none.force_n, 0.0);
+    assert_eq!(none.pulse(0.0), None);
+    let reason = none.none_because;
+    assert!(reason.is_some_and(|r| r.flank_gap_m > r.deflection_m), "{reason:?}");
+    // The right half is not relieved.
+    let right = solved(&relieved(12e-6), &Entry { half: Half::Right, ..worked_entry() }, 1e-5);
+    assert!(right.none_because.is_none());
+}
+
+#[test]
+fn pitch_error_acts_as_deflection() {
+    let p = pair(&worked_pair());
+    let entry = Entry { base_pitch_error_m: 5e-6, ..worked_entry() };
+    close(solved(&p, &entry, 5e-6).force_n / solved(&p, &worked_entry(), 1e-5).force_n, 1.0, 1e-6);
+}
+
+/// A deflection that changes with the overrun is solved together with it.
+#[test]
+fn deflection_may_depend_on_the_overrun() -> Result<(), ImpactError> {
+    let p = pair(&worked_pair());
+    let law = |x: f64| 1e-5 * (1.0 + 0.2 * (x / 1e-4).sin());
+    match first_contact(&p, Half::Left, 0.0, law)? {
+        Ok(contact) => {
+            close(contact.separation_m, law(contact.overrun_m), 1e-13);
+            // Nothing touches further out.
+            for i in 1..1000 {
+                let x = contact.overrun_m * (1.0 + f64::from(i) * 1e-3);
+                assert!(p.mesh_in_corner_gap_m(x).is_some_and(|gap| gap > law(x)));
+            }
+        }
+        Err(none) => panic!("{none:?}"),
+    }
+    Ok(())
+}
+
+#[test]
+fn standing_gears_and_unloaded_pairs_do_not_strike() {
+    let p = pair(&worked_pair());
+    let standing = solved(&p, &Entry { pinion_speed_rad_s: 0.0, ..worked_entry() }, 1e-5);
+    close(standing.force_n, 0.0, 0.0);
+    let unloaded = solved(&p, &Entry { load_share: 0.0, ..worked_entry() }, 1e-5);
+    close(unloaded.force_n, 0.0, 0.0);
+    assert_eq!(unloaded.pulse(0.0), None);
+}
+
+#[test]
+fn refuses_what_has_no_meaning() {
+    let p = pair(&worked_pair());
+    let refused = |entry: Entry, deflection: f64| mesh_in(&p, &entry, |_| deflection).err();
+    assert!(refused(Entry { load_share: 1.0, ..worked_entry() }, 1e-5).is_some());
+    assert!(refused(Entry { mesh_stiffness_n_per_m: 0.0, ..worked_entry() }, 1e-5).is_some());
+    assert!(matches!(refused(worked_entry(), f64::NAN), Some(ImpactError::Deflection { .. })));
+    assert!(matches!(refused(worked_entry(), 0.1), Some(ImpactError::NoFlank { .. })));
+}
