@@ -104,7 +104,7 @@ pub struct GearSpec {
     pub flanks: [FlankModification; 2],
 }
 
-/// Assembly errors of the pair; see docs/DESIGN.md for the sign conventions.
+/// Assembly errors of the pair; `Pair::initial_gap_m` states the sign conventions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Assembly {
     pub center_distance_error_m: f64,

@@ -28,6 +28,15 @@ pub struct NoEarlyContact {
     pub deflection_m: f64,
 }
 
+/// How the entering pair comes into contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Entrance {
+    /// Before its path of contact, with a corner.
+    Early(FirstContact),
+    /// On its path of contact.
+    OnPath(NoEarlyContact),
+}
+
 /// Positions tried between the theoretical start and the farthest possible first contact.
 const SCAN_STEPS: u32 = 32;
 
@@ -45,7 +54,7 @@ pub fn first_contact(
     half: Half,
     base_pitch_error_m: f64,
     deflection: impl Fn(f64) -> f64,
-) -> Result<Result<FirstContact, NoEarlyContact>, ImpactError> {
+) -> Result<Entrance, ImpactError> {
     let entering_y_m = match pair.spec.rotation {
         Rotation::ApexLeading => 0.0,
         Rotation::ApexTrailing => pair.spec.face_width_m,
@@ -67,7 +76,8 @@ pub fn first_contact(
 
     let start = position(0.0)?;
     if start.open_m() >= 0.0 {
-        return Ok(Err(NoEarlyContact { flank_gap_m: start.flank_gap_m, deflection_m: start.deflection_m }));
+        let none = NoEarlyContact { flank_gap_m: start.flank_gap_m, deflection_m: start.deflection_m };
+        return Ok(Entrance::OnPath(none));
     }
     let far = farthest(pair, &start, &position)?;
     let mut outer = far;
@@ -80,7 +90,7 @@ pub fn first_contact(
         }
         outer = here;
     }
-    refine(inner, outer, &position).map(Ok)
+    refine(inner, outer, &position).map(Entrance::Early)
 }
 
 impl FirstContact {
@@ -90,7 +100,7 @@ impl FirstContact {
     }
 }
 
-/// A position certainly apart: the separation alone is twice what has to be closed.
+/// A position certainly apart: as far open as the pair would overlap at its theoretical start.
 fn farthest(
     pair: &Pair,
     start: &FirstContact,

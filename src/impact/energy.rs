@@ -1,6 +1,6 @@
 //! Impact force from the energy balance of the instantaneous line of action.
 
-use super::corner::{FirstContact, NoEarlyContact, first_contact};
+use super::corner::{Entrance, FirstContact, NoEarlyContact, first_contact};
 use super::pulse::HalfSine;
 use crate::gear::{Half, Pair};
 
@@ -85,11 +85,10 @@ pub enum ImpactError {
 /// then has no meaning and is refused.
 pub fn mesh_in(pair: &Pair, entry: &Entry, deflection: impl Fn(f64) -> f64) -> Result<Impact, ImpactError> {
     check(entry)?;
-    let contact = match first_contact(pair, entry.half, entry.base_pitch_error_m, deflection)? {
-        Ok(contact) => contact,
-        Err(reason) => return Ok(Impact::none(pair, entry, reason)),
-    };
-    Ok(from_contact(pair, entry, &contact))
+    Ok(match first_contact(pair, entry.half, entry.base_pitch_error_m, deflection)? {
+        Entrance::Early(contact) => from_contact(pair, entry, &contact),
+        Entrance::OnPath(reason) => Impact::none(pair, entry, reason),
+    })
 }
 
 fn from_contact(pair: &Pair, entry: &Entry, contact: &FirstContact) -> Impact {

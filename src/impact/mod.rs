@@ -8,7 +8,7 @@ mod corner;
 mod energy;
 mod pulse;
 
-pub use corner::{FirstContact, NoEarlyContact, first_contact};
+pub use corner::{Entrance, FirstContact, NoEarlyContact, first_contact};
 pub use energy::{Entry, Impact, ImpactError, Inertia, mesh_in};
 pub use pulse::HalfSine;
 

@@ -168,6 +168,9 @@ fn check_pair(p: &Pair) -> Result<(), TestCaseError> {
     prop_assert!(p.path_start_m >= 0.0 && p.path_end_m <= p.line_of_action_m);
     for member in [&p.pinion, &p.gear] {
         let span = member.tip_radius_m - member.root_radius_m;
+        let join = member.root_form_radius_m;
+        let step = member.half_angle_rad(join * (1.0 - 1e-12)) - member.half_angle_rad(join);
+        prop_assert!(step.abs() < 1e-6, "step of {step} rad at the join");
         for i in 0..=40 {
             let half = member.half_angle_rad(member.root_radius_m + span * f64::from(i) / 40.0);
             prop_assert!(half.is_finite() && half > 0.0, "half angle {half}");

@@ -79,7 +79,7 @@ fn check_against_envelope(spec: &PairSpec, side: &GearSpec, member: &Member) {
 #[test]
 fn equals_the_envelope_of_the_cutter() {
     for beta in [0.0, 20.0, 24.43] {
-        for (z, x) in [(17, 0.1), (29, 0.0), (44, -0.3), (25, 0.6)] {
+        for (z, x) in [(17, 0.1), (29, 0.0), (44, -0.3), (25, 0.6), (90, 1.1)] {
             let s = spec(5.0, 20.0, beta, 40.0, gear(z, x), gear(67, 0.0));
             check_against_envelope(&s, &s.pinion, &pair(&s).pinion);
         }

@@ -1,7 +1,7 @@
 //! The impact against a worked example, its small-deflection limit, and its edge cases.
 
 use super::*;
-use crate::gear::fixtures::{close, pair, source_pair, worked_pair};
+use crate::gear::fixtures::{close, gear, pair, source_pair, spec, worked_pair};
 use crate::gear::{Half, Pair, ReliefShape, TipRelief};
 use std::f64::consts::PI;
 
@@ -121,7 +121,7 @@ fn deflection_may_depend_on_the_overrun() -> Result<(), ImpactError> {
     let p = pair(&worked_pair());
     let law = |x: f64| 1e-5 * (1.0 + 0.2 * (x / 1e-4).sin());
     match first_contact(&p, Half::Left, 0.0, law)? {
-        Ok(contact) => {
+        Entrance::Early(contact) => {
             close(contact.separation_m, law(contact.overrun_m), 1e-13);
             // Nothing touches further out.
             for i in 1..1000 {
@@ -129,7 +129,7 @@ fn deflection_may_depend_on_the_overrun() -> Result<(), ImpactError> {
                 assert!(p.mesh_in_corner_gap_m(x).is_some_and(|gap| gap > law(x)));
             }
         }
-        Err(none) => panic!("{none:?}"),
+        Entrance::OnPath(none) => panic!("{none:?}"),
     }
     Ok(())
 }
@@ -152,4 +152,27 @@ fn refuses_what_has_no_meaning() {
     assert!(refused(Entry { mesh_stiffness_n_per_m: 0.0, ..worked_entry() }, 1e-5).is_some());
     assert!(matches!(refused(worked_entry(), f64::NAN), Some(ImpactError::Deflection { .. })));
     assert!(matches!(refused(worked_entry(), 0.1), Some(ImpactError::NoFlank { .. })));
+}
+
+/// Over a grid of pairs, deflections and shares: finite and ordered, or a typed error.
+#[test]
+fn finite_over_many_pairs() {
+    let mut solved = 0;
+    for z in [12, 17, 25, 60, 150] {
+        for beta in [0.0, 12.0, 30.0] {
+            for shift in [0.0, 0.3] {
+                let spec = spec(4.0, 20.0, beta, 40.0, gear(z, shift), gear(71, 0.0));
+                let Ok((p, _)) = Pair::new(&spec) else { continue };
+                for (deflection, share) in [(1e-9, 0.9), (3e-6, 0.05), (4e-5, 0.001), (2e-4, 0.5)] {
+                    let entry = Entry { load_share: share, ..worked_entry() };
+                    let Ok(impact) = mesh_in(&p, &entry, |_| deflection) else { continue };
+                    solved += 1;
+                    assert!(impact.force_n > 0.0 && impact.force_n < impact.zhou2008_force_n);
+                    assert!(impact.velocity_m_s > 0.0 && impact.duration_s > 0.0 && impact.duration_s.is_finite());
+                    assert!(impact.effective_gear_base_radius_m < p.gear.base_radius_m * (1.0 + 1e-12));
+                }
+            }
+        }
+    }
+    assert!(solved > 60, "only {solved} solved");
 }
