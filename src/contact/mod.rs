@@ -1,3 +1,39 @@
-//! (room under construction)
+//! Loaded tooth contact of one helix half and of both: tooth and body compliance, load distribution over all tooth pairs
+//! in mesh, mesh stiffness, transmission error and load shares over one mesh period.
+//!
+//! The model (fidelity `analytic`), per member: the tooth is a cantilever of its true profile in the normal section
+//! (`tooth`), its slices coupled along the face (`coupling`), on a three-dimensional elastic ring with free end faces,
+//! held at rim or bore (`body`, `ring_influence`); short waves at the root come from a plane-strain annulus (`annulus`);
+//! the contact itself is Hertzian (`hertz`). `lines` and `position` put the contact lines of one position together,
+//! `distribution` shares the force out, `cycle` and `halves` run over the mesh period.
+//!
+//! Everything is SI and along the transverse base tangent unless a name says otherwise; coordinates are those of
+//! [`crate::gear`].
 
+mod annulus;
+mod body;
+mod coupling;
+mod cycle;
+mod distribution;
+mod flank;
+mod half;
+mod halves;
+mod hertz;
 pub mod iso6336;
+mod linalg;
+mod lines;
+mod position;
+mod ring_influence;
+mod settings;
+mod tooth;
+
+pub use cycle::{EntryDeflection, Extent, FlankMap, HalfCycle, MESH_IN_PHASE};
+pub use flank::{BodyHold, hold_radius_m};
+pub use half::{Compliance, HalfContact};
+pub use halves::{LoadedContact, solve_half, solve_pair_of_halves};
+pub use lines::Point;
+pub use position::Loaded;
+pub use settings::{ContactError, Settings};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,124 @@
+//! Compares the analytic loaded tooth contact with the finite-element reference of a z 29/67 helical pair and prints the
+//! errors: `cargo run --release --no-default-features --example contact_validation`.
+
+use std::time::Instant;
+
+use herringbone::contact::{BodyHold, Settings, solve_half};
+use herringbone::gear::{
+    Assembly, FlankModification, GearSpec, Half, Material, Pair, PairSpec, ReliefShape, Rotation, TipRelief,
+};
+use herringbone::watch::Watch;
+
+fn member(teeth: u32, bore_radius_m: f64) -> GearSpec {
+    GearSpec {
+        teeth,
+        profile_shift: 0.0,
+        addendum: 1.0,
+        dedendum: 1.25,
+        fillet_radius: 0.38,
+        tip_alteration: 0.0,
+        bore_radius_m,
+        flanks: [FlankModification::NONE; 2],
+    }
+}
+
+/// The reference pair in one of its variants, as this crate describes it.
+fn reference_pair(variant: &str) -> Pair {
+    let mut spec = PairSpec {
+        normal_module_m: 4e-3,
+        normal_pressure_angle_rad: 20f64.to_radians(),
+        helix_angle_rad: 30f64.to_radians(),
+        face_width_m: 45e-3,
+        gap_width_m: 20e-3,
+        center_distance_m: None,
+        material: Material { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 },
+        rotation: Rotation::ApexLeading,
+        pinion: member(29, 25e-3),
+        gear: member(67, 60e-3),
+        assembly: Assembly {
+            center_distance_error_m: 0.0,
+            in_plane_misalignment_m: 0.0,
+            out_of_plane_misalignment_m: 0.0,
+            apex_offset_m: 0.0,
+        },
+    };
+    let pair = Pair::new(&spec).expect("the reference pair is feasible").0;
+    match variant {
+        "lead_zero_at_mesh_in_end" => spec.pinion.flanks[0].helix_slope_m = 8e-6,
+        "lead_zero_at_mesh_out_end" => {
+            spec.pinion.flanks[0].helix_slope_m = 8e-6;
+            spec.rotation = Rotation::ApexTrailing;
+        }
+        "tip_relief" => {
+            let relief = |length_m| TipRelief { amount_m: 15e-6, length_m, shape: ReliefShape::Parabolic };
+            let pitch = pair.pitch_point_m();
+            spec.pinion.flanks[0].tip_relief = relief((pair.pinion.tip_roll_m() - pitch) / 3.0);
+            spec.gear.flanks[0].tip_relief = relief((pair.gear.tip_roll_m() - (pair.line_of_action_m - pitch)) / 3.0);
+        }
+        _ => {}
+    }
+    Pair::new(&spec).expect("the reference pair is feasible").0
+}
+
+fn share_at(path: &[f64], share: &[f64], at: f64) -> f64 {
+    let i = path.partition_point(|&p| p <= at).clamp(1, path.len() - 1);
+    let t = (at - path[i - 1]) / (path[i] - path[i - 1]);
+    share[i - 1] + t * (share[i] - share[i - 1])
+}
+
+fn main() {
+    let text = include_str!("../tests/data/fe_pair_29_67.json");
+    let reference: serde_json::Value = serde_json::from_str(text).expect("the reference file is JSON");
+    let slices = std::env::args().nth(1).and_then(|a| a.parse().ok());
+    println!(
+        "{:26} {:>4} | {:>6} {:>6} | {:>6} {:>6} | {:>6} {:>6} | {:>6} {:>6} | {:>6} | share errors at p 0.05 0.1 0.25 0.5 1 | ms",
+        "variant", "T", "ksec", "%", "ktan", "%", "TEpp", "%", "H1", "%", "w %"
+    );
+    for case in reference["cases"].as_array().expect("cases") {
+        let variant = case["variant"].as_str().unwrap_or_default();
+        let number = |key: &str| case[key].as_f64().unwrap_or(f64::NAN);
+        let pair = reference_pair(variant);
+        let settings = Settings {
+            positions: 64,
+            slices,
+            body: if variant == "nominal_rim_clamped" { BodyHold::Rim } else { BodyHold::Bore },
+            corner_contact: variant == "nominal_ext",
+        };
+        let force = number("torque_nm") / pair.pinion.base_radius_m;
+        let begin = Instant::now();
+        let cycle = match solve_half(&pair, Half::Left, force, &settings, Watch::none()) {
+            Ok(cycle) => cycle,
+            Err(error) => {
+                println!("{variant:26} {:>4} | {error}", number("torque_nm"));
+                continue;
+            }
+        };
+        let elapsed = begin.elapsed().as_secs_f64() * 1e3;
+        let percent = |value: f64, expected: f64| 100.0 * (value / expected - 1.0);
+        let te = cycle.transmission_error;
+        let shares: Vec<String> = case["share"]
+            .as_array()
+            .expect("shares")
+            .iter()
+            .map(|entry| {
+                let got = share_at(&cycle.load_share_phase, &cycle.load_share, entry[0].as_f64().unwrap_or(0.0));
+                format!("{:+.3}", got - entry[1].as_f64().unwrap_or(f64::NAN))
+            })
+            .collect();
+        println!(
+            "{variant:26} {:>4} | {:6.3} {:+6.1} | {:6.3} {:+6.1} | {:6.3} {:+6.0} | {:6.3} {:+6.1} | {:+6.1} | {} | {:.1}",
+            number("torque_nm"),
+            cycle.secant_stiffness.mean * 1e-8,
+            percent(cycle.secant_stiffness.mean, number("secant_n_per_m")),
+            cycle.stiffness.mean * 1e-8,
+            percent(cycle.stiffness.mean, number("tangent_n_per_m")),
+            (te.max - te.min) * 1e6,
+            percent((te.max - te.min) * 1e6, number("te_pp_um")),
+            cycle.transmission_error_harmonics_m[0] * 1e6,
+            percent(cycle.transmission_error_harmonics_m[0] * 1e6, number("te_harmonic_1_um")),
+            percent(cycle.max_line_load_n_per_m * 1e-3, number("line_load_n_per_mm")),
+            shares.join(" "),
+            elapsed,
+        );
+    }
+}

@@ -1,0 +1,332 @@
+//! One mesh period of one half: stiffness, transmission error, load shares.
+
+use serde::{Deserialize, Serialize};
+
+use super::half::HalfContact;
+use super::hertz::LineContact;
+use super::position::Loaded;
+use super::settings::ContactError;
+use crate::gear::Pair;
+
+/// Mean, least and largest value over the mesh period (arithmetic mean over the positions).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Extent {
+    pub mean: f64,
+    pub min: f64,
+    pub max: f64,
+}
+
+impl Extent {
+    /// Of a non-empty list.
+    pub fn of(values: &[f64]) -> Extent {
+        Extent {
+            mean: values.iter().sum::<f64>() / values.len() as f64,
+            min: values.iter().copied().fold(f64::INFINITY, f64::min),
+            max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+}
+
+/// Line load over the flank: rows along the path of contact, columns along the face.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FlankMap {
+    /// Roll coordinate of every row (middle of the bin).
+    pub roll_m: Vec<f64>,
+    /// Distance of every column from the inner end.
+    pub face_m: Vec<f64>,
+    /// Normal force per length of contact line, row by row; 0 where nothing touches.
+    pub line_load_n_per_m: Vec<f64>,
+}
+
+/// Deflection of the pairs in mesh while the entering pair is still free: what mesh-in impact starts from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EntryDeflection {
+    /// Roll before the theoretical start of contact, ascending from 0.
+    pub overrun_m: Vec<f64>,
+    pub deflection_m: Vec<f64>,
+    pub stiffness_n_per_m: Vec<f64>,
+}
+
+impl EntryDeflection {
+    /// Deflection along the base tangent `overrun_m` before the theoretical start, interpolated linearly and held
+    /// constant beyond the table.
+    pub fn deflection_before_entry_m(&self, overrun_m: f64) -> f64 {
+        interpolate(&self.overrun_m, &self.deflection_m, overrun_m)
+    }
+
+    /// Tangent stiffness of the pairs in mesh at the same state.
+    pub fn stiffness_before_entry_n_per_m(&self, overrun_m: f64) -> f64 {
+        interpolate(&self.overrun_m, &self.stiffness_n_per_m, overrun_m)
+    }
+}
+
+fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
+    let i = x.partition_point(|&v| v <= at).clamp(1, x.len() - 1);
+    let t = ((at - x[i - 1]) / (x[i] - x[i - 1])).clamp(0.0, 1.0);
+    y[i - 1] + t * (y[i] - y[i - 1])
+}
+
+/// Loaded contact of one half over one mesh period. Forces and displacements along the transverse base tangent.
+///
+/// Phase 0: a pair stands at its first theoretical contact at the mesh-in end; phase 1: the next one does.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HalfCycle {
+    pub phase: Vec<f64>,
+    /// F_bt at every position: constant, except where the halves of a spur-like pair share by deflection.
+    pub force_bt_n: Vec<f64>,
+    /// dF_bt/dδ.
+    pub stiffness_n_per_m: Vec<f64>,
+    /// F_bt/δ.
+    pub secant_stiffness_n_per_m: Vec<f64>,
+    /// Loaded transmission error δ.
+    pub transmission_error_m: Vec<f64>,
+    /// Pairs that carry force.
+    pub pairs_in_contact: Vec<u32>,
+    /// Path of one pair in base pitches since its first theoretical contact, overrun included.
+    pub load_share_phase: Vec<f64>,
+    /// Force of the pair as a part of the half's force.
+    pub load_share: Vec<f64>,
+    /// Share of the entering pair 0.05 base pitches after its theoretical start of contact.
+    pub load_share_at_mesh_in: f64,
+    /// How long one pair carries load, in base pitches.
+    pub loaded_contact_ratio: f64,
+    /// Path (base pitches) at which a pair begins and ends to carry load.
+    pub load_begins_and_ends: [f64; 2],
+    /// Largest normal force per length of contact line, slivers below half a slice left out.
+    pub max_line_load_n_per_m: f64,
+    /// Hertzian pressure at that kind of point, largest over the period.
+    pub max_hertz_pressure_pa: f64,
+    pub flank_map: FlankMap,
+    pub entry: EntryDeflection,
+    pub stiffness: Extent,
+    pub secant_stiffness: Extent,
+    pub transmission_error: Extent,
+    /// Amplitudes of the first harmonics of the transmission error per mesh period.
+    pub transmission_error_harmonics_m: Vec<f64>,
+    /// Newton iterations over the whole period.
+    pub iterations: u64,
+}
+
+/// Share of a base pitch after the start of contact at which the mesh-in share is taken.
+pub const MESH_IN_PHASE: f64 = 0.05;
+/// Rows and columns of the flank map.
+const MAP_ROWS: usize = 24;
+/// Harmonics that are reported.
+const HARMONICS: usize = 8;
+/// Points of the entry table.
+const ENTRY_POINTS: usize = 9;
+/// Smallest share that counts as carrying load.
+const CARRIES: f64 = 1e-9;
+
+/// Collects positions into a [`HalfCycle`].
+pub struct CycleBuilder<'a> {
+    pair: &'a Pair,
+    slices: usize,
+    states: Vec<(f64, f64, Loaded)>,
+}
+
+impl<'a> CycleBuilder<'a> {
+    pub fn new(pair: &'a Pair, slices: usize) -> CycleBuilder<'a> {
+        CycleBuilder { pair, slices, states: Vec::new() }
+    }
+
+    /// Adds the state at `phase` under `force_bt_n`; phases ascend over [0, 1).
+    pub fn push(&mut self, phase: f64, force_bt_n: f64, state: Loaded) {
+        self.states.push((phase, force_bt_n, state));
+    }
+
+    /// Solves the special states (mesh-in share, begin and end of load, entry) and closes the period. `force_at` gives
+    /// F_bt at a phase.
+    pub fn finish(
+        self,
+        contact: &mut HalfContact<'_>,
+        force_at: &dyn Fn(f64) -> f64,
+    ) -> Result<HalfCycle, ContactError> {
+        let states = &self.states;
+        let column = |f: &dyn Fn(&(f64, f64, Loaded)) -> f64| states.iter().map(f).collect::<Vec<_>>();
+        let stiffness = column(&|s| s.2.stiffness_n_per_m);
+        let secant = column(&|s| s.1 / s.2.approach_m);
+        let error = column(&|s| s.2.approach_m);
+        let pairs_in_contact = states.iter().map(|s| carrying(&s.2).len() as u32).collect();
+        let (load_share_phase, load_share) = self.path();
+        let mesh_in = contact.at(MESH_IN_PHASE, force_at(MESH_IN_PHASE))?;
+        let load_begins_and_ends = self.carrying_range(contact, force_at, &load_share_phase, &load_share)?;
+        let (max_line_load, max_pressure) = self.extremes();
+        let entry = self.entry(contact, force_at)?;
+        Ok(HalfCycle {
+            phase: column(&|s| s.0),
+            force_bt_n: column(&|s| s.1),
+            stiffness: Extent::of(&stiffness),
+            secant_stiffness: Extent::of(&secant),
+            transmission_error: Extent::of(&error),
+            transmission_error_harmonics_m: harmonics(&error),
+            stiffness_n_per_m: stiffness,
+            secant_stiffness_n_per_m: secant,
+            transmission_error_m: error,
+            pairs_in_contact,
+            load_share_phase,
+            load_share,
+            load_share_at_mesh_in: mesh_in.share(0),
+            loaded_contact_ratio: load_begins_and_ends[1] - load_begins_and_ends[0],
+            load_begins_and_ends,
+            max_line_load_n_per_m: max_line_load,
+            max_hertz_pressure_pa: max_pressure,
+            flank_map: self.map(),
+            entry,
+            iterations: states.iter().map(|s| u64::from(s.2.iterations)).sum(),
+        })
+    }
+
+    /// Path of one pair put together from all pairs of all positions.
+    fn path(&self) -> (Vec<f64>, Vec<f64>) {
+        let pairs = self.states.iter().flat_map(|s| s.2.points.iter().map(|p| p.pair));
+        let (low, high) = pairs.fold((0, 0), |(l, h), k| (l.min(k), h.max(k)));
+        let (mut path, mut share) = (Vec::new(), Vec::new());
+        for k in low..=high {
+            for (phase, _, state) in &self.states {
+                path.push(phase + f64::from(k));
+                share.push(state.share(k));
+            }
+        }
+        (path, share)
+    }
+
+    /// First and last path position with load, refined between the positions by bisection.
+    fn carrying_range(
+        &self,
+        contact: &mut HalfContact<'_>,
+        force_at: &dyn Fn(f64) -> f64,
+        path: &[f64],
+        share: &[f64],
+    ) -> Result<[f64; 2], ContactError> {
+        let spacing = 1.0 / self.states.len() as f64;
+        let first = share.iter().position(|&s| s > CARRIES).unwrap_or(0);
+        let last = share.iter().rposition(|&s| s > CARRIES).unwrap_or(share.len() - 1);
+        let mut out = [0.0; 2];
+        for (slot, (inside, outside)) in
+            out.iter_mut().zip([(path[first], path[first] - spacing), (path[last], path[last] + spacing)])
+        {
+            let (mut inside, mut outside) = (inside, outside);
+            for _ in 0..6 {
+                let middle = 0.5 * (inside + outside);
+                let k = middle.floor();
+                let phase = middle - k;
+                if contact.at(phase, force_at(phase))?.share(k as i32) > CARRIES {
+                    inside = middle;
+                } else {
+                    outside = middle;
+                }
+            }
+            *slot = 0.5 * (inside + outside);
+        }
+        Ok(out)
+    }
+
+    fn extremes(&self) -> (f64, f64) {
+        let material = self.pair.material();
+        let cos = self.pair.base_helix_angle_rad.cos();
+        let sliver = 0.5 * self.pair.spec.face_width_m / self.slices as f64;
+        let (mut load, mut pressure) = (0.0f64, 0.0f64);
+        for (_, _, state) in &self.states {
+            for (p, &f) in state.points.iter().zip(&state.forces_n) {
+                if p.width_m < sliver || f <= 0.0 || p.zone != 1 {
+                    continue;
+                }
+                let w = f * cos / p.width_m;
+                let radius = p.x_m * (self.pair.line_of_action_m - p.x_m) / self.pair.line_of_action_m / cos;
+                load = load.max(w);
+                let contact = LineContact::new(
+                    material.youngs_modulus_pa,
+                    material.poissons_ratio,
+                    radius.max(1e-3 * self.pair.spec.normal_module_m),
+                    [radius; 2],
+                );
+                pressure = pressure.max(contact.pressure_pa(w));
+            }
+        }
+        (load, pressure)
+    }
+
+    fn map(&self) -> FlankMap {
+        let (start, end) = (self.pair.path_start_m, self.pair.path_end_m);
+        let b = self.pair.spec.face_width_m;
+        let cos = self.pair.base_helix_angle_rad.cos();
+        let columns = self.slices.min(32);
+        let mut force = vec![0.0; MAP_ROWS * columns];
+        let mut length = vec![0.0; MAP_ROWS * columns];
+        let bin = |value: f64, count: usize| ((value * count as f64) as usize).min(count - 1);
+        for (_, _, state) in &self.states {
+            for (p, f) in state.points.iter().zip(&state.forces_n) {
+                if p.zone != 1 {
+                    continue;
+                }
+                let row = bin((p.x_m - start) / (end - start), MAP_ROWS);
+                let cell = row * columns + bin(self.pair.entry_m(p.entry_m) / b, columns);
+                force[cell] += f;
+                length[cell] += p.width_m / cos;
+            }
+        }
+        let middle = |i: usize, count: usize| (i as f64 + 0.5) / count as f64;
+        FlankMap {
+            roll_m: (0..MAP_ROWS).map(|i| start + (end - start) * middle(i, MAP_ROWS)).collect(),
+            face_m: (0..columns).map(|i| b * middle(i, columns)).collect(),
+            line_load_n_per_m: force.iter().zip(&length).map(|(f, l)| if *l > 0.0 { f / l } else { 0.0 }).collect(),
+        }
+    }
+
+    /// Deflection before entry, up to where the corner gap exceeds it by half (at most half a base pitch).
+    fn entry(
+        &self,
+        contact: &mut HalfContact<'_>,
+        force_at: &dyn Fn(f64) -> f64,
+    ) -> Result<EntryDeflection, ContactError> {
+        let pitch = self.pair.base_pitch_m;
+        let at_start = contact.before_entry(0.0, force_at(0.0))?;
+        let mut reach = 0.02 * pitch;
+        while reach < 0.5 * pitch
+            && self.pair.mesh_in_corner_gap_m(reach).is_some_and(|gap| gap < 1.5 * at_start.approach_m)
+        {
+            reach *= 1.25;
+        }
+        reach = reach.min(0.5 * pitch);
+        let mut table = EntryDeflection {
+            overrun_m: vec![0.0],
+            deflection_m: vec![at_start.approach_m],
+            stiffness_n_per_m: vec![at_start.stiffness_n_per_m],
+        };
+        for i in 1..ENTRY_POINTS {
+            let overrun = reach * i as f64 / (ENTRY_POINTS - 1) as f64;
+            let state = contact.before_entry(overrun, force_at((1.0 - overrun / pitch).fract()))?;
+            table.overrun_m.push(overrun);
+            table.deflection_m.push(state.approach_m);
+            table.stiffness_n_per_m.push(state.stiffness_n_per_m);
+        }
+        Ok(table)
+    }
+}
+
+/// Pairs with force.
+fn carrying(state: &Loaded) -> Vec<i32> {
+    let mut pairs: Vec<i32> =
+        state.points.iter().zip(&state.forces_n).filter(|(_, f)| **f > 0.0).map(|(p, _)| p.pair).collect();
+    pairs.dedup();
+    pairs
+}
+
+/// Amplitudes of harmonics 1.. per period of equally spaced samples.
+fn harmonics(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    let mean = values.iter().sum::<f64>() / n as f64;
+    (1..=HARMONICS.min((n - 1) / 2))
+        .map(|h| {
+            let step = 2.0 * std::f64::consts::PI * h as f64 / n as f64;
+            let (mut re, mut im) = (0.0, 0.0);
+            for (i, v) in values.iter().enumerate() {
+                let (s, c) = (step * i as f64).sin_cos();
+                re += (v - mean) * c;
+                im += (v - mean) * s;
+            }
+            2.0 * re.hypot(im) / n as f64
+        })
+        .collect()
+}

@@ -1,0 +1,92 @@
+//! One member as the contact sees it: its tooth, its ring, and where they are held.
+
+use serde::{Deserialize, Serialize};
+
+use super::body::Ring;
+use super::ring_influence::{RingInfluence, ToothLayout, ring_weight};
+use super::tooth::{ProfilePoint, Tooth, ToothForm};
+use crate::gear::{Member, Pair};
+
+/// Where the gear bodies are held (all displacements zero on a cylinder over the face width, end faces free).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyHold {
+    /// Three normal modules below the root circles: teeth and rims, for dynamic models with rigid gear bodies.
+    Rim,
+    /// At the bores: blank torsion, in-plane and disc bending included.
+    Bore,
+}
+
+/// Depth of the rim below the root circle, in normal modules.
+const RIM_DEPTH: f64 = 3.0;
+/// The held cylinder is never smaller than this part of the root circle: below it a solid pinion counts as its shaft.
+const SMALLEST_HOLD: f64 = 0.3;
+/// Outermost radial element of the ring, in normal modules.
+const RING_ELEMENT: f64 = 0.55;
+
+/// Radius at which `member` is held.
+pub fn hold_radius_m(member: &Member, hold: BodyHold, normal_module_m: f64) -> f64 {
+    let root = member.root_radius_m;
+    let bore = member.bore_radius_m.min(root - 0.5 * normal_module_m);
+    let radius = match hold {
+        BodyHold::Rim => bore.max(root - RIM_DEPTH * normal_module_m),
+        BodyHold::Bore => bore,
+    };
+    radius.max(SMALLEST_HOLD * root)
+}
+
+/// Compliance of one member.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flank {
+    tooth: Tooth,
+    pub ring: RingInfluence,
+    side: f64,
+}
+
+impl Flank {
+    /// The pinion (`side` +1) or the gear (`side` -1) of `pair`, for `slices` and teeth up to `offsets` pitches apart.
+    pub fn new(pair: &Pair, side: f64, hold: BodyHold, slices: usize, offsets: usize) -> Flank {
+        let member = if side > 0.0 { &pair.pinion } else { &pair.gear };
+        let rolls = if side > 0.0 {
+            (pair.path_start_m, pair.path_end_m)
+        } else {
+            (pair.line_of_action_m - pair.path_end_m, pair.line_of_action_m - pair.path_start_m)
+        };
+        let module = pair.spec.normal_module_m;
+        let material = pair.material();
+        let twist = pair.base_helix_angle_rad.tan() / member.base_radius_m;
+        let form = ToothForm {
+            base_radius_m: member.base_radius_m,
+            root_radius_m: member.root_radius_m,
+            base_half_angle_rad: member.base_half_angle_rad,
+            root_half_angle_rad: member.root_half_angle_rad(),
+            base_helix_angle_rad: pair.base_helix_angle_rad,
+            normal_module_m: module,
+            half_angle: &|r| member.half_angle_rad(r),
+        };
+        let (e, nu) = (material.youngs_modulus_pa, material.poissons_ratio);
+        let tooth = Tooth::new(&form, e, nu, rolls, &|wave| 1.0 - ring_weight(wave, module));
+        let ring = Ring {
+            outer_radius_m: member.root_radius_m,
+            inner_radius_m: hold_radius_m(member, hold, module),
+            face_width_m: pair.spec.face_width_m,
+            element_m: RING_ELEMENT * module,
+            youngs_pa: e,
+            nu,
+        };
+        let layout = ToothLayout {
+            teeth: member.teeth,
+            root_half_angle_rad: member.root_half_angle_rad(),
+            twist_per_m: twist,
+            root_helix_angle_rad: (member.root_radius_m * twist).atan(),
+            normal_module_m: module,
+            side,
+        };
+        Flank { tooth, ring: RingInfluence::new(&ring, &layout, slices, offsets), side }
+    }
+
+    /// The tooth at roll length `roll_m` of this member.
+    pub fn at(&self, roll_m: f64) -> ProfilePoint {
+        self.tooth.at(roll_m, self.side)
+    }
+}

@@ -1,0 +1,78 @@
+//! Small dense linear algebra on flat row-major slices: what the tooth contact needs, without allocation.
+
+/// Solves the n×n system by Gaussian elimination with partial pivoting; `a` is destroyed, `rhs` becomes the solution.
+pub fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs())).unwrap_or(k);
+        if pivot != k {
+            for j in 0..n {
+                a.swap(k * n + j, pivot * n + j);
+            }
+            rhs.swap(k, pivot);
+        }
+        let d = a[k * n + k];
+        for i in k + 1..n {
+            let f = a[i * n + k] / d;
+            if f != 0.0 {
+                for j in k..n {
+                    a[i * n + j] -= f * a[k * n + j];
+                }
+                rhs[i] -= f * rhs[k];
+            }
+        }
+    }
+    for k in (0..n).rev() {
+        let sum: f64 = (k + 1..n).map(|j| a[k * n + j] * rhs[j]).sum();
+        rhs[k] = (rhs[k] - sum) / a[k * n + k];
+    }
+}
+
+/// Cholesky factor L (lower triangle, in place) of a symmetric positive definite n×n matrix given by its lower triangle.
+/// `false` when a pivot is not positive.
+pub fn cholesky(a: &mut [f64], n: usize) -> bool {
+    for i in 0..n {
+        let (above, row) = a.split_at_mut(i * n);
+        for j in 0..i {
+            let other = &above[j * n..j * n + j + 1];
+            row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
+        }
+        let d = row[i] - dot(&row[..i], &row[..i]);
+        if d.is_nan() || d <= 0.0 {
+            return false;
+        }
+        row[i] = d.sqrt();
+    }
+    true
+}
+
+/// Solves L Lᵀ x = b in place with the factor of [`cholesky`].
+pub fn cholesky_solve(l: &[f64], b: &mut [f64], n: usize) {
+    forward_solve(l, b, n);
+    for i in (0..n).rev() {
+        b[i] /= l[i * n + i];
+        let x = b[i];
+        for j in 0..i {
+            b[j] -= l[i * n + j] * x;
+        }
+    }
+}
+
+/// Solves L x = b in place.
+pub fn forward_solve(l: &[f64], b: &mut [f64], n: usize) {
+    for i in 0..n {
+        b[i] = (b[i] - dot(&l[i * n..i * n + i], &b[..i])) / l[i * n + i];
+    }
+}
+
+/// Scalar product, four sums at a time so that it vectorises.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut acc = [0.0; 4];
+    let (ca, cb) = (a.chunks_exact(4), b.chunks_exact(4));
+    let tail: f64 = ca.remainder().iter().zip(cb.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in ca.zip(cb) {
+        for k in 0..4 {
+            acc[k] += x[k] * y[k];
+        }
+    }
+    acc[0] + acc[1] + acc[2] + acc[3] + tail
+}

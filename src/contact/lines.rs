@@ -1,0 +1,96 @@
+//! Points of possible contact at one position: every tooth pair cut into the width slices, with the parts of a slice
+//! before, on and after the path of contact kept apart.
+
+use crate::gear::{Half, Pair};
+
+/// Part of one slice of one tooth pair.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Tooth pair: k + 1 entered before k.
+    pub pair: i32,
+    pub slice: usize,
+    /// 0 before the path (gear tip corner), 1 on it, 2 after it (pinion tip corner).
+    pub zone: u8,
+    pub x_m: f64,
+    pub entry_m: f64,
+    /// Axial length of the part.
+    pub width_m: f64,
+    /// Gap in the transverse plane along the base tangent.
+    pub gap_m: f64,
+}
+
+/// Which pairs to look at and how far beyond the path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// Lowest pair to be considered.
+    pub lowest_pair: i32,
+    /// Corner contacts with a kinematic gap up to this are considered; zero: the path only.
+    pub corner_gap_m: f64,
+}
+
+/// Roll coordinate of pair 0 at entry 0 when pair 0 stands `phase` base pitches after its first theoretical contact.
+pub fn reference_roll_m(pair: &Pair, phase: f64) -> f64 {
+    pair.path_start_m + phase * pair.base_pitch_m - pair.spec.face_width_m * pair.base_helix_angle_rad.tan()
+}
+
+/// Collects the points of `half` into `out`.
+pub fn collect(pair: &Pair, half: Half, phase: f64, slices: usize, reach: &Reach, out: &mut Vec<Point>) {
+    out.clear();
+    let b = pair.spec.face_width_m;
+    let step = b / slices as f64;
+    let slope = pair.base_helix_angle_rad.tan();
+    let x0 = reference_roll_m(pair, phase);
+    let (start, end) = (pair.path_start_m, pair.path_end_m);
+    // Corners are looked for at most one base pitch beyond the path.
+    let over = if reach.corner_gap_m > 0.0 { pair.base_pitch_m } else { 0.0 };
+    let first = (((start - over - x0 - b * slope) / pair.base_pitch_m).floor() as i32).max(reach.lowest_pair);
+    let last = ((end + over - x0) / pair.base_pitch_m).ceil() as i32;
+    for k in first..=last {
+        let base = x0 + k as f64 * pair.base_pitch_m;
+        for slice in 0..slices {
+            let (e0, e1) = (slice as f64 * step, (slice + 1) as f64 * step);
+            let (xa, xb) = (base + e0 * slope, base + e1 * slope);
+            let zones = [(f64::NEG_INFINITY, start), (start, end), (end, f64::INFINITY)];
+            for (zone, (from, to)) in zones.into_iter().enumerate() {
+                if zone != 1 && over == 0.0 {
+                    continue;
+                }
+                let (low, high) = (xa.max(from), xb.min(to));
+                let share = if xb > xa {
+                    (high - low) / (xb - xa)
+                } else if xa >= from && xa < to {
+                    1.0
+                } else {
+                    0.0
+                };
+                if share < 1e-7 {
+                    continue;
+                }
+                let x = 0.5 * (low + high);
+                let entry = if slope > 0.0 { (x - base) / slope } else { 0.5 * (e0 + e1) };
+                let corner = match zone {
+                    0 => corner_gap(pair, start - x, over, Pair::mesh_in_corner_gap_m),
+                    2 => corner_gap(pair, x - end, over, Pair::mesh_out_corner_gap_m),
+                    _ => Some(0.0),
+                };
+                let Some(corner) = corner.filter(|&gap| gap <= reach.corner_gap_m) else { continue };
+                // entry_m is its own inverse.
+                let y = pair.entry_m(entry);
+                let gap = corner.max(0.0) + pair.initial_gap_m(half, x.clamp(start, end), y);
+                out.push(Point {
+                    pair: k,
+                    slice,
+                    zone: zone as u8,
+                    x_m: x,
+                    entry_m: entry,
+                    width_m: share * step,
+                    gap_m: gap,
+                });
+            }
+        }
+    }
+}
+
+fn corner_gap(pair: &Pair, overrun: f64, limit: f64, gap: impl Fn(&Pair, f64) -> Option<f64>) -> Option<f64> {
+    if overrun > limit { None } else { gap(pair, overrun) }
+}

@@ -1,0 +1,220 @@
+//! Influence between the loads that the teeth of one member hand to its ring: every pair of width slices, on the same
+//! tooth and on teeth some pitches apart, following the helix.
+
+use std::f64::consts::PI;
+
+use super::annulus::arc_shapes;
+use super::body::{HarmonicFlexibility, Ring, WidthBasis, harmonic};
+
+/// Waves across the tooth longer than the first (in multiples of the normal module per radian) belong wholly to the
+/// ring, shorter than the second wholly to the tooth's own root; between them they share. A tooth pitch is π m_n, so
+/// that neighbouring teeth feel each other through the ring alone.
+const RING_WAVES_PER_MODULE: (f64, f64) = (0.8, 1.8);
+
+/// Share of the ring model at a wave number (rad/m) across the tooth.
+pub fn ring_weight(wave_per_m: f64, normal_module_m: f64) -> f64 {
+    let (low, high) = RING_WAVES_PER_MODULE;
+    let t = ((wave_per_m * normal_module_m - low) / (high - low)).clamp(0.0, 1.0);
+    0.5 * (1.0 + (PI * t).cos())
+}
+
+/// Where the teeth stand on the ring.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToothLayout {
+    pub teeth: u32,
+    pub root_half_angle_rad: f64,
+    /// Turn of the tooth per length of face, tanβ_b / r_b.
+    pub twist_per_m: f64,
+    pub root_helix_angle_rad: f64,
+    pub normal_module_m: f64,
+    /// +1 pinion, -1 gear: sign of the axial force and, reversed, of the angles along the direction of the force.
+    pub side: f64,
+}
+
+/// Number of load components per slice; order as in `tooth::RootLoad`.
+pub const LOADS: usize = 5;
+
+/// Displacements of the slices per load (the displacement conjugate to each load component).
+#[derive(Debug, Clone, PartialEq)]
+pub struct RingInfluence {
+    slices: usize,
+    table: Vec<[f64; LOADS * LOADS]>,
+}
+
+/// Sum over harmonics and its slice-space workspace.
+struct Accumulator {
+    slices: usize,
+    size: usize,
+    /// Slice means of the width functions, degree by degree.
+    shapes: Vec<f64>,
+    /// Slice-space flexibility per pair of components.
+    components: [Vec<f64>; 9],
+    rows: Vec<f64>,
+}
+
+impl RingInfluence {
+    /// Influence for `slices` equal slices and teeth up to `offsets` pitches apart.
+    pub fn new(ring: &Ring, layout: &ToothLayout, slices: usize, offsets: usize) -> RingInfluence {
+        let reach = ring.outer_radius_m * layout.root_helix_angle_rad.cos();
+        let highest = (RING_WAVES_PER_MODULE.1 / layout.normal_module_m * reach).ceil().max(3.0) as u32;
+        let waves = RING_WAVES_PER_MODULE.1 * ring.face_width_m / (PI * layout.normal_module_m);
+        let basis = WidthBasis::new((4.0 + 1.1 * waves).ceil().clamp(5.0, 26.0) as usize, ring.face_width_m);
+        let mut sum = Accumulator::new(&basis, slices);
+        let mut table = vec![[0.0; LOADS * LOADS]; (offsets + 1) * slices * slices];
+        let pitch = 2.0 * PI / layout.teeth as f64;
+        let turn = ring.face_width_m / slices as f64 * layout.twist_per_m;
+        for n in 0..=highest {
+            let weight = ring_weight(n as f64 / reach, layout.normal_module_m);
+            if weight <= 0.0 {
+                continue;
+            }
+            sum.transform(&harmonic(ring, &basis, n, false));
+            let factor = weight * if n == 0 { 0.5 } else { 1.0 } / PI;
+            let (uniform, linear) = arc_shapes(n as f64, layout.root_half_angle_rad);
+            // (component, shape, odd) of tangential, moment, radial and axial load.
+            let kinds = [(1, uniform, true), (0, -linear, true), (0, uniform, false), (2, uniform, false)];
+            for k in 0..=offsets {
+                for shift in 0..2 * slices - 1 {
+                    let steps = shift as f64 - (slices - 1) as f64;
+                    let psi = -layout.side * (k as f64 * pitch + steps * turn);
+                    let (sin, cos) = (n as f64 * psi).sin_cos();
+                    let mut coefficients = [0.0; 16];
+                    for (a, &(_, fa, odd_a)) in kinds.iter().enumerate() {
+                        for (b, &(_, fb, odd_b)) in kinds.iter().enumerate() {
+                            let phase = match (odd_a, odd_b) {
+                                (true, false) => -sin,
+                                (false, true) => sin,
+                                _ => cos,
+                            };
+                            coefficients[a * 4 + b] = factor * fa * fb * phase;
+                        }
+                    }
+                    let first = (shift + 1).saturating_sub(slices);
+                    for i in first..slices.min(shift + 1) {
+                        let j = i + slices - 1 - shift;
+                        let entry = &mut table[(k * slices + i) * slices + j];
+                        for (a, &(ca, ..)) in kinds.iter().enumerate() {
+                            for (b, &(cb, ..)) in kinds.iter().enumerate() {
+                                entry[a * LOADS + b] +=
+                                    coefficients[a * 4 + b] * sum.components[ca * 3 + cb][i * slices + j];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let mut influence = RingInfluence { slices, table };
+        influence.add_dipoles(ring.face_width_m / slices as f64, offsets);
+        influence
+    }
+
+    /// The dipole's displacement is the slope of the radial displacement along the tooth: central differences between
+    /// slices, one-sided at the ends.
+    fn add_dipoles(&mut self, step: f64, offsets: usize) {
+        const RADIAL: usize = 2;
+        const DIPOLE: usize = 4;
+        let n = self.slices;
+        if n < 2 {
+            return;
+        }
+        let neighbours = |i: usize| {
+            let (low, high) = (i.saturating_sub(1), (i + 1).min(n - 1));
+            (low, high, 1.0 / ((high - low) as f64 * step))
+        };
+        for k in 0..=offsets {
+            let base = k * n * n;
+            for i in 0..n {
+                let (low, high, scale) = neighbours(i);
+                for j in 0..n {
+                    for b in 0..4 {
+                        let difference = self.table[base + high * n + j][RADIAL * LOADS + b]
+                            - self.table[base + low * n + j][RADIAL * LOADS + b];
+                        self.table[base + i * n + j][DIPOLE * LOADS + b] = difference * scale;
+                    }
+                }
+            }
+            for i in 0..n {
+                for j in 0..n {
+                    let (low, high, scale) = neighbours(j);
+                    for a in 0..LOADS {
+                        let difference = self.table[base + i * n + high][a * LOADS + RADIAL]
+                            - self.table[base + i * n + low][a * LOADS + RADIAL];
+                        self.table[base + i * n + j][a * LOADS + DIPOLE] = difference * scale;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Normal displacement at slice `i` (load shape `fa`) from a force at slice `j` (load shape `fb`), both on one tooth
+    /// (`offset` 0) or with the first `offset >= 0` pairs earlier in the mesh than the second.
+    pub fn between(&self, offset: usize, i: usize, j: usize, fa: &[f64; LOADS], fb: &[f64; LOADS]) -> f64 {
+        let entry = &self.table[(offset * self.slices + i) * self.slices + j];
+        let mut sum = 0.0;
+        for a in 0..LOADS {
+            let row = &entry[a * LOADS..(a + 1) * LOADS];
+            let mut inner = 0.0;
+            for b in 0..LOADS {
+                inner += row[b] * fb[b];
+            }
+            sum += fa[a] * inner;
+        }
+        sum
+    }
+}
+
+impl Accumulator {
+    fn new(basis: &WidthBasis, slices: usize) -> Accumulator {
+        let size = basis.order + 1;
+        let means = basis.slice_means(slices);
+        let mut shapes = vec![0.0; size * slices];
+        for i in 0..slices {
+            for p in 0..size {
+                shapes[p * slices + i] = means[i * size + p];
+            }
+        }
+        Accumulator {
+            slices,
+            size,
+            shapes,
+            components: std::array::from_fn(|_| vec![0.0; slices * slices]),
+            rows: Vec::new(),
+        }
+    }
+
+    /// From width functions to slices.
+    fn transform(&mut self, harmonic: &HarmonicFlexibility) {
+        let n = self.slices;
+        for c in &mut self.components {
+            c.fill(0.0);
+        }
+        for (rows, block) in harmonic.rows.iter().zip(&harmonic.blocks) {
+            let count = rows.len();
+            self.rows.clear();
+            self.rows.resize(count * 3 * n, 0.0);
+            for r in 0..count {
+                for (c, &(component, degree)) in rows.iter().enumerate() {
+                    debug_assert!(degree < self.size);
+                    let value = block[r * count + c];
+                    let target = &mut self.rows[(r * 3 + component) * n..(r * 3 + component + 1) * n];
+                    let shape = &self.shapes[degree * n..(degree + 1) * n];
+                    for (t, s) in target.iter_mut().zip(shape) {
+                        *t += value * s;
+                    }
+                }
+            }
+            for (r, &(component, degree)) in rows.iter().enumerate() {
+                for other in 0..3 {
+                    let source = &self.rows[(r * 3 + other) * n..(r * 3 + other + 1) * n];
+                    let target = &mut self.components[component * 3 + other];
+                    for i in 0..n {
+                        let factor = self.shapes[degree * n + i];
+                        for (t, s) in target[i * n..(i + 1) * n].iter_mut().zip(source) {
+                            *t += factor * s;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
