@@ -1,1 +1,34 @@
-//! (room under construction)
+//! The twelve equations of motion of a double-helical pair, their natural frequencies and the methods that solve them.
+//!
+//! Everything is SI. Each helix half has six displacements: y (along the mesh in the transverse plane), z (axial) and θ of pinion and gear.
+//! For half j, with β_1 = β and β_2 = −β:
+//!
+//! ```text
+//! x_j = y_pj − y_gj + R_p θ_pj − R_g θ_gj         s_j = cosβ x_j + sinβ_j (z_pj − z_gj)
+//! F_n = c_m ds_j/dt + k_m(t) f(s_j)               F_y = cosβ F_n    F_z = sinβ_j F_n
+//! f(s) = s − b (s > b),  0 (|s| ≤ b),  s + b (s < −b)
+//! ```
+//!
+//! The mesh forces act on y, z and θ, the impact F_s on the two torsional equations of its half only, as the source paper writes
+//! it. The plane in use (pitch: R pitch radius, β; base: R_b, β_b) is the caller's choice: it passes the radii and the angle.
+
+mod crossing;
+mod error;
+mod excitation;
+mod integrate;
+mod model;
+mod parameters;
+mod runge_kutta;
+mod segment;
+mod taylor;
+
+pub use error::DynamicsError;
+pub use excitation::{Harmonic, Impact, Stiffness};
+pub use integrate::{Integrator, Numerics};
+pub use model::Contact;
+pub use parameters::{
+    Couplings, HalfParameters, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m,
+};
+
+#[cfg(test)]
+mod tests;

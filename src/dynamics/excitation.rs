@@ -1,0 +1,367 @@
+//! The two excitations of the equations: mesh stiffness and mesh-in impact, as periodic functions of the mesh phase.
+
+use std::f64::consts::{PI, TAU};
+
+use serde::{Deserialize, Serialize};
+
+use super::error::DynamicsError;
+
+/// One harmonic of a Fourier series: `amplitude · cos(2π i φ + phase_rad)` for the i-th entry (i from 1).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Harmonic {
+    /// Relative to the mean for stiffnesses, in N for forces.
+    pub amplitude: f64,
+    pub phase_rad: f64,
+}
+
+/// Normal mesh stiffness k_m of one half over the mesh phase φ (one period is φ = 0 … 1), N/m.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stiffness {
+    /// The same at every phase.
+    Constant { mean_n_per_m: f64 },
+    /// k(φ) = mean (1 + Σ_i amplitude_i cos(2π i φ + phase_i)).
+    Fourier { mean_n_per_m: f64, harmonics: Vec<Harmonic> },
+    /// Equally spaced over one period, the first at φ = 0. Between samples: the periodic monotone cubic of Fritsch and
+    /// Carlson (SIAM J. Numer. Anal. 17 (1980) 238) with Brodlie's harmonic-mean slopes. It passes through every sample, has no
+    /// extremum between samples and so keeps a kink as sharp as the sampling does. The methods use the cubics exactly.
+    Samples { values_n_per_m: Vec<f64> },
+}
+
+impl Stiffness {
+    /// Mean over one mesh period (of the interpolant, for samples), N/m.
+    pub fn mean_n_per_m(&self) -> f64 {
+        match self {
+            Stiffness::Constant { mean_n_per_m } | Stiffness::Fourier { mean_n_per_m, .. } => *mean_n_per_m,
+            Stiffness::Samples { values_n_per_m } => {
+                let pieces = monotone_cubics(values_n_per_m);
+                let sum: f64 = pieces.iter().map(|c| c[0] + c[1] / 2.0 + c[2] / 3.0 + c[3] / 4.0).sum();
+                sum / pieces.len() as f64
+            }
+        }
+    }
+
+    /// Value at the phase `phase` (any real number), N/m.
+    pub fn at(&self, phase: f64) -> f64 {
+        let course = StiffnessCourse::new(self, 0.0, 1.0);
+        let phase = phase.rem_euclid(1.0);
+        course.value(phase, phase)
+    }
+
+    pub(super) fn validate(&self) -> Result<(), DynamicsError> {
+        let invalid = |value, reason| Err(DynamicsError::InvalidParameter { name: "mesh stiffness", value, reason });
+        match self {
+            Stiffness::Samples { values_n_per_m } if values_n_per_m.is_empty() => return invalid(0.0, "no samples"),
+            Stiffness::Samples { values_n_per_m } => {
+                if let Some(&bad) = values_n_per_m.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
+                    return invalid(bad, "samples must be finite and not negative");
+                }
+            }
+            Stiffness::Fourier { harmonics, .. } => {
+                if let Some(bad) = harmonics.iter().find(|h| !(h.amplitude.is_finite() && h.phase_rad.is_finite())) {
+                    return invalid(bad.amplitude, "harmonics must be finite");
+                }
+            }
+            Stiffness::Constant { .. } => {}
+        }
+        let mean = self.mean_n_per_m();
+        if !(mean.is_finite() && mean > 0.0) {
+            return invalid(mean, "the mean must be positive and finite");
+        }
+        Ok(())
+    }
+}
+
+/// Periodic force F_s on the two torsional equations of one half, N.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Impact {
+    /// F_s(φ) = force · sin(π (φ − start) / duration) while 0 ≤ φ − start < duration, once per mesh period. Pulses longer than
+    /// a mesh period overlap and add up.
+    HalfSine { force_n: f64, duration_mesh_periods: f64, start_mesh_periods: f64 },
+    /// F_s(φ) = Σ_i amplitude_i cos(2π i φ + phase_i), amplitudes in N: any smooth periodic force along the mesh.
+    Harmonics { harmonics: Vec<Harmonic> },
+}
+
+/// The longest half sine, in mesh periods: beyond it the pulses of a dozen tooth pairs would overlap.
+const LONGEST_PULSE_MESH_PERIODS: f64 = 16.0;
+
+impl Impact {
+    /// Mean over one mesh period, N.
+    pub fn mean_n(&self) -> f64 {
+        match self {
+            Impact::HalfSine { force_n, duration_mesh_periods, .. } => force_n * duration_mesh_periods * 2.0 / PI,
+            Impact::Harmonics { .. } => 0.0,
+        }
+    }
+
+    pub(super) fn validate(&self) -> Result<(), DynamicsError> {
+        let check = |ok: bool, value, reason| {
+            if ok { Ok(()) } else { Err(DynamicsError::InvalidParameter { name: "impact", value, reason }) }
+        };
+        match self {
+            Impact::HalfSine { force_n, duration_mesh_periods: d, start_mesh_periods } => {
+                check(force_n.is_finite(), *force_n, "the force must be finite")?;
+                check(start_mesh_periods.is_finite(), *start_mesh_periods, "the start must be finite")?;
+                check(*d >= 1e-9 && *d <= LONGEST_PULSE_MESH_PERIODS, *d, "the duration must be 1e-9 to 16 mesh periods")
+            }
+            Impact::Harmonics { harmonics } => harmonics.iter().try_for_each(|h| {
+                check(h.amplitude.is_finite() && h.phase_rad.is_finite(), h.amplitude, "harmonics must be finite")
+            }),
+        }
+    }
+}
+
+/// Slopes and cubics of the periodic monotone interpolant: c0 + c1 u + c2 u² + c3 u³, u = 0 … 1 between neighbours.
+fn monotone_cubics(values: &[f64]) -> Vec<[f64; 4]> {
+    let n = values.len();
+    let rise = |i: usize| values[(i + 1) % n] - values[i % n];
+    let slope = |i: usize| {
+        let (before, after) = (rise(i + n - 1), rise(i));
+        if before * after > 0.0 { 2.0 * before * after / (before + after) } else { 0.0 }
+    };
+    (0..n)
+        .map(|i| {
+            let (d, m0, m1) = (rise(i), slope(i), slope(i + 1));
+            [values[i], m0, 3.0 * d - 2.0 * m0 - m1, m0 + m1 - 2.0 * d]
+        })
+        .collect()
+}
+
+/// Truncated Fourier series with the tables that give its Taylor coefficients in scaled time.
+#[derive(Debug, Clone)]
+struct Series {
+    constant: f64,
+    /// amplitude·cos(phase) and amplitude·sin(phase) of each harmonic.
+    parts: Vec<(f64, f64)>,
+    /// `power[n * parts.len() + i]` = ((i+1) ω / ω_ref)^n / n!.
+    power: Vec<f64>,
+}
+
+impl Series {
+    fn new(constant: f64, factor: f64, harmonics: &[Harmonic], shift: f64, period_tau: f64) -> Self {
+        let parts = harmonics
+            .iter()
+            .enumerate()
+            .map(|(i, h)| {
+                let (sin, cos) = (h.phase_rad - TAU * (i + 1) as f64 * shift).sin_cos();
+                (factor * h.amplitude * cos, factor * h.amplitude * sin)
+            })
+            .collect::<Vec<_>>();
+        let m = parts.len();
+        let mut power = vec![1.0; (MAX_ORDER + 1) * m];
+        for n in 1..=MAX_ORDER {
+            for i in 0..m {
+                power[n * m + i] = power[(n - 1) * m + i] * TAU * (i + 1) as f64 / (period_tau * n as f64);
+            }
+        }
+        Self { constant, parts, power }
+    }
+
+    fn value(&self, phase: f64) -> f64 {
+        self.parts.iter().enumerate().fold(self.constant, |sum, (i, (c, s))| {
+            let (sin, cos) = (TAU * (i + 1) as f64 * phase).sin_cos();
+            sum + c * cos - s * sin
+        })
+    }
+
+    /// Taylor coefficients in scaled time, orders 0 to `order`.
+    fn fill(&self, phase: f64, order: usize, out: &mut Coefficients) {
+        let m = self.parts.len();
+        out[..=order].fill(0.0);
+        let (sin1, cos1) = (TAU * phase).sin_cos();
+        let (mut sin, mut cos) = (sin1, cos1);
+        for (i, (c, s)) in self.parts.iter().enumerate() {
+            // even = a cos(iθ + φ), odd = a sin(iθ + φ)
+            let (even, odd) = (c * cos - s * sin, c * sin + s * cos);
+            let signed = [even, -odd, -even, odd];
+            for (n, value) in out[..=order].iter_mut().enumerate() {
+                *value += self.power[n * m + i] * signed[n & 3];
+            }
+            (sin, cos) = (sin * cos1 + cos * sin1, cos * cos1 - sin * sin1);
+        }
+        out[0] += self.constant;
+    }
+}
+
+/// Highest order of the Taylor method.
+pub(super) const MAX_ORDER: usize = 24;
+/// Taylor coefficients of one quantity.
+pub(super) type Coefficients = [f64; MAX_ORDER + 1];
+
+/// A stiffness made ready for the methods. Scaled time τ is time times a reference frequency; `period_tau` is one mesh
+/// period in it.
+#[derive(Debug, Clone)]
+pub(super) struct StiffnessCourse {
+    kind: StiffnessKind,
+    shift: f64,
+    period_tau: f64,
+}
+
+#[derive(Debug, Clone)]
+enum StiffnessKind {
+    Constant(f64),
+    Fourier(Series),
+    Pieces(Vec<[f64; 4]>),
+}
+
+impl StiffnessCourse {
+    pub fn new(stiffness: &Stiffness, shift: f64, period_tau: f64) -> Self {
+        let kind = match stiffness {
+            Stiffness::Constant { mean_n_per_m } => StiffnessKind::Constant(*mean_n_per_m),
+            Stiffness::Fourier { mean_n_per_m, harmonics } if harmonics.is_empty() => StiffnessKind::Constant(*mean_n_per_m),
+            Stiffness::Fourier { mean_n_per_m, harmonics } => {
+                StiffnessKind::Fourier(Series::new(*mean_n_per_m, *mean_n_per_m, harmonics, shift, period_tau))
+            }
+            Stiffness::Samples { values_n_per_m } => StiffnessKind::Pieces(monotone_cubics(values_n_per_m)),
+        };
+        Self { kind, shift, period_tau }
+    }
+
+    /// Phases at which the course is not smooth.
+    pub fn breakpoints(&self, out: &mut Vec<f64>) {
+        if let StiffnessKind::Pieces(pieces) = &self.kind
+            && pieces.len() > 1
+        {
+            out.extend((0..pieces.len()).map(|i| (i as f64 / pieces.len() as f64 + self.shift).rem_euclid(1.0)));
+        }
+    }
+
+    /// Index of the cubic that holds around `inside`, and the position of `phase` in it.
+    fn piece(&self, count: usize, phase: f64, inside: f64) -> (usize, f64) {
+        let n = count as f64;
+        let index = (((inside - self.shift).rem_euclid(1.0) * n) as usize).min(count - 1);
+        let mut u = (phase - self.shift).rem_euclid(1.0) * n - index as f64;
+        // The start of a piece may be its neighbour's end, one period away.
+        if u > 0.5 * n + 0.5 {
+            u -= n;
+        } else if u < 0.5 - 0.5 * n {
+            u += n;
+        }
+        (index, u)
+    }
+
+    /// Value at `phase`; `inside` is a phase in the interior of the smooth stretch that is meant.
+    pub fn value(&self, phase: f64, inside: f64) -> f64 {
+        match &self.kind {
+            StiffnessKind::Constant(k) => *k,
+            StiffnessKind::Fourier(series) => series.value(phase),
+            StiffnessKind::Pieces(pieces) => {
+                let (i, u) = self.piece(pieces.len(), phase, inside);
+                let c = &pieces[i];
+                c[0] + u * (c[1] + u * (c[2] + u * c[3]))
+            }
+        }
+    }
+
+    /// Fills the Taylor coefficients about `phase` up to `order`; returns the degree (those above are not written).
+    pub fn fill(&self, phase: f64, inside: f64, order: usize, out: &mut Coefficients) -> usize {
+        match &self.kind {
+            StiffnessKind::Constant(k) => {
+                out[0] = *k;
+                0
+            }
+            StiffnessKind::Fourier(series) => {
+                series.fill(phase, order, out);
+                order
+            }
+            StiffnessKind::Pieces(pieces) => {
+                let (i, u) = self.piece(pieces.len(), phase, inside);
+                let c = &pieces[i];
+                let scale = pieces.len() as f64 / self.period_tau;
+                out[0] = c[0] + u * (c[1] + u * (c[2] + u * c[3]));
+                out[1] = (c[1] + u * (2.0 * c[2] + u * 3.0 * c[3])) * scale;
+                out[2] = (c[2] + 3.0 * u * c[3]) * scale * scale;
+                out[3] = c[3] * scale * scale * scale;
+                3
+            }
+        }
+    }
+}
+
+/// An impact made ready for the methods.
+#[derive(Debug, Clone)]
+pub(super) enum ImpactCourse {
+    None,
+    HalfSine { force_n: f64, duration: f64, start: f64, power: Coefficients },
+    Harmonics(SeriesBox),
+}
+
+/// Keeps the tables of a series out of sight.
+#[derive(Debug, Clone)]
+pub(super) struct SeriesBox(Series);
+
+impl ImpactCourse {
+    pub fn new(impact: Option<&Impact>, shift: f64, period_tau: f64) -> Self {
+        match impact {
+            None => ImpactCourse::None,
+            Some(Impact::HalfSine { force_n, .. }) if *force_n == 0.0 => ImpactCourse::None,
+            Some(Impact::HalfSine { force_n, duration_mesh_periods: duration, start_mesh_periods }) => {
+                let mut power = [1.0; MAX_ORDER + 1];
+                for n in 1..=MAX_ORDER {
+                    power[n] = power[n - 1] * PI / (duration * period_tau * n as f64);
+                }
+                let start = (start_mesh_periods + shift).rem_euclid(1.0);
+                ImpactCourse::HalfSine { force_n: *force_n, duration: *duration, start, power }
+            }
+            Some(Impact::Harmonics { harmonics }) => {
+                ImpactCourse::Harmonics(SeriesBox(Series::new(0.0, 1.0, harmonics, shift, period_tau)))
+            }
+        }
+    }
+
+    pub fn breakpoints(&self, out: &mut Vec<f64>) {
+        if let ImpactCourse::HalfSine { duration, start, .. } = self {
+            out.push(start.rem_euclid(1.0));
+            out.push((start + duration).rem_euclid(1.0));
+        }
+    }
+
+    /// Sine and cosine parts of the pulses under way at `phase` (those that are under way at `inside`).
+    fn sine(phase: f64, inside: f64, duration: f64, start: f64) -> (f64, f64) {
+        let mut offset = inside - start;
+        offset -= offset.floor();
+        // offset is the age of the youngest pulse at `inside`; older ones are whole periods older.
+        let age = offset + (phase - inside);
+        let (mut sin, mut cos, mut older) = (0.0, 0.0, 0.0);
+        while offset + older < duration {
+            let (s, c) = (PI * (age + older) / duration).sin_cos();
+            sin += s;
+            cos += c;
+            older += 1.0;
+        }
+        (sin, cos)
+    }
+
+    pub fn value(&self, phase: f64, inside: f64) -> f64 {
+        match self {
+            ImpactCourse::None => 0.0,
+            ImpactCourse::HalfSine { force_n, duration, start, .. } => {
+                force_n * Self::sine(phase, inside, *duration, *start).0
+            }
+            ImpactCourse::Harmonics(series) => series.0.value(phase),
+        }
+    }
+
+    /// Fills the Taylor coefficients about `phase` up to `order`; false when the force is zero over the whole stretch.
+    pub fn fill(&self, phase: f64, inside: f64, order: usize, out: &mut Coefficients) -> bool {
+        match self {
+            ImpactCourse::None => false,
+            ImpactCourse::HalfSine { force_n, duration, start, power } => {
+                let (sin, cos) = Self::sine(phase, inside, *duration, *start);
+                if sin == 0.0 && cos == 0.0 {
+                    return false;
+                }
+                let signed = [force_n * sin, force_n * cos, -force_n * sin, -force_n * cos];
+                for (n, (value, p)) in out[..=order].iter_mut().zip(power).enumerate() {
+                    *value = p * signed[n & 3];
+                }
+                true
+            }
+            ImpactCourse::Harmonics(series) => {
+                series.0.fill(phase, order, out);
+                true
+            }
+        }
+    }
+}

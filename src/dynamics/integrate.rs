@@ -1,0 +1,121 @@
+//! Drives a method through mesh periods.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::DynamicsError;
+use super::model::{Model, State};
+use super::runge_kutta::RungeKutta;
+use super::segment::Observer;
+use super::taylor::Taylor;
+use crate::watch::Watch;
+
+/// How the equations are stepped through time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Integrator {
+    /// Taylor series of high order, restarted exactly at every event.
+    #[default]
+    Taylor,
+    /// Embedded Runge–Kutta 4(5) with variable step, blind to changes of contact: what the source used.
+    RungeKutta,
+}
+
+/// What a solution took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Numerics {
+    pub steps: u64,
+    pub rejected_steps: u64,
+    /// Evaluations of the mesh forces; for the Taylor method, of their derivatives of each order.
+    pub force_evaluations: u64,
+}
+
+impl std::ops::AddAssign for Numerics {
+    fn add_assign(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.rejected_steps += other.rejected_steps;
+        self.force_evaluations += other.force_evaluations;
+    }
+}
+
+/// Steps between two looks at the watch: well below 50 ms of work for either method.
+const STEPS_PER_CHECKPOINT: u64 = 1024;
+
+enum Stepper<const D: usize> {
+    Taylor(Taylor<D>),
+    RungeKutta(RungeKutta<D>),
+}
+
+/// A motion under way.
+pub(crate) struct Motion<'a, const D: usize> {
+    pub model: &'a Model<D>,
+    pub state: State<D>,
+    pub numerics: Numerics,
+    stepper: Stepper<D>,
+    max_steps: u64,
+    since_checkpoint: u64,
+}
+
+impl<'a, const D: usize> Motion<'a, D> {
+    /// `tolerance`: local error of a step relative to the size of the motion; `max_steps`: budget over the life of the motion.
+    pub fn new(model: &'a Model<D>, state: State<D>, integrator: Integrator, tolerance: f64, max_steps: u64) -> Self {
+        let stepper = match integrator {
+            Integrator::Taylor => Stepper::Taylor(Taylor::new(tolerance, Taylor::<D>::order_for(tolerance))),
+            Integrator::RungeKutta => Stepper::RungeKutta(RungeKutta::new(tolerance, None)),
+        };
+        Self { model, state, numerics: Numerics::default(), stepper, max_steps, since_checkpoint: 0 }
+    }
+
+    #[cfg(test)]
+    pub fn with_taylor_order(mut self, tolerance: f64, order: usize) -> Self {
+        self.stepper = Stepper::Taylor(Taylor::new(tolerance, order));
+        self
+    }
+
+    #[cfg(test)]
+    pub fn with_fixed_runge_kutta(mut self, step_tau: f64) -> Self {
+        self.stepper = Stepper::RungeKutta(RungeKutta::new(1.0, Some(step_tau)));
+        self
+    }
+
+    /// Goes to the end of the current mesh period. `fraction`: progress reported to the watch.
+    pub fn advance_period(
+        &mut self,
+        observer: &mut impl Observer<D>,
+        watch: &Watch<'_>,
+        fraction: f64,
+    ) -> Result<(), DynamicsError> {
+        let mut from = 0.0;
+        for &end in &self.model.breakpoints {
+            let inside = 0.5 * (from + end);
+            while self.state.phase < end {
+                match &mut self.stepper {
+                    Stepper::Taylor(t) => {
+                        t.step(self.model, &mut self.state, end, inside, &mut self.numerics, observer)?
+                    }
+                    Stepper::RungeKutta(r) => {
+                        r.step(self.model, &mut self.state, end, inside, &mut self.numerics, observer)?
+                    }
+                }
+                self.since_checkpoint += 1;
+                if self.since_checkpoint >= STEPS_PER_CHECKPOINT {
+                    self.since_checkpoint = 0;
+                    watch.checkpoint(fraction)?;
+                    if self.numerics.steps + self.numerics.rejected_steps > self.max_steps {
+                        return Err(DynamicsError::TooManySteps { time_s: self.time_s(), limit: self.max_steps });
+                    }
+                }
+            }
+            from = end;
+        }
+        if self.state.x.iter().chain(&self.state.v).any(|c| !c.is_finite() || c.abs() > 1e3) {
+            return Err(DynamicsError::Diverged { time_s: self.time_s() });
+        }
+        self.state.period += 1;
+        self.state.phase = 0.0;
+        Ok(())
+    }
+
+    pub fn time_s(&self) -> f64 {
+        (self.state.period as f64 + self.state.phase) * self.model.period_tau / self.model.omega_ref
+    }
+}

@@ -1,0 +1,3 @@
+//! Tests of the equations and methods against independent answers.
+
+mod reference;
