@@ -103,7 +103,11 @@ impl Impact {
             Impact::HalfSine { force_n, duration_mesh_periods: d, start_mesh_periods } => {
                 check(force_n.is_finite(), *force_n, "the force must be finite")?;
                 check(start_mesh_periods.is_finite(), *start_mesh_periods, "the start must be finite")?;
-                check(*d >= 1e-9 && *d <= LONGEST_PULSE_MESH_PERIODS, *d, "the duration must be 1e-9 to 16 mesh periods")
+                check(
+                    *d >= 1e-9 && *d <= LONGEST_PULSE_MESH_PERIODS,
+                    *d,
+                    "the duration must be 1e-9 to 16 mesh periods",
+                )
             }
             Impact::Harmonics { harmonics } => harmonics.iter().try_for_each(|h| {
                 check(h.amplitude.is_finite() && h.phase_rad.is_finite(), h.amplitude, "harmonics must be finite")
@@ -185,14 +189,14 @@ impl Series {
 }
 
 /// Highest order of the Taylor method.
-pub(super) const MAX_ORDER: usize = 24;
+pub(crate) const MAX_ORDER: usize = 24;
 /// Taylor coefficients of one quantity.
-pub(super) type Coefficients = [f64; MAX_ORDER + 1];
+pub(crate) type Coefficients = [f64; MAX_ORDER + 1];
 
 /// A stiffness made ready for the methods. Scaled time τ is time times a reference frequency; `period_tau` is one mesh
 /// period in it.
 #[derive(Debug, Clone)]
-pub(super) struct StiffnessCourse {
+pub(crate) struct StiffnessCourse {
     kind: StiffnessKind,
     shift: f64,
     period_tau: f64,
@@ -209,7 +213,9 @@ impl StiffnessCourse {
     pub fn new(stiffness: &Stiffness, shift: f64, period_tau: f64) -> Self {
         let kind = match stiffness {
             Stiffness::Constant { mean_n_per_m } => StiffnessKind::Constant(*mean_n_per_m),
-            Stiffness::Fourier { mean_n_per_m, harmonics } if harmonics.is_empty() => StiffnessKind::Constant(*mean_n_per_m),
+            Stiffness::Fourier { mean_n_per_m, harmonics } if harmonics.is_empty() => {
+                StiffnessKind::Constant(*mean_n_per_m)
+            }
             Stiffness::Fourier { mean_n_per_m, harmonics } => {
                 StiffnessKind::Fourier(Series::new(*mean_n_per_m, *mean_n_per_m, harmonics, shift, period_tau))
             }
@@ -281,7 +287,7 @@ impl StiffnessCourse {
 
 /// An impact made ready for the methods.
 #[derive(Debug, Clone)]
-pub(super) enum ImpactCourse {
+pub(crate) enum ImpactCourse {
     None,
     HalfSine { force_n: f64, duration: f64, start: f64, power: Coefficients },
     Harmonics(SeriesBox),
@@ -289,7 +295,7 @@ pub(super) enum ImpactCourse {
 
 /// Keeps the tables of a series out of sight.
 #[derive(Debug, Clone)]
-pub(super) struct SeriesBox(Series);
+pub(crate) struct SeriesBox(Series);
 
 impl ImpactCourse {
     pub fn new(impact: Option<&Impact>, shift: f64, period_tau: f64) -> Self {
@@ -307,6 +313,15 @@ impl ImpactCourse {
             Some(Impact::Harmonics { harmonics }) => {
                 ImpactCourse::Harmonics(SeriesBox(Series::new(0.0, 1.0, harmonics, shift, period_tau)))
             }
+        }
+    }
+
+    /// An upper estimate of the force's size, N.
+    pub fn largest_n(&self) -> f64 {
+        match self {
+            ImpactCourse::None => 0.0,
+            ImpactCourse::HalfSine { force_n, duration, .. } => force_n.abs() * duration.ceil(),
+            ImpactCourse::Harmonics(series) => series.0.parts.iter().map(|(c, s)| c.hypot(*s)).sum(),
         }
     }
 

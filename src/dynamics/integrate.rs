@@ -50,6 +50,8 @@ pub(crate) struct Motion<'a, const D: usize> {
     pub model: &'a Model<D>,
     pub state: State<D>,
     pub numerics: Numerics,
+    /// A tooth has changed the side of its backlash since the start.
+    pub contact_changed: bool,
     stepper: Stepper<D>,
     max_steps: u64,
     since_checkpoint: u64,
@@ -62,16 +64,26 @@ impl<'a, const D: usize> Motion<'a, D> {
             Integrator::Taylor => Stepper::Taylor(Taylor::new(tolerance, Taylor::<D>::order_for(tolerance))),
             Integrator::RungeKutta => Stepper::RungeKutta(RungeKutta::new(tolerance, None)),
         };
-        Self { model, state, numerics: Numerics::default(), stepper, max_steps, since_checkpoint: 0 }
+        Self {
+            model,
+            state,
+            numerics: Numerics::default(),
+            contact_changed: false,
+            stepper,
+            max_steps,
+            since_checkpoint: 0,
+        }
     }
 
     #[cfg(test)]
+    #[allow(dead_code)]
     pub fn with_taylor_order(mut self, tolerance: f64, order: usize) -> Self {
         self.stepper = Stepper::Taylor(Taylor::new(tolerance, order));
         self
     }
 
     #[cfg(test)]
+    #[allow(dead_code)]
     pub fn with_fixed_runge_kutta(mut self, step_tau: f64) -> Self {
         self.stepper = Stepper::RungeKutta(RungeKutta::new(1.0, Some(step_tau)));
         self
@@ -88,6 +100,7 @@ impl<'a, const D: usize> Motion<'a, D> {
         for &end in &self.model.breakpoints {
             let inside = 0.5 * (from + end);
             while self.state.phase < end {
+                let contact = self.state.contact;
                 match &mut self.stepper {
                     Stepper::Taylor(t) => {
                         t.step(self.model, &mut self.state, end, inside, &mut self.numerics, observer)?
@@ -96,6 +109,7 @@ impl<'a, const D: usize> Motion<'a, D> {
                         r.step(self.model, &mut self.state, end, inside, &mut self.numerics, observer)?
                     }
                 }
+                self.contact_changed |= contact != self.state.contact;
                 self.since_checkpoint += 1;
                 if self.since_checkpoint >= STEPS_PER_CHECKPOINT {
                     self.since_checkpoint = 0;

@@ -16,19 +16,28 @@ mod crossing;
 mod error;
 mod excitation;
 mod integrate;
+mod modal;
 mod model;
 mod parameters;
 mod runge_kutta;
 mod segment;
+mod shooting;
 mod taylor;
+mod variation;
 
 pub use error::DynamicsError;
 pub use excitation::{Harmonic, Impact, Stiffness};
 pub use integrate::{Integrator, Numerics};
+pub use modal::NaturalModes;
 pub use model::Contact;
-pub use parameters::{
-    Couplings, HalfParameters, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m,
-};
+pub use parameters::{Couplings, HalfParameters, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m};
+
+pub(crate) use excitation::MAX_ORDER;
+pub(crate) use integrate::Motion;
+pub(crate) use model::{Model, PER_HALF, State, U, W, YG, YP, ZG, ZP};
+pub(crate) use segment::{Observer, Segment, Unobserved};
+pub(crate) use shooting::Shooting;
+pub(crate) use variation::{Both, Deviation, Variation, difference};
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

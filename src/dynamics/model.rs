@@ -13,20 +13,20 @@ use super::excitation::{Coefficients, ImpactCourse, MAX_ORDER, StiffnessCourse};
 use super::parameters::{HalfParameters, Parameters, Spring};
 
 /// Coordinates per half, and their places.
-pub(super) const PER_HALF: usize = 6;
-pub(super) const YP: usize = 0;
-pub(super) const ZP: usize = 1;
-pub(super) const U: usize = 2;
-pub(super) const YG: usize = 3;
-pub(super) const ZG: usize = 4;
-pub(super) const W: usize = 5;
+pub(crate) const PER_HALF: usize = 6;
+pub(crate) const YP: usize = 0;
+pub(crate) const ZP: usize = 1;
+pub(crate) const U: usize = 2;
+pub(crate) const YG: usize = 3;
+pub(crate) const ZG: usize = 4;
+pub(crate) const W: usize = 5;
 
 /// Which side of the backlash a half is on: 1 driving flanks, 0 apart, −1 back flanks.
 pub type Contact = i8;
 
 /// State in solver coordinates at a mesh phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct State<const D: usize> {
+pub(crate) struct State<const D: usize> {
     /// Whole mesh periods since the start.
     pub period: u64,
     /// Phase within the mesh period, 0 … 1.
@@ -56,7 +56,7 @@ impl Rate {
 }
 
 #[derive(Debug, Clone)]
-pub(super) struct HalfModel {
+pub(crate) struct HalfModel {
     pub sin: f64,
     /// Force to scaled acceleration: 1/(m ω²).
     inv_mp: f64,
@@ -90,12 +90,16 @@ pub(super) struct HalfModel {
 
 /// The equations of one half (D = 6, mirror symmetric) or both (D = 12).
 #[derive(Debug, Clone)]
-pub(super) struct Model<const D: usize> {
+pub(crate) struct Model<const D: usize> {
     pub halves: Vec<HalfModel>,
     pub cos: f64,
     pub b: f64,
     pub damping_in_gap: bool,
     torsional: bool,
+    /// D = 6 only: the other half moves as the mirror image (1) or as its opposite (−1, for variations).
+    parity: f64,
+    /// Contact is taken to stay as it is: the linear system with periodic coefficients.
+    pub hold_contact: bool,
     pub omega_ref: f64,
     /// One mesh period in scaled time.
     pub period_tau: f64,
@@ -115,7 +119,8 @@ impl<const D: usize> Model<D> {
     pub fn new(p: &Parameters) -> Result<Self, DynamicsError> {
         p.validate()?;
         let mesh_omega = std::f64::consts::TAU * p.mesh_frequency_hz;
-        let omega_ref = (0..Self::HALVES).fold(mesh_omega, |w, j| w.max(fastest(p, &p.halves[j], p.equivalent_mass_kg(j))));
+        let omega_ref =
+            (0..Self::HALVES).fold(mesh_omega, |w, j| w.max(fastest(p, &p.halves[j], p.equivalent_mass_kg(j))));
         let period_tau = omega_ref / p.mesh_frequency_hz;
         let halves: Vec<HalfModel> = (0..Self::HALVES).map(|j| half_model(p, j, omega_ref, period_tau)).collect();
         let mut breakpoints = vec![1.0];
@@ -130,8 +135,7 @@ impl<const D: usize> Model<D> {
         breakpoints.dedup_by(|earlier, later| *later - *earlier < SAME_PHASE);
         breakpoints.reverse();
         let couplings = &p.couplings;
-        let torsional = D > PER_HALF
-            && [couplings.pinion_torsion, couplings.gear_torsion].iter().any(|s| *s != Spring::default());
+        let torsional = [couplings.pinion_torsion, couplings.gear_torsion].iter().any(|s| *s != Spring::default());
         let numbers = [omega_ref, period_tau];
         if let Some(&bad) = numbers.iter().find(|n| !n.is_finite()) {
             return Err(DynamicsError::InvalidParameter {
@@ -146,6 +150,8 @@ impl<const D: usize> Model<D> {
             b: p.half_backlash_m,
             damping_in_gap: p.damping_in_gap,
             torsional,
+            parity: 1.0,
+            hold_contact: false,
             omega_ref,
             period_tau,
             breakpoints,
@@ -154,10 +160,37 @@ impl<const D: usize> Model<D> {
         })
     }
 
-    /// The other half's place in the coordinates and the sign its mirrored coordinates get.
+    /// The same equations with the contact held as it is.
+    pub fn holding_contact(&self) -> Self {
+        Self { hold_contact: true, ..self.clone() }
+    }
+
+    /// The equations that variations against the mirror symmetry obey (D = 6).
+    pub fn against_symmetry(&self) -> Self {
+        Self { parity: -1.0, ..self.clone() }
+    }
+
+    /// Coordinates without which the motion is complete: w, when no torsional spring reads it.
+    pub fn active(&self) -> impl Iterator<Item = usize> + use<D> {
+        let with_w = self.torsional && (D > PER_HALF || self.parity < 0.0);
+        (0..D).filter(move |c| with_w || c % PER_HALF != W)
+    }
+
+    /// The diagonal mass matrix of the solver coordinates, kg.
+    pub fn masses_kg(&self) -> [f64; D] {
+        let mut out = [0.0; D];
+        let square = self.omega_ref * self.omega_ref;
+        for (j, h) in self.halves.iter().enumerate() {
+            let (mp, mg, me) = (1.0 / (h.inv_mp * square), 1.0 / (h.inv_mg * square), 1.0 / (h.inv_me * square));
+            out[j * PER_HALF..][..PER_HALF].copy_from_slice(&[mp, mp, me, mg, mg, h.reduced_p + h.reduced_g]);
+        }
+        out
+    }
+
+    /// The other half's place in the coordinates and the factors of its y and w, and of its z.
     #[inline(always)]
-    fn other(j: usize) -> (usize, f64) {
-        if D > PER_HALF { ((1 - j) * PER_HALF, 1.0) } else { (0, -1.0) }
+    fn other(&self, j: usize) -> (usize, f64, f64) {
+        if D > PER_HALF { ((1 - j) * PER_HALF, 1.0, 1.0) } else { (0, self.parity, -self.parity) }
     }
 
     /// s of a half.
@@ -184,30 +217,31 @@ impl<const D: usize> Model<D> {
     fn half_acceleration(&self, j: usize, x: &[f64; D], v: &[f64; D], force: f64, along: f64) -> [f64; PER_HALF] {
         let h = &self.halves[j];
         let i = j * PER_HALF;
-        let (o, sign) = Self::other(j);
+        let (o, along_sign, axial_sign) = self.other(j);
         let fy = self.cos * force;
         let fz = h.sin * force;
         let difference = |c: usize, mirrored: f64| (x[i + c] - mirrored * x[o + c], v[i + c] - mirrored * v[o + c]);
-        let (dzp, dzpv) = difference(ZP, sign);
-        let (dzg, dzgv) = difference(ZG, sign);
+        let (dzp, dzpv) = difference(ZP, axial_sign);
+        let (dzg, dzgv) = difference(ZG, axial_sign);
         let mut a_yp = -h.inv_mp * fy - h.yp.of(x[i + YP], v[i + YP]);
         let a_zp = -h.inv_mp * fz - h.zp.of(x[i + ZP], v[i + ZP]) - h.zp_other.of(dzp, dzpv);
         let mut a_yg = h.inv_mg * fy - h.yg.of(x[i + YG], v[i + YG]);
         let a_zg = h.inv_mg * fz - h.zg.of(x[i + ZG], v[i + ZG]) - h.zg_other.of(dzg, dzgv);
         let mut a_u = h.inv_me * (along - fy);
         let mut a_w = 0.0;
-        if D > PER_HALF {
-            let (d, dv) = difference(YP, 1.0);
+        if D > PER_HALF || self.parity < 0.0 {
+            let (d, dv) = difference(YP, along_sign);
             a_yp -= h.yp_other.of(d, dv);
-            let (d, dv) = difference(YG, 1.0);
+            let (d, dv) = difference(YG, along_sign);
             a_yg -= h.yg_other.of(d, dv);
             if self.torsional {
+                let k = o / PER_HALF;
                 let (ap, ag) = self.arcs(j, x);
-                let (bp, bg) = self.arcs(1 - j, x);
+                let (bp, bg) = self.arcs(k, x);
                 let (avp, avg) = self.arcs(j, v);
-                let (bvp, bvg) = self.arcs(1 - j, v);
-                let tp = h.torsion_p.of(ap - bp, avp - bvp);
-                let tg = h.torsion_g.of(ag - bg, avg - bvg);
+                let (bvp, bvg) = self.arcs(k, v);
+                let tp = h.torsion_p.of(ap - along_sign * bp, avp - along_sign * bvp);
+                let tg = h.torsion_g.of(ag - along_sign * bg, avg - along_sign * bvg);
                 a_u += -h.inv_rp * tp + h.inv_rg * tg;
                 a_w = -h.inv_rw * (tp + tg);
             }
@@ -242,6 +276,22 @@ impl<const D: usize> Model<D> {
             a[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, x, v, force, along));
         }
         a
+    }
+
+    /// Scaled accelerations that a normal mesh force `force` of half `j` causes by itself.
+    pub fn push(&self, j: usize, force: f64) -> [f64; D] {
+        let mut out = [0.0; D];
+        out[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, &[0.0; D], &[0.0; D], force, 0.0));
+        out
+    }
+
+    /// Scaled accelerations of the springs outside the mesh.
+    pub fn springs(&self, x: &[f64; D]) -> [f64; D] {
+        let mut out = [0.0; D];
+        for j in 0..Self::HALVES {
+            out[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, x, &[0.0; D], 0.0, 0.0));
+        }
+        out
     }
 
     /// Coefficient `n` of the normal mesh force that moves the gear along y as the polynomials `rows` say.
@@ -362,7 +412,12 @@ pub(super) struct TaylorExcitation {
 
 impl TaylorExcitation {
     pub fn new() -> Self {
-        Self { stiffness: [[0.0; MAX_ORDER + 1]; 2], degree: [0; 2], impact: [[0.0; MAX_ORDER + 1]; 2], pushed: [false; 2] }
+        Self {
+            stiffness: [[0.0; MAX_ORDER + 1]; 2],
+            degree: [0; 2],
+            impact: [[0.0; MAX_ORDER + 1]; 2],
+            pushed: [false; 2],
+        }
     }
 
     pub fn fill<const D: usize>(&mut self, model: &Model<D>, phase: f64, inside: f64, order: usize) {

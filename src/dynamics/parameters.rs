@@ -81,8 +81,14 @@ pub struct Parameters {
 }
 
 /// m_e = 1/(R_p²/I_p + R_g²/I_g), kg: the mass that the mesh of one half sees.
-pub fn equivalent_mass_kg(pinion_radius_m: f64, pinion_inertia_kg_m2: f64, gear_radius_m: f64, gear_inertia_kg_m2: f64) -> f64 {
-    1.0 / (pinion_radius_m * pinion_radius_m / pinion_inertia_kg_m2 + gear_radius_m * gear_radius_m / gear_inertia_kg_m2)
+pub fn equivalent_mass_kg(
+    pinion_radius_m: f64,
+    pinion_inertia_kg_m2: f64,
+    gear_radius_m: f64,
+    gear_inertia_kg_m2: f64,
+) -> f64 {
+    1.0 / (pinion_radius_m * pinion_radius_m / pinion_inertia_kg_m2
+        + gear_radius_m * gear_radius_m / gear_inertia_kg_m2)
 }
 
 /// c_m = 2 ζ_m √(k_mean m_e), N s/m.
@@ -160,7 +166,11 @@ fn positive(name: &'static str, value: f64) -> Result<(), DynamicsError> {
 }
 
 fn not_negative(name: &'static str, value: f64) -> Result<(), DynamicsError> {
-    if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(invalid(name, value, "must be finite and not negative")) }
+    if value.is_finite() && value >= 0.0 {
+        Ok(())
+    } else {
+        Err(invalid(name, value, "must be finite and not negative"))
+    }
 }
 
 fn finite(name: &'static str, value: f64) -> Result<(), DynamicsError> {

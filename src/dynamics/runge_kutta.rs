@@ -19,8 +19,7 @@ const A: [[f64; 5]; 6] = [
     [-8.0 / 27.0, 2.0, -3544.0 / 2565.0, 1859.0 / 4104.0, -11.0 / 40.0],
 ];
 const B4: [f64; 6] = [25.0 / 216.0, 0.0, 1408.0 / 2565.0, 2197.0 / 4104.0, -1.0 / 5.0, 0.0];
-const B5: [f64; 6] =
-    [16.0 / 135.0, 0.0, 6656.0 / 12825.0, 28561.0 / 56430.0, -9.0 / 50.0, 2.0 / 55.0];
+const B5: [f64; 6] = [16.0 / 135.0, 0.0, 6656.0 / 12825.0, 28561.0 / 56430.0, -9.0 / 50.0, 2.0 / 55.0];
 
 /// Working memory of the Runge–Kutta method.
 pub(super) struct RungeKutta<const D: usize> {
@@ -165,4 +164,3 @@ impl<const D: usize> RungeKutta<D> {
 
 /// Position, velocity and acceleration of one end of a step.
 type Ends<'a, const D: usize> = (&'a [f64; D], &'a [f64; D], &'a [f64; D]);
-

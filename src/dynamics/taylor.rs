@@ -85,7 +85,7 @@ impl<const D: usize> Taylor<D> {
             });
         }
         let mut changed = None;
-        if model.b > 0.0 {
+        if model.b > 0.0 && !model.hold_contact {
             for j in 0..Model::<D>::HALVES {
                 if let Some((at, contact)) = self.next_contact(model.b, j, state.contact[j], h) {
                     h = at;
@@ -138,20 +138,11 @@ impl<const D: usize> Taylor<D> {
     }
 
     fn step_length(&mut self, remaining: f64) -> f64 {
-        let n = self.order;
-        let norm = |row: &[f64; D]| {
-            row.iter().enumerate().filter(|(c, _)| c % PER_HALF != W).fold(0.0f64, |m, (_, v)| m.max(v.abs()))
-        };
         let moving = norm(&self.rows[1]).max(norm(&self.rows[2]));
-        let place = norm(&self.rows[0]);
         self.size = (0.98 * self.size).max(moving);
         // Below the rounding of the positions no tolerance can be met.
-        let allowed = (self.tolerance * self.size).max(1e-17 * place);
-        let reach = |k: usize| {
-            let last = norm(&self.rows[k]);
-            if last == 0.0 { f64::INFINITY } else { (allowed / last).powf(1.0 / k as f64) }
-        };
-        let h = reach(n - 1).min(reach(n));
+        let allowed = (self.tolerance * self.size).max(1e-17 * norm(&self.rows[0]));
+        let h = reach(&self.rows[..], self.order, allowed);
         if h.is_nan() { f64::NAN } else { h.min(remaining) }
     }
 
@@ -175,6 +166,37 @@ impl<const D: usize> Taylor<D> {
             side => distance(f64::from(side), -b, h).map(|at| (at, 0)),
         }
     }
+}
+
+/// Largest coordinate, free rotation apart.
+#[inline(always)]
+fn norm<const D: usize>(row: &[f64; D]) -> f64 {
+    let mut largest = 0.0f64;
+    for (c, value) in row.iter().enumerate() {
+        if c % PER_HALF != W {
+            // Keeps a NaN, which f64::max would drop.
+            largest = if value.abs() <= largest { largest } else { value.abs() };
+        }
+    }
+    largest
+}
+
+/// The step at which the last two terms are as large as `allowed`.
+#[inline(always)]
+fn reach<const D: usize>(rows: &[[f64; D]], order: usize, allowed: f64) -> f64 {
+    let of = |k: usize| {
+        let last = norm(&rows[k]);
+        if last == 0.0 { f64::INFINITY } else { (allowed / last).powf(1.0 / k as f64) }
+    };
+    let (a, b) = (of(order - 1), of(order));
+    if a < b || a.is_nan() { a } else { b }
+}
+
+/// The step that keeps the local error at `tolerance` times the size of the polynomials' own motion, at most `most`.
+pub(super) fn step_reach<const D: usize>(rows: &[[f64; D]], order: usize, tolerance: f64, most: f64) -> f64 {
+    let size = norm(&rows[0]).max(norm(&rows[1])).max(norm(&rows[2]));
+    let h = reach(rows, order, tolerance * size);
+    if h < most { h } else { most }
 }
 
 /// Values and derivatives of all coordinates at τ = t.

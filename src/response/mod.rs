@@ -1,1 +1,19 @@
-//! (room under construction)
+//! From a motion to what is reported of it: RMS values, extremes, contact, regime, series, spectra.
+
+mod analysis;
+mod channel;
+mod recorder;
+mod regime;
+mod solve;
+mod spectrum;
+mod statistics;
+mod steady;
+
+pub use analysis::{Analysis, ContactState, Halves, Method, PoincarePoint, Regime, Response, Rms, Summary};
+pub use channel::{Channel, ChannelId, Quantity};
+pub use solve::solve;
+pub use spectrum::Spectrum;
+pub use statistics::Statistics;
+
+#[cfg(test)]
+mod tests;

@@ -1,3 +1,4 @@
 //! Tests of the equations and methods against independent answers.
 
-mod reference;
+pub(crate) mod reference;
+mod variation;

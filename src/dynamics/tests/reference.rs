@@ -120,7 +120,8 @@ impl<const D: usize> Observer<D> for MeanSquare {
     fn segment(&mut self, g: &Segment<'_, D>) {
         // 5-point Gauss on 8 pieces.
         let nodes = [0.0, 0.538_469_310_105_683, -0.538_469_310_105_683, 0.906_179_845_938_664, -0.906_179_845_938_664];
-        let weights = [128.0 / 225.0, 0.478_628_670_499_366, 0.478_628_670_499_366, 0.236_926_885_056_189, 0.236_926_885_056_189];
+        let weights =
+            [128.0 / 225.0, 0.478_628_670_499_366, 0.478_628_670_499_366, 0.236_926_885_056_189, 0.236_926_885_056_189];
         let a: Vec<f64> = (0..=g.degree - 2)
             .map(|n| {
                 let r = &g.rows[n + 2];
@@ -157,7 +158,9 @@ fn errors<const D: usize>(name: &str, integrator: Integrator, tolerance: f64) ->
             let mut worst = 0.0f64;
             for c in 0..12 {
                 // Relative to the largest of the same kind: lengths, angles of pinion, of gear.
-                let like = |at: usize| (0..12).filter(|k| kind(*k) == kind(c)).map(|k| expected[at + k].abs()).fold(0.0, f64::max);
+                let like = |at: usize| {
+                    (0..12).filter(|k| kind(*k) == kind(c)).map(|k| expected[at + k].abs()).fold(0.0, f64::max)
+                };
                 worst = worst.max((x[c] - expected[c]).abs() / like(0));
                 worst = worst.max((v[c] * model.omega_ref - expected[12 + c]).abs() / like(12));
             }

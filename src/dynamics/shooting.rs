@@ -1,0 +1,175 @@
+//! Periodic motions by the period map: where a motion comes back to itself, and whether it stays there.
+
+use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
+
+use super::error::DynamicsError;
+use super::integrate::{Integrator, Motion, Numerics};
+use super::model::{Model, PER_HALF, State};
+use super::segment::Observer;
+use super::variation::{Both, Deviation, Variation};
+use crate::watch::Watch;
+
+/// Motions held by nothing move this little, in squared frequency relative to the largest (see `modal`).
+const FREE: f64 = 1e-12;
+
+/// The period map of a model with its free motions (no spring holds them) set apart.
+pub(crate) struct Shooting<'m, const D: usize> {
+    model: &'m Model<D>,
+    active: Vec<usize>,
+    masses: [f64; D],
+    /// Free motions, normalised to nᵀ M n = 1.
+    free: Vec<[f64; D]>,
+}
+
+/// A motion over whole periods, and the linear map of deviations over the same time.
+pub(crate) struct MapResult<const D: usize> {
+    pub end: State<D>,
+    /// Over (active displacements, active velocities).
+    pub map: DMatrix<f64>,
+    pub numerics: Numerics,
+}
+
+impl<'m, const D: usize> Shooting<'m, D> {
+    pub fn new(model: &'m Model<D>, mean_stiffness_n_per_m: &[f64]) -> Result<Self, DynamicsError> {
+        let active: Vec<usize> = model.active().collect();
+        let masses = model.masses_kg();
+        let free = free_motions(model, &active, &masses, mean_stiffness_n_per_m)?;
+        Ok(Self { model, active, masses, free })
+    }
+
+    /// Goes through `periods` mesh periods from `start` with the unit deviations; `variation_model` when the deviations obey
+    /// other equations (against the symmetry) than the motion.
+    pub fn map(
+        &self,
+        motion_model: &Model<D>,
+        start: State<D>,
+        periods: u64,
+        tolerance: f64,
+        observer: &mut impl Observer<D>,
+        watch: &Watch<'_>,
+        max_steps: u64,
+    ) -> Result<MapResult<D>, DynamicsError> {
+        let mut variation = Variation::new(self.model, Variation::units(self.model), tolerance);
+        let mut motion = Motion::new(motion_model, start, Integrator::Taylor, tolerance, max_steps);
+        for _ in 0..periods {
+            motion.advance_period(&mut Both(observer, &mut variation), watch, 0.0)?;
+            watch.checkpoint(0.0)?;
+        }
+        let n = self.active.len();
+        let map = DMatrix::from_fn(2 * n, 2 * n, |r, c| {
+            let (x, v) = &variation.columns[c];
+            if r < n { x[self.active[r]] } else { v[self.active[r - n]] }
+        });
+        if map.iter().any(|c| !c.is_finite()) {
+            return Err(DynamicsError::Diverged { time_s: motion.time_s() });
+        }
+        Ok(MapResult { end: motion.state, map, numerics: motion.numerics })
+    }
+
+    /// Along a free motion: nᵀ M q.
+    fn along(&self, n: &[f64; D], q: &[f64; D]) -> f64 {
+        (0..D).map(|c| n[c] * self.masses[c] * q[c]).sum()
+    }
+
+    /// Projector that takes the free motions out of (active displacements, active velocities).
+    fn held(&self) -> DMatrix<f64> {
+        let n = self.active.len();
+        let mut q = DMatrix::identity(2 * n, 2 * n);
+        for free in &self.free {
+            for (r, &cr) in self.active.iter().enumerate() {
+                for (c, &cc) in self.active.iter().enumerate() {
+                    let part = free[cr] * free[cc] * self.masses[cc];
+                    q[(r, c)] -= part;
+                    q[(r + n, c + n)] -= part;
+                }
+            }
+        }
+        q
+    }
+
+    /// What to add to the start so that the motion closes after `periods` mesh periods, to first order. Free motions get
+    /// the velocity with which they close.
+    pub fn correction(&self, defect: &Deviation<D>, map: &DMatrix<f64>, periods: u64) -> Option<Deviation<D>> {
+        let n = self.active.len();
+        let held = self.held();
+        let r =
+            DVector::from_fn(2 * n, |i, _| if i < n { defect.0[self.active[i]] } else { defect.1[self.active[i - n]] });
+        let system = DMatrix::identity(2 * n, 2 * n) - &held * map * &held;
+        let solution = &held * system.lu().solve(&(&held * r))?;
+        let (mut x, mut v) = ([0.0; D], [0.0; D]);
+        for (i, &c) in self.active.iter().enumerate() {
+            x[c] = solution[i];
+            v[c] = solution[i + n];
+        }
+        let time = periods as f64 * self.model.period_tau;
+        for free in &self.free {
+            let speed = -self.along(free, &defect.0) / time;
+            for c in 0..D {
+                v[c] += speed * free[c];
+            }
+        }
+        x.iter().chain(&v).all(|c| c.is_finite()).then_some((x, v))
+    }
+
+    /// Largest mean force along a free motion over a motion of `periods`, N.
+    pub fn unbalanced_n(&self, defect: &Deviation<D>, periods: u64) -> f64 {
+        let omega = self.model.omega_ref;
+        let time = periods as f64 * self.model.period_tau;
+        self.free.iter().fold(0.0f64, |worst, free| {
+            let largest = free.iter().fold(0.0f64, |m, c| m.max(c.abs()));
+            worst.max((self.along(free, &defect.1) * omega * omega / time / largest).abs())
+        })
+    }
+
+    /// Floquet multipliers, free motions left out (they count as 0), largest first.
+    pub fn multipliers(&self, map: &DMatrix<f64>) -> Vec<Complex<f64>> {
+        let held = self.held();
+        let Some(schur) = Schur::try_new(&held * map * &held, f64::EPSILON, 10_000) else { return Vec::new() };
+        let mut all: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
+        all.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+        all
+    }
+}
+
+/// Displacements along which no spring acts, from the eigenvectors of M^-½ K M^-½ in solver coordinates.
+fn free_motions<const D: usize>(
+    model: &Model<D>,
+    active: &[usize],
+    masses: &[f64; D],
+    mean_stiffness_n_per_m: &[f64],
+) -> Result<Vec<[f64; D]>, DynamicsError> {
+    let n = active.len();
+    let mut k = DMatrix::zeros(n, n);
+    for (column, &c) in active.iter().enumerate() {
+        let mut unit = [0.0; D];
+        unit[c] = 1.0;
+        let mut a = model.springs(&unit);
+        for j in 0..Model::<D>::HALVES {
+            let push = model.push(j, mean_stiffness_n_per_m[j] * model.s(j, &unit));
+            for i in j * PER_HALF..(j + 1) * PER_HALF {
+                a[i] += push[i];
+            }
+        }
+        for (row, &r) in active.iter().enumerate() {
+            k[(row, column)] = -a[r] * (masses[r] / masses[c]).sqrt();
+        }
+    }
+    let symmetric = (&k + k.transpose()) * 0.5;
+    let scale = symmetric.amax();
+    let eigen = SymmetricEigen::try_new(symmetric, f64::EPSILON, 10_000).ok_or(DynamicsError::InvalidParameter {
+        name: "stiffness matrix",
+        value: scale,
+        reason: "its eigenvalues cannot be computed",
+    })?;
+    let largest = eigen.eigenvalues.amax();
+    Ok((0..n)
+        .filter(|&i| eigen.eigenvalues[i] <= FREE * largest)
+        .map(|i| {
+            let mut free = [0.0; D];
+            for (row, &r) in active.iter().enumerate() {
+                free[r] = eigen.eigenvectors[(row, i)] / masses[r].sqrt();
+            }
+            free
+        })
+        .collect())
+}

@@ -1,0 +1,226 @@
+//! The channels a response can record: their names, and how each follows from the solver's coordinates.
+
+use serde::{Deserialize, Serialize};
+
+use crate::dynamics::{MAX_ORDER, Model, PER_HALF, Segment, U, W, YG, YP, ZG, ZP};
+
+/// What a channel is a course of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    Displacement,
+    Velocity,
+    Acceleration,
+    Rotation,
+    AngularVelocity,
+    AngularAcceleration,
+    Force,
+}
+
+impl Quantity {
+    /// The unit of the channel's values.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Quantity::Displacement => "m",
+            Quantity::Velocity => "m/s",
+            Quantity::Acceleration => "m/s2",
+            Quantity::Rotation => "rad",
+            Quantity::AngularVelocity => "rad/s",
+            Quantity::AngularAcceleration => "rad/s2",
+            Quantity::Force => "N",
+        }
+    }
+}
+
+/// A recorded course, uniformly sampled.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Channel {
+    pub name: String,
+    pub quantity: Quantity,
+    pub unit: String,
+    /// Time of the first value, counted from the start of the integration (0 for a periodic solution: phase 0).
+    pub t0_s: f64,
+    pub dt_s: f64,
+    pub values: Vec<f64>,
+}
+
+/// One of the displacements, or a mesh force.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Source {
+    X,
+    S,
+    Yp,
+    Zp,
+    ThetaP,
+    Yg,
+    Zg,
+    ThetaG,
+    NormalForce,
+    TangentialForce,
+    AxialForce,
+}
+
+const SOURCES: [(&str, Source); 11] = [
+    ("x", Source::X),
+    ("s", Source::S),
+    ("y_p", Source::Yp),
+    ("z_p", Source::Zp),
+    ("theta_p", Source::ThetaP),
+    ("y_g", Source::Yg),
+    ("z_g", Source::Zg),
+    ("theta_g", Source::ThetaG),
+    ("f_n", Source::NormalForce),
+    ("f_y", Source::TangentialForce),
+    ("f_z", Source::AxialForce),
+];
+
+/// The name of a channel, understood. Names: `x_left` (mesh displacement along the circumference), `s_right` (along the tooth normal), `y_p_left`,
+/// `z_p_…`, `theta_p_…`, `y_g_…`, `z_g_…`, `theta_g_…`, each also with `v_` or `a_` in front; `f_n_…`, `f_y_…`, `f_z_…`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ChannelId {
+    source: Source,
+    /// 0 displacement, 1 velocity, 2 acceleration.
+    derivative: u8,
+    /// 0 left, 1 right.
+    half: u8,
+}
+
+impl ChannelId {
+    /// x'' of a half: the mesh circumferential acceleration.
+    pub(super) fn mesh_acceleration(half: u8) -> Self {
+        Self { source: Source::X, derivative: 2, half }
+    }
+
+    /// z_p'' of a half: the pinion's axial acceleration.
+    pub(super) fn pinion_axial_acceleration(half: u8) -> Self {
+        Self { source: Source::Zp, derivative: 2, half }
+    }
+
+    pub(super) fn s(half: u8) -> Self {
+        Self { source: Source::S, derivative: 0, half }
+    }
+
+    pub(super) fn normal_force(half: u8) -> Self {
+        Self { source: Source::NormalForce, derivative: 0, half }
+    }
+
+    /// Reads a name; None when there is no such channel.
+    pub fn parse(name: &str) -> Option<Self> {
+        Self::all().into_iter().find(|id| id.name() == name)
+    }
+
+    /// Every channel there is.
+    pub fn all() -> Vec<Self> {
+        let mut out = Vec::new();
+        for half in 0..2 {
+            for (_, source) in SOURCES {
+                let force = matches!(source, Source::NormalForce | Source::TangentialForce | Source::AxialForce);
+                for derivative in 0..if force { 1 } else { 3 } {
+                    out.push(Self { source, derivative, half });
+                }
+            }
+        }
+        out
+    }
+
+    pub fn name(self) -> String {
+        let prefix = ["", "v_", "a_"][usize::from(self.derivative)];
+        let base = SOURCES.iter().find(|(_, s)| *s == self.source).map_or("", |(name, _)| name);
+        let half = ["left", "right"][usize::from(self.half)];
+        format!("{prefix}{base}_{half}")
+    }
+
+    pub fn quantity(self) -> Quantity {
+        let linear = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
+        let angular = [Quantity::Rotation, Quantity::AngularVelocity, Quantity::AngularAcceleration];
+        match self.source {
+            Source::NormalForce | Source::TangentialForce | Source::AxialForce => Quantity::Force,
+            Source::ThetaP | Source::ThetaG => angular[usize::from(self.derivative)],
+            _ => linear[usize::from(self.derivative)],
+        }
+    }
+
+    /// How the channel follows from the solver's coordinates.
+    pub(super) fn probe<const D: usize>(self, model: &Model<D>) -> Probe<D> {
+        let half = usize::from(self.half);
+        // With one half solved, the other is its mirror image.
+        let (j, mirrored) = if D > PER_HALF { (half, 1.0) } else { (0, if half == 0 { 1.0 } else { -1.0 }) };
+        let mut row = [0.0; D];
+        let i = j * PER_HALF;
+        let h = &model.halves[j];
+        let sum = h.reduced_p + h.reduced_g;
+        match self.source {
+            Source::X => (row[i + YP], row[i + YG], row[i + U]) = (1.0, -1.0, 1.0),
+            Source::S => {
+                (row[i + YP], row[i + YG], row[i + U]) = (model.cos, -model.cos, model.cos);
+                (row[i + ZP], row[i + ZG]) = (h.sin, -h.sin);
+            }
+            Source::Yp => row[i + YP] = 1.0,
+            Source::Zp => row[i + ZP] = mirrored,
+            Source::Yg => row[i + YG] = 1.0,
+            Source::Zg => row[i + ZG] = mirrored,
+            Source::ThetaP => (row[i + U], row[i + W]) = (h.reduced_g / sum / model.radius_p, 1.0 / model.radius_p),
+            Source::ThetaG => (row[i + U], row[i + W]) = (-h.reduced_p / sum / model.radius_g, 1.0 / model.radius_g),
+            Source::NormalForce => return Probe::Force { half: j, factor: 1.0 },
+            Source::TangentialForce => return Probe::Force { half: j, factor: model.cos },
+            Source::AxialForce => return Probe::Force { half: j, factor: mirrored * h.sin },
+        }
+        let factor = model.omega_ref.powi(i32::from(self.derivative));
+        let places: Vec<usize> = (0..D).filter(|&c| row[c] != 0.0).collect();
+        Probe::Linear { row: row.map(|c| c * factor), places, derivative: usize::from(self.derivative) }
+    }
+}
+
+/// How a channel is read off a segment.
+#[derive(Debug, Clone)]
+pub(super) enum Probe<const D: usize> {
+    Linear { row: [f64; D], places: Vec<usize>, derivative: usize },
+    Force { half: usize, factor: f64 },
+}
+
+impl<const D: usize> Probe<D> {
+    /// The channel's polynomial in scaled time since the segment's start; returns its degree.
+    pub fn polynomial(&self, segment: &Segment<'_, D>, out: &mut [f64; MAX_ORDER + 1]) -> usize {
+        match self {
+            Probe::Linear { row, places, derivative } => {
+                let degree = segment.degree - derivative;
+                for n in 0..=degree {
+                    let from = &segment.rows[n + derivative];
+                    let value: f64 = places.iter().map(|&c| row[c] * from[c]).sum();
+                    let factor = match derivative {
+                        0 => 1.0,
+                        1 => (n + 1) as f64,
+                        _ => ((n + 1) * (n + 2)) as f64,
+                    };
+                    out[n] = value * factor;
+                }
+                degree
+            }
+            Probe::Force { half, factor } => {
+                let degree = segment.degree - 2;
+                for n in 0..=degree {
+                    out[n] = factor * segment.force[*half][n];
+                }
+                degree
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_is_understood_and_unique() {
+        let all = ChannelId::all();
+        assert_eq!(all.len(), 2 * (8 * 3 + 3));
+        for id in &all {
+            assert_eq!(ChannelId::parse(&id.name()), Some(*id));
+        }
+        for name in ["x_left", "a_x_right", "v_theta_g_left", "f_n_right", "s_left", "a_z_p_left"] {
+            assert!(ChannelId::parse(name).is_some(), "{name}");
+        }
+        assert!(ChannelId::parse("x_middle").is_none());
+    }
+}

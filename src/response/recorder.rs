@@ -1,0 +1,120 @@
+//! Gathers what is asked of a motion while it runs: statistics, series, contact.
+
+use super::channel::{ChannelId, Probe};
+use super::statistics::{Gathered, horner};
+use crate::dynamics::{MAX_ORDER, Model, Observer, PER_HALF, Segment};
+
+/// What to record of one channel.
+struct Track<const D: usize> {
+    id: ChannelId,
+    probe: Probe<D>,
+    gathered: Gathered,
+    extremes: bool,
+    samples: Option<Vec<f64>>,
+}
+
+/// The observer of the recorded periods.
+pub(super) struct Recorder<const D: usize> {
+    tracks: Vec<Track<D>>,
+    samples_per_mesh_period: usize,
+    /// The mesh period of the last segment, and the index of the next sample within it.
+    period: u64,
+    next_sample: usize,
+    sampling: bool,
+    /// Scaled time on driving flank, apart, on back flank, per half solved.
+    contact: [[f64; 3]; 2],
+}
+
+impl<const D: usize> Recorder<D> {
+    /// Statistics of `statistics` (with extremes where the flag says so); samples of `series`, for `periods` mesh periods.
+    pub fn new(
+        model: &Model<D>,
+        statistics: &[(ChannelId, bool)],
+        series: &[ChannelId],
+        samples_per_mesh_period: usize,
+        periods: u64,
+    ) -> Self {
+        let capacity = samples_per_mesh_period * periods as usize;
+        let mut tracks: Vec<Track<D>> = Vec::new();
+        let mut add = |id: ChannelId, extremes: bool, sampled: bool| {
+            let samples = sampled.then(|| Vec::with_capacity(capacity));
+            match tracks.iter_mut().find(|t| t.id == id) {
+                Some(track) => {
+                    track.extremes |= extremes;
+                    track.samples = track.samples.take().or(samples);
+                }
+                None => tracks.push(Track { id, probe: id.probe(model), gathered: Gathered::new(), extremes, samples }),
+            }
+        };
+        for &(id, extremes) in statistics {
+            add(id, extremes, false);
+        }
+        for &id in series {
+            add(id, true, samples_per_mesh_period > 0);
+        }
+        Self {
+            tracks,
+            samples_per_mesh_period,
+            period: 0,
+            next_sample: 0,
+            sampling: samples_per_mesh_period > 0 && !series.is_empty(),
+            contact: [[0.0; 3]; 2],
+        }
+    }
+
+    pub fn gathered(&self, id: ChannelId) -> Option<&Gathered> {
+        self.tracks.iter().find(|t| t.id == id).map(|t| &t.gathered)
+    }
+
+    pub fn all(&self) -> impl Iterator<Item = (ChannelId, &Gathered, bool)> {
+        self.tracks.iter().map(|t| (t.id, &t.gathered, t.extremes))
+    }
+
+    pub fn take_samples(&mut self) -> Vec<(ChannelId, Vec<f64>)> {
+        self.tracks.iter_mut().filter_map(|t| t.samples.take().map(|s| (t.id, s))).collect()
+    }
+
+    /// Shares of time on driving flank, apart and on back flank, left and right.
+    pub fn contact_shares(&self) -> [[f64; 3]; 2] {
+        let share = |j: usize| {
+            let total: f64 = self.contact[j].iter().sum();
+            self.contact[j].map(|c| c / total)
+        };
+        [share(0), share(if D > PER_HALF { 1 } else { 0 })]
+    }
+}
+
+impl<const D: usize> Observer<D> for Recorder<D> {
+    fn segment(&mut self, segment: &Segment<'_, D>) {
+        for j in 0..Model::<D>::HALVES {
+            self.contact[j][(1 - segment.contact[j]) as usize] += segment.h;
+        }
+        let mut polynomial = [0.0; MAX_ORDER + 1];
+        let period_tau = segment.model.period_tau;
+        let end = segment.phase + segment.h / period_tau;
+        let per_period = self.samples_per_mesh_period;
+        if segment.period != self.period {
+            self.period = segment.period;
+            self.next_sample = 0;
+        }
+        let first = self.next_sample;
+        let mut last = first;
+        if self.sampling {
+            // A sample on the end of the segment belongs to the next one.
+            while last < per_period && (last as f64 / per_period as f64) < end {
+                last += 1;
+            }
+        }
+        for track in &mut self.tracks {
+            let degree = track.probe.polynomial(segment, &mut polynomial);
+            let c = &polynomial[..=degree];
+            track.gathered.add(c, segment.h, track.extremes);
+            if let Some(samples) = &mut track.samples {
+                for i in first..last {
+                    samples.push(horner(c, (i as f64 / per_period as f64 - segment.phase) * period_tau));
+                }
+            }
+        }
+        self.next_sample = last;
+    }
+}

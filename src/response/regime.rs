@@ -1,0 +1,94 @@
+//! Does a motion repeat, and how fast do neighbours leave it?
+
+use std::collections::VecDeque;
+
+use crate::dynamics::{Both, DynamicsError, Model, PER_HALF, W};
+use crate::dynamics::{Deviation, Motion, State, Unobserved, Variation, difference};
+use crate::watch::Watch;
+
+/// The longest period that is looked for, in mesh periods.
+pub(super) const LONGEST_PERIOD: usize = 32;
+
+/// A Lyapunov exponent above this, per mesh period, is taken for chaos: the exponent of a motion that does not grow
+/// scatters around zero by a few thousandths over the mesh periods it is averaged.
+pub(super) const CHAOS_PER_MESH_PERIOD: f64 = 0.01;
+
+/// States at the starts of the last mesh periods.
+pub(super) struct Section<const D: usize> {
+    states: VecDeque<State<D>>,
+}
+
+impl<const D: usize> Section<D> {
+    pub fn new() -> Self {
+        Self { states: VecDeque::with_capacity(LONGEST_PERIOD + 1) }
+    }
+
+    pub fn push(&mut self, state: State<D>) {
+        if self.states.len() > LONGEST_PERIOD {
+            self.states.pop_front();
+        }
+        self.states.push_back(state);
+    }
+
+    /// Size of the motion: its largest scaled velocity.
+    pub fn size(&self) -> f64 {
+        let speeds = self.states.iter().flat_map(|s| s.v.iter().enumerate());
+        speeds.filter(|(c, _)| c % PER_HALF != W).fold(f64::MIN_POSITIVE, |m, (_, v)| m.max(v.abs()))
+    }
+
+    /// Relative change of the state over `n` mesh periods.
+    pub fn change(&self, n: usize) -> Option<f64> {
+        let last = self.states.len().checked_sub(1)?;
+        let before = self.states.get(last.checked_sub(n)?)?;
+        Some(largest(&difference(&self.states[last], before)) / self.size())
+    }
+
+    /// The shortest period over which the state changes by less than `limit`, and by how much. A multiple of a shorter
+    /// period that repeats nearly as well is not taken.
+    pub fn repeats(&self, limit: f64) -> Option<(usize, f64)> {
+        let best = (1..=LONGEST_PERIOD).filter_map(|n| self.change(n)).fold(f64::INFINITY, f64::min);
+        if best > limit {
+            return None;
+        }
+        // Within ten times the best or far below the limit counts as repeating.
+        let enough = (10.0 * best).max(1e-3 * limit).min(limit);
+        (1..=LONGEST_PERIOD).find_map(|n| self.change(n).filter(|c| *c <= enough).map(|c| (n, c)))
+    }
+}
+
+/// Largest component of a deviation, free rotation apart.
+pub(super) fn largest<const D: usize>(d: &Deviation<D>) -> f64 {
+    (0..D).filter(|c| c % PER_HALF != W).fold(0.0, |m, c| m.max(d.0[c].abs()).max(d.1[c].abs()))
+}
+
+/// Largest Lyapunov exponent per mesh period, from one deviation carried along `periods` mesh periods of the motion (the first
+/// tenth only turns it into the fastest direction).
+pub(super) fn lyapunov<const D: usize>(
+    motion: &mut Motion<'_, D>,
+    variation_model: &Model<D>,
+    periods: u64,
+    watch: &Watch<'_>,
+) -> Result<f64, DynamicsError> {
+    let mut start = ([0.0; D], [0.0; D]);
+    for (i, c) in variation_model.active().enumerate() {
+        // No direction is preferred, none is left out.
+        start.0[c] = 1.0 / (i + 1) as f64;
+    }
+    let mut variation = Variation::new(variation_model, vec![start], 1e-9);
+    let (mut sum, mut counted) = (0.0, 0u64);
+    for period in 0..periods {
+        let before = largest(&variation.columns[0]);
+        motion.advance_period(&mut Both(&mut Unobserved, &mut variation), watch, 0.0)?;
+        let (x, v) = &mut variation.columns[0];
+        let after = largest(&(*x, *v));
+        if !(after > 0.0 && after.is_finite()) {
+            return Ok(f64::NEG_INFINITY);
+        }
+        if period >= periods / 10 {
+            sum += (after / before).ln();
+            counted += 1;
+        }
+        x.iter_mut().chain(v.iter_mut()).for_each(|c| *c /= after);
+    }
+    Ok(sum / counted.max(1) as f64)
+}

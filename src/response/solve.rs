@@ -1,0 +1,428 @@
+//! One operating point: from parameters to a response.
+
+use std::collections::BTreeMap;
+
+use super::analysis::{Analysis, ContactState, Halves, Method, PoincarePoint, Regime, Response, Rms, Summary};
+use super::channel::{Channel, ChannelId};
+use super::recorder::Recorder;
+use super::regime::{CHAOS_PER_MESH_PERIOD, Section, lyapunov};
+use super::statistics::Gathered;
+use super::steady::{Found, Search, moved};
+use crate::dynamics::{
+    Deviation, DynamicsError, Integrator, Model, Motion, NaturalModes, Numerics, PER_HALF, Parameters, Shooting, State,
+    difference,
+};
+use crate::watch::Watch;
+
+/// Solves the equations of motion and gathers what was asked for.
+pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<Response, DynamicsError> {
+    p.validate()?;
+    if !(1e-13..=0.1).contains(&analysis.accuracy) {
+        return Err(DynamicsError::InvalidParameter {
+            name: "accuracy",
+            value: analysis.accuracy,
+            reason: "must be between 1e-13 and 0.1",
+        });
+    }
+    let modes = NaturalModes::new(p)?;
+    let rest = || {
+        let mut at_rest = [0.0; 24];
+        at_rest[..12].copy_from_slice(&modes.static_deflection(p));
+        at_rest
+    };
+    let run = Run { p, analysis, modes: &modes, watch };
+    match analysis.method {
+        Method::Integrate { mesh_periods, record_mesh_periods } => {
+            let record = record_mesh_periods.clamp(1, mesh_periods.max(1));
+            let start = analysis.initial_state.unwrap_or_else(rest);
+            if let Some(bad) = start.iter().find(|v| !v.is_finite()) {
+                return Err(DynamicsError::InvalidParameter {
+                    name: "initial state",
+                    value: *bad,
+                    reason: "must be finite",
+                });
+            }
+            let mirrored = p.is_symmetric() && (analysis.initial_state.is_none() || is_mirrored(&start));
+            if mirrored {
+                run.integrate::<6>(&start, mesh_periods.max(1), record)
+            } else {
+                run.integrate::<12>(&start, mesh_periods.max(1), record)
+            }
+        }
+        Method::Auto | Method::Periodic => {
+            let start = rest();
+            if p.is_symmetric()
+                && let Some(response) = run.steady::<6>(&start, false)?
+            {
+                return Ok(response);
+            }
+            // Equal halves come here only when their motion leaves the mirror symmetry by itself: a start off the symmetry lets it.
+            let found = run.steady::<12>(&start, p.is_symmetric())?;
+            // Twelve coordinates are never given up for fewer.
+            found.ok_or(DynamicsError::NotPeriodic { mesh_periods: 0, change: f64::NAN })
+        }
+    }
+}
+
+/// z of one half the opposite of the other's, the rest equal, displacements and velocities.
+fn is_mirrored(state: &[f64; 24]) -> bool {
+    [0, 12].iter().all(|&at| {
+        (0..6).all(|c| {
+            let (left, right) = (state[at + c], state[at + 6 + c]);
+            left == if c == 1 || c == 4 { -right } else { right }
+        })
+    })
+}
+
+struct Run<'a> {
+    p: &'a Parameters,
+    analysis: &'a Analysis,
+    modes: &'a NaturalModes,
+    watch: &'a Watch<'a>,
+}
+
+/// Relative size of the push that takes a motion off the mirror symmetry: as far as manufacture keeps halves alike.
+const OFF_SYMMETRY: f64 = 1e-3;
+
+impl Run<'_> {
+    /// The steady state; None when six coordinates do not tell the whole story.
+    fn steady<const D: usize>(&self, start: &[f64; 24], off_symmetry: bool) -> Result<Option<Response>, DynamicsError> {
+        let model = Model::<D>::new(self.p)?;
+        let search = Search {
+            model: &model,
+            mean_stiffness_n_per_m: [0, 1].map(|j| self.p.halves[j].mesh_stiffness.mean_n_per_m()),
+            tolerance: (1e-3 * self.analysis.accuracy).clamp(1e-14, 1e-6),
+            max_steps: self.analysis.max_steps,
+            must_repeat: self.analysis.method == Method::Periodic,
+            watch: self.watch,
+        };
+        let mut state = model.state_from(start);
+        if off_symmetry {
+            let mut push: Deviation<D> = ([0.0; D], [0.0; D]);
+            for c in 0..PER_HALF - 1 {
+                push.0[c] = OFF_SYMMETRY * state.x[c];
+            }
+            state = moved(&model, state, &push);
+        }
+        let found = search.run(state)?;
+        if found.leaves_symmetry {
+            return Ok(None);
+        }
+        let mut numerics = found.numerics;
+        let mut recorder = self.recorder(&model, found.record);
+        let (motion, section) =
+            self.record(&model, &found.start, found.record, found.tolerance, Integrator::Taylor, &mut recorder)?;
+        numerics += motion.numerics;
+        let error_estimate = match &found.orbit {
+            Some((n, map)) => self.orbit_error(&model, &found, *n, map, &motion.state, &recorder)?,
+            None => section.batch_error,
+        };
+        let verdict = Verdict {
+            regime: match (&found.orbit, found.lyapunov) {
+                (Some((1, _)), _) => Regime::Period1,
+                (Some(_), _) => Regime::PeriodN,
+                (None, Some(l)) if l > CHAOS_PER_MESH_PERIOD => Regime::Chaotic,
+                (None, _) => Regime::QuasiPeriodic,
+            },
+            period: found.orbit.as_ref().map(|(n, _)| *n),
+            floquet: found.floquet,
+            lyapunov: found.lyapunov,
+            method: if found.orbit.is_some() { "periodic" } else { "integrate" },
+            error_estimate,
+        };
+        let t0_s = if found.orbit.is_some() { 0.0 } else { found.start.period as f64 * self.p.mesh_period_s() };
+        Ok(Some(self.response(&model, recorder, section, motion.state, verdict, t0_s, found.record, numerics)))
+    }
+
+    fn integrate<const D: usize>(
+        &self,
+        start: &[f64; 24],
+        periods: u64,
+        record: u64,
+    ) -> Result<Response, DynamicsError> {
+        let model = Model::<D>::new(self.p)?;
+        let integrator = self.analysis.integrator;
+        // Measured on the reference cases: RMS error over tolerance is up to 10 for Taylor series, up to 300 for Runge–Kutta.
+        let per_accuracy = match integrator {
+            Integrator::Taylor => 0.05,
+            Integrator::RungeKutta => 2e-3,
+        };
+        let tolerance = (per_accuracy * self.analysis.accuracy).max(1e-15);
+        let mut motion = Motion::new(&model, model.state_from(start), integrator, tolerance, self.analysis.max_steps);
+        let before = periods - record;
+        for period in 0..before {
+            let fraction = period as f64 / periods as f64;
+            motion.advance_period(&mut crate::dynamics::Unobserved, self.watch, fraction)?;
+            self.watch.checkpoint(fraction)?;
+        }
+        let mut numerics = motion.numerics;
+        let from = motion.state;
+        let mut recorder = self.recorder(&model, record);
+        let (mut motion, section) = self.record(&model, &from, record, tolerance, integrator, &mut recorder)?;
+        numerics += motion.numerics;
+        let last = motion.state;
+        let repeats = section.recent.repeats(REPEATS);
+        let mut verdict = Verdict {
+            regime: match repeats {
+                Some((1, _)) => Regime::Period1,
+                Some(_) => Regime::PeriodN,
+                None => Regime::QuasiPeriodic,
+            },
+            period: repeats.map(|(n, _)| n as u64),
+            floquet: None,
+            lyapunov: None,
+            method: "integrate",
+            error_estimate: 0.0,
+        };
+        if repeats.is_none() {
+            motion.numerics = Numerics::default();
+            let exponent = lyapunov(&mut motion, &model, LYAPUNOV_MESH_PERIODS, self.watch)?;
+            numerics += motion.numerics;
+            verdict.lyapunov = Some(exponent);
+            if exponent > CHAOS_PER_MESH_PERIOD {
+                verdict.regime = Regime::Chaotic;
+            }
+        }
+        verdict.error_estimate = if verdict.regime == Regime::Chaotic {
+            section.batch_error
+        } else {
+            // The same record at a looser tolerance; the error is proportional to it.
+            let loose = (100.0 * tolerance).max(1e-13);
+            let mut other = self.recorder_of_rms(&model);
+            let (motion, _) = self.record(&model, &from, record, loose, integrator, &mut other)?;
+            numerics += motion.numerics;
+            LOOSE_SAFETY * rms_difference(&recorder, &other) * tolerance / loose + ROUNDING
+        };
+        let t0_s = from.period as f64 * self.p.mesh_period_s();
+        Ok(self.response(&model, recorder, section, last, verdict, t0_s, record, numerics))
+    }
+
+    /// Records `periods` mesh periods from `start`.
+    fn record<'m, const D: usize>(
+        &self,
+        model: &'m Model<D>,
+        start: &State<D>,
+        periods: u64,
+        tolerance: f64,
+        integrator: Integrator,
+        recorder: &mut Recorder<D>,
+    ) -> Result<(Motion<'m, D>, Record<D>), DynamicsError> {
+        let mut motion = Motion::new(model, *start, integrator, tolerance, self.analysis.max_steps);
+        let mut recent = Section::new();
+        let mut points = Vec::with_capacity(periods as usize);
+        let batch = (periods / BATCHES).max(1);
+        let mut batches = Vec::new();
+        let main = ChannelId::mesh_acceleration(0);
+        let mut snapshot = Gathered::new();
+        for period in 0..periods {
+            recent.push(motion.state);
+            points.push(poincare(model, &motion.state));
+            motion.advance_period(recorder, self.watch, 0.9)?;
+            self.watch.checkpoint(0.9 + 0.1 * period as f64 / periods as f64)?;
+            if (period + 1) % batch == 0
+                && let Some(now) = recorder.gathered(main)
+            {
+                batches.push(now.variance_since(&snapshot));
+                snapshot = *now;
+            }
+        }
+        recent.push(motion.state);
+        Ok((motion, Record { recent, points, batch_error: standard_error(&batches) }))
+    }
+
+    /// Relative error of the RMS values of a periodic motion: the map is repeated far more accurately, the start corrected by
+    /// what it then fails to close, and the values compared.
+    fn orbit_error<const D: usize>(
+        &self,
+        model: &Model<D>,
+        found: &Found<D>,
+        n: u64,
+        map: &nalgebra::DMatrix<f64>,
+        _end: &State<D>,
+        recorder: &Recorder<D>,
+    ) -> Result<f64, DynamicsError> {
+        let tight = (1e-3 * found.tolerance).max(1e-15);
+        let mut unused = self.recorder_of_rms(model);
+        let start = State { period: 0, ..found.start };
+        let (motion, _) = self.record(model, &start, n, tight, Integrator::Taylor, &mut unused)?;
+        let shooting = Shooting::new(model, &[0, 1].map(|j| self.p.halves[j].mesh_stiffness.mean_n_per_m()))?;
+        let defect = difference(&motion.state, &start);
+        let Some(correction) = shooting.correction(&defect, map, n) else { return Ok(f64::INFINITY) };
+        let mut better = self.recorder_of_rms(model);
+        let corrected = moved(model, start, &correction);
+        self.record(model, &corrected, n, tight, Integrator::Taylor, &mut better)?;
+        Ok(SAFETY * rms_difference(recorder, &better) + ROUNDING)
+    }
+
+    /// Channels every response needs, and those asked for.
+    fn recorder<const D: usize>(&self, model: &Model<D>, periods: u64) -> Recorder<D> {
+        let mut statistics = Vec::new();
+        for half in solved_halves::<D>() {
+            statistics.push((ChannelId::mesh_acceleration(half), false));
+            statistics.push((ChannelId::pinion_axial_acceleration(half), false));
+            statistics.push((ChannelId::s(half), true));
+            statistics.push((ChannelId::normal_force(half), true));
+        }
+        Recorder::new(model, &statistics, &self.analysis.channels, self.analysis.samples_per_mesh_period, periods)
+    }
+
+    /// The accelerations alone.
+    fn recorder_of_rms<const D: usize>(&self, model: &Model<D>) -> Recorder<D> {
+        let mut statistics = Vec::new();
+        for half in solved_halves::<D>() {
+            statistics.push((ChannelId::mesh_acceleration(half), false));
+            statistics.push((ChannelId::pinion_axial_acceleration(half), false));
+        }
+        Recorder::new(model, &statistics, &[], 0, 0)
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn response<const D: usize>(
+        &self,
+        model: &Model<D>,
+        mut recorder: Recorder<D>,
+        record: Record<D>,
+        last: State<D>,
+        verdict: Verdict,
+        t0_s: f64,
+        recorded: u64,
+        numerics: Numerics,
+    ) -> Response {
+        let right = if D > PER_HALF { 1 } else { 0 };
+        let rms_of = |id: ChannelId| recorder.gathered(id).map_or(0.0, |g| g.mean_and_variance().1.sqrt());
+        let both = |id: fn(u8) -> ChannelId| Halves { left: rms_of(id(0)), right: rms_of(id(right)) };
+        let mesh = both(ChannelId::mesh_acceleration);
+        let axial = both(ChannelId::pinion_axial_acceleration);
+        let mut channels: BTreeMap<String, f64> =
+            recorder.all().map(|(id, g, _)| (id.name(), g.finish().rms)).collect();
+        for (half, m, a) in [(0, mesh.left, axial.left), (1, mesh.right, axial.right)] {
+            channels.insert(ChannelId::mesh_acceleration(half).name(), m);
+            channels.insert(ChannelId::pinion_axial_acceleration(half).name(), a);
+        }
+        let statistics = self
+            .analysis
+            .channels
+            .iter()
+            .filter_map(|id| recorder.gathered(*id).map(|g| (id.name(), g.finish())))
+            .collect();
+        let mut min_displacement_m = f64::INFINITY;
+        let mut dynamic_factor: Option<f64> = None;
+        for half in solved_halves::<D>() {
+            if let Some(s) = recorder.gathered(ChannelId::s(half)) {
+                min_displacement_m = min_displacement_m.min(s.finish().min);
+            }
+            let static_n = (model.halves[usize::from(half)].load / model.cos).abs();
+            if let (Some(f), true) = (recorder.gathered(ChannelId::normal_force(half)), static_n > 0.0) {
+                let f = f.finish();
+                let factor = f.max.abs().max(f.min.abs()) / static_n;
+                dynamic_factor = Some(dynamic_factor.map_or(factor, |d| d.max(factor)));
+            }
+        }
+        let shares = recorder.contact_shares();
+        let dt_s = self.p.mesh_period_s() / self.analysis.samples_per_mesh_period.max(1) as f64;
+        let mut samples = recorder.take_samples();
+        let series = self
+            .analysis
+            .channels
+            .iter()
+            .filter_map(|id| {
+                let at = samples.iter().position(|(other, _)| other == id)?;
+                let (id, values) = samples.swap_remove(at);
+                let quantity = id.quantity();
+                Some(Channel { name: id.name(), quantity, unit: quantity.unit().into(), t0_s, dt_s, values })
+            })
+            .collect();
+        let mut final_state = [0.0; 24];
+        final_state[..12].copy_from_slice(&model.source_displacements(&last.x));
+        final_state[12..].copy_from_slice(&model.source_displacements(&last.v).map(|v| v * model.omega_ref));
+        let summary = Summary {
+            rms: Rms { mesh_circumferential_acceleration_m_s2: mesh, pinion_axial_acceleration_m_s2: axial, channels },
+            statistics,
+            dynamic_factor,
+            regime: verdict.regime,
+            period_mesh_periods: verdict.period,
+            contact: contact_state(&shares),
+            contact_share: Halves { left: 1.0 - shares[0][1], right: 1.0 - shares[1][1] },
+            min_displacement_m,
+            natural_frequencies_hz: self.modes.frequencies_hz.clone(),
+            error_estimate: verdict.error_estimate,
+            method: verdict.method.into(),
+            floquet_modulus: verdict.floquet,
+            lyapunov_per_mesh_period: verdict.lyapunov,
+            recorded_mesh_periods: recorded,
+            degrees_of_freedom: D as u32,
+            damping_in_gap: self.p.damping_in_gap,
+            numerics,
+        };
+        Response { summary, channels: series, poincare: record.points, final_state }
+    }
+}
+
+/// Relative change over its period below which an integrated motion counts as repeating.
+const REPEATS: f64 = 1e-3;
+/// Mesh periods over which a Lyapunov exponent is averaged.
+const LYAPUNOV_MESH_PERIODS: u64 = 300;
+/// Parts of a record whose scatter gives its standard error.
+const BATCHES: u64 = 10;
+/// What an error found by comparison is multiplied by, because it is a comparison with something that has an error too.
+const SAFETY: f64 = 3.0;
+/// The same where the comparison is with a looser tolerance: RMS error over tolerance scatters by a factor of about 5.
+const LOOSE_SAFETY: f64 = 10.0;
+/// RMS values in double precision are not better than this.
+const ROUNDING: f64 = 1e-13;
+
+struct Verdict {
+    regime: Regime,
+    period: Option<u64>,
+    floquet: Option<f64>,
+    lyapunov: Option<f64>,
+    method: &'static str,
+    error_estimate: f64,
+}
+
+/// What `record` leaves beside the recorder's own.
+struct Record<const D: usize> {
+    recent: Section<D>,
+    points: Vec<PoincarePoint>,
+    batch_error: f64,
+}
+
+fn solved_halves<const D: usize>() -> std::ops::Range<u8> {
+    0..(D / PER_HALF) as u8
+}
+
+fn poincare<const D: usize>(model: &Model<D>, state: &State<D>) -> PoincarePoint {
+    let x = |row: &[f64; D]| row[crate::dynamics::YP] - row[crate::dynamics::YG] + row[crate::dynamics::U];
+    PoincarePoint { x_left_m: x(&state.x), v_x_left_m_s: x(&state.v) * model.omega_ref }
+}
+
+/// Relative standard error of an RMS from the mean squares of the parts of its record.
+fn standard_error(mean_squares: &[f64]) -> f64 {
+    let n = mean_squares.len() as f64;
+    if mean_squares.len() < 2 {
+        return f64::INFINITY;
+    }
+    let mean = mean_squares.iter().sum::<f64>() / n;
+    let variance = mean_squares.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    if mean > 0.0 { 0.5 * (variance / n).sqrt() / mean } else { 0.0 }
+}
+
+/// Largest relative difference of the RMS accelerations of two records.
+fn rms_difference<const D: usize>(a: &Recorder<D>, b: &Recorder<D>) -> f64 {
+    b.all().fold(0.0f64, |worst, (id, gb, _)| {
+        let Some(ga) = a.gathered(id) else { return worst };
+        let (ra, rb) = (ga.mean_and_variance().1.sqrt(), gb.mean_and_variance().1.sqrt());
+        if rb > 0.0 { worst.max((ra - rb).abs() / rb) } else { worst }
+    })
+}
+
+fn contact_state(shares: &[[f64; 3]; 2]) -> ContactState {
+    let touched = |j: usize, side: usize| shares[j][side] > 0.0;
+    if (0..2).any(|j| touched(j, 0) && touched(j, 2)) {
+        ContactState::DoubleSided
+    } else if (0..2).any(|j| touched(j, 1)) {
+        ContactState::SingleSided
+    } else {
+        ContactState::Continuous
+    }
+}

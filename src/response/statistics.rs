@@ -1,0 +1,159 @@
+//! Exact time means and extremes of polynomials.
+
+use std::sync::LazyLock;
+
+use serde::{Deserialize, Serialize};
+
+use crate::dynamics::MAX_ORDER;
+
+/// A channel over the recorded periods. Means are exact time means of the solution's polynomials, not of samples.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Statistics {
+    pub mean: f64,
+    /// Root mean square with the mean removed.
+    pub rms: f64,
+    pub min: f64,
+    pub max: f64,
+}
+
+/// 1/(i + j + 1): ∫ τ^(i+j) over 0 … 1.
+static INTEGRALS: LazyLock<[[f64; MAX_ORDER + 1]; MAX_ORDER + 1]> =
+    LazyLock::new(|| std::array::from_fn(|i| std::array::from_fn(|j| 1.0 / (i + j + 1) as f64)));
+
+/// Integrals and extremes of one channel, gathered segment by segment.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gathered {
+    /// Taken off before squaring, so that a large mean costs no digits.
+    offset: Option<f64>,
+    first: f64,
+    second: f64,
+    length: f64,
+    min: f64,
+    max: f64,
+}
+
+impl Gathered {
+    pub fn new() -> Self {
+        Self { offset: None, first: 0.0, second: 0.0, length: 0.0, min: f64::INFINITY, max: f64::NEG_INFINITY }
+    }
+
+    /// Adds the polynomial `c` over [0, h].
+    pub fn add(&mut self, c: &[f64], h: f64, extremes: bool) {
+        let offset = *self.offset.get_or_insert(c[0]);
+        let mut b = [0.0; MAX_ORDER + 1];
+        let mut power = 1.0;
+        for (b, c) in b.iter_mut().zip(c) {
+            *b = c * power;
+            power *= h;
+        }
+        b[0] -= offset;
+        let b = &b[..c.len()];
+        let mut square = 0.0;
+        let mut mean = 0.0;
+        for (i, bi) in b.iter().enumerate() {
+            mean += bi / (i + 1) as f64;
+            let row = &INTEGRALS[i][..b.len()];
+            square += bi * b.iter().zip(row).map(|(bj, w)| bj * w).sum::<f64>();
+        }
+        self.first += h * mean;
+        self.second += h * square;
+        self.length += h;
+        if extremes {
+            self.add_extremes(b, offset);
+        }
+    }
+
+    /// Extremes over the unit interval: a coarse look, then Newton's method on the derivative around the best point.
+    fn add_extremes(&mut self, b: &[f64], offset: f64) {
+        const POINTS: usize = 9;
+        let mut values = [0.0; POINTS];
+        for (i, value) in values.iter_mut().enumerate() {
+            *value = horner(b, i as f64 / (POINTS - 1) as f64);
+        }
+        for sign in [1.0, -1.0] {
+            let best = if sign > 0.0 { self.max - offset } else { offset - self.min };
+            let mut at = 0;
+            for i in 1..POINTS {
+                if sign * values[i] > sign * values[at] {
+                    at = i;
+                }
+            }
+            let mut top = sign * values[at];
+            // The tip of a parabola through neighbours lies above the middle one by less than the largest of the differences.
+            let neighbour = |i: usize| (values[i] - values[at]).abs();
+            let margin = neighbour(at.saturating_sub(1)).max(neighbour((at + 1).min(POINTS - 1)));
+            if top + margin > best {
+                let width = 1.0 / (POINTS - 1) as f64;
+                let (low, high) = ((at as f64 - 1.0).max(0.0) * width, ((at + 1) as f64 * width).min(1.0));
+                let mut t = at as f64 * width;
+                for _ in 0..8 {
+                    let (d1, d2) = derivatives(b, t);
+                    if d2 * sign >= 0.0 {
+                        break;
+                    }
+                    let next = (t - d1 / d2).clamp(low, high);
+                    if (next - t).abs() < 1e-12 {
+                        break;
+                    }
+                    t = next;
+                }
+                top = top.max(sign * horner(b, t));
+            }
+            if sign > 0.0 {
+                self.max = self.max.max(top + offset);
+            } else {
+                self.min = self.min.min(offset - top);
+            }
+        }
+    }
+
+    /// Mean of the channel, and mean square about that mean.
+    pub fn mean_and_variance(&self) -> (f64, f64) {
+        let first = self.first / self.length;
+        (self.offset.unwrap_or(0.0) + first, (self.second / self.length - first * first).max(0.0))
+    }
+
+    /// Variance of what came after the snapshot `earlier`.
+    pub fn variance_since(&self, earlier: &Gathered) -> f64 {
+        let (first, second) = (self.first - earlier.first, self.second - earlier.second);
+        let length = self.length - earlier.length;
+        (second / length - (first / length).powi(2)).max(0.0)
+    }
+
+    pub fn finish(&self) -> Statistics {
+        let (mean, variance) = self.mean_and_variance();
+        Statistics { mean, rms: variance.sqrt(), min: self.min, max: self.max }
+    }
+}
+
+pub(super) fn horner(c: &[f64], t: f64) -> f64 {
+    c.iter().rev().fold(0.0, |sum, c| sum * t + c)
+}
+
+/// First and second derivative.
+fn derivatives(c: &[f64], t: f64) -> (f64, f64) {
+    let (mut g, mut d1, mut d2) = (0.0, 0.0, 0.0);
+    for &cn in c.iter().rev() {
+        d2 = d2 * t + d1;
+        d1 = d1 * t + g;
+        g = g * t + cn;
+    }
+    (d1, 2.0 * d2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn means_and_extremes_of_a_parabola() {
+        // 5 + t - t² over [0, 1], in two pieces: mean 5 + 1/6, variance 1/180, maximum 5.25 inside.
+        let mut g = Gathered::new();
+        g.add(&[5.0, 1.0, -1.0], 0.25, true);
+        g.add(&[5.1875, 0.5, -1.0], 0.75, true);
+        let s = g.finish();
+        assert!((s.mean - (5.0 + 1.0 / 6.0)).abs() < 1e-15);
+        assert!((s.rms * s.rms - 1.0 / 180.0).abs() < 1e-16);
+        assert!((s.max - 5.25).abs() < 1e-15 && (s.min - 5.0).abs() < 1e-15, "{s:?}");
+    }
+}
