@@ -12,6 +12,9 @@
 //! The mesh forces act on y, z and θ, the impact F_s on the two torsional equations of its half only, as the source paper writes
 //! it. The plane in use (pitch: R pitch radius, β; base: R_b, β_b) is the caller's choice: it passes the radii and the angle.
 
+// Loops over coordinates and Taylor orders read as the formulas do with an index.
+#![allow(clippy::needless_range_loop)]
+
 mod crossing;
 mod error;
 mod excitation;
@@ -36,7 +39,7 @@ pub(crate) use excitation::MAX_ORDER;
 pub(crate) use integrate::Motion;
 pub(crate) use model::{Model, PER_HALF, State, U, W, YG, YP, ZG, ZP};
 pub(crate) use segment::{Observer, Segment, Unobserved};
-pub(crate) use shooting::Shooting;
+pub(crate) use shooting::{Limits, Shooting};
 pub(crate) use variation::{Both, Deviation, Variation, difference};
 
 #[cfg(test)]

@@ -302,19 +302,11 @@ impl<const D: usize> Model<D> {
         (a - free[YG]) / (self.halves[j].inv_mg * self.cos)
     }
 
-    /// Taylor coefficients of the motion up to `order` in scaled time: `rows[0]`, `rows[1]` are given (x and dx/dτ).
-    /// `loads` false gives the variation about a motion with the same contacts. Also leaves those of s and F_n.
+    /// Taylor coefficients of the motion up to `order` in scaled time, from `rows[0]`, `rows[1]` (x and dx/dτ) and the
+    /// excitation in `work`. `loads` false gives the variation about a motion with the same contacts.
     #[inline(always)]
-    pub fn taylor(
-        &self,
-        contact: [Contact; 2],
-        excitation: &TaylorExcitation,
-        order: usize,
-        loads: bool,
-        rows: &mut [[f64; D]; MAX_ORDER + 1],
-        s: &mut [Coefficients; 2],
-        force: &mut [Coefficients; 2],
-    ) {
+    pub fn taylor(&self, contact: [Contact; 2], order: usize, loads: bool, work: &mut TaylorWork<D>) {
+        let TaylorWork { rows, s, force, excitation } = work;
         for j in 0..Self::HALVES {
             s[j][0] = self.s(j, &rows[0]);
             s[j][1] = self.s(j, &rows[1]);
@@ -402,28 +394,35 @@ impl<const D: usize> Model<D> {
 }
 
 /// Taylor coefficients of the excitations over one step.
-#[derive(Debug, Clone)]
-pub(super) struct TaylorExcitation {
-    pub stiffness: [Coefficients; 2],
-    pub degree: [usize; 2],
-    pub impact: [Coefficients; 2],
-    pub pushed: [bool; 2],
+struct TaylorExcitation {
+    stiffness: [Coefficients; 2],
+    degree: [usize; 2],
+    impact: [Coefficients; 2],
+    pushed: [bool; 2],
 }
 
-impl TaylorExcitation {
-    pub fn new() -> Self {
-        Self {
-            stiffness: [[0.0; MAX_ORDER + 1]; 2],
-            degree: [0; 2],
-            impact: [[0.0; MAX_ORDER + 1]; 2],
-            pushed: [false; 2],
-        }
+/// Working memory of a Taylor step: coefficients of every coordinate, of s and of F_n.
+pub(crate) struct TaylorWork<const D: usize> {
+    pub rows: [[f64; D]; MAX_ORDER + 1],
+    pub s: [Coefficients; 2],
+    pub force: [Coefficients; 2],
+    excitation: TaylorExcitation,
+}
+
+impl<const D: usize> TaylorWork<D> {
+    pub fn new() -> Box<Self> {
+        const ZERO: Coefficients = [0.0; MAX_ORDER + 1];
+        let excitation =
+            TaylorExcitation { stiffness: [ZERO; 2], degree: [0; 2], impact: [ZERO; 2], pushed: [false; 2] };
+        Box::new(Self { rows: [[0.0; D]; MAX_ORDER + 1], s: [ZERO; 2], force: [ZERO; 2], excitation })
     }
 
-    pub fn fill<const D: usize>(&mut self, model: &Model<D>, phase: f64, inside: f64, order: usize) {
+    /// Sets the excitation about `phase`; `inside` is a phase in the interior of the smooth stretch.
+    pub fn excite(&mut self, model: &Model<D>, phase: f64, inside: f64, order: usize) {
+        let e = &mut self.excitation;
         for (j, h) in model.halves.iter().enumerate() {
-            self.degree[j] = h.stiffness.fill(phase, inside, order, &mut self.stiffness[j]);
-            self.pushed[j] = h.impact.fill(phase, inside, order, &mut self.impact[j]);
+            e.degree[j] = h.stiffness.fill(phase, inside, order, &mut e.stiffness[j]);
+            e.pushed[j] = h.impact.fill(phase, inside, order, &mut e.impact[j]);
         }
     }
 }

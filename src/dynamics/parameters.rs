@@ -129,7 +129,7 @@ impl Parameters {
         positive("gear radius", self.gear_radius_m)?;
         not_negative("half backlash", self.half_backlash_m)?;
         let beta = self.helix_angle_rad;
-        if !(beta.abs() < std::f64::consts::FRAC_PI_2) {
+        if beta.is_nan() || beta.abs() >= std::f64::consts::FRAC_PI_2 {
             return Err(invalid("helix angle", beta, "must be between -90 and 90 degrees"));
         }
         for h in &self.halves {

@@ -63,7 +63,7 @@ impl<const D: usize> RungeKutta<D> {
             let to_end = count <= 1.0;
             let h = if to_end { remaining } else { remaining / count };
             let phase_step = h / model.period_tau;
-            if !(h > 0.0) || (!to_end && state.phase + phase_step <= state.phase) {
+            if h.is_nan() || h <= 0.0 || (!to_end && state.phase + phase_step <= state.phase) {
                 return Err(DynamicsError::StepSizeTooSmall { time_s, step_s: h / model.omega_ref });
             }
             for i in 1..6 {

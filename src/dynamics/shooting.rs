@@ -5,12 +5,20 @@ use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
 use super::error::DynamicsError;
 use super::integrate::{Integrator, Motion, Numerics};
 use super::model::{Model, PER_HALF, State};
-use super::segment::Observer;
-use super::variation::{Both, Deviation, Variation};
+use super::variation::{Deviation, Variation};
 use crate::watch::Watch;
 
 /// Motions held by nothing move this little, in squared frequency relative to the largest (see `modal`).
 const FREE: f64 = 1e-12;
+
+/// How far and how well the motions of a search may go.
+#[derive(Clone, Copy)]
+pub(crate) struct Limits<'a> {
+    /// Local error of a step relative to the size of the motion.
+    pub tolerance: f64,
+    pub max_steps: u64,
+    pub watch: &'a Watch<'a>,
+}
 
 /// The period map of a model with its free motions (no spring holds them) set apart.
 pub(crate) struct Shooting<'m, const D: usize> {
@@ -19,6 +27,7 @@ pub(crate) struct Shooting<'m, const D: usize> {
     masses: [f64; D],
     /// Free motions, normalised to nᵀ M n = 1.
     free: Vec<[f64; D]>,
+    limits: Limits<'m>,
 }
 
 /// A motion over whole periods, and the linear map of deviations over the same time.
@@ -30,29 +39,25 @@ pub(crate) struct MapResult<const D: usize> {
 }
 
 impl<'m, const D: usize> Shooting<'m, D> {
-    pub fn new(model: &'m Model<D>, mean_stiffness_n_per_m: &[f64]) -> Result<Self, DynamicsError> {
+    pub fn new(
+        model: &'m Model<D>,
+        mean_stiffness_n_per_m: [f64; 2],
+        limits: Limits<'m>,
+    ) -> Result<Self, DynamicsError> {
         let active: Vec<usize> = model.active().collect();
         let masses = model.masses_kg();
         let free = free_motions(model, &active, &masses, mean_stiffness_n_per_m)?;
-        Ok(Self { model, active, masses, free })
+        Ok(Self { model, active, masses, free, limits })
     }
 
-    /// Goes through `periods` mesh periods from `start` with the unit deviations; `variation_model` when the deviations obey
-    /// other equations (against the symmetry) than the motion.
-    pub fn map(
-        &self,
-        motion_model: &Model<D>,
-        start: State<D>,
-        periods: u64,
-        tolerance: f64,
-        observer: &mut impl Observer<D>,
-        watch: &Watch<'_>,
-        max_steps: u64,
-    ) -> Result<MapResult<D>, DynamicsError> {
+    /// Goes through `periods` mesh periods of the motion of `motion_model` from `start` with the unit deviations of this model
+    /// (another one than the motion's to look against the symmetry).
+    pub fn map(&self, motion_model: &Model<D>, start: State<D>, periods: u64) -> Result<MapResult<D>, DynamicsError> {
+        let Limits { tolerance, max_steps, watch } = self.limits;
         let mut variation = Variation::new(self.model, Variation::units(self.model), tolerance);
         let mut motion = Motion::new(motion_model, start, Integrator::Taylor, tolerance, max_steps);
         for _ in 0..periods {
-            motion.advance_period(&mut Both(observer, &mut variation), watch, 0.0)?;
+            motion.advance_period(&mut variation, watch, 0.0)?;
             watch.checkpoint(0.0)?;
         }
         let n = self.active.len();
@@ -136,7 +141,7 @@ fn free_motions<const D: usize>(
     model: &Model<D>,
     active: &[usize],
     masses: &[f64; D],
-    mean_stiffness_n_per_m: &[f64],
+    mean_stiffness_n_per_m: [f64; 2],
 ) -> Result<Vec<[f64; D]>, DynamicsError> {
     let n = active.len();
     let mut k = DMatrix::zeros(n, n);

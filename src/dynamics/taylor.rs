@@ -7,9 +7,9 @@
 
 use super::crossing::first_crossing;
 use super::error::DynamicsError;
-use super::excitation::{Coefficients, MAX_ORDER};
+use super::excitation::MAX_ORDER;
 use super::integrate::Numerics;
-use super::model::{Contact, Model, PER_HALF, State, TaylorExcitation, W};
+use super::model::{Contact, Model, PER_HALF, State, TaylorWork, W};
 use super::segment::{Observer, Segment};
 
 /// Changes of contact per mesh period beyond which they are no longer located but left to short steps.
@@ -19,10 +19,7 @@ const MOST_CHANGES_PER_PERIOD: u32 = 20_000;
 pub(super) struct Taylor<const D: usize> {
     order: usize,
     tolerance: f64,
-    rows: Box<[[f64; D]; MAX_ORDER + 1]>,
-    s: Box<[Coefficients; 2]>,
-    force: Box<[Coefficients; 2]>,
-    excitation: Box<TaylorExcitation>,
+    work: Box<TaylorWork<D>>,
     /// Size of the recent motion: scaled velocity and acceleration, as lengths.
     size: f64,
     changes: (u64, u32),
@@ -31,16 +28,7 @@ pub(super) struct Taylor<const D: usize> {
 impl<const D: usize> Taylor<D> {
     /// `tolerance`: local error of a step relative to the size of the motion.
     pub fn new(tolerance: f64, order: usize) -> Self {
-        Self {
-            order: order.clamp(4, MAX_ORDER),
-            tolerance,
-            rows: Box::new([[0.0; D]; MAX_ORDER + 1]),
-            s: Box::new([[0.0; MAX_ORDER + 1]; 2]),
-            force: Box::new([[0.0; MAX_ORDER + 1]; 2]),
-            excitation: Box::new(TaylorExcitation::new()),
-            size: 0.0,
-            changes: (0, 0),
-        }
+        Self { order: order.clamp(4, MAX_ORDER), tolerance, work: TaylorWork::new(), size: 0.0, changes: (0, 0) }
     }
 
     /// The order that costs least at a tolerance (measured on the reference cases).
@@ -64,10 +52,10 @@ impl<const D: usize> Taylor<D> {
         observer: &mut impl Observer<D>,
     ) -> Result<(), DynamicsError> {
         let order = self.order;
-        self.excitation.fill(model, state.phase, inside, order);
-        self.rows[0] = state.x;
-        self.rows[1] = state.v;
-        model.taylor(state.contact, &self.excitation, order, true, &mut self.rows, &mut self.s, &mut self.force);
+        self.work.excite(model, state.phase, inside, order);
+        self.work.rows[0] = state.x;
+        self.work.rows[1] = state.v;
+        model.taylor(state.contact, order, true, &mut self.work);
         numerics.steps += 1;
         numerics.force_evaluations += (order - 1) as u64;
 
@@ -76,7 +64,7 @@ impl<const D: usize> Taylor<D> {
         let to_end = remaining <= wanted;
         // Two equal steps rather than a long one and a stub.
         let mut h = if to_end { remaining } else { remaining / (remaining / wanted).ceil() };
-        if !(h > 0.0) || !h.is_finite() || (!to_end && state.phase + h / model.period_tau <= state.phase) {
+        if h.is_nan() || h <= 0.0 || h.is_infinite() || (!to_end && state.phase + h / model.period_tau <= state.phase) {
             let time_s = (state.period as f64 + state.phase) * model.period_tau / model.omega_ref;
             return Err(if h.is_finite() {
                 DynamicsError::StepSizeTooSmall { time_s, step_s: h / model.omega_ref }
@@ -99,11 +87,11 @@ impl<const D: usize> Taylor<D> {
             phase: state.phase,
             h,
             degree: order,
-            rows: &self.rows,
-            force: &self.force,
+            rows: &self.work.rows,
+            force: &self.work.force,
             contact: state.contact,
         });
-        (state.x, state.v) = evaluate_rows(&self.rows[..=order], h);
+        (state.x, state.v) = evaluate_rows(&self.work.rows[..=order], h);
         match changed {
             Some((j, contact)) => {
                 state.phase = (state.phase + h / model.period_tau).min(end);
@@ -138,11 +126,11 @@ impl<const D: usize> Taylor<D> {
     }
 
     fn step_length(&mut self, remaining: f64) -> f64 {
-        let moving = norm(&self.rows[1]).max(norm(&self.rows[2]));
+        let moving = norm(&self.work.rows[1]).max(norm(&self.work.rows[2]));
         self.size = (0.98 * self.size).max(moving);
         // Below the rounding of the positions no tolerance can be met.
-        let allowed = (self.tolerance * self.size).max(1e-17 * norm(&self.rows[0]));
-        let h = reach(&self.rows[..], self.order, allowed);
+        let allowed = (self.tolerance * self.size).max(1e-17 * norm(&self.work.rows[0]));
+        let h = reach(&self.work.rows[..], self.order, allowed);
         if h.is_nan() { f64::NAN } else { h.min(remaining) }
     }
 
@@ -151,7 +139,7 @@ impl<const D: usize> Taylor<D> {
         let mut g = [0.0; MAX_ORDER + 1];
         let g = &mut g[..=self.order];
         let mut distance = |sign: f64, offset: f64, h: f64| {
-            for (g, s) in g.iter_mut().zip(&self.s[j]) {
+            for (g, s) in g.iter_mut().zip(&self.work.s[j]) {
                 *g = sign * s;
             }
             g[0] += offset;

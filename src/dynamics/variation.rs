@@ -1,7 +1,7 @@
 //! Small deviations from a motion: the linear map over mesh periods, and how fast they grow.
 
-use super::excitation::{Coefficients, MAX_ORDER};
-use super::model::{Contact, Model, State, TaylorExcitation};
+use super::excitation::MAX_ORDER;
+use super::model::{Contact, Model, State, TaylorWork};
 use super::segment::{Observer, Segment};
 use super::taylor::{evaluate_rows, step_reach};
 
@@ -18,24 +18,12 @@ pub(crate) struct Variation<'m, const D: usize> {
     pub columns: Vec<Deviation<D>>,
     tolerance: f64,
     last_contact: Option<[Contact; 2]>,
-    excitation: Box<TaylorExcitation>,
-    rows: Box<[[f64; D]; MAX_ORDER + 1]>,
-    s: Box<[Coefficients; 2]>,
-    force: Box<[Coefficients; 2]>,
+    work: Box<TaylorWork<D>>,
 }
 
 impl<'m, const D: usize> Variation<'m, D> {
     pub fn new(model: &'m Model<D>, columns: Vec<Deviation<D>>, tolerance: f64) -> Self {
-        Self {
-            model,
-            columns,
-            tolerance,
-            last_contact: None,
-            excitation: Box::new(TaylorExcitation::new()),
-            rows: Box::new([[0.0; D]; MAX_ORDER + 1]),
-            s: Box::new([[0.0; MAX_ORDER + 1]; 2]),
-            force: Box::new([[0.0; MAX_ORDER + 1]; 2]),
-        }
+        Self { model, columns, tolerance, last_contact: None, work: TaylorWork::new() }
     }
 
     /// One unit deviation per active displacement, then one per active velocity.
@@ -81,23 +69,22 @@ impl<const D: usize> Observer<D> for Variation<'_, D> {
         self.last_contact = Some(segment.contact);
         let order = segment.degree.clamp(12, MAX_ORDER);
         let inside = segment.phase + 0.5 * segment.h / self.model.period_tau;
-        self.excitation.fill(self.model, segment.phase, inside, order);
+        self.work.excite(self.model, segment.phase, inside, order);
         let mut filled_at = 0.0;
         for i in 0..self.columns.len() {
             let mut at = 0.0;
             loop {
                 if at != filled_at {
-                    self.excitation.fill(self.model, segment.phase + at / self.model.period_tau, inside, order);
+                    self.work.excite(self.model, segment.phase + at / self.model.period_tau, inside, order);
                     filled_at = at;
                 }
-                (self.rows[0], self.rows[1]) = self.columns[i];
-                let m = self.model;
-                m.taylor(segment.contact, &self.excitation, order, false, &mut self.rows, &mut self.s, &mut self.force);
+                (self.work.rows[0], self.work.rows[1]) = self.columns[i];
+                self.model.taylor(segment.contact, order, false, &mut self.work);
                 let left = segment.h - at;
-                let reach = step_reach(&self.rows[..], order, self.tolerance, f64::INFINITY);
+                let reach = step_reach(&self.work.rows[..], order, self.tolerance, f64::INFINITY);
                 // A NaN reach takes the whole step: the motion itself has diverged and says so.
                 let h = if reach < left { left / (left / reach).ceil().min(1e4) } else { left };
-                self.columns[i] = evaluate_rows(&self.rows[..=order], h);
+                self.columns[i] = evaluate_rows(&self.work.rows[..=order], h);
                 if h >= left {
                     break;
                 }

@@ -1,5 +1,8 @@
 //! From a motion to what is reported of it: RMS values, extremes, contact, regime, series, spectra.
 
+// Loops over coordinates and Taylor orders read as the formulas do with an index.
+#![allow(clippy::needless_range_loop)]
+
 mod analysis;
 mod channel;
 mod recorder;

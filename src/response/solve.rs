@@ -9,8 +9,8 @@ use super::regime::{CHAOS_PER_MESH_PERIOD, Section, lyapunov};
 use super::statistics::Gathered;
 use super::steady::{Found, Search, moved};
 use crate::dynamics::{
-    Deviation, DynamicsError, Integrator, Model, Motion, NaturalModes, Numerics, PER_HALF, Parameters, Shooting, State,
-    difference,
+    Deviation, DynamicsError, Integrator, Limits, Model, Motion, NaturalModes, Numerics, PER_HALF, Parameters,
+    Shooting, State, difference,
 };
 use crate::watch::Watch;
 
@@ -85,16 +85,32 @@ struct Run<'a> {
 const OFF_SYMMETRY: f64 = 1e-3;
 
 impl Run<'_> {
+    fn limits(&self, tolerance: f64) -> Limits<'_> {
+        Limits { tolerance, max_steps: self.analysis.max_steps, watch: self.watch }
+    }
+
+    fn motion<'m, const D: usize>(
+        &self,
+        model: &'m Model<D>,
+        start: State<D>,
+        integrator: Integrator,
+        tolerance: f64,
+    ) -> Motion<'m, D> {
+        Motion::new(model, start, integrator, tolerance, self.analysis.max_steps)
+    }
+
+    fn mean_stiffness_n_per_m(&self) -> [f64; 2] {
+        [0, 1].map(|j| self.p.halves[j].mesh_stiffness.mean_n_per_m())
+    }
+
     /// The steady state; None when six coordinates do not tell the whole story.
     fn steady<const D: usize>(&self, start: &[f64; 24], off_symmetry: bool) -> Result<Option<Response>, DynamicsError> {
         let model = Model::<D>::new(self.p)?;
         let search = Search {
             model: &model,
-            mean_stiffness_n_per_m: [0, 1].map(|j| self.p.halves[j].mesh_stiffness.mean_n_per_m()),
-            tolerance: (1e-3 * self.analysis.accuracy).clamp(1e-14, 1e-6),
-            max_steps: self.analysis.max_steps,
+            mean_stiffness_n_per_m: self.mean_stiffness_n_per_m(),
+            limits: self.limits((1e-3 * self.analysis.accuracy).clamp(1e-14, 1e-6)),
             must_repeat: self.analysis.method == Method::Periodic,
-            watch: self.watch,
         };
         let mut state = model.state_from(start);
         if off_symmetry {
@@ -110,11 +126,11 @@ impl Run<'_> {
         }
         let mut numerics = found.numerics;
         let mut recorder = self.recorder(&model, found.record);
-        let (motion, section) =
-            self.record(&model, &found.start, found.record, found.tolerance, Integrator::Taylor, &mut recorder)?;
-        numerics += motion.numerics;
+        let motion = self.motion(&model, found.start, Integrator::Taylor, found.tolerance);
+        let section = self.record(motion, found.record, &mut recorder)?;
+        numerics += section.numerics;
         let error_estimate = match &found.orbit {
-            Some((n, map)) => self.orbit_error(&model, &found, *n, map, &motion.state, &recorder)?,
+            Some((n, map)) => self.orbit_error(&model, &found, *n, map, &recorder)?,
             None => section.batch_error,
         };
         let verdict = Verdict {
@@ -131,7 +147,7 @@ impl Run<'_> {
             error_estimate,
         };
         let t0_s = if found.orbit.is_some() { 0.0 } else { found.start.period as f64 * self.p.mesh_period_s() };
-        Ok(Some(self.response(&model, recorder, section, motion.state, verdict, t0_s, found.record, numerics)))
+        Ok(Some(self.response(&model, recorder, section, verdict, t0_s, numerics)))
     }
 
     fn integrate<const D: usize>(
@@ -148,7 +164,7 @@ impl Run<'_> {
             Integrator::RungeKutta => 2e-3,
         };
         let tolerance = (per_accuracy * self.analysis.accuracy).max(1e-15);
-        let mut motion = Motion::new(&model, model.state_from(start), integrator, tolerance, self.analysis.max_steps);
+        let mut motion = self.motion(&model, model.state_from(start), integrator, tolerance);
         let before = periods - record;
         for period in 0..before {
             let fraction = period as f64 / periods as f64;
@@ -158,9 +174,9 @@ impl Run<'_> {
         let mut numerics = motion.numerics;
         let from = motion.state;
         let mut recorder = self.recorder(&model, record);
-        let (mut motion, section) = self.record(&model, &from, record, tolerance, integrator, &mut recorder)?;
-        numerics += motion.numerics;
-        let last = motion.state;
+        let recorded = self.motion(&model, from, integrator, tolerance);
+        let section = self.record(recorded, record, &mut recorder)?;
+        numerics += section.numerics;
         let repeats = section.recent.repeats(REPEATS);
         let mut verdict = Verdict {
             regime: match repeats {
@@ -175,7 +191,7 @@ impl Run<'_> {
             error_estimate: 0.0,
         };
         if repeats.is_none() {
-            motion.numerics = Numerics::default();
+            let mut motion = self.motion(&model, section.last, integrator, tolerance);
             let exponent = lyapunov(&mut motion, &model, LYAPUNOV_MESH_PERIODS, self.watch)?;
             numerics += motion.numerics;
             verdict.lyapunov = Some(exponent);
@@ -189,25 +205,21 @@ impl Run<'_> {
             // The same record at a looser tolerance; the error is proportional to it.
             let loose = (100.0 * tolerance).max(1e-13);
             let mut other = self.recorder_of_rms(&model);
-            let (motion, _) = self.record(&model, &from, record, loose, integrator, &mut other)?;
-            numerics += motion.numerics;
+            numerics += self.record(self.motion(&model, from, integrator, loose), record, &mut other)?.numerics;
             LOOSE_SAFETY * rms_difference(&recorder, &other) * tolerance / loose + ROUNDING
         };
         let t0_s = from.period as f64 * self.p.mesh_period_s();
-        Ok(self.response(&model, recorder, section, last, verdict, t0_s, record, numerics))
+        Ok(self.response(&model, recorder, section, verdict, t0_s, numerics))
     }
 
-    /// Records `periods` mesh periods from `start`.
-    fn record<'m, const D: usize>(
+    /// Records `periods` mesh periods of a motion that has just begun.
+    fn record<const D: usize>(
         &self,
-        model: &'m Model<D>,
-        start: &State<D>,
+        mut motion: Motion<'_, D>,
         periods: u64,
-        tolerance: f64,
-        integrator: Integrator,
         recorder: &mut Recorder<D>,
-    ) -> Result<(Motion<'m, D>, Record<D>), DynamicsError> {
-        let mut motion = Motion::new(model, *start, integrator, tolerance, self.analysis.max_steps);
+    ) -> Result<Record<D>, DynamicsError> {
+        let model = motion.model;
         let mut recent = Section::new();
         let mut points = Vec::with_capacity(periods as usize);
         let batch = (periods / BATCHES).max(1);
@@ -227,7 +239,13 @@ impl Run<'_> {
             }
         }
         recent.push(motion.state);
-        Ok((motion, Record { recent, points, batch_error: standard_error(&batches) }))
+        Ok(Record {
+            recent,
+            points,
+            last: motion.state,
+            numerics: motion.numerics,
+            batch_error: standard_error(&batches),
+        })
     }
 
     /// Relative error of the RMS values of a periodic motion: the map is repeated far more accurately, the start corrected by
@@ -238,19 +256,18 @@ impl Run<'_> {
         found: &Found<D>,
         n: u64,
         map: &nalgebra::DMatrix<f64>,
-        _end: &State<D>,
         recorder: &Recorder<D>,
     ) -> Result<f64, DynamicsError> {
         let tight = (1e-3 * found.tolerance).max(1e-15);
         let mut unused = self.recorder_of_rms(model);
         let start = State { period: 0, ..found.start };
-        let (motion, _) = self.record(model, &start, n, tight, Integrator::Taylor, &mut unused)?;
-        let shooting = Shooting::new(model, &[0, 1].map(|j| self.p.halves[j].mesh_stiffness.mean_n_per_m()))?;
-        let defect = difference(&motion.state, &start);
+        let once = self.record(self.motion(model, start, Integrator::Taylor, tight), n, &mut unused)?;
+        let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tight))?;
+        let defect = difference(&once.last, &start);
         let Some(correction) = shooting.correction(&defect, map, n) else { return Ok(f64::INFINITY) };
         let mut better = self.recorder_of_rms(model);
         let corrected = moved(model, start, &correction);
-        self.record(model, &corrected, n, tight, Integrator::Taylor, &mut better)?;
+        self.record(self.motion(model, corrected, Integrator::Taylor, tight), n, &mut better)?;
         Ok(SAFETY * rms_difference(recorder, &better) + ROUNDING)
     }
 
@@ -276,18 +293,17 @@ impl Run<'_> {
         Recorder::new(model, &statistics, &[], 0, 0)
     }
 
-    #[allow(clippy::too_many_arguments)]
     fn response<const D: usize>(
         &self,
         model: &Model<D>,
         mut recorder: Recorder<D>,
         record: Record<D>,
-        last: State<D>,
         verdict: Verdict,
         t0_s: f64,
-        recorded: u64,
         numerics: Numerics,
     ) -> Response {
+        let recorded = record.points.len() as u64;
+        let last = record.last;
         let right = if D > PER_HALF { 1 } else { 0 };
         let rms_of = |id: ChannelId| recorder.gathered(id).map_or(0.0, |g| g.mean_and_variance().1.sqrt());
         let both = |id: fn(u8) -> ChannelId| Halves { left: rms_of(id(0)), right: rms_of(id(right)) };
@@ -384,6 +400,8 @@ struct Verdict {
 struct Record<const D: usize> {
     recent: Section<D>,
     points: Vec<PoincarePoint>,
+    last: State<D>,
+    numerics: Numerics,
     batch_error: f64,
 }
 

@@ -4,9 +4,9 @@ use nalgebra::DMatrix;
 
 use super::regime::{CHAOS_PER_MESH_PERIOD, Section, largest, lyapunov};
 use crate::dynamics::{
-    Deviation, DynamicsError, Integrator, Model, Motion, Numerics, PER_HALF, Shooting, State, Unobserved, difference,
+    Deviation, DynamicsError, Integrator, Limits, Model, Motion, Numerics, PER_HALF, Shooting, State, Unobserved,
+    difference,
 };
-use crate::watch::Watch;
 
 /// Mesh periods after which a motion that has not come near to repeating is taken not to repeat.
 const PATIENCE_MESH_PERIODS: u64 = 1500;
@@ -40,22 +40,24 @@ pub(super) struct Found<const D: usize> {
 pub(super) struct Search<'a, const D: usize> {
     pub model: &'a Model<D>,
     pub mean_stiffness_n_per_m: [f64; 2],
-    pub tolerance: f64,
-    pub max_steps: u64,
+    pub limits: Limits<'a>,
     /// A motion that does not repeat is an error.
     pub must_repeat: bool,
-    pub watch: &'a Watch<'a>,
 }
 
 impl<const D: usize> Search<'_, D> {
     /// The steady state reached from `start`, or the periodic one without loss of contact when it exists and is stable.
     pub fn run(&self, start: State<D>) -> Result<Found<D>, DynamicsError> {
-        let shooting = Shooting::new(self.model, &self.mean_stiffness_n_per_m)?;
+        let shooting = Shooting::new(self.model, self.mean_stiffness_n_per_m, self.limits)?;
         let mut numerics = Numerics::default();
         if let Some(found) = self.without_separation(&shooting, start, &mut numerics)? {
             return Ok(found);
         }
         self.with_separation(&shooting, start, numerics)
+    }
+
+    fn motion(&self, start: State<D>) -> Motion<'_, D> {
+        Motion::new(self.model, start, Integrator::Taylor, self.limits.tolerance, self.limits.max_steps)
     }
 
     /// With contact held the equations are linear: one period from any start gives the periodic solution.
@@ -70,7 +72,7 @@ impl<const D: usize> Search<'_, D> {
         for j in 0..Model::<D>::HALVES {
             first.contact[j] = if self.model.halves[j].load < 0.0 { -1 } else { 1 };
         }
-        let once = shooting.map(&held, first, 1, self.tolerance, &mut Unobserved, self.watch, self.max_steps)?;
+        let once = shooting.map(&held, first, 1)?;
         *numerics += once.numerics;
         let defect = difference(&once.end, &first);
         let unbalanced_n = shooting.unbalanced_n(&defect, 1);
@@ -88,8 +90,8 @@ impl<const D: usize> Search<'_, D> {
         if orbit_start.contact != first.contact {
             return Ok(None);
         }
-        let mut motion = Motion::new(self.model, orbit_start, Integrator::Taylor, self.tolerance, self.max_steps);
-        motion.advance_period(&mut Unobserved, self.watch, 0.0)?;
+        let mut motion = self.motion(orbit_start);
+        motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
         *numerics += motion.numerics;
         if motion.contact_changed {
             return Ok(None);
@@ -102,7 +104,7 @@ impl<const D: usize> Search<'_, D> {
             floquet: modulus.map(|m| m.max(against)),
             lyapunov: None,
             leaves_symmetry: against > 1.0,
-            tolerance: self.tolerance,
+            tolerance: self.limits.tolerance,
             numerics: *numerics,
         }))
     }
@@ -113,14 +115,14 @@ impl<const D: usize> Search<'_, D> {
         start: State<D>,
         mut numerics: Numerics,
     ) -> Result<Found<D>, DynamicsError> {
-        let mut motion = Motion::new(self.model, start, Integrator::Taylor, self.tolerance, self.max_steps);
+        let mut motion = self.motion(start);
         let mut section = Section::new();
         section.push(motion.state);
         let mut next_try = 8;
         for period in 1..=PATIENCE_MESH_PERIODS {
             let fraction = 0.9 * period as f64 / PATIENCE_MESH_PERIODS as f64;
-            motion.advance_period(&mut Unobserved, self.watch, fraction)?;
-            self.watch.checkpoint(fraction)?;
+            motion.advance_period(&mut Unobserved, self.limits.watch, fraction)?;
+            self.limits.watch.checkpoint(fraction)?;
             section.push(motion.state);
             if period < next_try {
                 continue;
@@ -140,13 +142,13 @@ impl<const D: usize> Search<'_, D> {
             let change = section.change(1).unwrap_or(f64::INFINITY);
             return Err(DynamicsError::NotPeriodic { mesh_periods: PATIENCE_MESH_PERIODS, change });
         }
-        let mut across = Motion::new(self.model, motion.state, Integrator::Taylor, self.tolerance, self.max_steps);
-        let exponent = lyapunov(&mut across, self.model, LYAPUNOV_MESH_PERIODS, self.watch)?;
+        let mut across = self.motion(motion.state);
+        let exponent = lyapunov(&mut across, self.model, LYAPUNOV_MESH_PERIODS, self.limits.watch)?;
         numerics += across.numerics;
         let leaves_symmetry = if D == PER_HALF {
-            let mut against = Motion::new(self.model, motion.state, Integrator::Taylor, self.tolerance, self.max_steps);
+            let mut against = self.motion(motion.state);
             let opposite = self.model.against_symmetry();
-            let exponent = lyapunov(&mut against, &opposite, LYAPUNOV_MESH_PERIODS, self.watch)?;
+            let exponent = lyapunov(&mut against, &opposite, LYAPUNOV_MESH_PERIODS, self.limits.watch)?;
             numerics += against.numerics;
             exponent > CHAOS_PER_MESH_PERIOD
         } else {
@@ -159,7 +161,7 @@ impl<const D: usize> Search<'_, D> {
             floquet: None,
             lyapunov: Some(exponent),
             leaves_symmetry,
-            tolerance: self.tolerance,
+            tolerance: self.limits.tolerance,
             numerics,
         })
     }
@@ -176,12 +178,11 @@ impl<const D: usize> Search<'_, D> {
         let mut numerics = Numerics::default();
         let mut last = f64::INFINITY;
         for _ in 0..10 {
-            let round =
-                shooting.map(self.model, start, n, self.tolerance, &mut Unobserved, self.watch, self.max_steps)?;
+            let round = shooting.map(self.model, start, n)?;
             numerics += round.numerics;
             let defect = difference(&round.end, &start);
             let change = largest(&defect) / size;
-            if change < 10.0 * self.tolerance || (change < 1e-9 && change >= 0.3 * last) {
+            if change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last) {
                 let modulus = shooting.multipliers(&round.map).first().map(|m| m.norm());
                 if !modulus.is_some_and(|m| m < 1.0) {
                     return Ok(None);
@@ -194,7 +195,7 @@ impl<const D: usize> Search<'_, D> {
                     floquet: modulus.map(|m| m.max(against).powf(1.0 / n as f64)),
                     lyapunov: None,
                     leaves_symmetry: against > 1.0,
-                    tolerance: self.tolerance,
+                    tolerance: self.limits.tolerance,
                     numerics,
                 }));
             }
@@ -215,8 +216,8 @@ impl<const D: usize> Search<'_, D> {
             return Ok(0.0);
         }
         let opposite = self.model.against_symmetry();
-        let shooting = Shooting::new(&opposite, &self.mean_stiffness_n_per_m)?;
-        let round = shooting.map(self.model, start, n, self.tolerance, &mut Unobserved, self.watch, self.max_steps)?;
+        let shooting = Shooting::new(&opposite, self.mean_stiffness_n_per_m, self.limits)?;
+        let round = shooting.map(self.model, start, n)?;
         Ok(shooting.multipliers(&round.map).first().map_or(f64::INFINITY, |m| m.norm()))
     }
 }
