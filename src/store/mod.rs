@@ -1,1 +1,35 @@
-//! (room under construction)
+//! What is kept: jobs, their history, results, series and reusable stages, in SQLite. The only SQL.
+//!
+//! Invariant: every transition of a job is one guarded `UPDATE` (of a running job: fenced by its `attempt`) in one
+//! transaction with its row in `job_events`. A terminal state is final; a result row exists exactly when the job
+//! succeeded, an error exactly when it failed.
+
+mod cancel;
+mod connect;
+mod failure;
+mod finish;
+mod lifecycle;
+mod list;
+mod lookup;
+mod record;
+mod result;
+mod run;
+mod series;
+mod stages;
+mod submit;
+
+pub use cancel::{Cancellation, Deletion};
+pub use connect::{Store, StoreConfig, StoreError};
+pub use failure::Failure;
+pub use finish::Completion;
+pub use lifecycle::{JobId, State};
+pub use list::{JobFilter, JobPage};
+pub use lookup::Counts;
+pub use record::JobRecord;
+pub use result::{Reusable, StoredResult};
+pub use run::{Claim, Recovery};
+pub use series::{PackedSeries, SeriesEntry};
+pub use submit::{NewJob, Submission};
+
+#[cfg(test)]
+mod tests;

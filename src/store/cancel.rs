@@ -1,0 +1,87 @@
+//! Canceling and deleting.
+
+use super::connect::{Store, StoreError};
+use super::lifecycle::JobId;
+use super::record::{JobRecord, job_columns, record_event};
+use jiff::Timestamp;
+
+/// What became of the wish to cancel a job.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cancellation {
+    /// It had not started: canceled.
+    Canceled(JobRecord),
+    /// It runs: noted, the solver will stop.
+    Asked(JobRecord),
+    /// It had ended before.
+    Ended(JobRecord),
+    NotFound,
+}
+
+/// What became of the wish to delete a job.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Deletion {
+    Deleted,
+    /// It has not ended.
+    Live,
+    NotFound,
+}
+
+impl Store {
+    /// queued → canceled, or notes that a running job is to stop.
+    pub async fn cancel(&self, id: JobId, now: Timestamp) -> Result<Cancellation, StoreError> {
+        let mut transaction = self.write().await?;
+        let canceled: Option<JobRecord> = sqlx::query_as(concat!(
+            "UPDATE jobs SET state = 'canceled', revision = revision + 1, ended_at_us = $2, \
+             cancel_requested_at_us = COALESCE(cancel_requested_at_us, $2) \
+             WHERE id = $1 AND state = 'queued' RETURNING ",
+            job_columns!()
+        ))
+        .bind(id.to_string())
+        .bind(now.as_microsecond())
+        .fetch_optional(&mut *transaction)
+        .await?;
+        if let Some(job) = canceled {
+            record_event(&mut transaction, &job, now).await?;
+            transaction.commit().await?;
+            return Ok(Cancellation::Canceled(job));
+        }
+        sqlx::query(
+            "UPDATE jobs SET cancel_requested_at_us = $2, revision = revision + 1 \
+             WHERE id = $1 AND state = 'running' AND cancel_requested_at_us IS NULL",
+        )
+        .bind(id.to_string())
+        .bind(now.as_microsecond())
+        .execute(&mut *transaction)
+        .await?;
+        let job: Option<JobRecord> = sqlx::query_as(concat!("SELECT ", job_columns!(), " FROM jobs WHERE id = $1"))
+            .bind(id.to_string())
+            .fetch_optional(&mut *transaction)
+            .await?;
+        transaction.commit().await?;
+        Ok(match job {
+            None => Cancellation::NotFound,
+            Some(job) if job.state.is_ended() => Cancellation::Ended(job),
+            Some(job) => Cancellation::Asked(job),
+        })
+    }
+
+    /// Removes an ended job and everything it left.
+    pub async fn delete(&self, id: JobId) -> Result<Deletion, StoreError> {
+        let mut transaction = self.write().await?;
+        let deleted =
+            sqlx::query("DELETE FROM jobs WHERE id = $1 AND state IN ('succeeded', 'failed', 'canceled')")
+                .bind(id.to_string())
+                .execute(&mut *transaction)
+                .await?;
+        let live = sqlx::query("SELECT 1 FROM jobs WHERE id = $1")
+            .bind(id.to_string())
+            .fetch_optional(&mut *transaction)
+            .await?;
+        transaction.commit().await?;
+        Ok(match (deleted.rows_affected(), live) {
+            (0, None) => Deletion::NotFound,
+            (0, Some(_)) => Deletion::Live,
+            _ => Deletion::Deleted,
+        })
+    }
+}

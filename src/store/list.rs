@@ -1,0 +1,58 @@
+//! Listing jobs, newest first, a page at a time.
+
+use super::connect::{Store, StoreError};
+use super::lifecycle::{JobId, State};
+use super::record::{JobRecord, job_columns};
+use sqlx::{QueryBuilder, Sqlite};
+
+/// Which jobs to list; an empty filter lists all.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct JobFilter {
+    /// Any of these states; all when empty.
+    pub states: Vec<State>,
+    pub kind: Option<String>,
+    pub label: Option<String>,
+}
+
+/// Some jobs, newest first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JobPage {
+    pub jobs: Vec<JobRecord>,
+    /// Whether older jobs follow.
+    pub more: bool,
+}
+
+impl Store {
+    /// Up to `limit` jobs older than `before` (keyset: ids sort by time), newest first.
+    pub async fn list(
+        &self,
+        filter: &JobFilter,
+        before: Option<JobId>,
+        limit: u32,
+    ) -> Result<JobPage, StoreError> {
+        let mut query: QueryBuilder<Sqlite> =
+            QueryBuilder::new(concat!("SELECT ", job_columns!(), " FROM jobs WHERE 1 = 1"));
+        if !filter.states.is_empty() {
+            query.push(" AND state IN (");
+            let mut words = query.separated(", ");
+            for state in &filter.states {
+                words.push_bind(state.word());
+            }
+            query.push(")");
+        }
+        if let Some(kind) = &filter.kind {
+            query.push(" AND kind = ").push_bind(kind.clone());
+        }
+        if let Some(label) = &filter.label {
+            query.push(" AND label = ").push_bind(label.clone());
+        }
+        if let Some(before) = before {
+            query.push(" AND id < ").push_bind(before.to_string());
+        }
+        query.push(" ORDER BY id DESC LIMIT ").push_bind(i64::from(limit) + 1);
+        let mut jobs: Vec<JobRecord> = query.build_query_as().fetch_all(&self.reader).await?;
+        let more = jobs.len() > limit as usize;
+        jobs.truncate(limit as usize);
+        Ok(JobPage { jobs, more })
+    }
+}

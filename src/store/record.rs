@@ -1,0 +1,115 @@
+//! One row of `jobs`, without its document.
+
+use super::connect::StoreError;
+use super::failure::Failure;
+use super::lifecycle::{JobId, State};
+use jiff::Timestamp;
+use sqlx::sqlite::SqliteRow;
+use sqlx::{FromRow, Row, Sqlite, Transaction};
+use std::str::FromStr;
+
+/// A job as it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JobRecord {
+    pub id: JobId,
+    pub kind: String,
+    pub name: Option<String>,
+    pub label: Option<String>,
+    pub state: State,
+    /// Grows with every visible change.
+    pub revision: i64,
+    /// How often it was started.
+    pub attempt: i64,
+    /// Fraction of the whole job, 0 to 1.
+    pub progress: f64,
+    /// Stage that runs, or ran last.
+    pub stage: Option<String>,
+    pub input_hash: String,
+    pub solver_version: String,
+    pub submitted_at: Timestamp,
+    pub started_at: Option<Timestamp>,
+    pub ended_at: Option<Timestamp>,
+    pub cancel_requested_at: Option<Timestamp>,
+    pub error: Option<Failure>,
+    /// Job whose result was taken instead of computing.
+    pub reused_from: Option<JobId>,
+    /// Request that submitted it.
+    pub request_id: Option<String>,
+}
+
+/// Columns of a [`JobRecord`], as text that SQL statements are put together from.
+macro_rules! job_columns {
+    () => {
+        "id, kind, name, label, state, revision, attempt, progress, stage, input_hash, solver_version, \
+         submitted_at_us, started_at_us, ended_at_us, cancel_requested_at_us, error, reused_from, request_id"
+    };
+}
+pub(super) use job_columns;
+
+impl<'r> FromRow<'r, SqliteRow> for JobRecord {
+    fn from_row(row: &'r SqliteRow) -> Result<Self, sqlx::Error> {
+        let state: String = row.try_get("state")?;
+        let error: Option<String> = row.try_get("error")?;
+        Ok(Self {
+            id: parsed("id", row.try_get("id")?)?,
+            kind: row.try_get("kind")?,
+            name: row.try_get("name")?,
+            label: row.try_get("label")?,
+            state: State::from_str(&state).map_err(|()| decode("state", "unknown word"))?,
+            revision: row.try_get("revision")?,
+            attempt: row.try_get("attempt")?,
+            progress: row.try_get("progress")?,
+            stage: row.try_get("stage")?,
+            input_hash: row.try_get("input_hash")?,
+            solver_version: row.try_get("solver_version")?,
+            submitted_at: timestamp("submitted_at_us", row.try_get("submitted_at_us")?)?,
+            started_at: optional_timestamp(row, "started_at_us")?,
+            ended_at: optional_timestamp(row, "ended_at_us")?,
+            cancel_requested_at: optional_timestamp(row, "cancel_requested_at_us")?,
+            error: error
+                .map(|text| serde_json::from_str(&text).map_err(|error| decode("error", error)))
+                .transpose()?,
+            reused_from: row
+                .try_get::<Option<String>, _>("reused_from")?
+                .map(|text| parsed("reused_from", text))
+                .transpose()?,
+            request_id: row.try_get("request_id")?,
+        })
+    }
+}
+
+pub(super) fn parsed<T: FromStr>(column: &'static str, text: String) -> Result<T, sqlx::Error>
+where
+    T::Err: std::fmt::Display,
+{
+    text.parse().map_err(|error| decode(column, error))
+}
+
+fn optional_timestamp(row: &SqliteRow, column: &'static str) -> Result<Option<Timestamp>, sqlx::Error> {
+    row.try_get::<Option<i64>, _>(column)?.map(|value| timestamp(column, value)).transpose()
+}
+
+fn timestamp(column: &'static str, microseconds: i64) -> Result<Timestamp, sqlx::Error> {
+    Timestamp::from_microsecond(microseconds).map_err(|error| decode(column, error))
+}
+
+fn decode(column: &'static str, detail: impl std::fmt::Display) -> sqlx::Error {
+    sqlx::Error::ColumnDecode { index: column.to_owned(), source: detail.to_string().into() }
+}
+
+/// Writes the history row of a transition that was just made.
+pub(super) async fn record_event(
+    transaction: &mut Transaction<'static, Sqlite>,
+    job: &JobRecord,
+    now: Timestamp,
+) -> Result<(), StoreError> {
+    sqlx::query("INSERT INTO job_events (job_id, revision, at_us, state, attempt) VALUES ($1, $2, $3, $4, $5)")
+        .bind(job.id.to_string())
+        .bind(job.revision)
+        .bind(now.as_microsecond())
+        .bind(job.state.word())
+        .bind(job.attempt)
+        .execute(&mut **transaction)
+        .await?;
+    Ok(())
+}

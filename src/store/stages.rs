@@ -1,0 +1,52 @@
+//! Finished stages kept for reuse: a cache bounded in size, the oldest go first.
+
+use super::connect::{Store, StoreError};
+use jiff::Timestamp;
+use sqlx::Row;
+
+impl Store {
+    /// The bytes of a stage, if they are still there.
+    pub async fn stage(&self, hash: &str) -> Result<Option<Vec<u8>>, StoreError> {
+        let row =
+            sqlx::query("SELECT bytes FROM stages WHERE hash = $1").bind(hash).fetch_optional(&self.reader).await?;
+        Ok(row.map(|row| row.try_get("bytes")).transpose()?)
+    }
+
+    /// Keeps the bytes of a stage; one that would fill more than the whole cache is not kept.
+    pub async fn save_stage(
+        &self,
+        hash: &str,
+        stage: &str,
+        solver_version: &str,
+        bytes: &[u8],
+        now: Timestamp,
+    ) -> Result<(), StoreError> {
+        let size = bytes.len() as i64;
+        if size > self.stage_cache_bytes {
+            return Ok(());
+        }
+        let mut transaction = self.write().await?;
+        sqlx::query(
+            "INSERT INTO stages (hash, stage, solver_version, bytes, size_bytes, created_at_us) \
+             VALUES ($1, $2, $3, $4, $5, $6) ON CONFLICT (hash) DO NOTHING",
+        )
+        .bind(hash)
+        .bind(stage)
+        .bind(solver_version)
+        .bind(bytes)
+        .bind(size)
+        .bind(now.as_microsecond())
+        .execute(&mut *transaction)
+        .await?;
+        // Everything older than the newest rows that fit together.
+        sqlx::query(
+            "DELETE FROM stages WHERE hash IN (SELECT hash FROM (SELECT hash, SUM(size_bytes) OVER \
+             (ORDER BY created_at_us DESC, hash) AS total FROM stages) WHERE total > $1)",
+        )
+        .bind(self.stage_cache_bytes)
+        .execute(&mut *transaction)
+        .await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+}

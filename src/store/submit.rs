@@ -1,0 +1,141 @@
+//! Accepting a job.
+
+use super::connect::{Store, StoreError};
+use super::finish::{Completion, complete};
+use super::lifecycle::JobId;
+use super::record::{JobRecord, job_columns, record_event};
+use jiff::Timestamp;
+use sqlx::{Row, Sqlite, Transaction};
+
+/// A job to be written.
+#[derive(Debug, Clone)]
+pub struct NewJob {
+    pub id: JobId,
+    pub kind: &'static str,
+    pub name: Option<String>,
+    pub label: Option<String>,
+    /// The document with every default filled in, as JSON.
+    pub input: String,
+    pub input_hash: String,
+    pub solver_version: &'static str,
+    pub request_id: Option<String>,
+    /// The client's key and a hash of what it sent with it.
+    pub idempotency: Option<(String, String)>,
+}
+
+/// What became of a submission.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Submission {
+    /// Written: queued, or already ended with a result that was there.
+    Accepted(JobRecord),
+    /// The same key and document were submitted before: that job.
+    Replayed(JobRecord),
+    /// The key was used before with another document.
+    KeyReused,
+    /// As many jobs wait as may.
+    Full,
+}
+
+impl Store {
+    /// Writes a job unless `capacity` jobs already wait. With `reuse`, the job ends in the same transaction with that
+    /// result and takes no place in the queue.
+    pub async fn submit(
+        &self,
+        job: NewJob,
+        reuse: Option<Completion>,
+        capacity: u32,
+        now: Timestamp,
+    ) -> Result<Submission, StoreError> {
+        let mut transaction = self.write().await?;
+        if let Some(earlier) = earlier_submission(&mut transaction, &job).await? {
+            return Ok(earlier);
+        }
+        let mut record = insert(&mut transaction, &job, now).await?;
+        let mut ended = false;
+        if let Some(completion) = &reuse {
+            record = start(&mut transaction, &record, now).await?;
+            if let Some(done) = complete(&mut transaction, record.id, record.attempt, completion, now).await? {
+                record = done;
+                ended = true;
+            } else {
+                // The job it came from was deleted in between: start afresh.
+                transaction.rollback().await?;
+                return Box::pin(self.submit(job, None, capacity, now)).await;
+            }
+        }
+        if !ended && waiting(&mut transaction).await? > i64::from(capacity) {
+            return Ok(Submission::Full);
+        }
+        transaction.commit().await?;
+        Ok(Submission::Accepted(record))
+    }
+}
+
+async fn earlier_submission(
+    transaction: &mut Transaction<'static, Sqlite>,
+    job: &NewJob,
+) -> Result<Option<Submission>, StoreError> {
+    let Some((key, hash)) = &job.idempotency else { return Ok(None) };
+    let row = sqlx::query(concat!("SELECT idempotency_hash, ", job_columns!(), " FROM jobs WHERE idempotency_key = $1"))
+        .bind(key)
+        .fetch_optional(&mut **transaction)
+        .await?;
+    let Some(row) = row else { return Ok(None) };
+    let earlier: String = row.try_get("idempotency_hash")?;
+    if earlier != *hash {
+        return Ok(Some(Submission::KeyReused));
+    }
+    Ok(Some(Submission::Replayed(sqlx::FromRow::from_row(&row)?)))
+}
+
+async fn insert(
+    transaction: &mut Transaction<'static, Sqlite>,
+    job: &NewJob,
+    now: Timestamp,
+) -> Result<JobRecord, StoreError> {
+    let (key, hash) = job.idempotency.clone().unzip();
+    let record: JobRecord = sqlx::query_as(concat!(
+        "INSERT INTO jobs (id, kind, name, label, state, revision, attempt, input, input_hash, solver_version, \
+         submitted_at_us, request_id, idempotency_key, idempotency_hash) \
+         VALUES ($1, $2, $3, $4, 'queued', 1, 0, $5, $6, $7, $8, $9, $10, $11) RETURNING ",
+        job_columns!()
+    ))
+    .bind(job.id.to_string())
+    .bind(job.kind)
+    .bind(&job.name)
+    .bind(&job.label)
+    .bind(&job.input)
+    .bind(&job.input_hash)
+    .bind(job.solver_version)
+    .bind(now.as_microsecond())
+    .bind(&job.request_id)
+    .bind(key)
+    .bind(hash)
+    .fetch_one(&mut **transaction)
+    .await?;
+    record_event(transaction, &record, now).await?;
+    Ok(record)
+}
+
+async fn start(
+    transaction: &mut Transaction<'static, Sqlite>,
+    job: &JobRecord,
+    now: Timestamp,
+) -> Result<JobRecord, StoreError> {
+    let record: JobRecord = sqlx::query_as(concat!(
+        "UPDATE jobs SET state = 'running', attempt = attempt + 1, revision = revision + 1, started_at_us = $2 \
+         WHERE id = $1 AND state = 'queued' RETURNING ",
+        job_columns!()
+    ))
+    .bind(job.id.to_string())
+    .bind(now.as_microsecond())
+    .fetch_one(&mut **transaction)
+    .await?;
+    record_event(transaction, &record, now).await?;
+    Ok(record)
+}
+
+async fn waiting(transaction: &mut Transaction<'static, Sqlite>) -> Result<i64, StoreError> {
+    let row = sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'").fetch_one(&mut **transaction).await?;
+    Ok(row.try_get("n")?)
+}

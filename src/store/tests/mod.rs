@@ -1,0 +1,61 @@
+mod history;
+mod lifecycle;
+mod listing;
+mod schema;
+mod series;
+mod stages;
+
+use super::*;
+use jiff::Timestamp;
+use tempfile::TempDir;
+
+pub(super) struct Fixture {
+    pub store: Store,
+    pub directory: TempDir,
+}
+
+pub(super) async fn fixture() -> Fixture {
+    let directory = tempfile::tempdir().expect("temporary directory");
+    let store = Store::open(&StoreConfig::at(directory.path().join("jobs.db"))).await.expect("store opens");
+    Fixture { store, directory }
+}
+
+pub(super) fn at(second: i64) -> Timestamp {
+    Timestamp::from_second(1_800_000_000 + second).expect("a valid time")
+}
+
+pub(super) fn new_job(hash: &str) -> NewJob {
+    NewJob {
+        id: JobId::new(),
+        kind: "response",
+        name: Some("name".into()),
+        label: None,
+        input: format!("{{\"hash\":\"{hash}\"}}"),
+        input_hash: hash.into(),
+        solver_version: "test-1",
+        request_id: Some("request".into()),
+        idempotency: None,
+    }
+}
+
+pub(super) fn completion(hash: &str) -> Completion {
+    Completion {
+        body: format!("{{\"of\":\"{hash}\"}}"),
+        input_hash: hash.into(),
+        solver_version: "test-1".into(),
+        series: Vec::new(),
+        reused_from: None,
+    }
+}
+
+pub(super) async fn queued(store: &Store, hash: &str) -> JobRecord {
+    match store.submit(new_job(hash), None, 100, at(0)).await.expect("submits") {
+        Submission::Accepted(job) => job,
+        other => panic!("not accepted: {other:?}"),
+    }
+}
+
+pub(super) async fn running(store: &Store, hash: &str) -> JobRecord {
+    queued(store, hash).await;
+    store.claim_next(at(1)).await.expect("claims").expect("a job waits").job
+}
