@@ -68,11 +68,10 @@ impl Store {
     /// Removes an ended job and everything it left.
     pub async fn delete(&self, id: JobId) -> Result<Deletion, StoreError> {
         let mut transaction = self.write().await?;
-        let deleted =
-            sqlx::query("DELETE FROM jobs WHERE id = $1 AND state IN ('succeeded', 'failed', 'canceled')")
-                .bind(id.to_string())
-                .execute(&mut *transaction)
-                .await?;
+        let deleted = sqlx::query("DELETE FROM jobs WHERE id = $1 AND state IN ('succeeded', 'failed', 'canceled')")
+            .bind(id.to_string())
+            .execute(&mut *transaction)
+            .await?;
         let live = sqlx::query("SELECT 1 FROM jobs WHERE id = $1")
             .bind(id.to_string())
             .fetch_optional(&mut *transaction)

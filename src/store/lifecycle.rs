@@ -6,8 +6,7 @@ use std::str::FromStr;
 use uuid::Uuid;
 
 /// Identity of a job: a UUIDv7, so that ids sort by time of submission.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(transparent)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct JobId(Uuid);
 
 impl JobId {

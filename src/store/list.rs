@@ -24,12 +24,7 @@ pub struct JobPage {
 
 impl Store {
     /// Up to `limit` jobs older than `before` (keyset: ids sort by time), newest first.
-    pub async fn list(
-        &self,
-        filter: &JobFilter,
-        before: Option<JobId>,
-        limit: u32,
-    ) -> Result<JobPage, StoreError> {
+    pub async fn list(&self, filter: &JobFilter, before: Option<JobId>, limit: u32) -> Result<JobPage, StoreError> {
         let mut query: QueryBuilder<Sqlite> =
             QueryBuilder::new(concat!("SELECT ", job_columns!(), " FROM jobs WHERE 1 = 1"));
         if !filter.states.is_empty() {

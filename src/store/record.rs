@@ -66,9 +66,7 @@ impl<'r> FromRow<'r, SqliteRow> for JobRecord {
             started_at: optional_timestamp(row, "started_at_us")?,
             ended_at: optional_timestamp(row, "ended_at_us")?,
             cancel_requested_at: optional_timestamp(row, "cancel_requested_at_us")?,
-            error: error
-                .map(|text| serde_json::from_str(&text).map_err(|error| decode("error", error)))
-                .transpose()?,
+            error: error.map(|text| serde_json::from_str(&text).map_err(|error| decode("error", error))).transpose()?,
             reused_from: row
                 .try_get::<Option<String>, _>("reused_from")?
                 .map(|text| parsed("reused_from", text))

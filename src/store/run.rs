@@ -91,17 +91,13 @@ impl Store {
                 recovery.given_up += 1;
             } else {
                 release_in(&mut transaction, job.id, job.attempt, now).await?;
-                let counter = if job.cancel_requested_at.is_some() {
-                    &mut recovery.canceled
-                } else {
-                    &mut recovery.requeued
-                };
+                let counter =
+                    if job.cancel_requested_at.is_some() { &mut recovery.canceled } else { &mut recovery.requeued };
                 *counter += 1;
             }
         }
-        let row = sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'")
-            .fetch_one(&mut *transaction)
-            .await?;
+        let row =
+            sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'").fetch_one(&mut *transaction).await?;
         recovery.waiting = row.try_get::<i64, _>("n")?.unsigned_abs();
         transaction.commit().await?;
         Ok(recovery)

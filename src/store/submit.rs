@@ -76,10 +76,11 @@ async fn earlier_submission(
     job: &NewJob,
 ) -> Result<Option<Submission>, StoreError> {
     let Some((key, hash)) = &job.idempotency else { return Ok(None) };
-    let row = sqlx::query(concat!("SELECT idempotency_hash, ", job_columns!(), " FROM jobs WHERE idempotency_key = $1"))
-        .bind(key)
-        .fetch_optional(&mut **transaction)
-        .await?;
+    let row =
+        sqlx::query(concat!("SELECT idempotency_hash, ", job_columns!(), " FROM jobs WHERE idempotency_key = $1"))
+            .bind(key)
+            .fetch_optional(&mut **transaction)
+            .await?;
     let Some(row) = row else { return Ok(None) };
     let earlier: String = row.try_get("idempotency_hash")?;
     if earlier != *hash {
@@ -136,6 +137,7 @@ async fn start(
 }
 
 async fn waiting(transaction: &mut Transaction<'static, Sqlite>) -> Result<i64, StoreError> {
-    let row = sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'").fetch_one(&mut **transaction).await?;
+    let row =
+        sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'").fetch_one(&mut **transaction).await?;
     Ok(row.try_get("n")?)
 }

@@ -39,10 +39,7 @@ async fn apply(store: &Store, id: JobId, step: Step) {
 
 fn is_permitted(from: State, to: State) -> bool {
     use State::*;
-    matches!(
-        (from, to),
-        (Queued, Running | Canceled) | (Running, Succeeded | Failed | Canceled | Queued)
-    )
+    matches!((from, to), (Queued, Running | Canceled) | (Running, Succeeded | Failed | Canceled | Queued))
 }
 
 proptest! {

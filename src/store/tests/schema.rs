@@ -15,8 +15,7 @@ fn every_migration_file_is_embedded() {
 async fn the_database_runs_as_configured() {
     let fixture = fixture().await;
     let pragma = async |name: &'static str| -> String {
-        let row: (String,) =
-            sqlx::query_as(name).fetch_one(&fixture.store.writer).await.expect("pragma answers");
+        let row: (String,) = sqlx::query_as(name).fetch_one(&fixture.store.writer).await.expect("pragma answers");
         row.0
     };
     assert_eq!(pragma("SELECT journal_mode FROM pragma_journal_mode").await, "wal");
