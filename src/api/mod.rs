@@ -1,1 +1,25 @@
-//! (room under construction)
+//! The only HTTP. One file per endpoint in [`routes`]; what they share is what a request says ([`request`]), what a job
+//! looks like from outside ([`view`]) and how everything that goes wrong is answered ([`problem`]).
+//!
+//! Invariant: every answer with a status of 400 or above is `application/problem+json` in one schema, with a code of a
+//! closed list; the envelope turns what the framework itself refuses into the same form.
+
+mod config;
+mod downsample;
+mod envelope;
+mod openapi;
+mod problem;
+mod request;
+mod router;
+mod routes;
+mod serve;
+mod state;
+mod telemetry;
+mod view;
+
+pub use config::{HttpConfig, MAX_BODY_BYTES, MAX_WAIT_S};
+pub use openapi::openapi_json;
+pub use problem::{Problem, ProblemCode};
+pub use router::router;
+pub use serve::serve;
+pub use state::AppState;

@@ -1,1 +1,23 @@
-//! (room under construction)
+//! The only bridge between async and the CPU: jobs are accepted here, handed to a queue, run on one pool of threads, and
+//! what becomes of them is written and told to whoever waits.
+//!
+//! Invariant: nothing here knows HTTP or SQL; a job's state changes only through the [`Recorder`].
+
+mod config;
+mod hub;
+mod jobs;
+mod local;
+mod queue;
+mod recorder;
+mod reuse;
+mod run;
+mod solver;
+mod stages;
+
+pub use config::WorkConfig;
+pub use hub::Subscription;
+pub use jobs::{Jobs, SubmitError, SubmitRequest, Submitted};
+pub use local::LocalQueue;
+pub use queue::{Pending, Queue, Workers};
+pub use recorder::{Clock, Recorder};
+pub use solver::{Solver, StudySolver};

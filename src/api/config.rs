@@ -1,0 +1,50 @@
+//! How the service is reached, and the limits of requests.
+
+use std::net::SocketAddr;
+use std::time::Duration;
+
+/// Largest request body.
+pub const MAX_BODY_BYTES: usize = 1 << 20;
+/// Longest wait that `Prefer: wait=` is given.
+pub const MAX_WAIT_S: u64 = 30;
+/// Page of a job list: default and cap.
+pub(super) const DEFAULT_PAGE: u32 = 50;
+pub(super) const MAX_PAGE: u32 = 200;
+/// Points of a downsampled series: default and bounds.
+pub(super) const DEFAULT_POINTS: u64 = 2000;
+pub(super) const MIN_POINTS: u64 = 4;
+pub(super) const MAX_POINTS: u64 = 100_000;
+/// Samples that one request for a series without downsampling may take.
+pub(super) const MAX_RAW_POINTS: u64 = 1_000_000;
+/// Longest `Idempotency-Key`.
+pub(super) const MAX_KEY_CHARS: usize = 255;
+/// Seconds after which a client should look again.
+pub(super) const RETRY_LIVE_S: u64 = 1;
+pub(super) const RETRY_FULL_S: u64 = 5;
+/// Event streams say something at least this often.
+pub(super) const KEEP_ALIVE: Duration = Duration::from_secs(15);
+
+/// Address and time limit.
+#[derive(Debug, Clone, clap::Args)]
+pub struct HttpConfig {
+    /// Address to listen on; port 0 takes any free one.
+    #[arg(long, env = "HERRINGBONE_LISTEN", value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
+    pub listen: SocketAddr,
+
+    /// Longest time until the answer to a request begins (event streams then go on).
+    #[arg(long, env = "HERRINGBONE_REQUEST_TIMEOUT_S", value_name = "SECONDS", default_value_t = 60,
+          value_parser = clap::value_parser!(u32).range(i64::from(MAX_WAIT_S as u32) + 5..=3600))]
+    pub request_timeout_s: u32,
+}
+
+impl HttpConfig {
+    pub fn request_timeout(&self) -> Duration {
+        Duration::from_secs(self.request_timeout_s.into())
+    }
+}
+
+impl Default for HttpConfig {
+    fn default() -> Self {
+        Self { listen: SocketAddr::from(([127, 0, 0, 1], 8080)), request_timeout_s: 60 }
+    }
+}

@@ -1,0 +1,98 @@
+//! What every exchange has: an id, a log line, metrics, security headers, and one form for all that goes wrong.
+
+use super::problem::{Problem, ProblemCode, Refusal};
+use super::request::RequestId;
+use axum::body::Body;
+use axum::extract::{MatchedPath, Request};
+use axum::http::header::{CONTENT_LENGTH, CONTENT_SECURITY_POLICY, CONTENT_TYPE, REFERRER_POLICY, X_CONTENT_TYPE_OPTIONS};
+use axum::http::{HeaderMap, HeaderName, HeaderValue};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use std::any::Any;
+use std::time::Instant;
+use uuid::Uuid;
+
+const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
+const MAX_REQUEST_ID_CHARS: usize = 128;
+
+/// No inline scripts, nothing from elsewhere; inline styles and blob images are what plots in the browser need.
+const POLICY: &str = "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
+                      img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; form-action 'self'; \
+                      frame-ancestors 'none'";
+
+/// Middleware around everything.
+pub async fn envelope(mut request: Request, next: Next) -> Response {
+    let started = Instant::now();
+    let id = request_id(request.headers());
+    request.extensions_mut().insert(RequestId(id.clone()));
+    let method = request.method().clone();
+    let route = request.extensions().get::<MatchedPath>().map_or("unmatched", MatchedPath::as_str).to_owned();
+
+    let mut response = in_one_form(next.run(request).await, &id);
+
+    let status = response.status().as_u16();
+    let duration = started.elapsed();
+    tracing::info!(%method, route, status, duration_ms = duration.as_secs_f64() * 1e3, request_id = id, "request");
+    let labels = [("method", method.to_string()), ("route", route), ("status", status.to_string())];
+    metrics::counter!("herringbone_http_requests_total", &labels).increment(1);
+    metrics::histogram!("herringbone_http_request_duration_seconds", &labels[..2]).record(duration.as_secs_f64());
+    add_headers(response.headers_mut(), &id);
+    response
+}
+
+/// A panic in a handler: fixed text outside, the cause in the log.
+pub fn answer_panic(panic: Box<dyn Any + Send + 'static>) -> Response {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
+    Refusal::internal(format!("panic: {text}")).into_response()
+}
+
+/// The client's id if it is short and printable, else a new one.
+fn request_id(headers: &HeaderMap) -> String {
+    let given = headers.get(REQUEST_ID).and_then(|value| value.to_str().ok());
+    let usable = given.filter(|id| (1..=MAX_REQUEST_ID_CHARS).contains(&id.len()) && id.chars().all(is_plain));
+    usable.map_or_else(|| Uuid::now_v7().to_string(), str::to_owned)
+}
+
+fn is_plain(character: char) -> bool {
+    character.is_ascii_alphanumeric() || "-_.:".contains(character)
+}
+
+fn in_one_form(mut response: Response, id: &str) -> Response {
+    let status = response.status();
+    if !status.is_client_error() && !status.is_server_error() {
+        return response;
+    }
+    let (problem, cause) = match response.extensions_mut().remove::<Refusal>() {
+        Some(refusal) => refusal.into_parts(),
+        None if is_written(&response) => return response,
+        None => {
+            let code = ProblemCode::of_status(status);
+            (Problem { status: status.as_u16(), ..Problem::new(code, code.entry().title) }, None)
+        }
+    };
+    if let Some(cause) = cause {
+        tracing::error!(cause, request_id = id, "request failed");
+    }
+    let problem = Problem { request_id: Some(id.to_owned()), ..problem };
+    let body = serde_json::to_vec(&problem).unwrap_or_default();
+    let (mut parts, _) = response.into_parts();
+    parts.headers.remove(CONTENT_LENGTH);
+    parts.headers.insert(CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
+    Response::from_parts(parts, Body::from(body))
+}
+
+/// Whether a page or a handler wrote its own error.
+fn is_written(response: &Response) -> bool {
+    let media_type = response.headers().get(CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
+    media_type.starts_with("text/html") || media_type.starts_with("application/problem+json")
+}
+
+fn add_headers(headers: &mut HeaderMap, id: &str) {
+    if let Ok(value) = HeaderValue::from_str(id) {
+        headers.insert(REQUEST_ID, value);
+    }
+    headers.insert(X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
+    headers.insert(REFERRER_POLICY, HeaderValue::from_static("no-referrer"));
+    headers.entry(CONTENT_SECURITY_POLICY).or_insert(HeaderValue::from_static(POLICY));
+}

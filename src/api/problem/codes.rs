@@ -1,0 +1,285 @@
+//! The closed list of problem codes.
+
+use axum::http::StatusCode;
+
+/// What went wrong, as a word that programs can rely on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ProblemCode {
+    MalformedJson,
+    InvalidParameter,
+    InvalidCursor,
+    Unauthenticated,
+    NotFound,
+    MethodNotAllowed,
+    NotAcceptable,
+    RequestTimeout,
+    JobNotEnded,
+    ResultNotReady,
+    JobNotSucceeded,
+    PayloadTooLarge,
+    UnsupportedMediaType,
+    InvalidDesign,
+    UnsupportedDesign,
+    IdempotencyKeyReused,
+    Internal,
+    QueueFull,
+    ShuttingDown,
+    NotConverged,
+    Diverged,
+    StepSizeTooSmall,
+    SolveFailed,
+    WorkerLost,
+}
+
+/// What is published about a code.
+#[derive(Debug, Clone, Copy)]
+pub struct CodeEntry {
+    pub code: ProblemCode,
+    pub word: &'static str,
+    /// Status of answers with this code; for codes of failed jobs the status that a synchronous answer would have.
+    pub status: u16,
+    pub title: &'static str,
+    /// What it means and what to do.
+    pub explanation: &'static str,
+}
+
+const fn entry(
+    code: ProblemCode,
+    word: &'static str,
+    status: u16,
+    title: &'static str,
+    explanation: &'static str,
+) -> CodeEntry {
+    CodeEntry { code, word, status, title, explanation }
+}
+
+/// Every code, by status.
+pub const CODES: [CodeEntry; 24] = [
+    entry(
+        ProblemCode::MalformedJson,
+        "malformed-json",
+        400,
+        "The body is not JSON",
+        "The request body could not be read as JSON; the detail names line and column. NaN, Infinity and numbers beyond \
+         the range of a double are not JSON.",
+    ),
+    entry(
+        ProblemCode::InvalidParameter,
+        "invalid-parameter",
+        400,
+        "A query parameter or header is invalid",
+        "Each entry of `errors` names one parameter (its pointer is the parameter's name after a slash) and what is \
+         permitted.",
+    ),
+    entry(
+        ProblemCode::InvalidCursor,
+        "invalid-cursor",
+        400,
+        "The cursor does not belong to this list",
+        "A cursor is taken unchanged from `next_cursor` and used with the same filters. Start again without it.",
+    ),
+    entry(
+        ProblemCode::Unauthenticated,
+        "unauthenticated",
+        401,
+        "The request has no valid credentials",
+        "The service was started with a token and the request did not carry it.",
+    ),
+    entry(
+        ProblemCode::NotFound,
+        "not-found",
+        404,
+        "Nothing is there",
+        "The path, the job or the channel does not exist, or the job was deleted.",
+    ),
+    entry(
+        ProblemCode::MethodNotAllowed,
+        "method-not-allowed",
+        405,
+        "The method is not available here",
+        "The header `Allow` names the methods of this path.",
+    ),
+    entry(
+        ProblemCode::NotAcceptable,
+        "not-acceptable",
+        406,
+        "No representation fits the header Accept",
+        "The detail names the media types that this path has.",
+    ),
+    entry(
+        ProblemCode::RequestTimeout,
+        "request-timeout",
+        408,
+        "The request took too long",
+        "The request was not complete, or its answer not ready, within the time limit. It may be sent again; use an \
+         Idempotency-Key when it submits a job.",
+    ),
+    entry(
+        ProblemCode::JobNotEnded,
+        "job-not-ended",
+        409,
+        "The job has not ended",
+        "Only ended jobs can be deleted: cancel it first, or wait for its end.",
+    ),
+    entry(
+        ProblemCode::ResultNotReady,
+        "result-not-ready",
+        409,
+        "The job has no result yet",
+        "The job waits or runs. Look again after `Retry-After`, or wait for it with `Prefer: wait` or the event stream.",
+    ),
+    entry(
+        ProblemCode::JobNotSucceeded,
+        "job-not-succeeded",
+        409,
+        "The job ended without a result",
+        "The job failed or was canceled; a failed job's `error` says why.",
+    ),
+    entry(
+        ProblemCode::PayloadTooLarge,
+        "payload-too-large",
+        413,
+        "The request body is too large",
+        "A job document has at most 1 MiB (1048576 bytes).",
+    ),
+    entry(
+        ProblemCode::UnsupportedMediaType,
+        "unsupported-media-type",
+        415,
+        "The request body has the wrong media type",
+        "Send job documents with `Content-Type: application/json`, uncompressed.",
+    ),
+    entry(
+        ProblemCode::InvalidDesign,
+        "invalid-design",
+        422,
+        "The job document is invalid",
+        "Fields are missing, unknown, of the wrong type or out of range, contradict each other, or the gear cannot exist. \
+         `errors` has every violation found, with its pointer, permitted range and unit.",
+    ),
+    entry(
+        ProblemCode::UnsupportedDesign,
+        "unsupported-design",
+        422,
+        "The job document asks for something unsupported",
+        "The document is valid, but this version does not compute what it asks for; `errors` names the fields.",
+    ),
+    entry(
+        ProblemCode::IdempotencyKeyReused,
+        "idempotency-key-reused",
+        422,
+        "The Idempotency-Key was used with another document",
+        "A key names one submission. Use a new one for a new document.",
+    ),
+    entry(
+        ProblemCode::NotConverged,
+        "not-converged",
+        422,
+        "The solution did not converge",
+        "Error of a failed job: an iteration did not reach the accuracy asked for. It would fail again in the same way; \
+         change the document.",
+    ),
+    entry(
+        ProblemCode::Diverged,
+        "diverged",
+        422,
+        "The motion grew without bound",
+        "Error of a failed job: the integration left the range of meaningful numbers at `sim_time_s`. It would fail again \
+         in the same way; damping and mesh stiffness are where to look.",
+    ),
+    entry(
+        ProblemCode::StepSizeTooSmall,
+        "step-size-too-small",
+        422,
+        "The time step became too small",
+        "Error of a failed job: the integration could not go on at `sim_time_s` with the accuracy asked for.",
+    ),
+    entry(
+        ProblemCode::SolveFailed,
+        "solve-failed",
+        422,
+        "The calculation failed",
+        "Error of a failed job: a stage has no solution for this document; the detail says which and why. It would fail \
+         again in the same way.",
+    ),
+    entry(
+        ProblemCode::Internal,
+        "internal",
+        500,
+        "The service failed",
+        "The reason lies in the service and was logged under the request's id. Sending the request again may help.",
+    ),
+    entry(
+        ProblemCode::WorkerLost,
+        "worker-lost",
+        500,
+        "The job lost its worker too often",
+        "Error of a failed job: the process that ran it ended before the job did, as often as is tried. A job that \
+         exhausts the memory looks like this.",
+    ),
+    entry(
+        ProblemCode::QueueFull,
+        "queue-full",
+        503,
+        "Too many jobs wait",
+        "The queue has a bound (see /api/v1/system). Submit again after `Retry-After`.",
+    ),
+    entry(
+        ProblemCode::ShuttingDown,
+        "shutting-down",
+        503,
+        "The service is shutting down",
+        "Jobs that wait or run are taken up after the restart. Submit again after `Retry-After`.",
+    ),
+];
+
+impl ProblemCode {
+    pub fn entry(self) -> &'static CodeEntry {
+        // Every variant is in the table; a test says so.
+        CODES.iter().find(|entry| entry.code == self).unwrap_or(&CODES[0])
+    }
+
+    pub fn word(self) -> &'static str {
+        self.entry().word
+    }
+
+    pub fn from_word(word: &str) -> Option<Self> {
+        CODES.iter().find(|entry| entry.word == word).map(|entry| entry.code)
+    }
+
+    pub fn status(self) -> StatusCode {
+        StatusCode::from_u16(self.entry().status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR)
+    }
+
+    /// The code for a refusal that the framework made without a body.
+    pub fn of_status(status: StatusCode) -> Self {
+        match status.as_u16() {
+            401 => Self::Unauthenticated,
+            404 => Self::NotFound,
+            405 => Self::MethodNotAllowed,
+            406 => Self::NotAcceptable,
+            408 => Self::RequestTimeout,
+            413 => Self::PayloadTooLarge,
+            415 => Self::UnsupportedMediaType,
+            400..=499 => Self::InvalidParameter,
+            503 => Self::ShuttingDown,
+            _ => Self::Internal,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_has_every_code_once_and_words_lead_back() {
+        for entry in &CODES {
+            assert_eq!(entry.code.entry().word, entry.word, "{} stands twice", entry.word);
+            assert_eq!(ProblemCode::from_word(entry.word), Some(entry.code));
+            assert!(entry.code.status().as_u16() >= 400);
+        }
+        // The compiler counts the variants: the last one's discriminant is the number of the others.
+        assert_eq!(ProblemCode::WorkerLost as usize + 1, CODES.len());
+    }
+}

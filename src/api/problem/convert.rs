@@ -1,0 +1,60 @@
+//! Problems out of the errors of the rooms below.
+
+use super::{Problem, ProblemCode};
+use crate::job::{DocumentError, Violation};
+use crate::store::{Failure, JobRecord};
+use crate::study::SolveError;
+
+impl From<DocumentError> for Problem {
+    fn from(error: DocumentError) -> Self {
+        let text = error.to_string();
+        match error {
+            DocumentError::Malformed { .. } => {
+                let violation = Violation::new("", "malformed-json", text.as_str());
+                Problem::new(ProblemCode::MalformedJson, text).with_errors(vec![violation])
+            }
+            DocumentError::Invalid(errors) => Problem::new(ProblemCode::InvalidDesign, text).with_errors(errors),
+            DocumentError::Unsupported(errors) => {
+                Problem::new(ProblemCode::UnsupportedDesign, text).with_errors(errors)
+            }
+        }
+    }
+}
+
+impl From<SolveError> for Problem {
+    fn from(error: SolveError) -> Self {
+        match error {
+            SolveError::Document(error) => error.into(),
+            SolveError::Canceled(canceled) => Problem::new(ProblemCode::SolveFailed, canceled.to_string()),
+            SolveError::Failed { stage, code, detail, sim_time_s, step } => {
+                let stage = Some(stage.word().to_owned());
+                (&Failure { stage, sim_time_s, step, ..Failure::new(&code, detail) }).into()
+            }
+        }
+    }
+}
+
+impl From<&Failure> for Problem {
+    fn from(failure: &Failure) -> Self {
+        let code = ProblemCode::from_word(&failure.code).unwrap_or(ProblemCode::SolveFailed);
+        let mut errors = failure.errors.clone();
+        if code.word() != failure.code {
+            // A cause outside the closed list keeps its name.
+            errors.push(Violation::new("", &failure.code, failure.detail.as_str()));
+        }
+        Problem {
+            stage: failure.stage.clone(),
+            sim_time_s: failure.sim_time_s,
+            step: failure.step,
+            ..Problem::new(code, failure.detail.as_str()).with_errors(errors)
+        }
+    }
+}
+
+impl Problem {
+    /// The `error` of a job.
+    pub(in crate::api) fn of_job(job: &JobRecord) -> Option<Self> {
+        let problem = Problem::from(job.error.as_ref()?);
+        Some(Problem { request_id: job.request_id.clone(), ..problem })
+    }
+}

@@ -1,0 +1,68 @@
+//! Everything that goes wrong, in one schema (RFC 9457).
+
+mod codes;
+mod convert;
+mod refusal;
+
+#[cfg(test)]
+pub use codes::CODES;
+pub use codes::{CodeEntry, ProblemCode};
+pub use refusal::Refusal;
+
+use crate::job::Violation;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// A problem as it is answered (`application/problem+json`), and as the `error` of a failed job.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct Problem {
+    /// `/problems/{code}`: a page that explains the code.
+    #[serde(rename = "type")]
+    #[schema(example = "/problems/invalid-design")]
+    pub type_uri: String,
+    pub title: String,
+    /// HTTP status.
+    #[schema(example = 422)]
+    pub status: u16,
+    /// One of a closed list.
+    #[schema(example = "invalid-design")]
+    pub code: String,
+    /// What happened this time.
+    pub detail: String,
+    /// Names the request in the log; for a failed job the request that submitted it.
+    pub request_id: Option<String>,
+    /// Every violation found: pointers lead into the job document, or are the name of a query parameter after a slash.
+    pub errors: Vec<Violation>,
+    /// Stage that failed, of a failed job.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stage: Option<String>,
+    /// Simulated time at which a job failed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sim_time_s: Option<f64>,
+    /// Time step at which a job failed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step: Option<u64>,
+}
+
+impl Problem {
+    pub fn new(code: ProblemCode, detail: impl Into<String>) -> Self {
+        let entry = code.entry();
+        Self {
+            type_uri: format!("/problems/{}", entry.word),
+            title: entry.title.to_owned(),
+            status: entry.status,
+            code: entry.word.to_owned(),
+            detail: detail.into(),
+            request_id: None,
+            errors: Vec::new(),
+            stage: None,
+            sim_time_s: None,
+            step: None,
+        }
+    }
+
+    /// The same with violations.
+    pub fn with_errors(self, errors: Vec<Violation>) -> Self {
+        Self { errors, ..self }
+    }
+}

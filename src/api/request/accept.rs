@@ -1,0 +1,91 @@
+//! `Accept`: which representation the client takes.
+
+use crate::api::problem::{ProblemCode, Refusal};
+use axum::extract::Request;
+use axum::http::HeaderMap;
+use axum::http::header::ACCEPT;
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+
+/// The offer that the client likes best; the first when it does not say.
+///
+/// # Errors
+/// 406 when it takes none of them.
+pub fn chosen(headers: &HeaderMap, offers: &[&'static str]) -> Result<&'static str, Refusal> {
+    let ranges = ranges(headers);
+    let mut best: Option<(&'static str, f32)> = None;
+    for offer in offers {
+        let quality = if ranges.is_empty() { 1.0 } else { quality(&ranges, offer) };
+        if quality > best.map_or(0.0, |(_, known)| known) {
+            best = Some((offer, quality));
+        }
+    }
+    best.map(|(offer, _)| offer).ok_or_else(|| {
+        Refusal::new(ProblemCode::NotAcceptable, format!("This path has: {}.", offers.join(", ")))
+    })
+}
+
+/// Middleware of paths that have JSON only.
+pub async fn json_only(request: Request, next: Next) -> Response {
+    only(&["application/json"], request, next).await
+}
+
+/// Middleware of paths that have an event stream only.
+pub async fn event_stream_only(request: Request, next: Next) -> Response {
+    only(&["text/event-stream"], request, next).await
+}
+
+async fn only(offers: &[&'static str], request: Request, next: Next) -> Response {
+    match chosen(request.headers(), offers) {
+        Ok(_) => next.run(request).await,
+        Err(refusal) => refusal.into_response(),
+    }
+}
+
+/// Media ranges with their quality.
+fn ranges(headers: &HeaderMap) -> Vec<(String, f32)> {
+    let lines = headers.get_all(ACCEPT).into_iter().filter_map(|value| value.to_str().ok());
+    let members = lines.flat_map(|line| line.split(',')).filter(|member| !member.trim().is_empty());
+    members
+        .map(|member| {
+            let mut parts = member.split(';').map(str::trim);
+            let range = parts.next().unwrap_or_default().to_ascii_lowercase();
+            let quality = parts.find_map(|part| part.strip_prefix("q=")).and_then(|text| text.parse().ok());
+            (range, quality.unwrap_or(1.0))
+        })
+        .collect()
+}
+
+/// Quality of an offer: that of the most specific range that has it.
+fn quality(ranges: &[(String, f32)], offer: &str) -> f32 {
+    let family = offer.split_once('/').map_or(offer, |(family, _)| family);
+    for wanted in [offer.to_owned(), format!("{family}/*"), "*/*".to_owned()] {
+        if let Some((_, quality)) = ranges.iter().find(|(range, _)| *range == wanted) {
+            return *quality;
+        }
+    }
+    0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn choice(accept: &str) -> Option<&'static str> {
+        let mut headers = HeaderMap::new();
+        headers.insert(ACCEPT, accept.parse().unwrap());
+        chosen(&headers, &["application/json", "text/csv"]).ok()
+    }
+
+    #[test]
+    fn the_best_liked_offer_is_chosen() {
+        assert_eq!(choice("*/*"), Some("application/json"));
+        assert_eq!(choice("text/csv"), Some("text/csv"));
+        assert_eq!(choice("text/*"), Some("text/csv"));
+        assert_eq!(choice("application/json;q=0.2, text/csv"), Some("text/csv"));
+        assert_eq!(choice("text/html, */*;q=0.1"), Some("application/json"));
+        assert_eq!(choice("application/json;q=0, */*"), Some("text/csv"));
+        assert_eq!(choice("image/png"), None);
+        assert_eq!(chosen(&HeaderMap::new(), &["application/json"]).ok(), Some("application/json"));
+    }
+}

@@ -1,0 +1,59 @@
+//! `GET /api/v1/jobs`
+
+use crate::api::config::{DEFAULT_PAGE, MAX_PAGE};
+use crate::api::problem::{ProblemCode, Refusal};
+use crate::api::request::{Cursor, Parameters};
+use crate::api::state::AppState;
+use crate::api::view::Job;
+use crate::job::document::Kind;
+use crate::store::{JobFilter, State as JobState};
+use axum::Json;
+use axum::extract::State;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// Jobs, newest first.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct JobList {
+    pub items: Vec<Job>,
+    /// Leads to the next page; null on the last.
+    pub next_cursor: Option<String>,
+}
+
+/// List jobs, newest first.
+#[utoipa::path(
+    get, path = "/jobs", tag = "jobs",
+    params(
+        ("state" = Option<String>, Query, description = "`queued`, `running`, `succeeded`, `failed` or `canceled`; several \
+            separated by commas."),
+        ("kind" = Option<String>, Query, description = "`mesh`, `response` or `sweep`."),
+        ("label" = Option<String>, Query, description = "Exactly this label."),
+        ("limit" = Option<u32>, Query, description = "Jobs per page, 1 to 200; more is taken for 200.", minimum = 1,
+            example = 50),
+        ("cursor" = Option<String>, Query, description = "`next_cursor` of the page before, with the same filters."),
+    ),
+    responses(
+        (status = 200, description = "A page of jobs.", body = JobList),
+        (status = 400, description = "`invalid-parameter` or `invalid-cursor`."),
+    )
+)]
+pub async fn list_jobs(State(state): State<AppState>, mut query: Parameters) -> Result<Json<JobList>, Refusal> {
+    let filter = JobFilter {
+        states: query.choices("state", &JobState::ALL.map(|state| (state.word(), state))),
+        kind: query.choice("kind", &Kind::ALL).map(|kind| kind.word().to_owned()),
+        label: query.text("label"),
+    };
+    let limit = query.whole("limit", 1, MAX_PAGE.into(), true).map_or(DEFAULT_PAGE, |limit| limit as u32);
+    let cursor = query.text("cursor");
+    query.finish()?;
+    let before = cursor.map(|text| decoded(&text, &filter)).transpose()?;
+    let page = state.jobs().store().list(&filter, before.map(|cursor| cursor.0), limit).await?;
+    let last = page.jobs.last().filter(|_| page.more);
+    let next_cursor = last.map(|job| Cursor(job.id).encode(&filter));
+    Ok(Json(JobList { items: page.jobs.iter().map(Job::from).collect(), next_cursor }))
+}
+
+fn decoded(text: &str, filter: &JobFilter) -> Result<Cursor, Refusal> {
+    let detail = "The cursor was not made by this list with the same filters.";
+    Cursor::decode(text, filter).ok_or_else(|| Refusal::new(ProblemCode::InvalidCursor, detail))
+}

@@ -1,0 +1,97 @@
+//! `GET /api/v1/kinds`
+
+use crate::api::config::MAX_BODY_BYTES;
+use crate::job::document::Kind;
+use crate::job::schema::job_document_schema;
+use crate::job::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS};
+use axum::Json;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use utoipa::ToSchema;
+
+/// The kinds of jobs.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct KindList {
+    pub items: Vec<KindEntry>,
+}
+
+/// A kind of job: what its document may say.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct KindEntry {
+    pub kind: Kind,
+    pub description: &'static str,
+    /// JSON Schema (2020-12) of the document: ranges, defaults, units (`x-unit`).
+    pub schema: Value,
+    /// The default of every field that has one, in the shape of the document.
+    pub defaults: Value,
+    pub limits: KindLimits,
+}
+
+/// Limits beside the ranges of single fields.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct KindLimits {
+    pub max_body_bytes: usize,
+    /// Points of all axes together; null for other kinds.
+    pub max_sweep_points: Option<usize>,
+    /// Samples of each recorded channel; null where none are recorded.
+    pub max_series_samples: Option<u64>,
+}
+
+/// List the kinds of jobs with schema, defaults and limits.
+#[utoipa::path(
+    get, path = "/kinds", tag = "service",
+    responses((status = 200, description = "The kinds of jobs.", body = KindList))
+)]
+pub async fn list_kinds() -> Json<KindList> {
+    Json(KindList { items: Kind::ALL.iter().map(|(_, kind)| entry(*kind)).collect() })
+}
+
+fn entry(kind: Kind) -> KindEntry {
+    let schema = schema_of(kind);
+    let defaults = defaults_of(&schema).unwrap_or_else(|| json!({}));
+    let limits = KindLimits {
+        max_body_bytes: MAX_BODY_BYTES,
+        max_sweep_points: (kind == Kind::Sweep).then_some(MAX_SWEEP_POINTS),
+        max_series_samples: (kind == Kind::Response).then_some(MAX_SERIES_SAMPLES),
+    };
+    KindEntry { kind, description: description(kind), schema, defaults, limits }
+}
+
+fn description(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Mesh => "Geometry, loaded tooth contact and mesh-in impact.",
+        Kind::Response => "Everything of a mesh job, and the vibration response at one operating point.",
+        Kind::Sweep => "A response over the values of one or two inputs.",
+    }
+}
+
+/// The document's schema with `kind` fixed, and without the fields that only sweeps have.
+fn schema_of(kind: Kind) -> Value {
+    let mut schema = job_document_schema();
+    schema["title"] = json!(format!("JobDocument ({})", kind.word()));
+    if let Some(properties) = schema["properties"].as_object_mut() {
+        if kind != Kind::Sweep {
+            properties.remove("axes");
+            properties.remove("continuation");
+        }
+        let help = properties.get("kind").and_then(|field| field.get("description")).cloned();
+        properties.insert("kind".to_owned(), json!({"const": kind.word(), "description": help}));
+    }
+    // "response" is what a document without a kind means.
+    let needs = |name: &str| (kind, name) == (Kind::Sweep, "axes") || (kind != Kind::Response && name == "kind");
+    if let Some(required) = schema["required"].as_array_mut() {
+        required.extend(["kind", "axes"].into_iter().filter(|name| needs(name)).map(|name| json!(name)));
+    }
+    schema
+}
+
+/// The defaults within a schema, in the shape of what it describes.
+fn defaults_of(schema: &Value) -> Option<Value> {
+    if let Some(value) = schema.get("default").or_else(|| schema.get("const")) {
+        return Some(value.clone());
+    }
+    let properties = schema.get("properties")?.as_object()?;
+    let defaults: Map<String, Value> =
+        properties.iter().filter_map(|(name, field)| Some((name.clone(), defaults_of(field)?))).collect();
+    (!defaults.is_empty()).then_some(Value::Object(defaults))
+}

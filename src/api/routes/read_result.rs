@@ -1,0 +1,41 @@
+//! `GET /api/v1/jobs/{id}/result`
+
+use crate::api::problem::Refusal;
+use crate::api::request::{IfNoneMatch, JobPath};
+use crate::api::state::AppState;
+use crate::api::view::not_modified;
+use crate::job::result::JobResult;
+use axum::extract::State;
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, ETAG};
+use axum::response::{IntoResponse, Response};
+
+/// Read the result of a job: geometry, mesh, impact and response. It never changes.
+#[utoipa::path(
+    get, path = "/jobs/{id}/result", tag = "results",
+    params(
+        ("id" = String, Path, description = "Id of the job"),
+        ("If-None-Match" = Option<String>, Header, description = "Entity tag of the result as the client has it"),
+    ),
+    responses(
+        (status = 200, description = "The result; stages that did not run are null.", body = JobResult,
+            headers(("ETag" = String, description = "Strong entity tag"))),
+        (status = 304, description = "The result is as the client has it."),
+        (status = 404, description = "No such job."),
+        (status = 409, description = "`result-not-ready` while the job waits or runs; `job-not-succeeded` when it failed \
+            or was canceled."),
+    )
+)]
+pub async fn read_result(
+    State(state): State<AppState>,
+    JobPath(id): JobPath,
+    known: IfNoneMatch,
+) -> Result<Response, Refusal> {
+    super::succeeded(&state, id).await?;
+    let result = state.jobs().store().result(id).await?.ok_or_else(super::no_job)?;
+    let etag = format!("\"{}\"", result.etag);
+    if known.has(&etag) {
+        return Ok(not_modified(etag));
+    }
+    let headers = [(CONTENT_TYPE, "application/json".to_owned()), (ETAG, etag), (CACHE_CONTROL, "no-cache".to_owned())];
+    Ok((headers, result.body).into_response())
+}

@@ -1,0 +1,112 @@
+//! A job as clients see it.
+
+use super::config::RETRY_LIVE_S;
+use super::problem::Problem;
+use crate::store::{JobRecord, State};
+use axum::Json;
+use axum::http::header::{CACHE_CONTROL, ETAG, RETRY_AFTER};
+use axum::http::{HeaderValue, StatusCode};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// A job as it stands. Times are RFC 3339 in UTC.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub struct Job {
+    #[schema(example = "0199f3c4-6f0b-7c41-9d5e-2f1f0f6f3c11")]
+    pub id: String,
+    /// `mesh`, `response` or `sweep`.
+    pub kind: String,
+    pub name: Option<String>,
+    pub label: Option<String>,
+    pub state: State,
+    /// Grows with every change; the `id` of the events and the entity tag of this answer.
+    pub revision: i64,
+    /// How often the job was started.
+    pub attempt: i64,
+    /// Fraction of the whole job, 0 to 1.
+    pub progress: f64,
+    /// Stage that runs, or ran last.
+    pub stage: Option<String>,
+    pub submitted_at: String,
+    pub started_at: Option<String>,
+    pub ended_at: Option<String>,
+    /// Set while a cancel is under way, and after it.
+    pub cancel_requested_at: Option<String>,
+    /// Content hash of everything that decides the result.
+    pub input_hash: String,
+    pub solver_version: String,
+    /// Job whose result was taken because the input was the same.
+    pub reused_from: Option<String>,
+    /// Why the job failed; null in every other state.
+    pub error: Option<Problem>,
+    pub links: JobLinks,
+}
+
+/// Paths of what belongs to a job.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct JobLinks {
+    #[serde(rename = "self")]
+    pub itself: String,
+    pub events: String,
+    pub input: String,
+    pub result: String,
+    pub series: String,
+}
+
+impl From<&JobRecord> for Job {
+    fn from(job: &JobRecord) -> Self {
+        let path = job_path(job);
+        Self {
+            id: job.id.to_string(),
+            kind: job.kind.clone(),
+            name: job.name.clone(),
+            label: job.label.clone(),
+            state: job.state,
+            revision: job.revision,
+            attempt: job.attempt,
+            progress: job.progress,
+            stage: job.stage.clone(),
+            submitted_at: job.submitted_at.to_string(),
+            started_at: job.started_at.map(|time| time.to_string()),
+            ended_at: job.ended_at.map(|time| time.to_string()),
+            cancel_requested_at: job.cancel_requested_at.map(|time| time.to_string()),
+            input_hash: job.input_hash.clone(),
+            solver_version: job.solver_version.clone(),
+            reused_from: job.reused_from.map(|id| id.to_string()),
+            error: Problem::of_job(job),
+            links: JobLinks {
+                events: format!("{path}/events"),
+                input: format!("{path}/input"),
+                result: format!("{path}/result"),
+                series: format!("{path}/series"),
+                itself: path,
+            },
+        }
+    }
+}
+
+/// Path of a job.
+pub fn job_path(job: &JobRecord) -> String {
+    format!("/api/v1/jobs/{}", job.id)
+}
+
+/// Weak entity tag of a job.
+pub fn job_etag(job: &JobRecord) -> String {
+    format!("W/\"{}\"", job.revision)
+}
+
+/// The answer that shows a job: entity tag, and when to look again while it lives.
+pub fn job_response(status: StatusCode, job: &JobRecord) -> Response {
+    let mut response = (status, [(ETAG, job_etag(job))], Json(Job::from(job))).into_response();
+    response.headers_mut().insert(CACHE_CONTROL, HeaderValue::from_static("no-cache"));
+    if !job.state.is_ended() {
+        response.headers_mut().insert(RETRY_AFTER, HeaderValue::from(RETRY_LIVE_S));
+    }
+    response
+}
+
+/// 304 with the entity tag.
+pub fn not_modified(etag: String) -> Response {
+    (StatusCode::NOT_MODIFIED, [(ETAG, etag)]).into_response()
+}

@@ -1,0 +1,55 @@
+//! How much is computed at once.
+
+use std::num::NonZeroUsize;
+use std::time::Duration;
+
+/// Workers, threads and queue.
+#[derive(Debug, Clone, clap::Args)]
+pub struct WorkConfig {
+    /// Jobs that run at the same time; the number of processors when not given.
+    #[arg(long, env = "HERRINGBONE_WORKERS", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub workers: Option<u32>,
+
+    /// Threads that all running jobs share; the number of processors when not given.
+    #[arg(long, env = "HERRINGBONE_THREADS", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+
+    /// Jobs that may wait; further ones are answered with 503.
+    #[arg(long, env = "HERRINGBONE_QUEUE_CAPACITY", value_name = "N", default_value_t = 10_000,
+          value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub queue_capacity: u32,
+
+    /// How often a job is started again after its process died, before it is given up.
+    #[arg(long, env = "HERRINGBONE_MAX_ATTEMPTS", value_name = "N", default_value_t = 3,
+          value_parser = clap::value_parser!(u32).range(1..=100))]
+    pub max_attempts: u32,
+
+    /// How long a shutdown waits for running jobs to stop; they run again after the restart.
+    #[arg(long, env = "HERRINGBONE_DRAIN_S", value_name = "SECONDS", default_value_t = 10,
+          value_parser = clap::value_parser!(u32).range(0..=3600))]
+    pub drain_s: u32,
+}
+
+impl Default for WorkConfig {
+    fn default() -> Self {
+        Self { workers: None, threads: None, queue_capacity: 10_000, max_attempts: 3, drain_s: 10 }
+    }
+}
+
+impl WorkConfig {
+    pub fn worker_count(&self) -> usize {
+        self.workers.map_or_else(processors, |workers| workers as usize)
+    }
+
+    pub fn thread_count(&self) -> usize {
+        self.threads.map_or_else(processors, |threads| threads as usize)
+    }
+
+    pub fn drain(&self) -> Duration {
+        Duration::from_secs(self.drain_s.into())
+    }
+}
+
+fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
+}

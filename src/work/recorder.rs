@@ -1,0 +1,100 @@
+//! Writes what becomes of a job and tells it to whoever waits; the only way in which a job's state changes.
+
+use super::hub::{Hub, Subscription};
+use crate::store::{Cancellation, Claim, Completion, Failure, JobId, JobRecord, State, Store, StoreError};
+use jiff::Timestamp;
+use std::sync::Arc;
+
+/// Where times come from; fixed in tests that need it.
+pub type Clock = Arc<dyn Fn() -> Timestamp + Send + Sync>;
+
+/// Store, subscribers and clock.
+#[derive(Clone)]
+pub struct Recorder {
+    store: Store,
+    hub: Arc<Hub>,
+    clock: Clock,
+}
+
+impl Recorder {
+    pub fn new(store: Store, clock: Clock) -> Self {
+        Self { store, hub: Arc::default(), clock }
+    }
+
+    pub fn store(&self) -> &Store {
+        &self.store
+    }
+
+    pub fn now(&self) -> Timestamp {
+        (self.clock)()
+    }
+
+    /// Hears of every later change of a job.
+    pub fn subscribe(&self, job: JobId) -> Subscription {
+        self.hub.subscribe(job)
+    }
+
+    /// Takes the next job in line.
+    pub async fn claim_next(&self) -> Result<Option<Claim>, StoreError> {
+        let claim = self.store.claim_next(self.now()).await?;
+        if let Some(claim) = &claim {
+            self.hub.publish(&claim.job);
+        }
+        Ok(claim)
+    }
+
+    pub async fn progress(&self, job: &JobRecord, stage: &str, fraction: f64) -> Result<(), StoreError> {
+        self.told(self.store.progress(job.id, job.attempt, stage, fraction).await?);
+        Ok(())
+    }
+
+    /// False when the job whose result was to be reused is gone, or the job is no longer this attempt's.
+    pub async fn succeed(&self, job: &JobRecord, completion: &Completion) -> Result<bool, StoreError> {
+        let done = self.store.succeed(job.id, job.attempt, completion, self.now()).await?;
+        Ok(self.ended(done))
+    }
+
+    pub async fn fail(&self, job: &JobRecord, failure: &Failure) -> Result<bool, StoreError> {
+        let failed = self.store.fail(job.id, job.attempt, failure, self.now()).await?;
+        Ok(self.ended(failed))
+    }
+
+    /// The worker stopped before the end: canceled if that was asked for, else queued again.
+    pub async fn release(&self, job: &JobRecord) -> Result<Option<State>, StoreError> {
+        let released = self.store.release(job.id, job.attempt, self.now()).await?;
+        let state = released.as_ref().map(|job| job.state);
+        self.ended(released);
+        Ok(state)
+    }
+
+    pub async fn cancel(&self, id: JobId) -> Result<Cancellation, StoreError> {
+        let cancellation = self.store.cancel(id, self.now()).await?;
+        match &cancellation {
+            Cancellation::Canceled(job) => {
+                self.ended(Some(job.clone()));
+            }
+            Cancellation::Asked(job) => self.hub.publish(job),
+            Cancellation::Ended(_) | Cancellation::NotFound => {}
+        }
+        Ok(cancellation)
+    }
+
+    fn told(&self, job: Option<JobRecord>) -> bool {
+        if let Some(job) = &job {
+            self.hub.publish(job);
+        }
+        job.is_some()
+    }
+
+    fn ended(&self, job: Option<JobRecord>) -> bool {
+        if let Some(job) = job.as_ref().filter(|job| job.state.is_ended()) {
+            let labels = [("kind", job.kind.clone()), ("state", job.state.word().to_owned())];
+            metrics::counter!("herringbone_jobs_ended_total", &labels).increment(1);
+            if let (Some(started_at), Some(ended_at)) = (job.started_at, job.ended_at) {
+                let seconds = ended_at.duration_since(started_at).as_secs_f64();
+                metrics::histogram!("herringbone_job_duration_seconds", &labels).record(seconds);
+            }
+        }
+        self.told(job)
+    }
+}

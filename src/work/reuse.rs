@@ -1,0 +1,45 @@
+//! The same input again: the stored result instead of a calculation.
+
+use crate::store::{Completion, Store, StoreError};
+use serde_json::{Value, json};
+
+/// What would end a job with this input at once, if a result is stored.
+pub(super) async fn stored_completion(
+    store: &Store,
+    input_hash: &str,
+    solver_version: &str,
+) -> Result<Option<Completion>, StoreError> {
+    let Some(found) = store.reusable(input_hash, solver_version).await? else { return Ok(None) };
+    Ok(Some(Completion {
+        body: marked_as_reused(&found.body),
+        input_hash: input_hash.to_owned(),
+        solver_version: solver_version.to_owned(),
+        series: Vec::new(),
+        reused_from: Some(found.job),
+    }))
+}
+
+/// The result with `numerics.reused` saying that nothing was computed; its other numbers stay those of the calculation.
+fn marked_as_reused(body: &str) -> String {
+    let Ok(mut result) = serde_json::from_str::<Value>(body) else { return body.to_owned() };
+    if let Some(numerics) = result.get_mut("numerics").and_then(Value::as_object_mut) {
+        numerics.insert("reused".to_owned(), json!(["result"]));
+    }
+    result.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::result::JobResult;
+
+    #[test]
+    fn only_the_mark_changes() {
+        let mut result = JobResult::default();
+        result.numerics.steps = 17;
+        let before = serde_json::to_string(&result).unwrap();
+        let after: JobResult = serde_json::from_str(&marked_as_reused(&before)).unwrap();
+        result.numerics.reused = vec!["result".into()];
+        assert_eq!(after, result);
+    }
+}

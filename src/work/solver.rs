@@ -1,0 +1,48 @@
+//! What a job is given to: the study room, or a double in tests.
+
+use crate::job::DocumentError;
+use crate::job::document::JobDocument;
+use crate::study::{self, CheckReport, Outcome, SolveError, Surroundings};
+
+/// Checks and solves documents. Called on plain threads; may take long and may panic.
+pub trait Solver: Send + Sync + 'static {
+    /// Geometry and warnings, in milliseconds.
+    ///
+    /// # Errors
+    /// Why the gear cannot exist or is not supported.
+    fn check(&self, document: &JobDocument) -> Result<CheckReport, DocumentError>;
+
+    /// Content hash of everything that decides the result.
+    fn input_hash(&self, document: &JobDocument) -> String;
+
+    /// Solves a document.
+    ///
+    /// # Errors
+    /// Why there is no result.
+    fn solve(&self, document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError>;
+
+    /// Results and stages stored under another version are not reused.
+    fn version(&self) -> &'static str;
+}
+
+/// The study room.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct StudySolver;
+
+impl Solver for StudySolver {
+    fn check(&self, document: &JobDocument) -> Result<CheckReport, DocumentError> {
+        study::check(document)
+    }
+
+    fn input_hash(&self, document: &JobDocument) -> String {
+        study::input_hash(document)
+    }
+
+    fn solve(&self, document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
+        study::solve(document, surroundings)
+    }
+
+    fn version(&self) -> &'static str {
+        study::SOLVER_VERSION
+    }
+}
