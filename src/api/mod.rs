@@ -20,6 +20,6 @@ mod view;
 pub use config::{HttpConfig, MAX_BODY_BYTES, MAX_WAIT_S};
 pub use openapi::openapi_json;
 pub use problem::{Problem, ProblemCode};
-pub use router::router;
+pub use router::{Pages, router};
 pub use serve::serve;
 pub use state::AppState;

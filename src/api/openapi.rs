@@ -29,9 +29,7 @@ struct Interface;
 
 /// The endpoints with their descriptions.
 pub(super) fn described_routes() -> OpenApiRouter<AppState> {
-    OpenApiRouter::with_openapi(Interface::openapi())
-        .nest("/api/v1", routes::versioned())
-        .merge(routes::operational())
+    OpenApiRouter::with_openapi(Interface::openapi()).nest("/api/v1", routes::versioned()).merge(routes::operational())
 }
 
 /// What every endpoint under `/api/v1` may answer besides what it says itself.

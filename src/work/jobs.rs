@@ -72,7 +72,13 @@ impl Jobs {
         let recovery = store.recover(config.max_attempts, clock()).await?;
         if recovery.waiting > 0 || recovery.given_up > 0 || recovery.canceled > 0 {
             let (waiting, requeued, given_up) = (recovery.waiting, recovery.requeued, recovery.given_up);
-            tracing::info!(waiting, requeued, given_up, canceled = recovery.canceled, "jobs of an earlier run taken up");
+            tracing::info!(
+                waiting,
+                requeued,
+                given_up,
+                canceled = recovery.canceled,
+                "jobs of an earlier run taken up"
+            );
         }
         let recorder = Recorder::new(store, clock);
         let queue = LocalQueue::start(config, recorder.clone(), Arc::clone(&solver))?;

@@ -77,9 +77,8 @@ async fn calculate(
     let (solver, stop) = (Arc::clone(solver), Arc::clone(stop));
     pool.spawn(move || {
         // A panic that leaves a closure of `spawn` would abort the process.
-        let ending = catch_unwind(AssertUnwindSafe(|| {
-            solve(&document, input_hash, solver.as_ref(), &stages, &progress, &stop)
-        }));
+        let ending =
+            catch_unwind(AssertUnwindSafe(|| solve(&document, input_hash, solver.as_ref(), &stages, &progress, &stop)));
         let _ = send.send(ending.unwrap_or_else(|panic| Ending::Failed(panic_failure(panic.as_ref()))));
     });
     loop {

@@ -20,9 +20,8 @@ pub fn chosen(headers: &HeaderMap, offers: &[&'static str]) -> Result<&'static s
             best = Some((offer, quality));
         }
     }
-    best.map(|(offer, _)| offer).ok_or_else(|| {
-        Refusal::new(ProblemCode::NotAcceptable, format!("This path has: {}.", offers.join(", ")))
-    })
+    best.map(|(offer, _)| offer)
+        .ok_or_else(|| Refusal::new(ProblemCode::NotAcceptable, format!("This path has: {}.", offers.join(", "))))
 }
 
 /// Middleware of paths that have JSON only.

@@ -38,9 +38,7 @@ fn check_media_type(headers: &HeaderMap) -> Result<(), Refusal> {
         return refuse(format!("Content-Type is \"{media_type}\"; needed: application/json"));
     }
     match text(CONTENT_ENCODING) {
-        Some(encoding) if encoding != "identity" => {
-            refuse(format!("Content-Encoding is \"{encoding}\"; needed: none"))
-        }
+        Some(encoding) if encoding != "identity" => refuse(format!("Content-Encoding is \"{encoding}\"; needed: none")),
         _ => Ok(()),
     }
 }

@@ -25,8 +25,9 @@ impl Cursor {
         if text.len() != 2 * LENGTH || !text.is_ascii() {
             return None;
         }
-        let bytes: Vec<u8> =
-            (0..LENGTH).map(|index| u8::from_str_radix(text.get(2 * index..2 * index + 2)?, 16).ok()).collect::<Option<_>>()?;
+        let bytes: Vec<u8> = (0..LENGTH)
+            .map(|index| u8::from_str_radix(text.get(2 * index..2 * index + 2)?, 16).ok())
+            .collect::<Option<_>>()?;
         let (head, filters) = bytes.split_at(17);
         let id: [u8; 16] = head.get(1..)?.try_into().ok()?;
         (head.first() == Some(&VERSION) && filters == digest(filter)).then(|| Self(JobId::from_bytes(id)))

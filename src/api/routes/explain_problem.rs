@@ -41,12 +41,7 @@ pub async fn explain_problem(Path(code): Path<String>, headers: HeaderMap) -> Re
 }
 
 fn explanation(entry: &'static CodeEntry) -> ProblemExplanation {
-    ProblemExplanation {
-        code: entry.word,
-        status: entry.status,
-        title: entry.title,
-        explanation: entry.explanation,
-    }
+    ProblemExplanation { code: entry.word, status: entry.status, title: entry.title, explanation: entry.explanation }
 }
 
 /// The table's texts hold nothing that HTML would take for markup; a test says so.

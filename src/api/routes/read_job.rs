@@ -41,8 +41,7 @@ pub async fn read_job(
         Some(wait) => state.jobs().wait(id, wait, enough).await?.ok_or_else(super::no_job)?,
         None => super::existing(&state, id).await?,
     };
-    let mut response =
-        if is_news(&job) { job_response(StatusCode::OK, &job) } else { not_modified(job_etag(&job)) };
+    let mut response = if is_news(&job) { job_response(StatusCode::OK, &job) } else { not_modified(job_etag(&job)) };
     if let Some(wait) = prefer.wait {
         let applied = HeaderValue::try_from(format!("wait={}", wait.as_secs())).map_err(Refusal::internal)?;
         response.headers_mut().insert(HeaderName::from_static("preference-applied"), applied);

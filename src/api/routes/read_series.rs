@@ -126,8 +126,10 @@ impl SeriesRequest {
 fn too_many(n: usize) -> Refusal {
     use crate::api::problem::{Problem, ProblemCode};
     let detail = format!("has {n} samples between from and to; permitted with method=none: at most {MAX_RAW_POINTS}");
-    let violation =
-        Violation { maximum: Some(MAX_RAW_POINTS as f64), ..Violation::new("/method", "out-of-range", detail.as_str()) };
+    let violation = Violation {
+        maximum: Some(MAX_RAW_POINTS as f64),
+        ..Violation::new("/method", "out-of-range", detail.as_str())
+    };
     Problem::new(ProblemCode::InvalidParameter, detail).with_errors(vec![violation]).into()
 }
 

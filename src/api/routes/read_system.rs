@@ -1,6 +1,8 @@
 //! `GET /api/v1/system`
 
-use crate::api::config::{DEFAULT_PAGE, DEFAULT_POINTS, MAX_BODY_BYTES, MAX_PAGE, MAX_POINTS, MAX_RAW_POINTS, MAX_WAIT_S};
+use crate::api::config::{
+    DEFAULT_PAGE, DEFAULT_POINTS, MAX_BODY_BYTES, MAX_PAGE, MAX_POINTS, MAX_RAW_POINTS, MAX_WAIT_S,
+};
 use crate::api::problem::Refusal;
 use crate::api::state::AppState;
 use axum::Json;

@@ -1,0 +1,36 @@
+//! The subcommands, one file each.
+
+mod check;
+mod input;
+mod openapi;
+mod problem;
+mod serve;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Contact, mesh-in impact and nonlinear vibration of double-helical gear pairs.
+#[derive(Debug, Parser)]
+#[command(version, about, long_about = None, arg_required_else_help = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Serve the HTTP interface and the web pages.
+    Serve(Box<serve::Serve>),
+    /// Check one job document: geometry and warnings, or every violation.
+    Check(check::Check),
+    /// Print the description of the HTTP interface (OpenAPI, JSON).
+    Openapi,
+}
+
+pub fn run(arguments: Arguments) -> ExitCode {
+    match arguments.command {
+        Command::Serve(arguments) => serve::run(*arguments),
+        Command::Check(arguments) => check::run(arguments),
+        Command::Openapi => openapi::run(),
+    }
+}

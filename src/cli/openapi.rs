@@ -1,0 +1,11 @@
+//! `herringbone openapi`: the description of the HTTP interface.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+pub fn run() -> ExitCode {
+    match std::io::stdout().lock().write_all(herringbone::api::openapi_json().as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => ExitCode::FAILURE,
+        _ => ExitCode::SUCCESS,
+    }
+}

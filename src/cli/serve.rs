@@ -1,0 +1,89 @@
+//! `herringbone serve`: the HTTP service in the foreground.
+
+use anyhow::Context;
+use clap::Args;
+use herringbone::api::{self, AppState, HttpConfig, Pages};
+use herringbone::store::{Store, StoreConfig};
+use herringbone::web;
+use herringbone::work::{Jobs, StudySolver, WorkConfig};
+use jiff::Timestamp;
+use std::process::ExitCode;
+use std::sync::Arc;
+use tokio::net::TcpListener;
+use tokio::signal::unix::{SignalKind, signal};
+use tracing_subscriber::EnvFilter;
+
+#[derive(Debug, Args)]
+pub struct Serve {
+    #[command(flatten)]
+    http: HttpConfig,
+    #[command(flatten)]
+    store: StoreConfig,
+    #[command(flatten)]
+    work: WorkConfig,
+    #[command(flatten)]
+    log: LogConfig,
+}
+
+/// What is logged, on standard error.
+#[derive(Debug, Args)]
+struct LogConfig {
+    /// Levels, for example `info` or `warn,herringbone=debug`.
+    #[arg(long, env = "HERRINGBONE_LOG", value_name = "LEVELS", default_value = "info", value_parser = levels)]
+    log: EnvFilter,
+
+    /// One JSON object per line instead of text.
+    #[arg(long, env = "HERRINGBONE_LOG_JSON")]
+    log_json: bool,
+}
+
+pub fn run(arguments: Serve) -> ExitCode {
+    start_log(&arguments.log);
+    match serve(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("herringbone serve: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn levels(text: &str) -> Result<EnvFilter, String> {
+    EnvFilter::try_new(text).map_err(|error| error.to_string())
+}
+
+fn start_log(config: &LogConfig) {
+    let log = tracing_subscriber::fmt().with_env_filter(config.log.clone()).with_writer(std::io::stderr);
+    match config.log_json {
+        true => log.json().flatten_event(true).init(),
+        false => log.init(),
+    }
+}
+
+#[tokio::main]
+async fn serve(arguments: &Serve) -> anyhow::Result<()> {
+    let (http, work) = (&arguments.http, &arguments.work);
+    let mut terminate = signal(SignalKind::terminate()).context("signal handler")?;
+    let mut interrupt = signal(SignalKind::interrupt()).context("signal handler")?;
+    let listener = TcpListener::bind(http.listen).await.with_context(|| format!("cannot listen on {}", http.listen))?;
+    let store = Store::open(&arguments.store).await?;
+    let jobs = Jobs::start(store, work, Arc::new(StudySolver), Arc::new(Timestamp::now))
+        .await
+        .map_err(anyhow::Error::from_boxed)?;
+    let state = AppState::new(jobs.clone(), Timestamp::now());
+    let pages = Pages { routes: web::routes(), not_found: axum::routing::any(web::not_found) };
+    let app = api::router(state, http, pages);
+    let address = listener.local_addr()?;
+    if !address.ip().is_loopback() {
+        tracing::warn!(%address, "reachable from other machines, and nothing asks for credentials");
+    }
+    println!("herringbone {} serves on http://{address}/", env!("CARGO_PKG_VERSION"));
+    let shutdown = async {
+        tokio::select! {
+            _ = terminate.recv() => {}
+            _ = interrupt.recv() => {}
+        }
+        tracing::info!("shutting down");
+    };
+    api::serve(listener, app, jobs, shutdown).await.context("serving failed")
+}
