@@ -54,6 +54,7 @@ fn levels(text: &str) -> Result<EnvFilter, String> {
 
 fn start_log(config: &LogConfig) {
     let log = tracing_subscriber::fmt().with_env_filter(config.log.clone()).with_writer(std::io::stderr);
+    let log = log.with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()));
     match config.log_json {
         true => log.json().flatten_event(true).init(),
         false => log.init(),
