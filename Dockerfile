@@ -1,7 +1,7 @@
 # Build: the compiler and nothing else. Run: a bare Debian with the one binary, as a user of its own.
 FROM rust:1.95-bookworm AS build
 WORKDIR /build
-COPY Cargo.toml Cargo.lock build.rs ./
+COPY Cargo.toml Cargo.lock askama.toml build.rs ./
 COPY src src
 COPY migrations migrations
 COPY openapi openapi

@@ -20,7 +20,7 @@ export const shownUnit = (unit) => SHOWN[unit] ?? unit ?? "";
 /** A field's name as words, without its unit. */
 export function labelOf(name) {
   const ending = UNITS.find(([ending]) => name.endsWith(ending))?.[0] ?? "";
-  return sentence(name.slice(0, name.length - ending.length).replaceAll("_", " "));
+  return sentence(name.slice(0, name.length - ending.length).replaceAll("_", " ").replace("center", "centre"));
 }
 
 export const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
@@ -45,8 +45,9 @@ export function number(value, digits = 5) {
     return `${Number(mantissa)}·10${superscript(Number(exponent))}`;
   }
   if (Number.isInteger(value)) return grouped(String(value));
+  if (size >= 10 ** digits) return grouped(value.toFixed(0));
   const decimals = Math.max(0, Math.min(digits, digits - 1 - Math.floor(Math.log10(size))));
-  return grouped(value.toFixed(decimals));
+  return grouped(value.toFixed(decimals).replace(/\.?0+$/, ""));
 }
 
 function superscript(exponent) {

@@ -103,9 +103,9 @@ async function showPhase(id, response, catalogue) {
   const channel = catalogue.find(({ name }) => name === names[0]);
   if (!channel || !catalogue.some(({ name }) => name === names[1])) return;
   show(byId("phase"));
-  const { t0, t_end: end, n } = channel;
-  const from = n > PHASE_POINTS ? end - ((end - t0) * PHASE_POINTS) / n : t0;
-  const [x, v] = await Promise.all(names.map((name) => api.series(id, name, { from, to: end, max_points: PHASE_POINTS + 1, method: "none" })));
+  const { t0, t_end: end, n, dt } = channel;
+  const from = n > PHASE_POINTS ? end - PHASE_POINTS * dt : t0;
+  const [x, v] = await Promise.all(names.map((name) => api.series(id, name, { from, to: end, method: "none" })));
   const micrometres = (values) => values.map((value) => value * 1e6);
   const traces = [line(micrometres(x.y), v.y, "path")];
   const { x_left_m: px = [], v_x_left_m_s: pv = [] } = response?.poincare ?? {};

@@ -52,7 +52,7 @@ async function plot(axes, points, quantity) {
     const x = sorted.map((point) => point.values[0]);
     const traces = [line(x, sorted.map(quantity.pick), quantity.partner ? "left" : "")];
     if (quantity.partner) traces.push(line(x, sorted.map(quantity.partner), "right"));
-    await draw(byId("sweep-plot"), traces, { x: labels[0], y: quantity.partner ? y.replace(", left", "") : y });
+    await draw(byId("sweep-plot"), traces, { x: labels[0], y: quantity.unit || quantity.label });
   } else {
     const [columns, rows] = axes.map((_, index) => [...new Set(points.map((point) => point.values[index]))].sort((a, b) => a - b));
     const byPlace = new Map(points.map((point) => [point.values.join(), quantity.pick(point)]));

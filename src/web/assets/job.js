@@ -1,7 +1,7 @@
 // The page of one job: follows it while it is live and shows its result when it has succeeded.
 
 import * as api from "./api.js";
-import { byId, fillValues, fillWarnings, notify, show } from "./dom.js";
+import { byId, el, fillValues, fillWarnings, notify, show } from "./dom.js";
 import { instant, number, seconds } from "./format.js";
 import { describeState } from "./state.js";
 import { watchJob } from "./watch.js";
@@ -38,6 +38,8 @@ function showLife(job) {
     ["Label", job.label],
     ["Submitted", instant(job.submitted_at)],
     ["Ended", job.ended_at ? instant(job.ended_at) : null],
+    ["Attempt", job.attempt > 1 ? String(job.attempt) : null],
+    ["Result taken from", job.reused_from ? el("a", { href: `/jobs/${encodeURIComponent(job.reused_from)}` }, "an equal job") : null],
     ["Solved in", solved === null ? null : number(solved, 3), "s"],
   ]);
 }
@@ -61,13 +63,11 @@ async function showResult(job) {
   showGeometry(result);
   showImpact(result);
   showNumerics(result);
-  const catalogue = result.response ? channelsOf(await api.catalogue(id)) : [];
+  const catalogue = result.response ? (await api.catalogue(id)).items : [];
   showResponse(result, catalogue);
   await Promise.all([showMesh(result), showSweep(result), catalogue.length ? showSeries(id, job, result, catalogue) : null]);
   byId("job").dataset.ready = "true";
 }
-
-const channelsOf = (catalogue) => catalogue.channels ?? catalogue.items ?? catalogue;
 
 byId("cancel").addEventListener("click", async () => {
   byId("cancel").disabled = true;

@@ -6,8 +6,21 @@ const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: [
 const drawn = new Map();
 let loading = null;
 
+/**
+ * Plotly writes some style attributes as text, which the content security policy forbids; through the style object
+ * they are allowed, so that the policy needs no exception.
+ */
+function allowStyleAttributes() {
+  const { setAttribute } = Element.prototype;
+  Element.prototype.setAttribute = function (name, value) {
+    if (name === "style" && this.style) this.style.cssText = value;
+    else setAttribute.call(this, name, value);
+  };
+}
+
 function load() {
   loading ??= new Promise((resolve, reject) => {
+    allowStyleAttributes();
     const script = el("script", { src: byId("job").dataset.plotly, async: true });
     script.addEventListener("load", () => resolve(window.Plotly));
     script.addEventListener("error", () => reject(new Error("The plotting script could not be loaded")));
@@ -20,9 +33,11 @@ export const line = (x, y, name) => ({ type: "scatter", mode: "lines", x, y, nam
 
 export const points = (x, y, name) => ({ type: "scatter", mode: "markers", x, y, name, marker: { size: 7, symbol: "circle-open", line: { width: 2 } } });
 
-/** Vertical lines from zero. */
+/** Vertical lines from zero with a point at their ends. */
 export function stems(x, y, name) {
-  return { type: "bar", x, y, name, showlegend: false, marker: { line: { width: 1.4 } }, stems: true };
+  const ends = points(x, y, name);
+  const lengths = { type: "data", symmetric: false, array: x.map(() => 0), arrayminus: y, width: 0, thickness: 1.6 };
+  return { ...ends, showlegend: false, marker: { size: 5 }, error_y: lengths };
 }
 
 export const heatMap = (x, y, z, unit) => ({ type: "heatmap", x, y, z, colorbar: { title: { text: unit }, thickness: 14, outlinewidth: 0 }, colorscale: "Viridis", hoverongaps: false });
@@ -56,13 +71,13 @@ export function onZoom(node, zoomed) {
 
 function withColour(trace, colour) {
   if (trace.type === "heatmap") return trace;
-  if (trace.stems) return { ...trace, stems: undefined, marker: { ...trace.marker, color: colour, line: { ...trace.marker.line, color: colour } } };
+  if (trace.error_y) return { ...trace, marker: { ...trace.marker, color: colour }, error_y: { ...trace.error_y, color: colour } };
   return { ...trace, line: { ...trace.line, color: colour }, marker: { ...trace.marker, color: colour } };
 }
 
 function layoutOf({ x, y, y2, range, title, fromZero }, colours, node) {
   const axis = (text) => ({
-    title: { text, standoff: 8 }, gridcolor: colours.grid, zerolinecolor: colours.grid, linecolor: colours.grid, automargin: true, exponentformat: "power",
+    title: { text, standoff: 8 }, gridcolor: colours.grid, zerolinecolor: colours.grid, linecolor: colours.grid, automargin: true, exponentformat: "power", separatethousands: true,
   });
   const layout = {
     autosize: true,
@@ -74,12 +89,16 @@ function layoutOf({ x, y, y2, range, title, fromZero }, colours, node) {
     xaxis: axis(x),
     yaxis: axis(y),
     legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+    separators: ".\u202f",
     hovermode: "closest",
-    bargap: 0,
+    modebar: { bgcolor: "rgba(0,0,0,0)", color: colours.muted, activecolor: colours.text },
   };
   if (title) layout.title = { text: title, font: { size: 13 } };
   if (range) layout.xaxis.range = range;
-  if (fromZero) Object.assign(layout.xaxis, { rangemode: "tozero" });
+  if (fromZero) {
+    layout.xaxis.rangemode = "tozero";
+    layout.yaxis.rangemode = "tozero";
+  }
   if (y2) layout.yaxis2 = { ...axis(y2), overlaying: "y", side: "right", showgrid: false };
   return layout;
 }
@@ -87,7 +106,7 @@ function layoutOf({ x, y, y2, range, title, fromZero }, colours, node) {
 function palette() {
   const style = getComputedStyle(document.documentElement);
   const value = (name) => style.getPropertyValue(name).trim();
-  return { text: value("--text"), grid: value("--line"), lines: ["--plot-1", "--plot-2", "--plot-3", "--plot-4"].map(value) };
+  return { text: value("--text"), muted: value("--muted"), grid: value("--line"), lines: ["--plot-1", "--plot-2", "--plot-3", "--plot-4"].map(value) };
 }
 
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

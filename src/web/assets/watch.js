@@ -20,7 +20,7 @@ export function watchJob(id, onJob) {
   function take(job) {
     if (stopped) return;
     // An event may be older than an answer that overtook it.
-    if (latest && job.revision !== undefined && job.revision < latest.revision) return;
+    if (latest && job.revision < latest.revision) return;
     latest = job;
     if (api.isEnded(job)) stop();
     onJob(job);
@@ -37,13 +37,8 @@ export function watchJob(id, onJob) {
 
   function listen() {
     source = new EventSource(`/api/v1/jobs/${encodeURIComponent(id)}/events`);
-    const receive = (event) => {
-      const data = JSON.parse(event.data);
-      const job = data.job ?? data;
-      if (job.state !== undefined && job.id !== undefined) take(job);
-      else take({ ...latest, ...job });
-    };
-    for (const name of ["message", "state", "progress", "snapshot", "done"]) source.addEventListener(name, receive);
+    // The data of every event is the whole job.
+    for (const name of ["state", "progress", "done"]) source.addEventListener(name, (event) => take(JSON.parse(event.data)));
     source.addEventListener("error", () => {
       // The browser reconnects by itself unless the server refused.
       if (stopped || source.readyState !== EventSource.CLOSED) return;

@@ -59,14 +59,14 @@ impl Field {
         let declared_unit = schema["x-unit"].as_str().or(schema["items"]["x-unit"].as_str()).unwrap_or("1");
         let placeholder = match derived {
             Some(meaning) => meaning,
-            None if required || !default.is_empty() => "",
-            None => "not given",
+            None if schema["description"].as_str().is_some_and(|help| help.contains("when null")) => "derived",
+            None => "",
         };
         Some(Field {
             id: format!("field{}", pointer.replace('/', "-")),
             pointer: pointer.to_owned(),
             label: label(pointer, declared_unit),
-            help: schema["description"].as_str().unwrap_or_default().to_owned(),
+            help: help(schema),
             range: range(schema, declared_unit),
             unit: shown_unit(declared_unit),
             control: control(schema, &value, derived)?,
@@ -145,6 +145,11 @@ fn range(schema: &Value, unit: &str) -> String {
     format!("{} to {} {}", number_text(minimum), number_text(maximum), shown_unit(unit)).trim_end().to_owned()
 }
 
+/// The field's help; what the document calls null is an empty input here.
+fn help(schema: &Value) -> String {
+    schema["description"].as_str().unwrap_or_default().replace("when null", "when empty").replace("if null", "if empty")
+}
+
 /// Names of objects that the section or block already says.
 const SAID_BY_THE_SECTION: [&str; 14] = [
     "axes",
@@ -163,6 +168,9 @@ const SAID_BY_THE_SECTION: [&str; 14] = [
     "analysis",
 ];
 
+/// Words that field names cannot spell.
+const SPELLINGS: [(&str, &str); 3] = [("youngs", "Young's"), ("poissons", "Poisson's"), ("center", "centre")];
+
 /// "/design/pinion/tip_relief/amount_um" becomes "Tip relief, amount".
 fn label(pointer: &str, unit: &str) -> String {
     let mut parts: Vec<String> = pointer
@@ -179,7 +187,9 @@ fn label(pointer: &str, unit: &str) -> String {
         "/design/gear/left_half_hand" => "gear ",
         _ => "",
     };
-    let label = format!("{member}{}", parts.join(", ").replace('_', " "));
+    let words = parts.join(", ").replace('_', " ");
+    let words = SPELLINGS.iter().fold(words, |words, (name, spelling)| words.replace(name, spelling));
+    let label = format!("{member}{words}");
     let mut letters = label.chars();
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }

@@ -25,7 +25,7 @@ pub struct Block {
 }
 
 /// The form's first contents: the source paper's example.
-const EXAMPLE: &str = include_str!("example.json");
+const EXAMPLE: &str = include_str!("../../../examples/table1.json");
 
 static GROUPS: LazyLock<Vec<Group>> = LazyLock::new(|| plan(all_fields()));
 

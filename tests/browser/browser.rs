@@ -1,0 +1,177 @@
+//! A headless Chromium for one flow.
+
+use crate::process::Process;
+use crate::server::Server;
+use futures_util::FutureExt;
+use serde_json::{Value, json};
+use std::panic::{AssertUnwindSafe, resume_unwind};
+use std::process::Command;
+use std::time::{Duration, Instant};
+use thirtyfour::prelude::*;
+use tokio::sync::Mutex;
+
+const INSTALL: &str = "The browser tests need Chromium and its driver: run `scripts/prerequisites chromium` \
+                       (on Debian: apt-get install chromium chromium-driver).";
+
+/// How long a condition on the page may take to become true.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// One browser at a time: several would only slow each other down.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::const_new(());
+
+pub struct Browser {
+    pub driver: WebDriver,
+    pub server: Server,
+}
+
+/// Runs a flow in a fresh browser against a fresh server, then checks the console and where requests went.
+pub async fn flow(steps: impl AsyncFnOnce(&Browser)) {
+    let _turn = ONE_AT_A_TIME.lock().await;
+    let server = Server::start();
+    let mut command = Command::new(std::env::var("CHROMEDRIVER").unwrap_or_else(|_| "chromedriver".to_owned()));
+    command.arg("--port=0");
+    let process = Process::start(command, INSTALL);
+    let port = process.wait_for("port of chromedriver", |line| {
+        let (_, rest) = line.split_once("started successfully on port ")?;
+        rest.trim_end_matches('.').parse::<u16>().ok()
+    });
+    let profile = tempfile::tempdir().unwrap();
+    let capabilities = capabilities(profile.path().to_str().unwrap());
+    let driver = match WebDriver::new(format!("http://127.0.0.1:{port}"), capabilities).await {
+        Ok(driver) => driver,
+        Err(error) => panic!("Chromium could not be started: {error}. {INSTALL}"),
+    };
+    let browser = Browser { driver, server };
+    let outcome = AssertUnwindSafe(async {
+        steps(&browser).await;
+        browser.check_console().await;
+        browser.check_requests().await;
+    })
+    .catch_unwind()
+    .await;
+    // A failed flow must not leave a browser behind.
+    let _ = browser.driver.clone().quit().await;
+    if let Err(panic) = outcome {
+        resume_unwind(panic);
+    }
+}
+
+fn capabilities(profile: &str) -> Capabilities {
+    let mut arguments = vec![
+        "--headless".to_owned(),
+        "--disable-gpu".to_owned(),
+        "--disable-dev-shm-usage".to_owned(),
+        "--disable-quic".to_owned(),
+        "--no-first-run".to_owned(),
+        "--disable-background-networking".to_owned(),
+        "--disable-component-update".to_owned(),
+        "--disable-sync".to_owned(),
+        "--window-size=1280,1000".to_owned(),
+        // No name resolves: whatever wanted to leave this machine fails, and shows in the request log.
+        "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1".to_owned(),
+        // Containers and continuous integration run as root, where Chromium's sandbox does not start.
+        "--no-sandbox".to_owned(),
+    ];
+    arguments.push(format!("--user-data-dir={profile}"));
+    let mut options = json!({"args": arguments});
+    if let Ok(path) = std::env::var("CHROMIUM") {
+        options["binary"] = json!(path);
+    }
+    let logs = json!({"browser": "ALL", "performance": "ALL"});
+    let all = json!({"browserName": "chrome", "goog:chromeOptions": options, "goog:loggingPrefs": logs});
+    all.as_object().cloned().unwrap_or_default().into()
+}
+
+impl Browser {
+    pub async fn open(&self, path: &str) {
+        self.driver.goto(format!("{}{path}", self.server.url)).await.unwrap();
+    }
+
+    pub async fn element(&self, selector: &str) -> WebElement {
+        self.driver.query(By::Css(selector)).first().await.unwrap_or_else(|error| panic!("{selector}: {error}"))
+    }
+
+    /// The input of the field at a JSON pointer of the job document.
+    pub async fn field(&self, pointer: &str) -> WebElement {
+        self.element(&format!("[data-pointer='{pointer}'] :is(input, select, textarea)")).await
+    }
+
+    /// Replaces the text in a field as a person does.
+    pub async fn fill(&self, pointer: &str, text: &str) {
+        let input = self.field(pointer).await;
+        input.clear().await.unwrap();
+        input.send_keys(text).await.unwrap();
+    }
+
+    /// Chooses an option as the keyboard does: sets it and tells the page.
+    pub async fn choose(&self, selector: &str, value: &str) {
+        let script = "const node = document.querySelector(arguments[0]); node.value = arguments[1]; \
+                      for (const name of ['input', 'change']) node.dispatchEvent(new Event(name, {bubbles: true})); \
+                      return node.value;";
+        let arguments = vec![json!(selector), json!(value)];
+        let chosen: String = self.driver.execute(script, arguments).await.unwrap().convert().unwrap();
+        assert_eq!(chosen, value, "{selector} has no such option");
+    }
+
+    pub async fn text(&self, selector: &str) -> String {
+        self.element(selector).await.text().await.unwrap()
+    }
+
+    /// The value of a JavaScript expression.
+    pub async fn value(&self, expression: &str) -> Value {
+        let script = format!("return {expression};");
+        let answer = self.driver.execute(&script, Vec::new()).await;
+        answer.unwrap_or_else(|error| panic!("{expression}: {error}")).json().clone()
+    }
+
+    /// What `fetch` of a path of the API answers, as the page sees it.
+    pub async fn fetch(&self, path: &str) -> Value {
+        let script = "const done = arguments[1]; fetch(arguments[0]).then((answer) => answer.json()).then(done, (error) => done(String(error)));";
+        self.driver.execute_async(script, vec![json!(path)]).await.unwrap().json().clone()
+    }
+
+    /// Waits until a JavaScript expression is true.
+    pub async fn until(&self, expression: &str) {
+        let deadline = Instant::now() + PATIENCE;
+        while self.value(&format!("Boolean({expression})")).await != json!(true) {
+            if Instant::now() > deadline {
+                let page = self.value("document.body.innerText").await;
+                panic!("not within {PATIENCE:?}: {expression}\n{}", page.as_str().unwrap_or_default());
+            }
+            tokio::time::sleep(Duration::from_millis(50)).await;
+        }
+    }
+
+    /// No error in the console. An answer outside 200–299 that the page handled shows there as well, though nothing
+    /// went wrong in the page: those lines, of the browser's network code, are let through.
+    async fn check_console(&self) {
+        let log = self.driver.browser_log().await.unwrap();
+        let errors: Vec<_> = log
+            .iter()
+            .filter(|entry| matches!(entry.level.as_str(), "SEVERE" | "WARNING"))
+            .filter(|entry| !entry.message.contains("the server responded with a status of 4"))
+            .map(|entry| entry.message.as_str())
+            .collect();
+        assert!(errors.is_empty(), "the console has {} errors:\n{}", errors.len(), errors.join("\n"));
+    }
+
+    async fn check_requests(&self) {
+        let mut count = 0;
+        for entry in self.driver.get_log("performance").await.unwrap() {
+            let event: Value = serde_json::from_str(&entry.message).unwrap();
+            if event["message"]["method"] != "Network.requestWillBeSent" {
+                continue;
+            }
+            let url = event["message"]["params"]["request"]["url"].as_str().unwrap();
+            // The browser's own pages (chrome:) and what a page makes itself (data:, blob:) need no network.
+            let local = ["chrome:", "data:", "blob:", "about:"].iter().any(|scheme| url.starts_with(scheme));
+            let inside = url.strip_prefix(&self.server.url).is_some_and(|rest| rest.starts_with('/'));
+            assert!(local || inside, "a request to {url}");
+            if local {
+                continue;
+            }
+            count += 1;
+        }
+        assert!(count > 0, "the log of requests is empty: nothing was checked");
+    }
+}

@@ -1,0 +1,13 @@
+//! The pages in a real browser: Chromium driven through its own driver, against the real server with a database of its
+//! own. Needs `chromium` and `chromedriver`: `scripts/prerequisites chromium` installs them.
+//!
+//! Every flow also fails when the browser's console shows an error, or when anything is requested from another host.
+//! `HERRINGBONE_BROWSER_TEST_URL` runs the flows against a server that is already there.
+
+mod browser;
+mod form;
+mod job;
+mod list;
+mod process;
+mod server;
+mod start;
