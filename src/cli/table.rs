@@ -39,7 +39,9 @@ pub fn write(out: &mut impl Write, result: &JobResult) -> Result<()> {
         row("mesh circumferential acceleration RMS, right", rms.mesh_circumferential_acceleration_m_s2.right, "m/s2")?;
         row("pinion axial acceleration RMS, left", rms.pinion_axial_acceleration_m_s2.left, "m/s2")?;
         row("pinion axial acceleration RMS, right", rms.pinion_axial_acceleration_m_s2.right, "m/s2")?;
-        row("dynamic factor", response.dynamic_factor, "")?;
+        if let Some(factor) = response.dynamic_factor {
+            row("dynamic factor", factor, "")?;
+        }
         row("smallest mesh displacement", response.min_displacement_um, "um")?;
         writeln!(out, "{:<46} {}, {} contact ({})", "motion", response.regime, response.contact, response.method)?;
     }

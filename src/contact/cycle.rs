@@ -314,7 +314,7 @@ fn carrying(state: &Loaded) -> Vec<i32> {
 }
 
 /// Amplitudes of harmonics 1.. per period of equally spaced samples.
-fn harmonics(values: &[f64]) -> Vec<f64> {
+pub fn harmonics(values: &[f64]) -> Vec<f64> {
     let n = values.len();
     let mean = values.iter().sum::<f64>() / n as f64;
     (1..=HARMONICS.min((n - 1) / 2))

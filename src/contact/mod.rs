@@ -15,6 +15,7 @@ mod body;
 mod coupling;
 mod cycle;
 mod distribution;
+mod equivalent;
 mod flank;
 mod half;
 mod halves;
@@ -27,7 +28,8 @@ mod ring_influence;
 mod settings;
 mod tooth;
 
-pub use cycle::{EntryDeflection, Extent, FlankMap, HalfCycle, MESH_IN_PHASE};
+pub use cycle::{EntryDeflection, Extent, FlankMap, HalfCycle, MESH_IN_PHASE, harmonics};
+pub use equivalent::equivalent_stiffness;
 pub use flank::{BodyHold, hold_radius_m};
 pub use half::{Compliance, HalfContact};
 pub use halves::{LoadedContact, solve_half, solve_pair_of_halves};

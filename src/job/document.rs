@@ -205,7 +205,10 @@ pub struct Ltca {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StiffnessLaw {
-    /// F/δ: the static displacement of the equations is the loaded transmission error, errors and reliefs included.
+    /// F/(δ − c), c a constant: the static displacement of the equations is the loaded transmission error but for a constant
+    /// (a rigid rotation), and the mean is that of the tangent stiffness.
+    TransmissionError,
+    /// F/δ.
     Secant,
     /// dF/dδ at the working load: right for small vibrations about it.
     Tangent,

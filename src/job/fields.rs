@@ -386,10 +386,15 @@ fn mesh_stiffness(object: Object) -> MeshStiffness {
         object.boolean("corner_contact", true, "ltca: whether tip corners may touch outside the path of contact.");
     let law = object.choice(
         "law",
-        &[("secant", StiffnessLaw::Secant), ("tangent", StiffnessLaw::Tangent)],
-        StiffnessLaw::Secant,
-        "secant",
-        "ltca: stiffness of the equations of motion: secant (carries errors and reliefs into the excitation) or tangent.",
+        &[
+            ("transmission_error", StiffnessLaw::TransmissionError),
+            ("secant", StiffnessLaw::Secant),
+            ("tangent", StiffnessLaw::Tangent),
+        ],
+        StiffnessLaw::TransmissionError,
+        "transmission_error",
+        "ltca: stiffness curve of the equations of motion: mean of the tangent stiffness with the fluctuation of the loaded \
+         transmission error, secant F/delta, or tangent dF/ddelta.",
     );
     let positions =
         object.optional_integer("positions", 8, 1024, "ltca: positions over one mesh period.").map(|n| n as u32);
@@ -481,11 +486,11 @@ fn impact(object: Object) -> Impact {
     let corner = CornerImpact {
         duration: object.choice(
             "duration",
-            &[("energy_balance", ImpactDuration::EnergyBalance), ("corner_to_start", ImpactDuration::CornerToStart)],
-            ImpactDuration::EnergyBalance,
-            "energy_balance",
-            "Length of the pulse: half the period of the equivalent mass on the impact's compliance, or from the corner \
-             contact to the theoretical start of contact.",
+            &[("corner_to_start", ImpactDuration::CornerToStart), ("energy_balance", ImpactDuration::EnergyBalance)],
+            ImpactDuration::CornerToStart,
+            "corner_to_start",
+            "Length of the pulse: from the corner contact to the theoretical start of contact, or half the period of the \
+             equivalent mass on the impact's compliance.",
         ),
         base_pitch_error_um: object.number(
             "base_pitch_error_um",
@@ -568,7 +573,7 @@ fn analysis(object: Object) -> Analysis {
             Some(128),
             "Samples per mesh period of each series.",
         ) as u32,
-        channels: object.texts("channels", 64, "Channels to record as series; all when null."),
+        channels: object.texts("channels", 64, "Channels to record as series, such as a_x_left; all when null."),
         initial_state: object.numbers(
             "initial_state",
             24,

@@ -129,7 +129,10 @@ pub struct Impact {
     pub zhou2008_force_n: f64,
     pub reduction_percent: f64,
     pub velocity_m_s: f64,
+    /// Length of the pulse in the equations.
     pub duration_us: f64,
+    /// Half the period of the equivalent mass on the compliance of the impact.
+    pub energy_balance_duration_us: f64,
     pub theta_deg: f64,
     pub equivalent_mass_kg: f64,
     pub single_pair_stiffness_n_per_um: f64,
@@ -147,7 +150,8 @@ pub struct Impact {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct Response {
     pub rms: Rms,
-    pub dynamic_factor: f64,
+    /// Null without torque.
+    pub dynamic_factor: Option<f64>,
     pub regime: String,
     pub contact: String,
     pub min_displacement_um: f64,
@@ -160,7 +164,7 @@ pub struct Response {
     pub plane: String,
     pub mesh_frequency_hz: f64,
     /// Mesh periods over which the means were taken.
-    pub averaged_mesh_periods: u32,
+    pub averaged_mesh_periods: u64,
     /// Displacement and velocity of the left mesh at each mesh period's start.
     pub poincare: Poincare,
     /// Amplitudes of the left half's circumferential acceleration by frequency.

@@ -51,10 +51,7 @@ pub fn given_stiffness(given: &GivenStiffness) -> Stiffness {
     match given {
         GivenStiffness::Harmonics { mean_n_per_um, harmonics } => Stiffness::Fourier {
             mean_n_per_m: mean_n_per_um * 1e6,
-            harmonics: harmonics
-                .iter()
-                .map(|h| Harmonic { amplitude: h.amplitude, phase_rad: h.phase_rad })
-                .collect(),
+            harmonics: harmonics.iter().map(|h| Harmonic { amplitude: h.amplitude, phase_rad: h.phase_rad }).collect(),
         },
         GivenStiffness::Samples { samples_n_per_um } => {
             Stiffness::Samples { values_n_per_m: samples_n_per_um.iter().map(|k| k * 1e6).collect() }
@@ -62,21 +59,22 @@ pub fn given_stiffness(given: &GivenStiffness) -> Stiffness {
     }
 }
 
-/// Assembles the parameters. `stiffness` (along s) and `impact` are those of the left and the right half, before stagger.
+/// Assembles the parameters. `stiffness` (along s) and `impact` are those of the left and the right half; the excitations of
+/// the right half come `right_lead_mesh_periods` earlier than written (stagger).
 pub fn parameters(
     document: &JobDocument,
     prepared: &Prepared,
     plane: &MotionPlane,
     stiffness: [Stiffness; 2],
     impact: [Option<Impact>; 2],
+    right_lead_mesh_periods: f64,
 ) -> Parameters {
     let supports = &document.design.supports;
     let zeta = supports.damping_ratio;
     let [pinion_mass_kg, gear_mass_kg] = prepared.mass_kg.map(|mass| mass / 2.0);
     let [pinion_inertia_kg_m2, gear_inertia_kg_m2] = prepared.inertia_kg_m2.map(|inertia| inertia / 2.0);
     let lateral = |n_per_um: f64, mass| Spring::with_damping_ratio(n_per_um * 1e6, zeta, mass);
-    let m_e =
-        equivalent_mass_kg(plane.pinion_radius_m, pinion_inertia_kg_m2, plane.gear_radius_m, gear_inertia_kg_m2);
+    let m_e = equivalent_mass_kg(plane.pinion_radius_m, pinion_inertia_kg_m2, plane.gear_radius_m, gear_inertia_kg_m2);
     let half = |stiffness: Stiffness, impact: Option<Impact>, phase_shift_mesh_periods: f64| HalfParameters {
         pinion_mass_kg,
         pinion_inertia_kg_m2,
@@ -105,10 +103,7 @@ pub fn parameters(
         helix_angle_rad: plane.helix_angle_rad,
         half_backlash_m: document.design.backlash_um * 0.5e-6,
         damping_in_gap: document.model.damping_in_gap,
-        halves: [
-            half(left_stiffness, left_impact, 0.0),
-            half(right_stiffness, right_impact, document.design.half_stagger),
-        ],
+        halves: [half(left_stiffness, left_impact, 0.0), half(right_stiffness, right_impact, -right_lead_mesh_periods)],
         couplings: Couplings {
             pinion_axial: lateral(supports.pinion_halves_axial_n_per_um, pinion_mass_kg),
             gear_axial: lateral(supports.gear_halves_axial_n_per_um, gear_mass_kg),

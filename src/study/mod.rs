@@ -1,19 +1,27 @@
 //! What a job needs: which stages run, what can be reused, in which order; and the only place where documents
 //! meet physics.
 
+mod equations;
 mod hash;
+mod impact;
+mod mesh;
+mod point;
 mod prepare;
+mod sweep;
+mod vibration;
 
 use crate::gear::Warning;
 use crate::job::DocumentError;
-use crate::job::document::JobDocument;
+use crate::job::document::{JobDocument, Kind};
 use crate::job::result::{Geometry, JobResult};
 
-use crate::watch::{Canceled, Watch};
+use crate::watch::Canceled;
+use mesh::MeshMemo;
 use serde::{Deserialize, Serialize};
 
 pub use hash::input_hash;
 pub use prepare::check;
+pub use vibration::is_channel;
 
 /// Version of the calculation: results and stages stored under another version are not reused.
 pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-1");
@@ -117,13 +125,34 @@ pub struct CheckReport {
     pub warnings: Vec<Warning>,
 }
 
-/// Solves a job.
+impl SolveError {
+    fn failed(stage: Stage, code: &str, error: &dyn std::error::Error) -> Self {
+        SolveError::Failed { stage, code: code.to_owned(), detail: error.to_string(), sim_time_s: None, step: None }
+    }
+}
+
+/// Solves a job: the stages its kind asks for, or every point of a sweep.
 ///
 /// # Errors
 /// [`SolveError`].
 pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
-    let _ = (Watch::none(), surroundings.clock_ms, check(document)?);
-    Ok(Outcome { result: JobResult::default(), series: Vec::new() })
+    let memo = MeshMemo::default();
+    if document.kind != Kind::Sweep {
+        let point = point::solve(document, surroundings, &memo, None)?;
+        return Ok(Outcome { result: point.result, series: point.series });
+    }
+    let report = check(document)?;
+    let started_ms = (surroundings.clock_ms)();
+    let sweep = sweep::run(document, surroundings, &memo)?;
+    let mut result = JobResult {
+        geometry: Some(report.geometry),
+        sweep: Some(sweep),
+        warnings: report.warnings,
+        ..JobResult::default()
+    };
+    result.numerics.solver_version = SOLVER_VERSION.to_owned();
+    result.numerics.wall_ms.response = (surroundings.clock_ms)() - started_ms;
+    Ok(Outcome { result, series: Vec::new() })
 }
 
 #[cfg(test)]

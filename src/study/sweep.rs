@@ -55,9 +55,9 @@ pub fn check_axes(document: &JobDocument) -> Result<(), DocumentError> {
 }
 
 fn is_number_field(pointer: &str) -> bool {
-    crate::job::schema::field_descriptions().iter().any(|field| {
-        field.pointer == pointer && matches!(field.schema["type"].as_str(), Some("number" | "integer"))
-    })
+    crate::job::schema::field_descriptions()
+        .iter()
+        .any(|field| field.pointer == pointer && matches!(field.schema["type"].as_str(), Some("number" | "integer")))
 }
 
 /// The document of one point, before the swept values are put in.
@@ -87,14 +87,15 @@ pub fn run(document: &JobDocument, surroundings: &Surroundings, memo: &MeshMemo)
     let lines = second.map_or(1, Axis::len);
     let length = first.len();
     let done = AtomicUsize::new(0);
-    let solve = |line: usize, index: usize, start: Option<&[f64]>| -> Result<(SweepPoint, Option<Vec<f64>>), SolveError> {
-        let mut values = vec![first.value(index)];
-        values.extend(second.map(|axis| axis.value(line)));
-        let row = solve_point(&base, document, values, start, surroundings, memo)?;
-        let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-        (surroundings.progress)(Stage::Sweep, count as f64 / (lines * length) as f64);
-        Ok(row)
-    };
+    let solve =
+        |line: usize, index: usize, start: Option<&[f64]>| -> Result<(SweepPoint, Option<Vec<f64>>), SolveError> {
+            let mut values = vec![first.value(index)];
+            values.extend(second.map(|axis| axis.value(line)));
+            let row = solve_point(&base, document, values, start, surroundings, memo)?;
+            let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+            (surroundings.progress)(Stage::Sweep, count as f64 / (lines * length) as f64);
+            Ok(row)
+        };
     let rows: Vec<SweepPoint> = match document.continuation.unwrap_or(Continuation::None) {
         Continuation::None => (0..lines * length)
             .into_par_iter()
@@ -148,9 +149,9 @@ fn solve_point(
     for (axis, number) in document.axes.iter().zip(&values) {
         set(&mut value, &axis.pointer, *number);
     }
-    let solved = parse_value(&value)
-        .map_err(SolveError::from)
-        .and_then(|document| point::solve(&document, &Surroundings { progress: &|_, _| {}, ..*surroundings }, memo, start));
+    let solved = parse_value(&value).map_err(SolveError::from).and_then(|document| {
+        point::solve(&document, &Surroundings { progress: &|_, _| {}, ..*surroundings }, memo, start)
+    });
     match solved {
         Ok(point) => Ok((row(values, &point), point.end_state)),
         Err(SolveError::Canceled(canceled)) => Err(canceled.into()),
@@ -165,7 +166,7 @@ fn row(values: Vec<f64>, point: &Point) -> SweepPoint {
         values,
         mesh_circumferential_acceleration_rms_m_s2: response.map(|r| r.rms.mesh_circumferential_acceleration_m_s2),
         pinion_axial_acceleration_rms_m_s2: response.map(|r| r.rms.pinion_axial_acceleration_m_s2),
-        dynamic_factor: response.map(|r| r.dynamic_factor),
+        dynamic_factor: response.and_then(|r| r.dynamic_factor),
         regime: response.map(|r| r.regime.clone()),
         contact: response.map(|r| r.contact.clone()),
         min_displacement_um: response.map(|r| r.min_displacement_um),

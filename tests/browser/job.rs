@@ -56,7 +56,10 @@ async fn the_example_goes_from_the_form_to_its_result() {
         browser.until("location.search.startsWith('?from=')").await;
         browser.until("document.querySelector('#document-text')?.textContent").await;
         browser.until("document.querySelector('#check-state').classList.contains('good')").await;
-        assert_eq!(browser.value("document.querySelector('[data-pointer=\"/design/pinion/teeth\"] input').value").await, json!("17"));
+        assert_eq!(
+            browser.value("document.querySelector('[data-pointer=\"/design/pinion/teeth\"] input').value").await,
+            json!("17")
+        );
     })
     .await;
 }
@@ -76,7 +79,11 @@ async fn zooming_in_fetches_finer_data() {
         let (samples, points) = (read("samples").await, read("points").await);
         assert!(points < samples, "nothing to refine: {points} of {samples} samples");
         // Drag over the middle of the plot, as a person zooms.
-        browser.driver.execute("document.querySelector('#series-plot').scrollIntoView({block: 'center'})", Vec::new()).await.unwrap();
+        browser
+            .driver
+            .execute("document.querySelector('#series-plot').scrollIntoView({block: 'center'})", Vec::new())
+            .await
+            .unwrap();
         let layer = browser.element("#series-plot .nsewdrag").await;
         let width = layer.rect().await.unwrap().width as i64;
         browser
@@ -90,11 +97,14 @@ async fn zooming_in_fetches_finer_data() {
             .perform()
             .await
             .unwrap();
-        browser.until(&format!("Number(document.querySelector('#series-plot').dataset.samples) < {}", samples / 2.0)).await;
+        browser
+            .until(&format!("Number(document.querySelector('#series-plot').dataset.samples) < {}", samples / 2.0))
+            .await;
         let (window, shown) = (read("samples").await, read("points").await);
         assert!(shown / window > points / samples, "{shown} of {window} after, {points} of {samples} before");
         let range = browser.value("document.querySelector('#series-plot').layout.xaxis.range").await;
-        let x = browser.value("(({x}) => [x[0], x[x.length - 1]])(document.querySelector('#series-plot').data[0])").await;
+        let x =
+            browser.value("(({x}) => [x[0], x[x.length - 1]])(document.querySelector('#series-plot').data[0])").await;
         for end in 0..2 {
             let (limit, drawn) = (range[end].as_f64().unwrap(), x[end].as_f64().unwrap());
             let span = range[1].as_f64().unwrap() - range[0].as_f64().unwrap();
@@ -121,7 +131,10 @@ async fn a_sweep_is_plotted_and_listed() {
         succeeded(browser).await;
         let result = browser.fetch(&format!("/api/v1/jobs/{id}/result")).await;
         assert_eq!(result["sweep"]["points"].as_array().map(Vec::len), Some(5));
-        assert_eq!(browser.value("document.querySelectorAll('#sweep-plot .scatterlayer .trace').length").await, json!(2));
+        assert_eq!(
+            browser.value("document.querySelectorAll('#sweep-plot .scatterlayer .trace').length").await,
+            json!(2)
+        );
         browser.element("#sweep-details summary").await.click().await.unwrap();
         browser.until("document.querySelectorAll('#sweep-table tbody tr').length === 5").await;
     })
@@ -137,7 +150,8 @@ async fn a_mesh_job_has_no_response() {
         succeeded(browser).await;
         let result = browser.fetch(&format!("/api/v1/jobs/{id}/result")).await;
         assert_eq!(result["response"], Value::Null);
-        let hidden = "['response', 'series', 'phase', 'spectrum', 'sweep'].every((id) => document.getElementById(id).hidden)";
+        let hidden =
+            "['response', 'series', 'phase', 'spectrum', 'sweep'].every((id) => document.getElementById(id).hidden)";
         assert_eq!(browser.value(hidden).await, json!(true));
         assert_eq!(browser.value("document.querySelector('#mesh').hidden").await, json!(false));
     })

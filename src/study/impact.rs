@@ -1,0 +1,127 @@
+//! The impact stage: the mesh-in impact of each half, and the pulse it puts on the equations.
+
+use super::equations::MotionPlane;
+use super::mesh::MeshStage;
+use super::prepare::Prepared;
+use super::{SolveError, Stage};
+use crate::dynamics;
+use crate::gear::{Half, Warning};
+use crate::impact::{self, Entry, Inertia};
+use crate::job::document::{CornerImpact, Impact, ImpactDuration, JobDocument};
+use crate::job::result;
+
+/// What the impact stage leaves: its block of the result, and the pulse of each half.
+pub struct ImpactStage {
+    pub summary: Option<result::Impact>,
+    pub pulses: [Option<dynamics::Impact>; 2],
+}
+
+/// Runs the impact stage.
+///
+/// # Errors
+/// [`SolveError::Failed`] where no corner contact can be found.
+pub fn run(
+    document: &JobDocument,
+    prepared: &Prepared,
+    plane: &MotionPlane,
+    mesh: &MeshStage,
+    warnings: &mut Vec<Warning>,
+) -> Result<ImpactStage, SolveError> {
+    // The right half is staggered by the shift of the equations, unless its stiffness already is: then here.
+    let shift = if mesh.stagger_included { -document.design.half_stagger } else { 0.0 };
+    match &document.model.impact {
+        Impact::None => Ok(ImpactStage { summary: None, pulses: [None, None] }),
+        Impact::Given(given) => {
+            let pulse = |shift: f64| dynamics::Impact::HalfSine {
+                force_n: given.force_n,
+                duration_mesh_periods: given.duration_mesh_periods,
+                start_mesh_periods: given.start_mesh_periods + shift,
+            };
+            let summary = result::Impact {
+                force_n: given.force_n,
+                duration_us: given.duration_mesh_periods / prepared.mesh_frequency_hz * 1e6,
+                start_mesh_periods: given.start_mesh_periods,
+                source: "given".to_owned(),
+                ..result::Impact::default()
+            };
+            Ok(ImpactStage { summary: Some(summary), pulses: [Some(pulse(0.0)), Some(pulse(shift))] })
+        }
+        Impact::CornerContact(corner) => calculated(prepared, plane, mesh, corner, true, shift, warnings),
+        Impact::Zhou2008(corner) => calculated(prepared, plane, mesh, corner, false, shift, warnings),
+    }
+}
+
+fn calculated(
+    prepared: &Prepared,
+    plane: &MotionPlane,
+    mesh: &MeshStage,
+    corner: &CornerImpact,
+    buffered: bool,
+    shift: f64,
+    warnings: &mut Vec<Warning>,
+) -> Result<ImpactStage, SolveError> {
+    let [pinion_kg_m2, gear_kg_m2] = prepared.inertia_kg_m2.map(|inertia| inertia / 2.0);
+    let solve = |half: Half| {
+        let state = &mesh.entry[half.index()];
+        let entry = Entry {
+            half,
+            pinion_speed_rad_s: prepared.pinion_speed_rad_s,
+            inertia: Inertia { pinion_kg_m2, gear_kg_m2 },
+            mesh_stiffness_n_per_m: state.stiffness_n_per_m,
+            load_share: state.load_share,
+            base_pitch_error_m: corner.base_pitch_error_um * 1e-6,
+        };
+        impact::mesh_in(&prepared.pair, &entry, |overrun_m| state.deflection_m(overrun_m))
+            .map_err(|error| SolveError::failed(Stage::Impact, "impact-failed", &error))
+    };
+    let [left, right] = [solve(Half::Left)?, solve(Half::Right)?];
+    if let Some(none) = &left.none_because {
+        warnings.push(Warning {
+            code: "no-impact".to_owned(),
+            pointer: "/model/impact".to_owned(),
+            detail: format!(
+                "the entering end is {:.2} um open, more than the {:.2} um by which the load closes it: no early contact, no impact",
+                none.flank_gap_m * 1e6,
+                none.deflection_m * 1e6
+            ),
+        });
+    }
+    let timing = |impact: &impact::Impact| {
+        let duration_s = match corner.duration {
+            ImpactDuration::EnergyBalance => impact.duration_s,
+            ImpactDuration::CornerToStart => impact.lead_s,
+        };
+        let entry = -impact.overrun_m / prepared.pair.base_pitch_m;
+        (duration_s, corner.start_mesh_periods.unwrap_or(entry))
+    };
+    let pulse = |impact: &impact::Impact, shift: f64| {
+        let force = if buffered { impact.force_n } else { impact.zhou2008_force_n };
+        let (duration_s, start) = timing(impact);
+        // Shorter than this the pulse has no effect that could be computed.
+        let duration_mesh_periods = duration_s * prepared.mesh_frequency_hz;
+        (force > 0.0 && duration_mesh_periods >= 1e-9).then(|| dynamics::Impact::HalfSine {
+            force_n: force * plane.force_factor,
+            duration_mesh_periods,
+            start_mesh_periods: start + shift,
+        })
+    };
+    let (duration_s, start_mesh_periods) = timing(&left);
+    let deflection_m = mesh.entry[0].deflection_m(left.overrun_m);
+    let summary = result::Impact {
+        force_n: left.force_n,
+        zhou2008_force_n: left.zhou2008_force_n,
+        reduction_percent: left.reduction_percent,
+        velocity_m_s: left.velocity_m_s,
+        duration_us: duration_s * 1e6,
+        energy_balance_duration_us: left.duration_s * 1e6,
+        theta_deg: left.theta_rad.to_degrees(),
+        equivalent_mass_kg: left.equivalent_mass_kg,
+        single_pair_stiffness_n_per_um: left.single_pair_stiffness_n_per_m * 1e-6,
+        other_pairs_stiffness_n_per_um: left.other_pairs_stiffness_n_per_m * 1e-6,
+        corner_deflection_um: deflection_m * 1e6,
+        corner_overrun_mm: left.overrun_m * 1e3,
+        start_mesh_periods,
+        source: if buffered { "corner_contact" } else { "zhou2008" }.to_owned(),
+    };
+    Ok(ImpactStage { summary: Some(summary), pulses: [pulse(&left, 0.0), pulse(&right, shift)] })
+}

@@ -1,0 +1,82 @@
+//! One operating point: the stages a document needs, in their order.
+
+use super::equations::{self, MotionPlane};
+use super::mesh::{self, MeshMemo};
+use super::prepare::{geometry, prepare};
+use super::{Channel, SolveError, Stage, Surroundings, impact, vibration};
+use crate::job::document::{JobDocument, Kind};
+use crate::job::result::{JobResult, Numerics};
+
+/// A solved point.
+pub struct Point {
+    pub result: JobResult,
+    pub series: Vec<Channel>,
+    /// State at the end (24 numbers in the source's order), to continue a neighbouring point from.
+    pub end_state: Option<Vec<f64>>,
+}
+
+/// Solves one point. `start`: a neighbour's end state to start from.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn solve(
+    document: &JobDocument,
+    surroundings: &Surroundings,
+    memo: &MeshMemo,
+    start: Option<&[f64]>,
+) -> Result<Point, SolveError> {
+    let mut numerics = Numerics { solver_version: super::SOLVER_VERSION.to_owned(), ..Numerics::default() };
+    let mut clock = Lap::new(surroundings);
+    let prepared = prepare(document)?;
+    let mut warnings = prepared.warnings.clone();
+    numerics.wall_ms.geometry = clock.lap_ms();
+    (surroundings.progress)(Stage::Geometry, 1.0);
+
+    let plane = MotionPlane::new(document.model.plane, &prepared);
+    let (mesh, reused) = mesh::run(document, &prepared, &plane, surroundings, memo)?;
+    if reused {
+        numerics.reused.push(Stage::Mesh.word().to_owned());
+    }
+    numerics.wall_ms.mesh = clock.lap_ms();
+
+    let impact = impact::run(document, &prepared, &plane, &mesh, &mut warnings)?;
+    numerics.wall_ms.impact = clock.lap_ms();
+    (surroundings.progress)(Stage::Impact, 1.0);
+
+    let mut result = JobResult {
+        geometry: Some(geometry(&prepared)),
+        impact: impact.summary,
+        warnings,
+        numerics,
+        ..JobResult::default()
+    };
+    let (mut series, mut end_state) = (Vec::new(), None);
+    if document.kind != Kind::Mesh {
+        let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
+        let parameters = equations::parameters(document, &prepared, &plane, mesh.stiffness, impact.pulses, lead);
+        let vibration = vibration::run(document, &parameters, start, surroundings, &mut result.numerics)?;
+        result.response = Some(vibration.summary);
+        result.warnings.extend(vibration.warnings);
+        (series, end_state) = (vibration.series, vibration.end_state);
+        result.numerics.wall_ms.response = clock.lap_ms();
+    }
+    result.mesh = Some(mesh.summary);
+    Ok(Point { result, series, end_state })
+}
+
+/// Time from lap to lap by the clock of the surroundings.
+struct Lap<'a> {
+    clock_ms: &'a (dyn Fn() -> f64 + Sync),
+    last_ms: f64,
+}
+
+impl<'a> Lap<'a> {
+    fn new(surroundings: &Surroundings<'a>) -> Self {
+        Self { clock_ms: surroundings.clock_ms, last_ms: (surroundings.clock_ms)() }
+    }
+
+    fn lap_ms(&mut self) -> f64 {
+        let now_ms = (self.clock_ms)();
+        now_ms - std::mem::replace(&mut self.last_ms, now_ms)
+    }
+}

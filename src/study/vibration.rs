@@ -1,0 +1,179 @@
+//! The response stage: the steady vibration of the pair and its statistics.
+
+use super::{Channel, SolveError, Stage, Surroundings};
+use crate::dynamics::{self, DynamicsError, Parameters};
+use crate::gear::Warning;
+use crate::job::document::{Integrator, JobDocument, Method, Plane};
+use crate::job::result::{self, Numerics, PerHalf, Poincare, Rms};
+use crate::job::{DocumentError, Violation};
+use crate::response::{self, Analysis, ChannelId, Halves};
+use crate::watch::Watch;
+
+/// What the response stage leaves.
+pub struct Vibration {
+    pub summary: result::Response,
+    pub series: Vec<Channel>,
+    pub warnings: Vec<Warning>,
+    pub end_state: Option<Vec<f64>>,
+}
+
+/// Whether `asked` names the channel `name`: the velocities and accelerations of x may leave the x out (`a_left`).
+pub fn is_channel(asked: &str, name: &str) -> bool {
+    canonical(asked) == name
+}
+
+fn canonical(asked: &str) -> String {
+    match asked {
+        "v_left" | "v_right" | "a_left" | "a_right" => format!("{}_x{}", &asked[..1], &asked[1..]),
+        other => other.to_owned(),
+    }
+}
+
+/// The channels a document asks for: all where it does not say.
+///
+/// # Errors
+/// [`DocumentError::Invalid`] for names that are no channel.
+pub fn channels(document: &JobDocument) -> Result<Vec<ChannelId>, DocumentError> {
+    let Some(asked) = &document.analysis.channels else { return Ok(ChannelId::all()) };
+    let mut ids = Vec::with_capacity(asked.len());
+    let mut violations = Vec::new();
+    for (index, name) in asked.iter().enumerate() {
+        match ChannelId::parse(&canonical(name)) {
+            Some(id) if !ids.contains(&id) => ids.push(id),
+            Some(_) => {}
+            None => {
+                let known: Vec<_> = ChannelId::all().into_iter().map(ChannelId::name).collect();
+                let detail = format!("is no channel; permitted: {}", known.join(", "));
+                violations.push(Violation::new(format!("/analysis/channels/{index}"), "not-one-of", detail));
+            }
+        }
+    }
+    if violations.is_empty() { Ok(ids) } else { Err(DocumentError::Invalid(violations)) }
+}
+
+/// Runs the response stage. `start`: a neighbour's end state, where the sweep continues from it.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn run(
+    document: &JobDocument,
+    parameters: &Parameters,
+    start: Option<&[f64]>,
+    surroundings: &Surroundings,
+    numerics: &mut Numerics,
+) -> Result<Vibration, SolveError> {
+    let analysis = analysis(document, start)?;
+    let progress = |fraction: f64| (surroundings.progress)(Stage::Response, fraction);
+    let watch = Watch::new(&progress, surroundings.canceled);
+    let response = response::solve(parameters, &analysis, &watch).map_err(failed)?;
+    let summary = &response.summary;
+    numerics.steps = summary.numerics.steps;
+    numerics.rejected_steps = summary.numerics.rejected_steps;
+    numerics.force_evaluations = summary.numerics.force_evaluations;
+    numerics.degrees_of_freedom = summary.degrees_of_freedom;
+    let channel = |channel: &response::Channel| Channel {
+        name: channel.name.clone(),
+        quantity: word(&channel.quantity),
+        unit: channel.unit.clone(),
+        t0_s: channel.t0_s,
+        dt_s: channel.dt_s,
+        rms: summary.rms.channels.get(&channel.name).copied().unwrap_or(0.0),
+        values: channel.values.clone(),
+    };
+    Ok(Vibration {
+        summary: block(document, parameters, &response),
+        series: response.channels.iter().map(channel).collect(),
+        warnings: warnings(summary),
+        end_state: Some(response.final_state.to_vec()),
+    })
+}
+
+fn analysis(document: &JobDocument, start: Option<&[f64]>) -> Result<Analysis, DocumentError> {
+    let asked = &document.analysis;
+    let state = start.or(asked.initial_state.as_deref());
+    Ok(Analysis {
+        method: match asked.method {
+            Method::Auto => response::Method::Auto,
+            Method::Periodic => response::Method::Periodic,
+            Method::Integrate => response::Method::Integrate {
+                mesh_periods: u64::from(asked.mesh_periods),
+                record_mesh_periods: u64::from(asked.record_mesh_periods),
+            },
+        },
+        integrator: match asked.integrator {
+            Integrator::Taylor => dynamics::Integrator::Taylor,
+            Integrator::RungeKutta4 => dynamics::Integrator::RungeKutta,
+        },
+        accuracy: asked.accuracy,
+        samples_per_mesh_period: asked.samples_per_mesh_period as usize,
+        channels: channels(document)?,
+        initial_state: state.and_then(|state| <[f64; 24]>::try_from(state).ok()),
+        ..Analysis::default()
+    })
+}
+
+fn failed(error: DynamicsError) -> SolveError {
+    let (code, sim_time_s) = match &error {
+        DynamicsError::Canceled(canceled) => return (*canceled).into(),
+        DynamicsError::Diverged { time_s } => ("diverged", Some(*time_s)),
+        DynamicsError::StepSizeTooSmall { time_s, .. } => ("step-size-too-small", Some(*time_s)),
+        DynamicsError::TooManySteps { time_s, .. } => ("too-many-steps", Some(*time_s)),
+        _ => ("response-failed", None),
+    };
+    SolveError::Failed {
+        stage: Stage::Response,
+        code: code.to_owned(),
+        detail: error.to_string(),
+        sim_time_s,
+        step: None,
+    }
+}
+
+fn per_half(halves: Halves<f64>) -> PerHalf {
+    PerHalf { left: halves.left, right: halves.right }
+}
+
+/// The word of a unit-only enum in its serialised form.
+fn word(value: &impl serde::Serialize) -> String {
+    match serde_json::to_value(value) {
+        Ok(serde_json::Value::String(word)) => word,
+        _ => String::new(),
+    }
+}
+
+fn block(document: &JobDocument, parameters: &Parameters, response: &response::Response) -> result::Response {
+    let summary = &response.summary;
+    let regime = match summary.period_mesh_periods {
+        Some(periods) => format!("period-{periods}"),
+        None => word(&summary.regime),
+    };
+    result::Response {
+        rms: Rms {
+            mesh_circumferential_acceleration_m_s2: per_half(summary.rms.mesh_circumferential_acceleration_m_s2),
+            pinion_axial_acceleration_m_s2: per_half(summary.rms.pinion_axial_acceleration_m_s2),
+            channels: summary.rms.channels.clone(),
+        },
+        dynamic_factor: summary.dynamic_factor,
+        regime,
+        contact: word(&summary.contact),
+        min_displacement_um: summary.min_displacement_m * 1e6,
+        natural_frequencies_hz: summary.natural_frequencies_hz.clone(),
+        error_estimate: summary.error_estimate,
+        method: summary.method.clone(),
+        fraction_in_contact: 0.5 * (summary.contact_share.left + summary.contact_share.right),
+        damping_in_gap: summary.damping_in_gap,
+        plane: if document.model.plane == Plane::Base { "base" } else { "pitch" }.to_owned(),
+        mesh_frequency_hz: parameters.mesh_frequency_hz,
+        averaged_mesh_periods: summary.recorded_mesh_periods,
+        poincare: Poincare {
+            x_left_m: response.poincare.iter().map(|point| point.x_left_m).collect(),
+            v_x_left_m_s: response.poincare.iter().map(|point| point.v_x_left_m_s).collect(),
+        },
+        spectrum: None,
+    }
+}
+
+fn warnings(summary: &response::Summary) -> Vec<Warning> {
+    let _ = summary;
+    Vec::new()
+}
