@@ -48,6 +48,20 @@ impl ToothChain {
         }
     }
 
+    /// Spreads slice forces along the face: the reactions of the foundation to them. Only for chains of unit compliance.
+    pub fn spread(&self, step_m: f64, values: &mut [f64]) {
+        let n = self.pivots.len();
+        for i in 1..n {
+            values[i] -= self.off[i - 1] / self.pivots[i - 1] * values[i - 1];
+        }
+        for (value, pivot) in values.iter_mut().zip(&self.pivots) {
+            *value *= step_m / pivot;
+        }
+        for i in (0..n.saturating_sub(1)).rev() {
+            values[i] -= self.off[i] / self.pivots[i] * values[i + 1];
+        }
+    }
+
     /// Displacement of every slice per unit force on slice `j`.
     pub fn column(&self, j: usize, out: &mut [f64]) {
         let n = self.pivots.len();

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::body::Ring;
-use super::ring_influence::{RingInfluence, ToothLayout, ring_weight};
+use super::ring_influence::{NODES, ProfileInfluence, RingInfluence, ToothLayout, ring_weight};
 use super::tooth::{ProfilePoint, Tooth, ToothForm};
 use crate::gear::{Member, Pair};
 
@@ -39,8 +39,9 @@ pub fn hold_radius_m(member: &Member, hold: BodyHold, normal_module_m: f64) -> f
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flank {
     tooth: Tooth,
-    pub ring: RingInfluence,
+    pub ring: ProfileInfluence,
     side: f64,
+    places_m: [f64; NODES],
 }
 
 impl Flank {
@@ -58,6 +59,7 @@ impl Flank {
         let form = ToothForm {
             base_radius_m: member.base_radius_m,
             root_radius_m: member.root_radius_m,
+            tip_radius_m: member.tip_radius_m,
             base_half_angle_rad: member.base_half_angle_rad,
             root_half_angle_rad: member.root_half_angle_rad(),
             base_helix_angle_rad: pair.base_helix_angle_rad,
@@ -82,7 +84,23 @@ impl Flank {
             normal_module_m: module,
             side,
         };
-        Flank { tooth, ring: RingInfluence::new(&ring, &layout, slices, offsets), side }
+        // Chebyshev nodes of the path.
+        let places_m: [f64; NODES] = std::array::from_fn(|i| {
+            let angle = std::f64::consts::PI * (2 * i + 1) as f64 / (2 * NODES) as f64;
+            0.5 * (rolls.0 + rolls.1) - 0.5 * (rolls.1 - rolls.0) * angle.cos()
+        });
+        let step = pair.spec.face_width_m / slices as f64;
+        let raw = RingInfluence::new(&ring, &layout, slices, offsets);
+        let ring = raw.along_profile(step, &places_m.map(|roll| tooth.at(roll, side)));
+        Flank { tooth, ring, side, places_m }
+    }
+
+    /// Interpolation weights of the ring's influence at roll length `roll_m`.
+    pub fn weights(&self, roll_m: f64) -> [f64; NODES] {
+        let places = &self.places_m;
+        std::array::from_fn(|a| {
+            (0..NODES).filter(|&b| b != a).map(|b| (roll_m - places[b]) / (places[a] - places[b])).product()
+        })
     }
 
     /// The tooth at roll length `roll_m` of this member.

@@ -23,6 +23,7 @@ mod hertz;
 pub mod iso6336;
 mod linalg;
 mod lines;
+mod plate;
 mod position;
 mod ring_influence;
 mod settings;

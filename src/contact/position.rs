@@ -5,12 +5,12 @@ use super::distribution::{Distribution, Problem, Stalled, Workspace, distribute}
 use super::flank::Flank;
 use super::hertz::LineContact;
 use super::lines::{Point, Reach, collect};
-use super::ring_influence::LOADS;
+use super::ring_influence::NODES;
 use crate::gear::{Half, Pair};
 
-/// Shapes of the load of one point on both members.
+/// Interpolation weights of one point on both members.
 #[derive(Debug, Clone, Copy)]
-struct Shapes([[f64; LOADS]; 2]);
+struct Shapes([[f64; NODES]; 2]);
 
 /// The loaded points of one position.
 #[derive(Debug, Clone, PartialEq)]
@@ -167,7 +167,7 @@ impl<'a> Solver<'a> {
             let x = p.x_m.clamp(pair.path_start_m, pair.path_end_m);
             let other = pair.line_of_action_m - x;
             let on = [self.flanks[0].at(x), self.flanks[1].at(other)];
-            self.shapes.push(Shapes(on.map(|o| o.root_load.components)));
+            self.shapes.push(Shapes([self.flanks[0].weights(x), self.flanks[1].weights(other)]));
             let radius = (x * other / pair.line_of_action_m / cos).max(1e-3 * pair.spec.normal_module_m);
             self.contacts.push(LineContact::new(e, nu, radius, on.map(|o| o.depth_m)));
         }

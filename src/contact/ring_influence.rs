@@ -5,6 +5,8 @@ use std::f64::consts::PI;
 
 use super::annulus::arc_shapes;
 use super::body::{HarmonicFlexibility, Ring, WidthBasis, harmonic};
+use super::coupling::ToothChain;
+use super::tooth::ProfilePoint;
 
 /// Waves across the tooth longer than the first (in multiples of the normal module per radian) belong wholly to the
 /// ring, shorter than the second wholly to the tooth's own root; between them they share. A tooth pitch is π m_n, so
@@ -146,18 +148,86 @@ impl RingInfluence {
         }
     }
 
-    /// Normal displacement at slice `i` (load shape `fa`) from a force at slice `j` (load shape `fb`), both on one tooth
-    /// (`offset` 0) or with the first `offset >= 0` pairs earlier in the mesh than the second.
-    pub fn between(&self, offset: usize, i: usize, j: usize, fa: &[f64; LOADS], fb: &[f64; LOADS]) -> f64 {
+    /// Contracts the load components at `NODES` places of the profile, spreading each load along the tooth before it
+    /// reaches the ring and each displacement on its way back.
+    pub fn along_profile(&self, step_m: f64, places: &[ProfilePoint; NODES]) -> ProfileInfluence {
+        let n = self.slices;
+        let offsets = self.table.len() / (n * n);
+        let chains = places.map(|place| {
+            place.root_spread_m.map(|decay| {
+                let mut chain = ToothChain::default();
+                chain.prepare(step_m, (0..n).map(|_| (1.0, decay)));
+                chain
+            })
+        });
+        let mut table = vec![[0.0; NODES * NODES]; self.table.len()];
+        let mut loaded = vec![0.0; LOADS * n * n];
+        let (mut forces, mut moments) = (vec![0.0; n], vec![0.0; n]);
+        for k in 0..offsets {
+            let raw = &self.table[k * n * n..(k + 1) * n * n];
+            for b in 0..NODES {
+                let load = &places[b].root_load.components;
+                for i in 0..n {
+                    for a in 0..LOADS {
+                        for (j, entry) in raw[i * n..(i + 1) * n].iter().enumerate() {
+                            (forces[j], moments[j]) = split(&entry[a * LOADS..(a + 1) * LOADS], load);
+                        }
+                        chains[b][0].spread(step_m, &mut forces);
+                        chains[b][1].spread(step_m, &mut moments);
+                        let target = &mut loaded[(a * n + i) * n..(a * n + i + 1) * n];
+                        for ((t, f), m) in target.iter_mut().zip(&forces).zip(&moments) {
+                            *t = f + m;
+                        }
+                    }
+                }
+                for a in 0..NODES {
+                    let answer = &places[a].root_load.components;
+                    for j in 0..n {
+                        for i in 0..n {
+                            let column: [f64; LOADS] = std::array::from_fn(|c| loaded[(c * n + i) * n + j]);
+                            (forces[i], moments[i]) = split(&column, answer);
+                        }
+                        chains[a][0].spread(step_m, &mut forces);
+                        chains[a][1].spread(step_m, &mut moments);
+                        for i in 0..n {
+                            table[(k * n + i) * n + j][a * NODES + b] = forces[i] + moments[i];
+                        }
+                    }
+                }
+            }
+        }
+        ProfileInfluence { slices: n, table }
+    }
+}
+
+/// Parts of a contraction by forces (tangential, radial, axial) and by moments (moment, dipole).
+fn split(row: &[f64], load: &[f64; LOADS]) -> (f64, f64) {
+    (row[0] * load[0] + row[2] * load[2] + row[3] * load[3], row[1] * load[1] + row[4] * load[4])
+}
+
+/// Places of the profile between which the influence is interpolated (cubic).
+pub const NODES: usize = 4;
+
+/// Normal displacements through the ring per normal force, for every pair of slices and places of the profile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProfileInfluence {
+    slices: usize,
+    table: Vec<[f64; NODES * NODES]>,
+}
+
+impl ProfileInfluence {
+    /// Displacement at slice `i` from a force at slice `j`, both on one tooth (`offset` 0) or with the first `offset` pairs
+    /// earlier in the mesh than the second; `wa` and `wb` are the interpolation weights of their places.
+    pub fn between(&self, offset: usize, i: usize, j: usize, wa: &[f64; NODES], wb: &[f64; NODES]) -> f64 {
         let entry = &self.table[(offset * self.slices + i) * self.slices + j];
         let mut sum = 0.0;
-        for a in 0..LOADS {
-            let row = &entry[a * LOADS..(a + 1) * LOADS];
+        for a in 0..NODES {
+            let row = &entry[a * NODES..(a + 1) * NODES];
             let mut inner = 0.0;
-            for b in 0..LOADS {
-                inner += row[b] * fb[b];
+            for b in 0..NODES {
+                inner += row[b] * wb[b];
             }
-            sum += fa[a] * inner;
+            sum += wa[a] * inner;
         }
         sum
     }

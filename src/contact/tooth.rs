@@ -16,6 +16,7 @@
 //! above it is `hertz`'s.
 
 use super::annulus::arc_flexibility;
+use super::plate::{Plate, Spread};
 
 /// Load on a tooth at one point of its profile per unit normal force, as the body at the root circle receives it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -29,6 +30,7 @@ pub struct RootLoad {
 pub struct ToothForm<'a> {
     pub base_radius_m: f64,
     pub root_radius_m: f64,
+    pub tip_radius_m: f64,
     pub base_half_angle_rad: f64,
     pub root_half_angle_rad: f64,
     pub base_helix_angle_rad: f64,
@@ -41,7 +43,7 @@ pub struct ToothForm<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tooth {
     form: Fixed,
-    table: Vec<[f64; 3]>,
+    table: Vec<[f64; 4]>,
     roll_start_m: f64,
     roll_step_m: f64,
 }
@@ -63,6 +65,8 @@ pub struct ProfilePoint {
     /// Decay length of the tooth's own coupling along the face.
     pub decay_length_m: f64,
     pub root_load: RootLoad,
+    /// Decay lengths of what reaches the root: forces, moments.
+    pub root_spread_m: [f64; 2],
     /// Depth of the tooth centreline below the contact, along the flank normal.
     pub depth_m: f64,
 }
@@ -100,18 +104,30 @@ impl Tooth {
         };
         let root = RootRemainder::new(form, fixed.root_helix.1, nu, weight);
         let step = (to_m - from_m) / (POINTS - 1) as f64;
-        let table = (0..POINTS)
-            .map(|i| {
-                let at = fixed.crossing(from_m + step * i as f64);
+        let crossings: Vec<Crossing> = (0..POINTS).map(|i| fixed.crossing(from_m + step * i as f64)).collect();
+        let plate = Plate {
+            height_m: form.tip_radius_m - form.root_radius_m,
+            nu,
+            normal_module_m: form.normal_module_m,
+            thickness: &|above| {
+                let r = form.root_radius_m + above;
+                2.0 * r * (form.half_angle)(r) / (1.0 + (r * tan_base / form.base_radius_m).powi(2)).sqrt()
+            },
+        };
+        let heights: Vec<f64> = crossings.iter().map(|at| at.lever_m).collect();
+        let table = crossings
+            .iter()
+            .zip(plate.spreads(&heights))
+            .map(|(at, spread)| {
                 let beam = Beam::new(form, tan_base, at.lever_m + form.root_radius_m, nu);
-                let (sin2, cos2) = (at.normal_sin * at.normal_sin, 1.0 - at.normal_sin * at.normal_sin);
-                let bending = cos2 * beam.bending;
-                let shear = cos2 * beam.shear;
-                let local = root.compliance(&at, form.root_radius_m);
-                let total = bending + shear + sin2 * beam.axial + local;
-                // Kept as stiffness-like: the compliance varies like a cubic, its reciprocal interpolates worse.
-                let decay2 = bending * beam.bending_decay2 + shear * beam.shear_decay2 + local * root.decay2;
-                [total / youngs_pa, (decay2 / total.max(1e-30)).sqrt(), 0.0]
+                let sin2 = at.normal_sin * at.normal_sin;
+                let own = (1.0 - sin2) * (beam.bending + beam.shear) + sin2 * beam.axial;
+                let local = root.compliance(at);
+                let total = own + local;
+                let Spread { deflection_m, force_m, moment_m } = spread;
+                // The root's short waves see the load after it has spread and spread its answer again.
+                let decay2 = own * deflection_m.powi(2) + local * (2.0 * force_m.powi(2) + root.decay2);
+                [total / youngs_pa, (decay2 / total.max(1e-30)).sqrt(), force_m, moment_m]
             })
             .collect();
         Tooth { form: fixed, table, roll_start_m: from_m, roll_step_m: step }
@@ -138,7 +154,7 @@ impl Tooth {
         let lateral = (1.0 - at.normal_sin * at.normal_sin).sqrt();
         let r_f = self.form.root_radius_m;
         let tangential = cos_b * at.cos;
-        RootLoad {
+        let root_load = RootLoad {
             components: [
                 tangential * (1.0 + lever / r_f),
                 lateral * lever / (cos_f * r_f),
@@ -146,14 +162,14 @@ impl Tooth {
                 side * sin_b,
                 -side * lateral * lever * sin_f,
             ],
+        };
+        ProfilePoint {
+            line_compliance_m2_per_n: value(0).max(1e-24),
+            decay_length_m: value(1).max(0.0),
+            root_load,
+            root_spread_m: [value(2).max(0.0), value(3).max(0.0)],
+            depth_m: at.depth_m * cos_b,
         }
-        .with(value(0).max(1e-24), value(1).max(0.0), at.depth_m * cos_b)
-    }
-}
-
-impl RootLoad {
-    fn with(self, line_compliance_m2_per_n: f64, decay_length_m: f64, depth_m: f64) -> ProfilePoint {
-        ProfilePoint { line_compliance_m2_per_n, decay_length_m, root_load: self, depth_m }
     }
 }
 
@@ -189,15 +205,13 @@ struct Beam {
     bending: f64,
     shear: f64,
     axial: f64,
-    bending_decay2: f64,
-    shear_decay2: f64,
 }
 
 impl Beam {
     /// `crossing_m` is y_c. The substitution r = r_f + h t² takes the square root out of the fillet at the root circle.
     fn new(form: &ToothForm<'_>, tan_base: f64, crossing_m: f64, nu: f64) -> Beam {
         let height = crossing_m - form.root_radius_m;
-        let mut beam = Beam { bending: 0.0, shear: 0.0, axial: 0.0, bending_decay2: 0.0, shear_decay2: 0.0 };
+        let mut beam = Beam { bending: 0.0, shear: 0.0, axial: 0.0 };
         if height <= 0.0 {
             return beam;
         }
@@ -206,7 +220,6 @@ impl Beam {
             nodes[5 - k] = (0.5 - 0.5 * x, 0.5 * w);
             nodes[6 + k] = (0.5 + 0.5 * x, 0.5 * w);
         }
-        let (mut slope, mut twist, mut slope_shear) = (0.0, 0.0, 0.0);
         for (t, w) in nodes {
             let above = height * t * t;
             let weight = w * 2.0 * t * height;
@@ -215,18 +228,9 @@ impl Beam {
             let tan = r * tan_base / form.base_radius_m;
             let cos2 = 1.0 / (1.0 + tan * tan);
             let arm = height - above;
-            let rigidity = s.powi(3) * cos2;
-            let bend = arm / rigidity * weight;
-            beam.bending += arm * bend;
+            beam.bending += arm * arm / (s.powi(3) * cos2) * weight;
             beam.axial += weight / s;
-            // Twisting energy of the bent strip: slope at this height, mid-interval.
-            twist += rigidity * (slope + 0.5 * bend).powi(2) * weight;
-            slope += bend;
-            slope_shear += s * weight * above * above;
         }
-        // Rayleigh quotients of a shear layer: bending 2(1-ν) ∫D w'² / ∫D w''², shear 1.2 ∫s w² / ∫s w'² with w ∝ height.
-        beam.bending_decay2 = 2.0 * (1.0 - nu) * twist / beam.bending;
-        beam.shear_decay2 = 1.2 * slope_shear * beam.axial / (height * height);
         beam.bending *= 12.0 * (1.0 - nu * nu);
         beam.shear = 2.4 * (1.0 + nu) * beam.axial;
         beam.axial *= 1.0 - nu * nu;
@@ -256,7 +260,7 @@ impl RootRemainder {
     }
 
     /// E times displacement per normal force per unit face width.
-    fn compliance(&self, at: &Crossing, _root_radius_m: f64) -> f64 {
+    fn compliance(&self, at: &Crossing) -> f64 {
         let lateral = (1.0 - at.normal_sin * at.normal_sin).sqrt();
         let f = [lateral, lateral * at.lever_m / self.virtual_radius_m, -at.normal_sin];
         let sum: f64 = (0..3).map(|a| (0..3).map(|b| f[a] * self.matrix[a][b] * f[b]).sum::<f64>()).sum();
