@@ -71,13 +71,15 @@ pub fn distribute(
         _ => forces.fill(total / n as f64),
     }
     let mut member = forces.iter().map(|&f| f > 0.0).collect::<Vec<_>>();
+    // Approach and gaps count from the least gap: gaps far above the deflections would drown them in rounding.
+    let datum = (0..n).map(|i| problem.gap(i)).fold(f64::INFINITY, f64::min);
     let limit = QUICK_ITERATIONS + 40 + 6 * n as u32;
     let mut change = f64::INFINITY;
     for iteration in 1..=limit {
         let careful = iteration > QUICK_ITERATIONS;
         work.active.clear();
         work.active.extend((0..n).filter(|&i| member[i]));
-        let Some((approach, stiffness)) = newton(problem, total, &forces, work) else {
+        let Some((approach, stiffness)) = newton(problem, total, datum, &forces, work) else {
             return Err(Stalled { iterations: iteration, change });
         };
         let mut same = true;
@@ -121,7 +123,7 @@ pub fn distribute(
             }
             let row = &c[j * n..(j + 1) * n];
             let deflection: f64 = row.iter().zip(&forces).map(|(a, f)| a * f).sum();
-            let opening = deflection + problem.gap(j) - approach;
+            let opening = deflection + (problem.gap(j) - datum) - approach;
             if opening < -slack {
                 if !careful {
                     member[j] = true;
@@ -135,15 +137,16 @@ pub fn distribute(
             member[worst.1] = true;
             same = false;
         }
-        if same && change < TOLERANCE {
-            return Ok(Distribution { forces, approach, stiffness, iterations: iteration });
+        let rounding = 16.0 * f64::EPSILON * stiffness * approach.abs() / total;
+        if same && change < TOLERANCE + rounding {
+            return Ok(Distribution { forces, approach: approach + datum, stiffness, iterations: iteration });
         }
     }
     Err(Stalled { iterations: limit, change })
 }
 
 /// One Newton step on the active points: their new forces into `work.fresh`; returns approach and stiffness.
-fn newton(problem: &impl Problem, total: f64, forces: &[f64], work: &mut Workspace) -> Option<(f64, f64)> {
+fn newton(problem: &impl Problem, total: f64, datum: f64, forces: &[f64], work: &mut Workspace) -> Option<(f64, f64)> {
     let (n, m) = (problem.len(), work.active.len());
     let c = problem.compliance();
     let floor = 1e-9 * total / n as f64;
@@ -161,7 +164,7 @@ fn newton(problem: &impl Problem, total: f64, forces: &[f64], work: &mut Workspa
         let at = forces[i].max(floor);
         let (value, slope) = problem.local(i, at);
         target[row] += slope;
-        work.rest.push(slope * at - value - problem.gap(i));
+        work.rest.push(slope * at - value - (problem.gap(i) - datum));
     }
     if !cholesky(&mut work.matrix, m) {
         return None;

@@ -133,11 +133,7 @@ impl System {
         cholesky_solve(&self.factor, &mut solution, SIZE);
         // What the load puts straight on the clamped node counts as reaction too.
         let direct = if element == 0 { n[0] } else { 0.0 };
-        [
-            dot(&solution, &load),
-            direct - dot(&self.root[0], &solution[..6]),
-            -dot(&self.root[1], &solution[..6]),
-        ]
+        [dot(&solution, &load), direct - dot(&self.root[0], &solution[..6]), -dot(&self.root[1], &solution[..6])]
     }
 }
 

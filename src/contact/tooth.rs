@@ -1,11 +1,10 @@
 //! One tooth as a cantilever: its compliance along the flank normal above the root circle, and the loads it hands to the
 //! gear body.
 //!
-//! The normal section is what bends. With the load angle α' of the transverse section (angle between the base tangent and
-//! the perpendicular of the tooth centreline, at their crossing), the flank normal has the components cosβ_b cosα'
-//! (tangential), cosβ_b sinα' (radial) and sinβ_b (axial). At the crossing radius y_c = r_b / cosα' the part in the
-//! tangent plane of the cylinder is exactly perpendicular to the tooth trace, so that in the normal section
-//! sinα'_n = cosβ_b sinα', and the tooth is a cantilever of thickness s_t(r) cosβ(r) and length b / cosβ(r):
+//! The normal section is what bends. The flank normal meets the middle surface of the tooth at the radius y_c, where it has
+//! the components cosβ_b cosα' (tangential), cosβ_b sinα' (radial) and sinβ_b (axial), cosα' = r_b / y_c. Its part in
+//! the tangent plane of the cylinder through y_c is exactly perpendicular to the tooth trace there, so that in the normal
+//! section sinα'_n = cosβ_b sinα', and the tooth is a cantilever of thickness s_t(r) cosβ(r) and length b / cosβ(r):
 //!
 //! ```text
 //! E δ b / F_n = cos²α'_n [ 12 (1-ν²) ∫ (y_c-r)² / (s_t³ cos²β) dr + 2.4 (1+ν) ∫ dr/s_t ] + (1-ν²) sin²α'_n ∫ dr/s_t
@@ -168,7 +167,7 @@ impl Tooth {
             decay_length_m: value(1).max(0.0),
             root_load,
             root_spread_m: [value(2).max(0.0), value(3).max(0.0)],
-            depth_m: at.depth_m * cos_b,
+            depth_m: at.depth_m,
         }
     }
 }
@@ -181,21 +180,26 @@ struct Crossing {
     normal_sin: f64,
     /// Crossing radius minus root radius.
     lever_m: f64,
-    /// Distance from the contact to the crossing along the base tangent.
+    /// Distance from the contact to the crossing along the flank normal.
     depth_m: f64,
 }
 
 impl Fixed {
     fn crossing(&self, roll_m: f64) -> Crossing {
-        let angle = roll_m / self.base_radius_m - self.base_half_angle_rad;
-        let (sin, cos) = angle.sin_cos();
+        let (_, cos_b) = self.base_helix;
+        let r_b = self.base_radius_m;
+        // Along the base tangent the centreline is `tangent` away; along the flank normal it is met `depth` away, after
+        // the part depth cosβ_b of the base tangent (the tooth turns as the normal runs along the axis).
+        let tangent = roll_m - r_b * (roll_m / r_b - self.base_half_angle_rad).tan();
+        let depth_m = (tangent * cos_b).max(1e-3 * self.base_half_angle_rad * r_b);
+        let roll = roll_m - depth_m * cos_b;
+        let radius = r_b.hypot(roll);
         Crossing {
-            sin,
-            cos,
-            normal_sin: self.base_helix.1 * sin,
-            lever_m: self.base_radius_m / cos - self.root_radius_m,
-            depth_m: (roll_m - self.base_radius_m * sin / cos)
-                .max(1e-3 * self.base_half_angle_rad * self.base_radius_m),
+            sin: roll / radius,
+            cos: r_b / radius,
+            normal_sin: cos_b * roll / radius,
+            lever_m: radius - self.root_radius_m,
+            depth_m,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Tests of the whole room on real pairs.
 
 mod invariants;
+mod robustness;
 mod tooth_tables;
 
 use crate::gear::{Assembly, FlankModification, GearSpec, Material, Pair, PairSpec, Rotation};
