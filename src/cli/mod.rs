@@ -5,6 +5,8 @@ mod input;
 mod openapi;
 mod problem;
 mod serve;
+mod solve;
+mod table;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -21,6 +23,8 @@ pub struct Arguments {
 enum Command {
     /// Serve the HTTP interface and the web pages.
     Serve(Box<serve::Serve>),
+    /// Solve one job document in place: the result as JSON on standard output.
+    Solve(solve::Solve),
     /// Check one job document: geometry and warnings, or every violation.
     Check(check::Check),
     /// Print the description of the HTTP interface (OpenAPI, JSON).
@@ -30,6 +34,7 @@ enum Command {
 pub fn run(arguments: Arguments) -> ExitCode {
     match arguments.command {
         Command::Serve(arguments) => serve::run(*arguments),
+        Command::Solve(arguments) => solve::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Openapi => openapi::run(),
     }
