@@ -570,7 +570,7 @@ fn analysis(object: Object) -> Analysis {
             "samples_per_mesh_period",
             8,
             4096,
-            Some(128),
+            Some(256),
             "Samples per mesh period of each series.",
         ) as u32,
         channels: object.texts("channels", 64, "Channels to record as series, such as a_x_left; all when null."),

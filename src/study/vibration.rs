@@ -83,7 +83,7 @@ pub fn run(
     Ok(Vibration {
         summary: block(document, parameters, &response),
         series: response.channels.iter().map(channel).collect(),
-        warnings: warnings(summary),
+        warnings: warnings(summary, document.analysis.accuracy),
         end_state: Some(response.final_state.to_vec()),
     })
 }
@@ -169,11 +169,42 @@ fn block(document: &JobDocument, parameters: &Parameters, response: &response::R
             x_left_m: response.poincare.iter().map(|point| point.x_left_m).collect(),
             v_x_left_m_s: response.poincare.iter().map(|point| point.v_x_left_m_s).collect(),
         },
-        spectrum: None,
+        spectrum: spectrum(response, parameters.mesh_frequency_hz),
     }
 }
 
-fn warnings(summary: &response::Summary) -> Vec<Warning> {
-    let _ = summary;
-    Vec::new()
+/// Highest mesh order and largest number of lines of the spectrum in the result; the recorded series has the rest.
+const SPECTRUM_ORDERS: f64 = 20.0;
+const SPECTRUM_LINES: usize = 4000;
+
+/// Spectrum of the left half's circumferential acceleration, where it was recorded. Of more lines than the result holds,
+/// the largest of each group of neighbours stays.
+fn spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<result::Spectrum> {
+    let channel = response.channels.iter().find(|channel| channel.name == "a_x_left")?;
+    let full = response::Spectrum::of(channel, mesh_frequency_hz);
+    let lines = full.mesh_order.iter().filter(|order| **order <= SPECTRUM_ORDERS).count();
+    let group = lines.div_ceil(SPECTRUM_LINES).max(1);
+    let largest = |start: usize| {
+        (start..(start + group).min(lines)).max_by(|&a, &b| full.amplitude[a].total_cmp(&full.amplitude[b]))
+    };
+    let kept: Vec<usize> = (1..lines).step_by(group).filter_map(largest).collect();
+    Some(result::Spectrum {
+        frequency_hz: kept.iter().map(|&line| full.frequency_hz[line]).collect(),
+        amplitude_m_s2: kept.iter().map(|&line| full.amplitude[line]).collect(),
+    })
+}
+
+fn warnings(summary: &response::Summary, accuracy: f64) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    if summary.error_estimate > accuracy {
+        let repeats = summary.period_mesh_periods.is_some();
+        let reason =
+            if repeats { "" } else { "; the motion does not repeat, so its means are those of a finite record" };
+        warnings.push(Warning {
+            code: "accuracy-not-reached".to_owned(),
+            pointer: "/analysis/accuracy".to_owned(),
+            detail: format!("the estimated relative error of the RMS values is {:.1e}{reason}", summary.error_estimate),
+        });
+    }
+    warnings
 }
