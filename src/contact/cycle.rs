@@ -181,14 +181,10 @@ impl<'a> CycleBuilder<'a> {
     fn path(&self) -> (Vec<f64>, Vec<f64>) {
         let pairs = self.states.iter().flat_map(|s| s.2.points.iter().map(|p| p.pair));
         let (low, high) = pairs.fold((0, 0), |(l, h), k| (l.min(k), h.max(k)));
-        let (mut path, mut share) = (Vec::new(), Vec::new());
-        for k in low..=high {
-            for (phase, _, state) in &self.states {
-                path.push(phase + f64::from(k));
-                share.push(state.share(k));
-            }
-        }
-        (path, share)
+        let mut path: Vec<(f64, f64)> =
+            (low..=high).flat_map(|k| self.states.iter().map(move |s| (s.0 + f64::from(k), s.2.share(k)))).collect();
+        path.sort_by(|a, b| a.0.total_cmp(&b.0));
+        path.into_iter().unzip()
     }
 
     /// First and last path position with load, refined between the positions by bisection.

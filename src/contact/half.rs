@@ -1,6 +1,7 @@
 //! Loaded contact of one helix half, ready to be asked at any phase of the mesh period.
 
 use super::flank::Flank;
+use super::lines::CORNER_REACH;
 use super::position::{Loaded, Solver, Trouble};
 use super::settings::{ContactError, Settings};
 use crate::gear::{Half, Pair};
@@ -17,8 +18,9 @@ impl Compliance {
     /// Computes teeth and rings of both members.
     pub fn new(pair: &Pair, settings: &Settings) -> Compliance {
         let slices = settings.slice_count(pair);
-        // Pairs at most one base pitch beyond either end of the path, plus rounding.
-        let offsets = pair.total_contact_ratio().ceil() as usize + 3;
+        // Points lie within the path and, with corner contact, half a base pitch beyond either end.
+        let reach = if settings.corner_contact { 2.0 * CORNER_REACH } else { 0.0 };
+        let offsets = (pair.total_contact_ratio() + reach + 1e-6).floor() as usize;
         let (pinion, gear) = rayon::join(
             || Flank::new(pair, 1.0, settings.body, slices, offsets),
             || Flank::new(pair, -1.0, settings.body, slices, offsets),

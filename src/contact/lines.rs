@@ -19,6 +19,10 @@ pub struct Point {
     pub gap_m: f64,
 }
 
+/// Corner contact is looked for this far beyond the path, in base pitches: gaps there are beyond any deflection that a
+/// tooth survives.
+pub const CORNER_REACH: f64 = 0.5;
+
 /// Which pairs to look at and how far beyond the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
@@ -41,8 +45,7 @@ pub fn collect(pair: &Pair, half: Half, phase: f64, slices: usize, reach: &Reach
     let slope = pair.base_helix_angle_rad.tan();
     let x0 = reference_roll_m(pair, phase);
     let (start, end) = (pair.path_start_m, pair.path_end_m);
-    // Corners are looked for at most one base pitch beyond the path.
-    let over = if reach.corner_gap_m > 0.0 { pair.base_pitch_m } else { 0.0 };
+    let over = if reach.corner_gap_m > 0.0 { CORNER_REACH * pair.base_pitch_m } else { 0.0 };
     let first = (((start - over - x0 - b * slope) / pair.base_pitch_m).floor() as i32).max(reach.lowest_pair);
     let last = ((end + over - x0) / pair.base_pitch_m).ceil() as i32;
     for k in first..=last {

@@ -43,6 +43,49 @@ pub struct RingInfluence {
     table: Vec<[f64; LOADS * LOADS]>,
 }
 
+/// Flexibilities of ascending harmonics: the low ones and every so many of the high ones are computed, the others
+/// interpolated linearly in n times flexibility, which tends to the half-space's constant.
+struct Harmonics<'a> {
+    ring: &'a Ring,
+    basis: &'a WidthBasis,
+    below: (u32, HarmonicFlexibility),
+    above: (u32, HarmonicFlexibility),
+    between: HarmonicFlexibility,
+}
+
+/// Harmonics up to this one are all computed, the steps beyond grow by an eighth of the order.
+const EVERY_HARMONIC: u32 = 8;
+
+impl<'a> Harmonics<'a> {
+    fn new(ring: &'a Ring, basis: &'a WidthBasis) -> Harmonics<'a> {
+        let first = harmonic(ring, basis, 0, false);
+        Harmonics { ring, basis, below: (0, first.clone()), above: (0, first.clone()), between: first }
+    }
+
+    /// Harmonic `n`; orders must ascend.
+    fn at(&mut self, n: u32) -> &HarmonicFlexibility {
+        while self.above.0 < n {
+            let step = if self.above.0 < EVERY_HARMONIC { 1 } else { (self.above.0 / 8).max(1) };
+            let next = self.above.0 + step;
+            let fresh = (next, harmonic(self.ring, self.basis, next, false));
+            self.below = std::mem::replace(&mut self.above, fresh);
+        }
+        if self.above.0 == n {
+            return &self.above.1;
+        }
+        let (low, high) = (f64::from(self.below.0), f64::from(self.above.0));
+        let t = (f64::from(n) - low) / (high - low);
+        let (a, b) = ((1.0 - t) * low / f64::from(n), t * high / f64::from(n));
+        for (parity, block) in self.between.blocks.iter_mut().enumerate() {
+            let (below, above) = (&self.below.1.blocks[parity], &self.above.1.blocks[parity]);
+            for ((value, x), y) in block.iter_mut().zip(below).zip(above) {
+                *value = a * x + b * y;
+            }
+        }
+        &self.between
+    }
+}
+
 /// Sum over harmonics and its slice-space workspace.
 struct Accumulator {
     slices: usize,
@@ -62,6 +105,7 @@ impl RingInfluence {
         let waves = RING_WAVES_PER_MODULE.1 * ring.face_width_m / (PI * layout.normal_module_m);
         let basis = WidthBasis::new((4.0 + 1.1 * waves).ceil().clamp(5.0, 26.0) as usize, ring.face_width_m);
         let mut sum = Accumulator::new(&basis, slices);
+        let mut series = Harmonics::new(ring, &basis);
         let mut table = vec![[0.0; LOADS * LOADS]; (offsets + 1) * slices * slices];
         let pitch = 2.0 * PI / layout.teeth as f64;
         let turn = ring.face_width_m / slices as f64 * layout.twist_per_m;
@@ -70,7 +114,7 @@ impl RingInfluence {
             if weight <= 0.0 {
                 continue;
             }
-            sum.transform(&harmonic(ring, &basis, n, false));
+            sum.transform(series.at(n));
             let factor = weight * if n == 0 { 0.5 } else { 1.0 } / PI;
             let (uniform, linear) = arc_shapes(n as f64, layout.root_half_angle_rad);
             // (component, shape, odd) of tangential, moment, radial and axial load.

@@ -1,6 +1,9 @@
 //! What must hold whatever the numbers are.
 
+use std::f64::consts::PI;
+
 use super::{pair, spec};
+use crate::contact::lines::{Reach, collect};
 use crate::contact::{BodyHold, Compliance, HalfContact, Settings, solve_half, solve_pair_of_halves};
 use crate::gear::Half;
 use crate::watch::Watch;
@@ -100,4 +103,29 @@ fn a_canceled_analysis_stops() {
     let pair = pair(&spec([29, 67], 30.0, 45e-3));
     let watch = Watch::new(&|_| {}, &|| true);
     assert!(solve_half(&pair, Half::Left, 1e3, &quick(), watch).is_err());
+}
+
+/// Gu, Velex, Sainsot and Bruyère (2015), uniform stiffness per length of contact line:
+/// k/k_m = 1 + 2 Σ sinc(n ε_α) sinc(n ε_β) cos[π n (2τ - ε_α - ε_β)].
+#[test]
+fn contact_lines_follow_the_uniform_series() {
+    let sinc = |x: f64| if x == 0.0 { 1.0 } else { (PI * x).sin() / (PI * x) };
+    for (teeth, helix, width) in [([29, 67], 30.0, 45e-3), ([40, 60], 12.0, 60e-3), ([17, 44], 24.43, 75e-3)] {
+        let pair = pair(&spec(teeth, helix, width));
+        let (ea, eb) = (pair.transverse_contact_ratio, pair.overlap_ratio);
+        let reach = Reach { lowest_pair: i32::MIN, corner_gap_m: 0.0 };
+        let mut points = Vec::new();
+        for i in 0..16 {
+            let phase = (f64::from(i) + 0.5) / 16.0;
+            collect(&pair, Half::Left, phase, 24, &reach, &mut points);
+            let length: f64 = points.iter().map(|p| p.width_m).sum::<f64>() / (ea * width);
+            let series: f64 = 1.0
+                + 2.0
+                    * (1..4000)
+                        .map(f64::from)
+                        .map(|n| sinc(n * ea) * sinc(n * eb) * (PI * n * (2.0 * phase - ea - eb)).cos())
+                        .sum::<f64>();
+            assert!((length - series).abs() < 1e-4, "{phase}: {length} {series}");
+        }
+    }
 }
