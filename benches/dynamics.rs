@@ -6,7 +6,8 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use herringbone::dynamics::{
-    Couplings, HalfParameters, Harmonic, Impact, Parameters, Spring, Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m,
+    Couplings, HalfParameters, Harmonic, Impact, Parameters, Spring, Stiffness, equivalent_mass_kg,
+    mesh_damping_n_s_per_m,
 };
 use herringbone::response::{Analysis, Method, solve};
 use herringbone::watch::Watch;
@@ -58,7 +59,9 @@ fn bench(c: &mut Criterion) {
     let period_2 = parameters(40.0, 2e-5, 0.03, 0.24);
     for (name, p) in [("A", &a), ("A, 12 coordinates", &staggered), ("C", &period_2)] {
         // The difference of the two divided by 1000 is the cost of one mesh period; of the last two, with statistics.
-        for (what, mesh_periods, record) in [("1 period", 1, 1), ("1001 periods", 1001, 1), ("1001 recorded", 1001, 1001)] {
+        for (what, mesh_periods, record) in
+            [("1 period", 1, 1), ("1001 periods", 1001, 1), ("1001 recorded", 1001, 1001)]
+        {
             let method = Method::Integrate { mesh_periods, record_mesh_periods: record };
             let analysis = Analysis { method, ..Analysis::default() };
             c.bench_function(&format!("{name}: {what}"), |b| {

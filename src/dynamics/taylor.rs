@@ -19,6 +19,8 @@ const MOST_CHANGES_PER_PERIOD: u32 = 20_000;
 pub(super) struct Taylor<const D: usize> {
     order: usize,
     tolerance: f64,
+    /// None: step chosen from the coefficients; Some: fixed step in scaled time (for measuring the order).
+    fixed: Option<f64>,
     work: Box<TaylorWork<D>>,
     /// Size of the recent motion: scaled velocity and acceleration, as lengths.
     size: f64,
@@ -27,8 +29,8 @@ pub(super) struct Taylor<const D: usize> {
 
 impl<const D: usize> Taylor<D> {
     /// `tolerance`: local error of a step relative to the size of the motion.
-    pub fn new(tolerance: f64, order: usize) -> Self {
-        Self { order: order.clamp(4, MAX_ORDER), tolerance, work: TaylorWork::new(), size: 0.0, changes: (0, 0) }
+    pub fn new(tolerance: f64, order: usize, fixed: Option<f64>) -> Self {
+        Self { order: order.clamp(4, MAX_ORDER), tolerance, fixed, work: TaylorWork::new(), size: 0.0, changes: (0, 0) }
     }
 
     /// The order that costs least at a tolerance (measured on the reference cases).
@@ -61,9 +63,9 @@ impl<const D: usize> Taylor<D> {
 
         let remaining = (end - state.phase) * model.period_tau;
         let wanted = self.step_length(remaining);
-        let to_end = remaining <= wanted;
+        let to_end = remaining <= wanted * (1.0 + 1e-9);
         // Two equal steps rather than a long one and a stub.
-        let mut h = if to_end { remaining } else { remaining / (remaining / wanted).ceil() };
+        let mut h = if to_end { remaining } else { remaining / (remaining / wanted - 1e-9).ceil() };
         if h.is_nan() || h <= 0.0 || h.is_infinite() || (!to_end && state.phase + h / model.period_tau <= state.phase) {
             let time_s = (state.period as f64 + state.phase) * model.period_tau / model.omega_ref;
             return Err(if h.is_finite() {
@@ -131,6 +133,7 @@ impl<const D: usize> Taylor<D> {
         // Below the rounding of the positions no tolerance can be met.
         let allowed = (self.tolerance * self.size).max(1e-17 * norm(&self.work.rows[0]));
         let h = reach(&self.work.rows[..], self.order, allowed);
+        let h = self.fixed.unwrap_or(h);
         if h.is_nan() { f64::NAN } else { h.min(remaining) }
     }
 

@@ -34,7 +34,8 @@ impl<const D: usize> Recorder<D> {
         samples_per_mesh_period: usize,
         periods: u64,
     ) -> Self {
-        let capacity = samples_per_mesh_period * periods as usize;
+        // Long records grow as they go.
+        let capacity = samples_per_mesh_period.saturating_mul(periods as usize).min(1 << 20);
         let mut tracks: Vec<Track<D>> = Vec::new();
         let mut add = |id: ChannelId, extremes: bool, sampled: bool| {
             let samples = sampled.then(|| Vec::with_capacity(capacity));

@@ -30,10 +30,11 @@ impl<const D: usize> Section<D> {
         self.states.push_back(state);
     }
 
-    /// Size of the motion: its largest scaled velocity.
+    /// Size of the motion: its largest scaled velocity, or a billionth of the deflection when it hardly moves (what is
+    /// smaller is rounding).
     pub fn size(&self) -> f64 {
-        let speeds = self.states.iter().flat_map(|s| s.v.iter().enumerate());
-        speeds.filter(|(c, _)| c % PER_HALF != W).fold(f64::MIN_POSITIVE, |m, (_, v)| m.max(v.abs()))
+        let parts = |row: &[f64; D]| (0..D).filter(|c| c % PER_HALF != W).fold(0.0f64, |m, c| m.max(row[c].abs()));
+        self.states.iter().fold(f64::MIN_POSITIVE, |m, s| m.max(parts(&s.v)).max(1e-9 * parts(&s.x)))
     }
 
     /// Relative change of the state over `n` mesh periods.

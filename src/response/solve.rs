@@ -206,7 +206,7 @@ impl Run<'_> {
             let loose = (100.0 * tolerance).max(1e-13);
             let mut other = self.recorder_of_rms(&model);
             numerics += self.record(self.motion(&model, from, integrator, loose), record, &mut other)?.numerics;
-            LOOSE_SAFETY * rms_difference(&recorder, &other) * tolerance / loose + ROUNDING
+            LOOSE_SAFETY * rms_difference(&recorder, &other, smallest(&model)) * tolerance / loose + ROUNDING
         };
         let t0_s = from.period as f64 * self.p.mesh_period_s();
         Ok(self.response(&model, recorder, section, verdict, t0_s, numerics))
@@ -268,7 +268,7 @@ impl Run<'_> {
         let mut better = self.recorder_of_rms(model);
         let corrected = moved(model, start, &correction);
         self.record(self.motion(model, corrected, Integrator::Taylor, tight), n, &mut better)?;
-        Ok(SAFETY * rms_difference(recorder, &better) + ROUNDING)
+        Ok(SAFETY * rms_difference(recorder, &better, smallest(model)) + ROUNDING)
     }
 
     /// Channels every response needs, and those asked for.
@@ -425,12 +425,18 @@ fn standard_error(mean_squares: &[f64]) -> f64 {
     if mean > 0.0 { 0.5 * (variance / n).sqrt() / mean } else { 0.0 }
 }
 
-/// Largest relative difference of the RMS accelerations of two records.
-fn rms_difference<const D: usize>(a: &Recorder<D>, b: &Recorder<D>) -> f64 {
+/// An acceleration that is nothing but rounding: 1e-12 of what the load would give the free mesh, m/s².
+fn smallest<const D: usize>(model: &Model<D>) -> f64 {
+    let square = model.omega_ref * model.omega_ref;
+    model.halves.iter().fold(0.0f64, |m, h| m.max((h.load.abs() + h.impact.largest_n()) * h.inv_me * square)) * 1e-12
+}
+
+/// Largest relative difference of the RMS accelerations of two records; below `floor` they count as equal.
+fn rms_difference<const D: usize>(a: &Recorder<D>, b: &Recorder<D>, floor: f64) -> f64 {
     b.all().fold(0.0f64, |worst, (id, gb, _)| {
         let Some(ga) = a.gathered(id) else { return worst };
         let (ra, rb) = (ga.mean_and_variance().1.sqrt(), gb.mean_and_variance().1.sqrt());
-        if rb > 0.0 { worst.max((ra - rb).abs() / rb) } else { worst }
+        if rb > floor { worst.max((ra - rb).abs() / rb) } else { worst }
     })
 }
 

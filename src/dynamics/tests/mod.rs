@@ -1,4 +1,7 @@
 //! Tests of the equations and methods against independent answers.
 
+mod order;
+mod oscillator;
+mod physics;
 pub(crate) mod reference;
 mod variation;

@@ -1,0 +1,149 @@
+//! The clearance oscillator: one degree of freedom of the same equations, against independent amplitudes and jumps.
+//!
+//! x'' + 2ζ x' + (1 + ε cos Ωt) f(x) = F_m + F_a Ω² cos Ωt, f the backlash function with b = 1, ζ = 0.05, F_m = 0.1. Reference values from
+//! a classical Runge–Kutta integration with steps halved until five digits stood, carried along a sweep of Ω.
+
+use std::f64::consts::TAU;
+
+use crate::dynamics::*;
+use crate::watch::Watch;
+
+/// Everything but the rotation held fast by masses beyond all forces; R = 1 and I = 1, with the gear's inertia beyond all too, so m_e = 1.
+fn oscillator(omega: f64, epsilon: f64, amplitude: f64) -> Parameters {
+    const FAST: f64 = 1e30;
+    let half = HalfParameters {
+        pinion_mass_kg: FAST,
+        pinion_inertia_kg_m2: 1.0,
+        gear_mass_kg: FAST,
+        gear_inertia_kg_m2: FAST,
+        pinion_torque_nm: 0.1,
+        pinion_lateral: Spring::default(),
+        gear_lateral: Spring::default(),
+        pinion_axial: Spring::default(),
+        gear_axial: Spring::default(),
+        mesh_stiffness: Stiffness::Fourier {
+            mean_n_per_m: 1.0,
+            harmonics: vec![Harmonic { amplitude: epsilon, phase_rad: 0.0 }],
+        },
+        mesh_damping_n_s_per_m: 0.1,
+        // F_s acts against the torque.
+        impact: Some(Impact::Harmonics {
+            harmonics: vec![Harmonic { amplitude: -amplitude * omega * omega, phase_rad: 0.0 }],
+        }),
+        phase_shift_mesh_periods: 0.0,
+    };
+    Parameters {
+        mesh_frequency_hz: omega / TAU,
+        pinion_radius_m: 1.0,
+        gear_radius_m: 1.0,
+        helix_angle_rad: 0.0,
+        half_backlash_m: 1.0,
+        damping_in_gap: true,
+        halves: [half.clone(), half],
+        couplings: Couplings::default(),
+    }
+}
+
+/// Largest minus smallest u over one period.
+struct Swing {
+    low: f64,
+    high: f64,
+}
+
+impl Observer<6> for Swing {
+    fn segment(&mut self, g: &Segment<'_, 6>) {
+        for i in 0..=64 {
+            let t = g.h * f64::from(i) / 64.0;
+            let u = g.rows[..=g.degree].iter().rev().fold(0.0, |s, row| s * t + row[U]);
+            self.low = self.low.min(u);
+            self.high = self.high.max(u);
+        }
+    }
+}
+
+/// Steady swing at `omega` from the displacement and velocity (per unit of time) `from`; leaves where it ends.
+fn swing(omega: f64, epsilon: f64, amplitude: f64, from: &mut (f64, f64)) -> f64 {
+    let model = Model::<6>::new(&oscillator(omega, epsilon, amplitude)).unwrap();
+    let mut state = model.state_from(&[0.0; 24]);
+    (state.x[U], state.v[U]) = (from.0, from.1 / model.omega_ref);
+    state.contact = [model.contact_of(from.0); 2];
+    let mut motion = Motion::new(&model, state, Integrator::Taylor, 1e-9, u64::MAX);
+    for _ in 0..200 {
+        motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
+    }
+    let mut out = Swing { low: f64::INFINITY, high: f64::NEG_INFINITY };
+    motion.advance_period(&mut out, &Watch::none(), 0.0).unwrap();
+    *from = (motion.state.x[U], motion.state.v[U] * model.omega_ref);
+    out.high - out.low
+}
+
+/// Swings along Ω from `first` to `last` in steps of 1, all in thousandths.
+fn sweep(first: i32, last: i32, epsilon: f64, amplitude: f64) -> Vec<(i32, f64)> {
+    let mut from = (1.1, 0.0);
+    let step = (last - first).signum();
+    (0..=(last - first).abs())
+        .map(|i| first + i * step)
+        .map(|omega| (omega, swing(f64::from(omega) / 1000.0, epsilon, amplitude, &mut from)))
+        .collect()
+}
+
+fn check(sweep: &[(i32, f64)], expected: &[(i32, f64)]) {
+    for (omega, swing) in expected {
+        let found = sweep.iter().find(|(o, _)| o == omega).unwrap().1;
+        assert!((found - swing).abs() < 2e-4 * swing, "{omega}: {found} for {swing}");
+    }
+}
+
+/// The first of two neighbours between which the swing changes by more than a quarter.
+fn jump(sweep: &[(i32, f64)]) -> (i32, i32) {
+    let at = sweep.windows(2).position(|w| (w[1].1 / w[0].1).ln().abs() > 0.25).unwrap();
+    (sweep[at].0, sweep[at + 1].0)
+}
+
+#[test]
+fn forced_swings_are_met() {
+    for (omega, p2p) in [(500, 0.013304), (700, 0.038072), (800, 0.069418), (1100, 0.203195), (1200, 0.126282)] {
+        let found = swing(f64::from(omega) / 1000.0, 0.0, 0.02, &mut (1.1, 0.0));
+        assert!((found - p2p).abs() < 2e-5 * 10.0 * p2p, "{omega}: {found}");
+        // Where contact is kept the linear amplitude holds.
+        if omega == 500 || omega == 1200 {
+            let o = f64::from(omega) / 1000.0;
+            let linear = 2.0 * 0.02 * o * o / ((1.0 - o * o).powi(2) + (0.1 * o).powi(2)).sqrt();
+            assert!((found / linear - 1.0).abs() < 1e-4, "{omega}: {found} {linear}");
+        }
+    }
+}
+
+#[test]
+fn parametric_swings_are_met() {
+    for (omega, p2p) in [(500, 0.094955), (700, 0.079515), (1200, 0.084516)] {
+        let found = swing(f64::from(omega) / 1000.0, 0.2, 0.0, &mut (1.1, 0.0));
+        assert!((found - p2p).abs() < 2e-4 * p2p, "{omega}: {found}");
+    }
+}
+
+/// Case A: jump up between 0.926 and 0.928, down between 0.888 and 0.886, both branches at 0.9.
+#[test]
+fn forced_jumps_are_bracketed() {
+    let up = sweep(890, 932, 0.0, 0.02);
+    check(&up, &[(900, 0.154111)]);
+    let (low, high) = jump(&up);
+    assert!(low >= 924 && high <= 930, "{low} {high}");
+    let down = sweep(960, 880, 0.0, 0.02);
+    check(&down, &[(950, 0.31424), (900, 0.347418)]);
+    let (high, low) = jump(&down);
+    assert!(low >= 884 && high <= 890, "{low} {high}");
+}
+
+/// Case B: jump up between 0.906 and 0.908, down between 0.836 and 0.834.
+#[test]
+fn parametric_jumps_are_bracketed() {
+    let up = sweep(840, 912, 0.2, 0.0);
+    check(&up, &[(850, 0.145013), (900, 0.204059)]);
+    let (low, high) = jump(&up);
+    assert!(low >= 904 && high <= 910, "{low} {high}");
+    let down = sweep(960, 828, 0.2, 0.0);
+    check(&down, &[(950, 0.305133), (900, 0.354166), (850, 0.405168)]);
+    let (high, low) = jump(&down);
+    assert!(low >= 832 && high <= 838, "{low} {high}");
+}
