@@ -8,6 +8,7 @@ use super::recorder::Recorder;
 use super::regime::{CHAOS_PER_MESH_PERIOD, Section, lyapunov};
 use super::statistics::Gathered;
 use super::steady::{Found, Search, moved};
+use crate::dynamics::Unobserved;
 use crate::dynamics::{
     Deviation, DynamicsError, Integrator, Limits, Model, Motion, NaturalModes, Numerics, PER_HALF, Parameters,
     Shooting, State, difference,
@@ -166,9 +167,15 @@ impl Run<'_> {
         let tolerance = (per_accuracy * self.analysis.accuracy).max(1e-15);
         let mut motion = self.motion(&model, model.state_from(start), integrator, tolerance);
         let before = periods - record;
+        // Where the comparison that measures the error sets out: far enough before the record for its own start to fade.
+        let lead = before.min(COMPARED_LEAD_MESH_PERIODS);
+        let mut early = motion.state;
         for period in 0..before {
+            if period == before - lead {
+                early = motion.state;
+            }
             let fraction = period as f64 / periods as f64;
-            motion.advance_period(&mut crate::dynamics::Unobserved, self.watch, fraction)?;
+            motion.advance_period(&mut Unobserved, self.watch, fraction)?;
             self.watch.checkpoint(fraction)?;
         }
         let mut numerics = motion.numerics;
@@ -202,11 +209,17 @@ impl Run<'_> {
         verdict.error_estimate = if verdict.regime == Regime::Chaotic {
             section.batch_error
         } else {
-            // The same record at a looser tolerance; the error is proportional to it.
-            let loose = (100.0 * tolerance).max(1e-13);
             let mut other = self.recorder_of_rms(&model);
-            numerics += self.record(self.motion(&model, from, integrator, loose), record, &mut other)?.numerics;
-            LOOSE_SAFETY * rms_difference(&recorder, &other, smallest(&model)) * tolerance / loose + ROUNDING
+            let tight = (1e-2 * tolerance).clamp(1e-15, 1e-9);
+            let mut compared = self.motion(&model, early, Integrator::Taylor, tight);
+            for _ in 0..lead {
+                compared.advance_period(&mut Unobserved, self.watch, 0.9)?;
+                self.watch.checkpoint(0.9)?;
+            }
+            numerics += compared.numerics;
+            compared.numerics = Numerics::default();
+            numerics += self.record(compared, record, &mut other)?.numerics;
+            SAFETY * rms_difference(&recorder, &other, smallest(&model)) + ROUNDING
         };
         let t0_s = from.period as f64 * self.p.mesh_period_s();
         Ok(self.response(&model, recorder, section, verdict, t0_s, numerics))
@@ -382,8 +395,8 @@ const LYAPUNOV_MESH_PERIODS: u64 = 300;
 const BATCHES: u64 = 10;
 /// What an error found by comparison is multiplied by, because it is a comparison with something that has an error too.
 const SAFETY: f64 = 3.0;
-/// The same where the comparison is with a looser tolerance: RMS error over tolerance scatters by a factor of about 5.
-const LOOSE_SAFETY: f64 = 10.0;
+/// Mesh periods before the record from which a run is compared with a more accurate one.
+const COMPARED_LEAD_MESH_PERIODS: u64 = 50;
 /// RMS values in double precision are not better than this.
 const ROUNDING: f64 = 1e-13;
 

@@ -1,5 +1,6 @@
 //! Tests of the equations and methods against independent answers.
 
+mod cost;
 mod order;
 mod oscillator;
 mod physics;
