@@ -17,6 +17,8 @@ pub mod dynamics;
 pub mod gear;
 pub mod impact;
 pub mod job;
+#[cfg(test)]
+pub(crate) mod oracle;
 pub mod response;
 pub mod study;
 pub mod watch;
