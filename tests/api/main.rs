@@ -1,0 +1,23 @@
+//! The HTTP interface from outside: one module per route, and one each for what all routes share.
+
+mod support;
+
+mod cancel_job;
+mod delete_job;
+mod documents;
+mod errors;
+mod idempotency;
+mod kinds;
+mod lifecycle;
+mod list_jobs;
+mod openapi;
+mod operation;
+mod read_job;
+mod restart;
+mod result;
+mod reuse;
+mod series;
+mod serving;
+mod submit_job;
+mod validate_job;
+mod watch_job;

@@ -1,0 +1,141 @@
+//! A service over a scripted solver, in this process and without a network.
+
+mod answer;
+mod breakpoints;
+mod document;
+mod solver;
+
+pub use answer::{Answer, EventStream};
+pub use breakpoints::Breakpoints;
+pub use document::{document, scripted};
+pub use solver::ScriptedSolver;
+
+use axum::Router;
+use axum::body::Body;
+use axum::http::{Method, Request};
+use herringbone::api::{self, AppState, HttpConfig, Pages};
+use herringbone::store::{Store, StoreConfig};
+use herringbone::work::{Jobs, Solver, WorkConfig};
+use jiff::Timestamp;
+use serde_json::Value;
+use std::sync::Arc;
+use tempfile::TempDir;
+use tower::ServiceExt;
+
+/// A running service.
+pub struct App {
+    pub router: Router,
+    pub jobs: Jobs,
+    pub solver: Arc<ScriptedSolver>,
+    directory: TempDir,
+}
+
+/// Two workers, a queue of ten.
+pub fn small() -> WorkConfig {
+    WorkConfig { workers: Some(2), threads: Some(2), queue_capacity: 10, max_attempts: 3, drain_s: 5 }
+}
+
+pub async fn app() -> App {
+    app_with(small()).await
+}
+
+pub async fn app_with(work: WorkConfig) -> App {
+    start(tempfile::tempdir().expect("temporary directory"), work).await
+}
+
+async fn start(directory: TempDir, work: WorkConfig) -> App {
+    let solver = Arc::new(ScriptedSolver::default());
+    let store = Store::open(&StoreConfig::at(directory.path().join("jobs.db"))).await.expect("store opens");
+    let dyn_solver: Arc<dyn Solver> = solver.clone();
+    let jobs = Jobs::start(store, &work, dyn_solver, Arc::new(Timestamp::now)).await.expect("jobs start");
+    let state = AppState::new(jobs.clone(), Timestamp::now());
+    let pages = Pages {
+        routes: Router::new().route("/panics", axum::routing::get(panics)),
+        not_found: axum::routing::any(async || (axum::http::StatusCode::NOT_FOUND, axum::response::Html("no page"))),
+    };
+    let router = api::router(state, &HttpConfig::default(), pages);
+    App { router, jobs, solver, directory }
+}
+
+async fn panics() -> &'static str {
+    panic!("secret detail")
+}
+
+impl App {
+    /// Sends a request with headers given as `name: value`.
+    pub async fn send(&self, method: Method, path: &str, headers: &[(&str, &str)], body: impl Into<Body>) -> Answer {
+        let mut request = Request::builder().method(method).uri(path);
+        for (name, value) in headers {
+            request = request.header(*name, *value);
+        }
+        let request = request.body(body.into()).expect("a valid request");
+        let response = self.router.clone().oneshot(request).await.expect("the router never fails");
+        Answer::of(response).await
+    }
+
+    pub async fn get(&self, path: &str) -> Answer {
+        self.send(Method::GET, path, &[], Body::empty()).await
+    }
+
+    pub async fn get_with(&self, path: &str, headers: &[(&str, &str)]) -> Answer {
+        self.send(Method::GET, path, headers, Body::empty()).await
+    }
+
+    pub async fn post(&self, path: &str) -> Answer {
+        self.send(Method::POST, path, &[], Body::empty()).await
+    }
+
+    pub async fn delete(&self, path: &str) -> Answer {
+        self.send(Method::DELETE, path, &[], Body::empty()).await
+    }
+
+    /// `POST /jobs` with more headers than the media type.
+    pub async fn submit_with(&self, document: &Value, headers: &[(&str, &str)]) -> Answer {
+        let headers = [&[("content-type", "application/json")], headers].concat();
+        self.send(Method::POST, "/api/v1/jobs", &headers, document.to_string()).await
+    }
+
+    /// `POST /jobs`; the job's path.
+    pub async fn submit(&self, document: &Value) -> String {
+        let answer = self.submit_with(document, &[]).await;
+        assert_eq!(answer.status, 202, "{answer:?}");
+        answer.header("location").to_owned()
+    }
+
+    /// Submits and waits for the end; the job's path and the ended job.
+    pub async fn run(&self, document: &Value) -> (String, Value) {
+        let path = self.submit(document).await;
+        let job = self.ended(&path).await;
+        (path, job)
+    }
+
+    /// Waits for the end of a job.
+    pub async fn ended(&self, path: &str) -> Value {
+        let answer = self.get_with(path, &[("prefer", "wait=30")]).await;
+        assert!(!["queued", "running"].contains(&answer.json["state"].as_str().unwrap_or_default()), "{answer:?}");
+        answer.json
+    }
+
+    /// Events of a job, read one by one.
+    pub async fn events(&self, path: &str, headers: &[(&str, &str)]) -> EventStream {
+        let mut request = Request::builder().uri(format!("{path}/events"));
+        for (name, value) in headers {
+            request = request.header(*name, *value);
+        }
+        let request = request.body(Body::empty()).expect("a valid request");
+        EventStream::of(self.router.clone().oneshot(request).await.expect("the router never fails"))
+    }
+
+    /// Stops as a shutdown does and starts again over the same database.
+    pub async fn restart(self) -> App {
+        assert!(self.jobs.close().await, "running jobs did not stop");
+        self.jobs.store().close().await;
+        let App { router, jobs, solver, directory } = self;
+        drop((router, jobs, solver));
+        start(directory, small()).await
+    }
+
+    pub fn database(&self) -> std::path::PathBuf {
+        self.directory.path().join("jobs.db")
+    }
+}
