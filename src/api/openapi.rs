@@ -51,6 +51,8 @@ pub fn openapi_json() -> String {
             operations.values_mut().for_each(|operation| complete(path, operation));
         }
     }
+    // Builds differ in whether maps keep the order of insertion; the text must not.
+    document.sort_all_objects();
     let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
     text.push('\n');
     text

@@ -27,6 +27,8 @@ pub enum ProblemCode {
     NotConverged,
     Diverged,
     StepSizeTooSmall,
+    TooManySteps,
+    NoContact,
     SolveFailed,
     WorkerLost,
 }
@@ -54,7 +56,7 @@ const fn entry(
 }
 
 /// Every code, by status.
-pub const CODES: [CodeEntry; 24] = [
+pub const CODES: [CodeEntry; 26] = [
     entry(
         ProblemCode::MalformedJson,
         "malformed-json",
@@ -193,6 +195,21 @@ pub const CODES: [CodeEntry; 24] = [
         422,
         "The time step became too small",
         "Error of a failed job: the integration could not go on at `sim_time_s` with the accuracy asked for.",
+    ),
+    entry(
+        ProblemCode::TooManySteps,
+        "too-many-steps",
+        422,
+        "The integration needs too many steps",
+        "Error of a failed job: the steps allowed were used up at `sim_time_s`. Ask for fewer mesh periods or less accuracy.",
+    ),
+    entry(
+        ProblemCode::NoContact,
+        "no-contact",
+        422,
+        "The teeth do not touch",
+        "Error of a failed job: under the torque given no pair of teeth comes into contact. Look at backlash, modifications \
+         and assembly errors.",
     ),
     entry(
         ProblemCode::SolveFailed,
