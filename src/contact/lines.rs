@@ -11,6 +11,8 @@ pub struct Point {
     pub slice: usize,
     /// 0 before the path (gear tip corner), 1 on it, 2 after it (pinion tip corner).
     pub zone: u8,
+    /// Which part of the slice beyond the path, 0 on the path.
+    pub part: u8,
     pub x_m: f64,
     pub entry_m: f64,
     /// Axial length of the part.
@@ -22,6 +24,9 @@ pub struct Point {
 /// Corner contact is looked for this far beyond the path, in base pitches: gaps there are beyond any deflection that a
 /// tooth survives.
 pub const CORNER_REACH: f64 = 0.5;
+
+/// Parts of a slice beyond the path.
+const CORNER_PARTS: u8 = 4;
 
 /// Which pairs to look at and how far beyond the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,26 +74,31 @@ pub fn collect(pair: &Pair, half: Half, phase: f64, slices: usize, reach: &Reach
                 if share < 1e-7 {
                     continue;
                 }
-                let x = 0.5 * (low + high);
-                let entry = if slope > 0.0 { (x - base) / slope } else { 0.5 * (e0 + e1) };
-                let corner = match zone {
-                    0 => corner_gap(pair, start - x, over, Pair::mesh_in_corner_gap_m),
-                    2 => corner_gap(pair, x - end, over, Pair::mesh_out_corner_gap_m),
-                    _ => Some(0.0),
-                };
-                let Some(corner) = corner.filter(|&gap| gap <= reach.corner_gap_m) else { continue };
-                // entry_m is its own inverse.
-                let y = pair.entry_m(entry);
-                let gap = corner.max(0.0) + pair.initial_gap_m(half, x.clamp(start, end), y);
-                out.push(Point {
-                    pair: k,
-                    slice,
-                    zone: zone as u8,
-                    x_m: x,
-                    entry_m: entry,
-                    width_m: share * step,
-                    gap_m: gap,
-                });
+                // The corner gap grows with the square of the overrun: a slice there is looked at in parts.
+                let parts = if zone != 1 && slope > 0.0 { CORNER_PARTS } else { 1 };
+                for part in 0..parts {
+                    let x = low + (high - low) * (f64::from(part) + 0.5) / f64::from(parts);
+                    let entry = if slope > 0.0 { (x - base) / slope } else { 0.5 * (e0 + e1) };
+                    let corner = match zone {
+                        0 => corner_gap(pair, start - x, over, Pair::mesh_in_corner_gap_m),
+                        2 => corner_gap(pair, x - end, over, Pair::mesh_out_corner_gap_m),
+                        _ => Some(0.0),
+                    };
+                    let Some(corner) = corner.filter(|&gap| gap <= reach.corner_gap_m) else { continue };
+                    // entry_m is its own inverse.
+                    let y = pair.entry_m(entry);
+                    let gap = corner.max(0.0) + pair.initial_gap_m(half, x.clamp(start, end), y);
+                    out.push(Point {
+                        pair: k,
+                        slice,
+                        zone: zone as u8,
+                        part,
+                        x_m: x,
+                        entry_m: entry,
+                        width_m: share * step / f64::from(parts),
+                        gap_m: gap,
+                    });
+                }
             }
         }
     }

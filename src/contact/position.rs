@@ -48,7 +48,7 @@ pub struct Solver<'a> {
     slices: usize,
     corner_contact: bool,
     points: Vec<Point>,
-    previous: Vec<(i32, usize, u8, f64)>,
+    previous: Vec<(i32, usize, [u8; 2], f64)>,
     start: Vec<f64>,
     matrix: Vec<f64>,
     shapes: Vec<Shapes>,
@@ -138,7 +138,7 @@ impl<'a> Solver<'a> {
     fn distribute(&mut self, total: f64) -> Result<Distribution, Stalled> {
         self.start.clear();
         for p in &self.points {
-            let before = self.previous.iter().find(|q| (q.0, q.1, q.2) == (p.pair, p.slice, p.zone));
+            let before = self.previous.iter().find(|q| (q.0, q.1, q.2) == (p.pair, p.slice, [p.zone, p.part]));
             self.start.push(before.map_or(0.0, |q| q.3));
         }
         let problem = Assembled {
@@ -152,7 +152,8 @@ impl<'a> Solver<'a> {
 
     fn remember(&mut self, solved: &Distribution) {
         self.previous.clear();
-        self.previous.extend(self.points.iter().zip(&solved.forces).map(|(p, &f)| (p.pair, p.slice, p.zone, f)));
+        self.previous
+            .extend(self.points.iter().zip(&solved.forces).map(|(p, &f)| (p.pair, p.slice, [p.zone, p.part], f)));
     }
 
     /// Compliance matrix and local contacts of the current points.
