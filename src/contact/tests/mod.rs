@@ -1,6 +1,7 @@
 //! Tests of the whole room on real pairs.
 
 mod invariants;
+mod reference_pair;
 mod robustness;
 mod tooth_tables;
 
