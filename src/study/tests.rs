@@ -60,3 +60,139 @@ fn a_hash_depends_on_what_decides_and_on_nothing_else() {
     loaded.operation.pinion_torque_nm += 1.0;
     assert_ne!(hash::mesh_hash(&base), hash::mesh_hash(&loaded));
 }
+
+fn solved(value: &Value) -> Outcome {
+    let surroundings =
+        Surroundings { stages: &NoStageStore, progress: &|_, _| {}, canceled: &|| false, clock_ms: &|| 0.0 };
+    solve(&document(value), &surroundings).expect("solved")
+}
+
+/// Table 1 without what makes it vibrate.
+fn still() -> Value {
+    let mut value = example("table1");
+    value["model"]["impact"] = json!({"source": "none"});
+    value["model"]["mesh_stiffness"] = json!({"source": "given", "mean_n_per_um": 900.0, "harmonics": []});
+    value["design"]["backlash_um"] = json!(0.0);
+    value
+}
+
+#[test]
+fn constant_stiffness_without_backlash_gives_the_static_deflection() {
+    let result = solved(&still()).result;
+    let response = result.response.expect("a response");
+    // F_n = T/2 / (r_b1 cos β_b), s = F_n / k.
+    let geometry = result.geometry.expect("geometry");
+    let radius_m = geometry.pinion.base_diameter_mm * 0.5e-3;
+    let normal_n = 400.0 / radius_m / geometry.base_helix_angle_deg.to_radians().cos();
+    let expected_um = normal_n / 900.0;
+    assert!((response.min_displacement_um / expected_um - 1.0).abs() < 1e-9, "{}", response.min_displacement_um);
+    assert!(response.rms.mesh_circumferential_acceleration_m_s2.left < 1e-6);
+}
+
+#[test]
+fn both_planes_have_the_same_torsional_stiffness() {
+    let frequency = |plane: &str| {
+        let mut value = example("table1");
+        value["kind"] = json!("response");
+        value["model"]["plane"] = json!(plane);
+        value["model"]["mesh_stiffness"] = json!({"source": "iso6336"});
+        // Rigid supports leave torsion alone.
+        for (name, stiffness) in value["design"]["supports"].as_object_mut().expect("supports") {
+            if name != "damping_ratio" {
+                *stiffness = json!(1e7);
+            }
+        }
+        let frequencies = solved(&value).result.response.expect("a response").natural_frequencies_hz;
+        // The mesh on the inertias: the lowest above the free motions.
+        frequencies.into_iter().find(|hz| *hz > 1.0).expect("a mode")
+    };
+    let (base, pitch) = (frequency("base"), frequency("pitch"));
+    assert!((base / pitch - 1.0).abs() < 2e-3, "{base} Hz and {pitch} Hz");
+}
+
+#[test]
+fn a_sweep_over_speed_equals_its_points_and_shares_the_contact() {
+    let mut value = example("table1");
+    value["kind"] = json!("sweep");
+    value["axes"] = json!([{"pointer": "/operation/pinion_speed_rpm", "values": [1500.0, 2000.0]}]);
+    let sweep = solved(&value).result.sweep.expect("a sweep");
+    assert_eq!(sweep.points.len(), 2);
+    let single = solved(&example("table1")).result.response.expect("a response");
+    let row = &sweep.points[1];
+    assert_eq!(row.values, [2000.0]);
+    assert_eq!(row.mesh_circumferential_acceleration_rms_m_s2, Some(single.rms.mesh_circumferential_acceleration_m_s2));
+}
+
+#[test]
+fn a_sweep_that_leaves_the_range_is_refused_and_one_that_meets_an_impossible_gear_says_so() {
+    let mut value = example("table1");
+    value["kind"] = json!("sweep");
+    value["axes"] = json!([{"pointer": "/design/helix_angle_deg", "from": 10.0, "to": 80.0, "points": 3}]);
+    let Err(DocumentError::Invalid(violations)) = check(&document(&value)) else { panic!("refused") };
+    assert_eq!(violations[0].pointer, "/axes/0");
+    value["axes"] = json!([{"pointer": "/design/pinion/addendum", "values": [1.0, 2.4]}]);
+    let points = solved(&value).result.sweep.expect("a sweep").points;
+    assert!(points[0].error.is_none());
+    assert!(points[1].error.as_ref().is_some_and(|reason| reason.contains("/design/pinion/addendum")));
+}
+
+#[test]
+fn a_canceled_job_stops() {
+    let surroundings =
+        Surroundings { stages: &NoStageStore, progress: &|_, _| {}, canceled: &|| true, clock_ms: &|| 0.0 };
+    let outcome = solve(&document(&example("table1")), &surroundings);
+    assert!(matches!(outcome, Err(SolveError::Canceled(_))));
+}
+
+#[test]
+fn the_contact_analysis_is_kept_and_taken_again() {
+    use std::collections::HashMap;
+    use std::sync::Mutex;
+
+    #[derive(Default)]
+    struct Memory(Mutex<HashMap<String, Vec<u8>>>);
+    impl StageStore for Memory {
+        fn load(&self, key: &str) -> Option<Vec<u8>> {
+            self.0.lock().expect("unpoisoned").get(key).cloned()
+        }
+        fn save(&self, key: &str, _stage: Stage, bytes: &[u8]) {
+            self.0.lock().expect("unpoisoned").insert(key.to_owned(), bytes.to_vec());
+        }
+    }
+
+    let memory = Memory::default();
+    let surroundings = Surroundings { stages: &memory, progress: &|_, _| {}, canceled: &|| false, clock_ms: &|| 0.0 };
+    let first = solve(&document(&example("table1")), &surroundings).expect("solved").result;
+    let mut faster = example("table1");
+    faster["operation"]["pinion_speed_rpm"] = json!(2500.0);
+    let second = solve(&document(&faster), &surroundings).expect("solved").result;
+    assert_eq!((first.numerics.reused.len(), second.numerics.reused), (0, vec!["mesh".to_owned()]));
+    assert_eq!(first.mesh, second.mesh);
+}
+
+#[test]
+fn staggering_the_halves_shifts_the_right_one_by_its_part_of_the_period() {
+    let mut value = example("table1");
+    value["design"]["half_stagger"] = json!(0.5);
+    let result = solved(&value).result;
+    let mesh = result.mesh.expect("a mesh");
+    let right = mesh.right_curve.expect("the halves differ in phase");
+    let n = mesh.curve.stiffness_n_per_um.len();
+    for i in 0..n {
+        let left = mesh.curve.stiffness_n_per_um[(i + n / 2) % n];
+        assert!((right.stiffness_n_per_um[i] / left - 1.0).abs() < 1e-6, "{i}");
+    }
+    let rms = result.response.expect("a response").rms.mesh_circumferential_acceleration_m_s2;
+    assert!((rms.left / rms.right - 1.0).abs() < 1e-5, "{rms:?}");
+}
+
+#[test]
+fn reference_case_c_repeats_every_second_period() {
+    let result = solved(&example("given_stiffness")).result;
+    let response = result.response.expect("a response");
+    assert_eq!(response.regime, "period-2");
+    assert_eq!(response.contact, "single-sided");
+    // Event-exact reference: 95.76514756474366 m/s² over mesh periods 200 to 300.
+    let rms = response.rms.mesh_circumferential_acceleration_m_s2.left;
+    assert!((rms / 95.765_147_564_743_66 - 1.0).abs() < 1e-6, "{rms}");
+}
