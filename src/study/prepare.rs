@@ -1,6 +1,7 @@
 //! From a document to physics in SI: the pair, its inertias, its operating point, and whether all of it can exist.
 
 use super::{CheckReport, sweep, vibration};
+use crate::contact;
 use crate::gear::{self, Infeasibility, Pair, PairSpec, Warning};
 use crate::job::document::{self as doc, JobDocument, Kind, PressureAnglePlane};
 use crate::job::result::{GearGeometry, Geometry};
@@ -35,6 +36,7 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
     let (pair, pair_warnings) =
         Pair::new(&spec).map_err(|reasons| DocumentError::Invalid(reasons.into_iter().map(violation).collect()))?;
     warnings.extend(pair_warnings);
+    warnings.extend(held_elsewhere(document, &pair));
     let design = &document.design;
     let [pinion_disc, gear_disc] = [&pair.pinion, &pair.gear].map(|member| {
         let (material, width_m) = (pair.material(), pair.spec.face_width_m);
@@ -171,6 +173,28 @@ fn violation(reason: Infeasibility) -> Violation {
         maximum: None,
         unit: Some(reason.unit),
     }
+}
+
+/// A bore much smaller than the gear is not where its body is held: said where the bore was asked for.
+fn held_elsewhere(document: &JobDocument, pair: &Pair) -> Vec<Warning> {
+    let doc::MeshStiffness::Ltca(doc::Ltca { body: doc::Body::Bore, .. }) = &document.model.mesh_stiffness else {
+        return Vec::new();
+    };
+    [("pinion", &pair.pinion), ("gear", &pair.gear)]
+        .into_iter()
+        .filter_map(|(name, member)| {
+            let held_m = contact::hold_radius_m(member, contact::BodyHold::Bore, pair.spec.normal_module_m);
+            (held_m > member.bore_radius_m * (1.0 + 1e-9)).then(|| Warning {
+                code: "held-above-bore".to_owned(),
+                pointer: format!("/design/{name}/bore_diameter_mm"),
+                detail: format!(
+                    "is {:.1} mm; a bore this small against the root circle counts as shaft, and the body is held at {:.1} mm diameter",
+                    member.bore_radius_m * 2e3,
+                    held_m * 2e3
+                ),
+            })
+        })
+        .collect()
 }
 
 /// The geometry block of the result.
