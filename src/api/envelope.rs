@@ -7,7 +7,7 @@ use axum::extract::{MatchedPath, Request};
 use axum::http::header::{
     CONTENT_LENGTH, CONTENT_SECURITY_POLICY, CONTENT_TYPE, REFERRER_POLICY, X_CONTENT_TYPE_OPTIONS,
 };
-use axum::http::{HeaderMap, HeaderName, HeaderValue};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use std::any::Any;
@@ -35,7 +35,7 @@ pub async fn envelope(mut request: Request, next: Next) -> Response {
     let status = response.status().as_u16();
     let duration = started.elapsed();
     tracing::info!(%method, route, status, duration_ms = duration.as_secs_f64() * 1e3, request_id = id, "request");
-    let labels = [("method", method.to_string()), ("route", route), ("status", status.to_string())];
+    let labels = [("method", counted(&method).to_owned()), ("route", route), ("status", status.to_string())];
     metrics::counter!("herringbone_http_requests_total", &labels).increment(1);
     metrics::histogram!("herringbone_http_request_duration_seconds", &labels[..2]).record(duration.as_secs_f64());
     add_headers(response.headers_mut(), &id);
@@ -47,6 +47,12 @@ pub fn answer_panic(panic: Box<dyn Any + Send + 'static>) -> Response {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
     Refusal::internal(format!("panic: {text}")).into_response()
+}
+
+/// Clients may make up methods; what they make up is counted together.
+fn counted(method: &Method) -> &str {
+    let known = [Method::GET, Method::HEAD, Method::POST, Method::PUT, Method::PATCH, Method::DELETE, Method::OPTIONS];
+    if known.contains(method) { method.as_str() } else { "other" }
 }
 
 /// The client's id if it is short and printable, else a new one.

@@ -19,7 +19,8 @@ const STACK_BYTES: usize = 8 << 20;
 /// Pause after the database did not answer.
 const RETRY_AFTER: Duration = Duration::from_secs(1);
 
-/// Runs jobs in this process.
+/// Runs jobs in this process. All running jobs share one pool, so that a lone sweep has every processor; the price is that
+/// a thread which waits for parts of one job may meanwhile work on parts of another.
 pub struct LocalQueue {
     shared: Arc<Shared>,
     tasks: TaskTracker,

@@ -40,10 +40,10 @@ pub(super) async fn run(
     // Stored under the version that solves now: the job may have waited through an upgrade.
     let input_hash = solver.input_hash(&document);
     let reusable = stored_completion(recorder.store(), &input_hash, solver.version()).await?;
-    if let Some(completion) = reusable {
-        if recorder.succeed(&claim.job, &completion).await? {
-            return Ok(());
-        }
+    if let Some(completion) = reusable
+        && recorder.succeed(&claim.job, &completion).await?
+    {
+        return Ok(());
     }
     match calculate(document, input_hash, &claim.job, recorder, solver, pool, stop).await? {
         Ending::Solved(completion) => {
@@ -81,22 +81,19 @@ async fn calculate(
             catch_unwind(AssertUnwindSafe(|| solve(&document, input_hash, solver.as_ref(), &stages, &progress, &stop)));
         let _ = send.send(ending.unwrap_or_else(|panic| Ending::Failed(panic_failure(panic.as_ref()))));
     });
+    let vanished = || Ending::Failed(internal("the calculation vanished"));
     loop {
+        // The next word on progress may wait, the end may not; a short job writes none.
         tokio::select! {
-            ending = &mut receive => {
-                return Ok(ending.unwrap_or_else(|_| Ending::Failed(internal("the calculation vanished"))));
-            }
+            ending = &mut receive => return Ok(ending.unwrap_or_else(|_| vanished())),
+            () = tokio::time::sleep(PROGRESS_EVERY) => {}
+        }
+        tokio::select! {
+            ending = &mut receive => return Ok(ending.unwrap_or_else(|_| vanished())),
             Ok(()) = progressed.changed() => {
                 let (stage, fraction) = *progressed.borrow_and_update();
                 recorder.progress(job, stage.word(), fraction).await?;
             }
-        }
-        // The next word on progress may wait, the end may not.
-        tokio::select! {
-            ending = &mut receive => {
-                return Ok(ending.unwrap_or_else(|_| Ending::Failed(internal("the calculation vanished"))));
-            }
-            () = tokio::time::sleep(PROGRESS_EVERY) => {}
         }
     }
 }

@@ -1,6 +1,7 @@
 //! One test per status, for refusals of the framework and our own alike.
 
 use crate::support::*;
+use axum::body::{Body, Bytes};
 use axum::http::Method;
 
 const JSON: (&str, &str) = ("content-type", "application/json");
@@ -65,6 +66,14 @@ async fn status_406() {
 }
 
 #[tokio::test]
+async fn status_408_for_a_body_that_never_comes() {
+    let app = impatient_app().await;
+    let body = Body::from_stream(futures_util::stream::pending::<Result<Bytes, std::io::Error>>());
+    let answer = app.send(Method::POST, "/api/v1/jobs", &[JSON], body).await;
+    answer.assert_problem(408, "request-timeout");
+}
+
+#[tokio::test]
 async fn status_413() {
     let app = app().await;
     let large = format!("{{\"name\": \"{}\"}}", "x".repeat(1 << 20));
@@ -108,6 +117,18 @@ async fn status_500_tells_nothing_but_the_request() {
     answer.assert_problem(500, "internal");
     assert_eq!(answer.json["request_id"], "my-request.1");
     assert!(!answer.text().contains("secret"));
+    assert_eq!(app.get("/healthz").await.status, 200);
+}
+
+#[tokio::test]
+async fn status_500_when_the_database_is_gone() {
+    let app = app().await;
+    app.jobs.store().close().await;
+    for path in ["/api/v1/jobs", "/readyz", "/metrics"] {
+        let answer = app.get(path).await;
+        answer.assert_problem(500, "internal");
+        assert!(!answer.text().contains("pool"), "{answer:?}");
+    }
     assert_eq!(app.get("/healthz").await.status, 200);
 }
 

@@ -32,6 +32,7 @@ async fn a_reused_result_needs_no_place_in_a_full_queue() {
     app.submit_with(&document(), &[]).await.assert_problem(503, "queue-full");
     let answer = app.submit_with(&known, &[]).await;
     assert_eq!((answer.status, answer.json["state"].as_str()), (202, Some("succeeded")));
+    assert_eq!(answer.header("retry-after"), "0");
     app.solver.breakpoints.release("solve");
 }
 

@@ -6,7 +6,7 @@ use crate::api::state::AppState;
 use crate::api::view::{Job, job_path, job_response};
 use crate::work::SubmitRequest;
 use axum::extract::State;
-use axum::http::header::LOCATION;
+use axum::http::header::{LOCATION, RETRY_AFTER};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 
@@ -25,7 +25,7 @@ use axum::response::{IntoResponse, Response};
     responses(
         (status = 202, description = "Accepted; `Location` names the job.", body = Job, headers(
             ("Location" = String, description = "Path of the job"),
-            ("Retry-After" = u64, description = "Seconds after which to look again"),
+            ("Retry-After" = u64, description = "Seconds after which to look again; 0 when the job has ended"),
             ("Idempotent-Replayed" = Option<String>, description = "`true` when the submission was made before"))),
         (status = 200, description = "The job ended within the wait asked for.", body = Job, headers(
             ("Location" = String, description = "Path of the job"),
@@ -59,5 +59,8 @@ pub async fn submit_job(
     }
     let ended_in_time = prefer.wait.is_some() && job.state.is_ended();
     let status = if ended_in_time { StatusCode::OK } else { StatusCode::ACCEPTED };
+    if status == StatusCode::ACCEPTED && job.state.is_ended() {
+        headers.insert(RETRY_AFTER, HeaderValue::from(0));
+    }
     Ok((headers, job_response(status, &job)).into_response())
 }

@@ -40,10 +40,16 @@ pub async fn app() -> App {
 }
 
 pub async fn app_with(work: WorkConfig) -> App {
-    start(tempfile::tempdir().expect("temporary directory"), work).await
+    start(tempfile::tempdir().expect("temporary directory"), work, HttpConfig::default()).await
 }
 
-async fn start(directory: TempDir, work: WorkConfig) -> App {
+/// A service whose patience with requests is over at once.
+pub async fn impatient_app() -> App {
+    let http = HttpConfig { request_timeout_s: 0, ..HttpConfig::default() };
+    start(tempfile::tempdir().expect("temporary directory"), small(), http).await
+}
+
+async fn start(directory: TempDir, work: WorkConfig, http: HttpConfig) -> App {
     let solver = Arc::new(ScriptedSolver::default());
     let store = Store::open(&StoreConfig::at(directory.path().join("jobs.db"))).await.expect("store opens");
     let dyn_solver: Arc<dyn Solver> = solver.clone();
@@ -53,7 +59,7 @@ async fn start(directory: TempDir, work: WorkConfig) -> App {
         routes: Router::new().route("/panics", axum::routing::get(panics)),
         not_found: axum::routing::any(async || (axum::http::StatusCode::NOT_FOUND, axum::response::Html("no page"))),
     };
-    let router = api::router(state, &HttpConfig::default(), pages);
+    let router = api::router(state, &http, pages);
     App { router, jobs, solver, directory }
 }
 
@@ -132,7 +138,7 @@ impl App {
         self.jobs.store().close().await;
         let App { router, jobs, solver, directory } = self;
         drop((router, jobs, solver));
-        start(directory, small()).await
+        start(directory, small(), HttpConfig::default()).await
     }
 
     pub fn database(&self) -> std::path::PathBuf {
