@@ -1,0 +1,53 @@
+//! Whole stages on the source paper's example pair, as a job runs them.
+//!
+//! `cargo bench --no-default-features --bench chain`; what came out stands in docs/BENCHMARKS.md.
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use herringbone::job::document::JobDocument;
+use herringbone::job::parse_value;
+use herringbone::study::{self, NoStageStore, Surroundings};
+use serde_json::{Value, json};
+use std::hint::black_box;
+
+fn example(change: impl FnOnce(&mut Value)) -> JobDocument {
+    let mut value: Value = serde_json::from_str(include_str!("../examples/table1.json")).expect("the example is JSON");
+    value["analysis"]["channels"] = json!([]);
+    change(&mut value);
+    parse_value(&value).expect("a valid document")
+}
+
+fn solve(document: &JobDocument) -> study::Outcome {
+    let surroundings =
+        Surroundings { stages: &NoStageStore, progress: &|_, _| {}, canceled: &|| false, clock_ms: &|| 0.0 };
+    study::solve(document, &surroundings).expect("the example solves")
+}
+
+fn documents(criterion: &mut Criterion) {
+    let bytes = include_bytes!("../examples/table1.json");
+    criterion.bench_function("document: parse", |b| b.iter(|| herringbone::job::parse(black_box(bytes))));
+    let document = example(|_| {});
+    criterion.bench_function("document: geometry and warnings", |b| b.iter(|| study::check(black_box(&document))));
+}
+
+fn stages(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("job");
+    group.sample_size(20);
+    for (positions, slices) in [(16, 24), (64, 24), (64, 48), (256, 48)] {
+        let document = example(|value| {
+            value["kind"] = json!("mesh");
+            value["model"]["mesh_stiffness"]["positions"] = json!(positions);
+            value["model"]["mesh_stiffness"]["slices"] = json!(slices);
+        });
+        group.bench_function(BenchmarkId::new("mesh, cold", format!("{positions} positions, {slices} slices")), |b| {
+            b.iter(|| solve(black_box(&document)))
+        });
+    }
+    let closed_form = example(|value| value["model"]["mesh_stiffness"] = json!({"source": "iso6336"}));
+    group.bench_function("response, ISO 6336 stiffness", |b| b.iter(|| solve(black_box(&closed_form))));
+    let whole = example(|_| {});
+    group.bench_function("response, loaded contact, cold", |b| b.iter(|| solve(black_box(&whole))));
+    group.finish();
+}
+
+criterion_group!(benches, documents, stages);
+criterion_main!(benches);
