@@ -132,57 +132,71 @@ fn monotone_cubics(values: &[f64]) -> Vec<[f64; 4]> {
         .collect()
 }
 
+/// Taylor coefficients of one parity: 0, 2, 4 … or 1, 3, 5 ….
+const PER_PARITY: usize = MAX_ORDER / 2 + 1;
+
 /// Truncated Fourier series with the tables that give its Taylor coefficients in scaled time.
 #[derive(Debug, Clone)]
 struct Series {
     constant: f64,
-    /// amplitude·cos(phase) and amplitude·sin(phase) of each harmonic.
-    parts: Vec<(f64, f64)>,
-    /// `power[n * parts.len() + i]` = ((i+1) ω / ω_ref)^n / n!.
-    power: Vec<f64>,
+    terms: Vec<Term>,
+}
+
+/// One harmonic a cos(iθ + φ).
+#[derive(Debug, Clone)]
+struct Term {
+    /// a cosφ and a sinφ.
+    cos: f64,
+    sin: f64,
+    /// (i ω/ω_ref)^n / n! with the signs of the derivatives of the cosine: n even, multiplying a cos(iθ + φ), and n odd, multiplying
+    /// a sin(iθ + φ).
+    even: [f64; PER_PARITY],
+    odd: [f64; PER_PARITY],
 }
 
 impl Series {
     fn new(constant: f64, factor: f64, harmonics: &[Harmonic], shift: f64, period_tau: f64) -> Self {
-        let parts = harmonics
-            .iter()
-            .enumerate()
-            .map(|(i, h)| {
-                let (sin, cos) = (h.phase_rad - TAU * (i + 1) as f64 * shift).sin_cos();
-                (factor * h.amplitude * cos, factor * h.amplitude * sin)
-            })
-            .collect::<Vec<_>>();
-        let m = parts.len();
-        let mut power = vec![1.0; (MAX_ORDER + 1) * m];
-        for n in 1..=MAX_ORDER {
-            for i in 0..m {
-                power[n * m + i] = power[(n - 1) * m + i] * TAU * (i + 1) as f64 / (period_tau * n as f64);
+        let term = |(i, h): (usize, &Harmonic)| {
+            let order = (i + 1) as f64;
+            let (sin, cos) = (h.phase_rad - TAU * order * shift).sin_cos();
+            let (mut even, mut odd) = ([0.0; PER_PARITY], [0.0; PER_PARITY]);
+            let mut power = 1.0;
+            for n in 0..2 * PER_PARITY {
+                let sign = if matches!(n % 4, 0 | 3) { 1.0 } else { -1.0 };
+                if n % 2 == 0 {
+                    even[n / 2] = sign * power
+                } else {
+                    odd[n / 2] = sign * power
+                }
+                power *= TAU * order / (period_tau * (n + 1) as f64);
             }
-        }
-        Self { constant, parts, power }
+            Term { cos: factor * h.amplitude * cos, sin: factor * h.amplitude * sin, even, odd }
+        };
+        Self { constant, terms: harmonics.iter().enumerate().map(term).collect() }
     }
 
     fn value(&self, phase: f64) -> f64 {
-        self.parts.iter().enumerate().fold(self.constant, |sum, (i, (c, s))| {
+        self.terms.iter().enumerate().fold(self.constant, |sum, (i, term)| {
             let (sin, cos) = (TAU * (i + 1) as f64 * phase).sin_cos();
-            sum + c * cos - s * sin
+            sum + term.cos * cos - term.sin * sin
         })
     }
 
     /// Taylor coefficients in scaled time, orders 0 to `order`.
     fn fill(&self, phase: f64, order: usize, out: &mut Coefficients) {
-        let m = self.parts.len();
-        out[..=order].fill(0.0);
+        let (mut even, mut odd) = ([0.0; PER_PARITY], [0.0; PER_PARITY]);
         let (sin1, cos1) = (TAU * phase).sin_cos();
         let (mut sin, mut cos) = (sin1, cos1);
-        for (i, (c, s)) in self.parts.iter().enumerate() {
-            // even = a cos(iθ + φ), odd = a sin(iθ + φ)
-            let (even, odd) = (c * cos - s * sin, c * sin + s * cos);
-            let signed = [even, -odd, -even, odd];
-            for (n, value) in out[..=order].iter_mut().enumerate() {
-                *value += self.power[n * m + i] * signed[n & 3];
+        for term in &self.terms {
+            let (c, s) = (term.cos * cos - term.sin * sin, term.cos * sin + term.sin * cos);
+            for k in 0..PER_PARITY {
+                even[k] += term.even[k] * c;
+                odd[k] += term.odd[k] * s;
             }
             (sin, cos) = (sin * cos1 + cos * sin1, cos * cos1 - sin * sin1);
+        }
+        for (n, value) in out[..=order].iter_mut().enumerate() {
+            *value = if n % 2 == 0 { even[n / 2] } else { odd[n / 2] };
         }
         out[0] += self.constant;
     }
@@ -321,7 +335,7 @@ impl ImpactCourse {
         match self {
             ImpactCourse::None => 0.0,
             ImpactCourse::HalfSine { force_n, duration, .. } => force_n.abs() * duration.ceil(),
-            ImpactCourse::Harmonics(series) => series.0.parts.iter().map(|(c, s)| c.hypot(*s)).sum(),
+            ImpactCourse::Harmonics(series) => series.0.terms.iter().map(|t| t.cos.hypot(t.sin)).sum(),
         }
     }
 
