@@ -10,7 +10,14 @@
 //! ```
 //!
 //! The mesh forces act on y, z and θ, the impact F_s on the two torsional equations of its half only, as the source paper writes
-//! it. The plane in use (pitch: R pitch radius, β; base: R_b, β_b) is the caller's choice: it passes the radii and the angle.
+//! it. Damping in the gap and springs between the halves of a shaft are options. The plane in use (pitch: R pitch radius, β; base: R_b, β_b) is the caller's choice: it passes the radii and the angle.
+//!
+//! # How it was validated
+//! Three reference cases solved event-exact in 113-bit arithmetic (`tests/reference.rs`): states after 1, 5 and 20 mesh periods within
+//! 1e-13 (with contact kept, and on a period-2 motion) and 1e-11 (chaotic), RMS within 1e-13, by the Taylor method at its finest.
+//! The clearance oscillator's amplitudes and jumps (`tests/oscillator.rs`), twelve coupled natural frequencies to five
+//! digits, energy, symmetry and scaling (`tests/physics.rs`), measured orders (`tests/order.rs`), the linear map against
+//! differences of motions (`tests/variation.rs`).
 
 // Loops over coordinates and Taylor orders read as the formulas do with an index.
 #![allow(clippy::needless_range_loop)]
@@ -22,6 +29,7 @@ mod integrate;
 mod modal;
 mod model;
 mod parameters;
+mod recurrence;
 mod runge_kutta;
 mod segment;
 mod shooting;

@@ -9,7 +9,8 @@ use super::crossing::first_crossing;
 use super::error::DynamicsError;
 use super::excitation::MAX_ORDER;
 use super::integrate::Numerics;
-use super::model::{Contact, Model, PER_HALF, State, TaylorWork, W};
+use super::model::{Contact, Model, PER_HALF, State, W};
+use super::recurrence::TaylorWork;
 use super::segment::{Observer, Segment};
 
 /// Changes of contact per mesh period beyond which they are no longer located but left to short steps.

@@ -1,7 +1,8 @@
 //! Small deviations from a motion: the linear map over mesh periods, and how fast they grow.
 
 use super::excitation::MAX_ORDER;
-use super::model::{Contact, Model, State, TaylorWork};
+use super::model::{Contact, Model, State};
+use super::recurrence::TaylorWork;
 use super::segment::{Observer, Segment};
 use super::taylor::{evaluate_rows, step_reach};
 

@@ -7,6 +7,7 @@ mod analysis;
 mod channel;
 mod recorder;
 mod regime;
+mod report;
 mod solve;
 mod spectrum;
 mod statistics;

@@ -1,17 +1,15 @@
 //! One operating point: from parameters to a response.
 
-use std::collections::BTreeMap;
-
-use super::analysis::{Analysis, ContactState, Halves, Method, PoincarePoint, Regime, Response, Rms, Summary};
-use super::channel::{Channel, ChannelId};
+use super::analysis::{Analysis, Method, PoincarePoint, Regime, Response};
+use super::channel::ChannelId;
 use super::recorder::Recorder;
 use super::regime::{CHAOS_PER_MESH_PERIOD, Section, lyapunov};
+use super::report::{Asked, Record, Verdict, report, solved_halves};
 use super::statistics::Gathered;
 use super::steady::{Found, Search, moved};
-use crate::dynamics::Unobserved;
 use crate::dynamics::{
     Deviation, DynamicsError, Integrator, Limits, Model, Motion, NaturalModes, Numerics, PER_HALF, Parameters,
-    Shooting, State, difference,
+    Shooting, State, Unobserved, difference,
 };
 use crate::watch::Watch;
 
@@ -86,6 +84,10 @@ struct Run<'a> {
 const OFF_SYMMETRY: f64 = 1e-3;
 
 impl Run<'_> {
+    fn asked(&self) -> Asked<'_> {
+        Asked { p: self.p, analysis: self.analysis, modes: self.modes }
+    }
+
     fn limits(&self, tolerance: f64) -> Limits<'_> {
         Limits { tolerance, max_steps: self.analysis.max_steps, watch: self.watch }
     }
@@ -146,9 +148,10 @@ impl Run<'_> {
             lyapunov: found.lyapunov,
             method: if found.orbit.is_some() { "periodic" } else { "integrate" },
             error_estimate,
+            t0_s: if found.orbit.is_some() { 0.0 } else { found.start.period as f64 * self.p.mesh_period_s() },
+            numerics,
         };
-        let t0_s = if found.orbit.is_some() { 0.0 } else { found.start.period as f64 * self.p.mesh_period_s() };
-        Ok(Some(self.response(&model, recorder, section, verdict, t0_s, numerics)))
+        Ok(Some(report(&self.asked(), &model, recorder, section, verdict)))
     }
 
     fn integrate<const D: usize>(
@@ -196,6 +199,8 @@ impl Run<'_> {
             lyapunov: None,
             method: "integrate",
             error_estimate: 0.0,
+            t0_s: from.period as f64 * self.p.mesh_period_s(),
+            numerics: Numerics::default(),
         };
         if repeats.is_none() {
             let mut motion = self.motion(&model, section.last, integrator, tolerance);
@@ -221,8 +226,8 @@ impl Run<'_> {
             numerics += self.record(compared, record, &mut other)?.numerics;
             SAFETY * rms_difference(&recorder, &other, smallest(&model)) + ROUNDING
         };
-        let t0_s = from.period as f64 * self.p.mesh_period_s();
-        Ok(self.response(&model, recorder, section, verdict, t0_s, numerics))
+        verdict.numerics = numerics;
+        Ok(report(&self.asked(), &model, recorder, section, verdict))
     }
 
     /// Records `periods` mesh periods of a motion that has just begun.
@@ -305,86 +310,6 @@ impl Run<'_> {
         }
         Recorder::new(model, &statistics, &[], 0, 0)
     }
-
-    fn response<const D: usize>(
-        &self,
-        model: &Model<D>,
-        mut recorder: Recorder<D>,
-        record: Record<D>,
-        verdict: Verdict,
-        t0_s: f64,
-        numerics: Numerics,
-    ) -> Response {
-        let recorded = record.points.len() as u64;
-        let last = record.last;
-        let right = if D > PER_HALF { 1 } else { 0 };
-        let rms_of = |id: ChannelId| recorder.gathered(id).map_or(0.0, |g| g.mean_and_variance().1.sqrt());
-        let both = |id: fn(u8) -> ChannelId| Halves { left: rms_of(id(0)), right: rms_of(id(right)) };
-        let mesh = both(ChannelId::mesh_acceleration);
-        let axial = both(ChannelId::pinion_axial_acceleration);
-        let mut channels: BTreeMap<String, f64> =
-            recorder.all().map(|(id, g, _)| (id.name(), g.finish().rms)).collect();
-        for (half, m, a) in [(0, mesh.left, axial.left), (1, mesh.right, axial.right)] {
-            channels.insert(ChannelId::mesh_acceleration(half).name(), m);
-            channels.insert(ChannelId::pinion_axial_acceleration(half).name(), a);
-        }
-        let statistics = self
-            .analysis
-            .channels
-            .iter()
-            .filter_map(|id| recorder.gathered(*id).map(|g| (id.name(), g.finish())))
-            .collect();
-        let mut min_displacement_m = f64::INFINITY;
-        let mut dynamic_factor: Option<f64> = None;
-        for half in solved_halves::<D>() {
-            if let Some(s) = recorder.gathered(ChannelId::s(half)) {
-                min_displacement_m = min_displacement_m.min(s.finish().min);
-            }
-            let static_n = (model.halves[usize::from(half)].load / model.cos).abs();
-            if let (Some(f), true) = (recorder.gathered(ChannelId::normal_force(half)), static_n > 0.0) {
-                let f = f.finish();
-                let factor = f.max.abs().max(f.min.abs()) / static_n;
-                dynamic_factor = Some(dynamic_factor.map_or(factor, |d| d.max(factor)));
-            }
-        }
-        let shares = recorder.contact_shares();
-        let dt_s = self.p.mesh_period_s() / self.analysis.samples_per_mesh_period.max(1) as f64;
-        let mut samples = recorder.take_samples();
-        let series = self
-            .analysis
-            .channels
-            .iter()
-            .filter_map(|id| {
-                let at = samples.iter().position(|(other, _)| other == id)?;
-                let (id, values) = samples.swap_remove(at);
-                let quantity = id.quantity();
-                Some(Channel { name: id.name(), quantity, unit: quantity.unit().into(), t0_s, dt_s, values })
-            })
-            .collect();
-        let mut final_state = [0.0; 24];
-        final_state[..12].copy_from_slice(&model.source_displacements(&last.x));
-        final_state[12..].copy_from_slice(&model.source_displacements(&last.v).map(|v| v * model.omega_ref));
-        let summary = Summary {
-            rms: Rms { mesh_circumferential_acceleration_m_s2: mesh, pinion_axial_acceleration_m_s2: axial, channels },
-            statistics,
-            dynamic_factor,
-            regime: verdict.regime,
-            period_mesh_periods: verdict.period,
-            contact: contact_state(&shares),
-            contact_share: Halves { left: 1.0 - shares[0][1], right: 1.0 - shares[1][1] },
-            min_displacement_m,
-            natural_frequencies_hz: self.modes.frequencies_hz.clone(),
-            error_estimate: verdict.error_estimate,
-            method: verdict.method.into(),
-            floquet_modulus: verdict.floquet,
-            lyapunov_per_mesh_period: verdict.lyapunov,
-            recorded_mesh_periods: recorded,
-            degrees_of_freedom: D as u32,
-            damping_in_gap: self.p.damping_in_gap,
-            numerics,
-        };
-        Response { summary, channels: series, poincare: record.points, final_state }
-    }
 }
 
 /// Relative change over its period below which an integrated motion counts as repeating.
@@ -399,28 +324,6 @@ const SAFETY: f64 = 3.0;
 const COMPARED_LEAD_MESH_PERIODS: u64 = 50;
 /// RMS values in double precision are not better than this.
 const ROUNDING: f64 = 1e-13;
-
-struct Verdict {
-    regime: Regime,
-    period: Option<u64>,
-    floquet: Option<f64>,
-    lyapunov: Option<f64>,
-    method: &'static str,
-    error_estimate: f64,
-}
-
-/// What `record` leaves beside the recorder's own.
-struct Record<const D: usize> {
-    recent: Section<D>,
-    points: Vec<PoincarePoint>,
-    last: State<D>,
-    numerics: Numerics,
-    batch_error: f64,
-}
-
-fn solved_halves<const D: usize>() -> std::ops::Range<u8> {
-    0..(D / PER_HALF) as u8
-}
 
 fn poincare<const D: usize>(model: &Model<D>, state: &State<D>) -> PoincarePoint {
     let x = |row: &[f64; D]| row[crate::dynamics::YP] - row[crate::dynamics::YG] + row[crate::dynamics::U];
@@ -451,15 +354,4 @@ fn rms_difference<const D: usize>(a: &Recorder<D>, b: &Recorder<D>, floor: f64) 
         let (ra, rb) = (ga.mean_and_variance().1.sqrt(), gb.mean_and_variance().1.sqrt());
         if rb > floor { worst.max((ra - rb).abs() / rb) } else { worst }
     })
-}
-
-fn contact_state(shares: &[[f64; 3]; 2]) -> ContactState {
-    let touched = |j: usize, side: usize| shares[j][side] > 0.0;
-    if (0..2).any(|j| touched(j, 0) && touched(j, 2)) {
-        ContactState::DoubleSided
-    } else if (0..2).any(|j| touched(j, 1)) {
-        ContactState::SingleSided
-    } else {
-        ContactState::Continuous
-    }
 }
