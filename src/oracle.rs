@@ -17,7 +17,13 @@ pub fn check(topic: &str, quantity: &str, got: f64, expected: f64, tolerance: To
         Tolerance::Relative(limit) => (((got - expected) / expected).abs(), limit, "rel"),
         Tolerance::Absolute(limit) => ((got - expected).abs(), limit, "abs"),
     };
-    println!("oracle|{topic}|{quantity}|{expected}|{got:.9}|{error:.1e} {kind}|{limit:.1e} {kind}");
+    let allowed = if kind == "rel" { limit * expected.abs() } else { limit };
+    // One digit beyond the tolerance's.
+    let digits = (1.0 - allowed.log10().floor()).clamp(0.0, 15.0) as usize;
+    // As the reference states it; one that was calculated, to the same digits.
+    let reference = [format!("{expected}"), format!("{expected:.digits$}")].into_iter().min_by_key(String::len);
+    let reference = reference.unwrap_or_default();
+    println!("oracle|{topic}|{quantity}|{reference}|{got:.digits$}|{error:.1e} {kind}|{limit:.1e} {kind}");
     assert!(error <= limit, "{topic}, {quantity}: {got} instead of {expected}, off by {error:e}, allowed {limit:e}");
 }
 
@@ -30,6 +36,6 @@ pub fn check_worst(topic: &str, quantity: &str, errors: impl IntoIterator<Item =
         (worst, count) = (worst.max(error.abs()), count + 1);
     }
     assert!(count > 0, "{topic}, {quantity}: nothing was compared");
-    println!("oracle|{topic}|{quantity}|{count} values||{worst:.1e}|{limit:.1e}");
+    println!("oracle|{topic}|{quantity}|{count} value{}||{worst:.1e}|{limit:.1e}", if count == 1 { "" } else { "s" });
     assert!(worst <= limit, "{topic}, {quantity}: worst error {worst:e}, allowed {limit:e}");
 }

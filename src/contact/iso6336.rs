@@ -190,6 +190,8 @@ mod tests {
     use super::*;
     use crate::gear::fixtures::{close, gear, pair, spec};
     use crate::gear::{GearSpec, PairSpec};
+    use crate::oracle::Tolerance::Absolute;
+    use crate::oracle::{check, check_worst};
     use std::f64::consts::PI;
 
     /// ISO/TR 6336-30, annex A, example 1; the values of a commercial calculation of it, made with x1 = 0.145 (the standard
@@ -204,14 +206,23 @@ mod tests {
     fn iso_tr_6336_30_example_1() -> Result<(), Iso6336Error> {
         let p = example();
         let b = MethodB::new(&p, &Blank::Solid, 20e3)?;
-        close(b.theoretical_n_per_m2 * 1e-9, 17.855_84, 2e-5);
-        close(b.single_n_per_m2 * 1e-9, 12.370_47, 2e-5);
+        let topic = "Contact: ISO 6336-1 method B, ISO/TR 6336-30 example 1";
+        let theoretical = b.theoretical_n_per_m2 * 1e-9;
+        check(topic, "theoretical single stiffness c'_th, N/(mm µm)", theoretical, 17.855_84, Absolute(2e-5));
+        check(topic, "single stiffness c', N/(mm µm)", b.single_n_per_m2 * 1e-9, 12.370_47, Absolute(2e-5));
         // The reference's mesh stiffness belongs to its contact ratio of 1.54909.
-        close(b.single_n_per_m2 * 1e-9 * (0.75 * 1.549_09 + 0.25), 17.464_85, 2e-5);
+        let mesh = b.single_n_per_m2 * 1e-9 * (0.75 * 1.549_09 + 0.25);
+        check(topic, "c_γα with the reference's contact ratio, N/(mm µm)", mesh, 17.464_85, Absolute(2e-5));
         close(b.mesh_n_per_m2 / b.single_n_per_m2, 0.75 * p.transverse_contact_ratio + 0.25, 1e-12);
         close(b.face_load_mesh_n_per_m2 / b.mesh_n_per_m2, 0.85, 1e-12);
         close(b.mean_n_per_m(&p), b.mesh_n_per_m2 * 0.1, 1.0);
-        close(b.mesh_n_per_m2 * 1e-9, 17.467, 5e-4);
+        check(
+            topic,
+            "c_γα with the contact ratio found here, N/(mm µm)",
+            b.mesh_n_per_m2 * 1e-9,
+            17.467,
+            Absolute(5e-4),
+        );
         assert_eq!(b.outside_range, Vec::<String>::new());
         Ok(())
     }
@@ -221,7 +232,8 @@ mod tests {
     fn pair_29_67() -> Result<(), Iso6336Error> {
         let p = pair(&spec(4.0, 20.0, 30.0, 45.0, gear(29, 0.0), gear(67, 0.0)));
         let b = MethodB::new(&p, &Blank::Solid, 199e3 * 0.045)?;
-        close(b.mean_n_per_m(&p), 7.4e8, 0.05e8);
+        let topic = "Contact: ISO 6336-1 method B, pair 29/67";
+        check(topic, "mean stiffness of a half at 199 N/mm, N/µm", b.mean_n_per_m(&p) * 1e-6, 740.0, Absolute(5.0));
         Ok(())
     }
 
@@ -284,19 +296,23 @@ mod tests {
             let p = with_ratios(transverse, overlap);
             close(p.transverse_contact_ratio, transverse, 1e-9);
             let n = 400;
+            let mut errors = Vec::new();
             let (mut least, mut greatest, mut mean) = (f64::MAX, 0.0_f64, 0.0);
             for i in 0..n {
                 let tau = f64::from(i) / f64::from(n);
                 // At tau = 0 a pair starts: its mesh-in end stands at the start of the path.
                 let x0 = p.path_start_m - overlap * p.base_pitch_m + tau * p.base_pitch_m;
                 let k = course(&p, x0);
-                close(k, series(transverse, overlap, tau), 1.5e-3);
+                errors.push(k - series(transverse, overlap, tau));
                 least = least.min(k);
                 greatest = greatest.max(k);
                 mean += k / f64::from(n);
             }
-            close(greatest - least, swing, 1.2e-3);
-            close(mean, 1.0, 1e-4);
+            let topic = "Contact: stiffness course of Gu, Velex and others";
+            let of = |what: &str| format!("{what}, ε_α {transverse}, ε_β {overlap}");
+            check_worst(topic, &of("course over its mean against the series"), errors, 1.5e-3);
+            check(topic, &of("swing over the mean"), greatest - least, swing, Absolute(1.2e-3));
+            check(topic, &of("mean"), mean, 1.0, Absolute(1e-4));
         }
     }
 }

@@ -2,6 +2,8 @@
 
 use crate::gear::fixtures::{close, gear, pair, source_pair, spec, undercut_pair, worked_pair};
 use crate::gear::{CornerContact, Pair};
+use crate::oracle::Tolerance::Absolute;
+use crate::oracle::{check, check_worst};
 
 /// Overrun with the given gap, by bisection.
 fn at_gap(p: &Pair, gap_m: f64) -> CornerContact {
@@ -32,11 +34,14 @@ fn source_pair_table() {
         (40.0, 0.508, 6.237, 0.93697, 0.6949),
     ] {
         let corner = at_gap(&p, gap_um * 1e-6);
-        close(corner.gear_turn_rad.to_degrees(), turn_deg, 5e-4);
-        close(corner.theta_rad.to_degrees(), theta_deg, 5e-4);
+        let topic = "Impact: corner contact, source pair at 2000 r/min";
+        let of = |what: &str| format!("{what}, gap {gap_um} µm");
+        let turn = corner.gear_turn_rad.to_degrees();
+        check(topic, &of("turn of the gear before the path, deg"), turn, turn_deg, Absolute(5e-4));
+        check(topic, &of("inclination θ, deg"), corner.theta_rad.to_degrees(), theta_deg, Absolute(5e-4));
         let actual = corner.gear_arm_m / p.gear.base_radius_m;
-        close(actual, ratio, 5e-6);
-        close(speed * (1.0 - actual), velocity, 5e-5);
+        check(topic, &of("r'_b2 / r_b2"), actual, ratio, Absolute(5e-6));
+        check(topic, &of("impact velocity, m/s"), speed * (1.0 - actual), velocity, Absolute(5e-5));
     }
 }
 
@@ -44,12 +49,15 @@ fn source_pair_table() {
 #[test]
 fn worked_example() {
     let p = pair(&worked_pair());
-    close(p.center_distance_m * 1e3, 200.9957, 5e-5);
-    close(p.working_pressure_angle_rad.to_degrees(), 21.78965, 5e-6);
-    close(p.pinion.base_radius_m * 1e3, 52.01307, 5e-6);
-    close(p.gear.base_radius_m * 1e3, 134.62206, 5e-6);
-    close(p.gear.tip_radius_m * 1e3, 150.98051, 5e-6);
-    close(p.transverse_contact_ratio, 1.43124, 5e-6);
+    let topic = "Geometry: worked example of the corner contact";
+    check(topic, "centre distance, mm", p.center_distance_m * 1e3, 200.9957, Absolute(5e-5));
+    let angle = p.working_pressure_angle_rad.to_degrees();
+    check(topic, "working transverse pressure angle, deg", angle, 21.78965, Absolute(5e-6));
+    check(topic, "base radius of the pinion, mm", p.pinion.base_radius_m * 1e3, 52.01307, Absolute(5e-6));
+    check(topic, "base radius of the gear, mm", p.gear.base_radius_m * 1e3, 134.62206, Absolute(5e-6));
+    check(topic, "tip radius of the gear, mm", p.gear.tip_radius_m * 1e3, 150.98051, Absolute(5e-6));
+    check(topic, "transverse contact ratio", p.transverse_contact_ratio, 1.43124, Absolute(5e-6));
+    let topic = "Impact: corner contact, worked example at 3000 r/min";
     let speed = 100.0 * std::f64::consts::PI * p.pinion.base_radius_m;
     for (gap_um, turn_rad, effective_mm, velocity_mm_s) in [
         (5.0, 0.00353, 131.8116, 341.13),
@@ -58,11 +66,14 @@ fn worked_example() {
         (40.0, 0.01009, 126.7648, 953.71),
     ] {
         let corner = at_gap(&p, gap_um * 1e-6);
-        close(corner.gear_turn_rad, turn_rad, 5e-6);
-        close(corner.gear_arm_m * 1e3, effective_mm, 5e-5);
-        close(speed * (1.0 - corner.gear_arm_m / p.gear.base_radius_m) * 1e3, velocity_mm_s, 5e-3);
+        let of = |what: &str| format!("{what}, gap {gap_um} µm");
+        check(topic, &of("turn of the gear before the path, rad"), corner.gear_turn_rad, turn_rad, Absolute(5e-6));
+        check(topic, &of("r'_b2, mm"), corner.gear_arm_m * 1e3, effective_mm, Absolute(5e-5));
+        let velocity = speed * (1.0 - corner.gear_arm_m / p.gear.base_radius_m) * 1e3;
+        check(topic, &of("impact velocity, mm/s"), velocity, velocity_mm_s, Absolute(5e-3));
     }
-    close(at_gap(&p, 1e-5).theta_rad.to_degrees(), 2.86237, 5e-6);
+    let theta = at_gap(&p, 1e-5).theta_rad.to_degrees();
+    check(topic, "inclination θ, deg, gap 10 µm", theta, 2.86237, Absolute(5e-6));
 }
 
 /// Near the path the gap is `kappa x² / 2` with `kappa = a sin(alpha_wt) rho_2A / (r_b2² rho_1A)`: 0.044969 / mm.
@@ -72,10 +83,11 @@ fn starts_quadratically() {
     let rho_1 = p.path_start_m;
     let rho_2 = p.line_of_action_m - rho_1;
     let kappa = p.line_of_action_m * rho_2 / (p.gear.base_radius_m.powi(2) * rho_1);
-    close(kappa * 1e-3, 0.044969, 5e-7);
+    let topic = "Impact: corner gap near the path of contact";
+    check(topic, "curvature κ of the gap, 1/mm", kappa * 1e-3, 0.044969, Absolute(5e-7));
     let x = 1e-5;
     let gap = p.mesh_in_corner_gap_m(x).unwrap_or(f64::NAN);
-    close(gap / (0.5 * kappa * x * x), 1.0, 2e-3);
+    check(topic, "gap over κ x²/2 at x = 10 µm", gap / (0.5 * kappa * x * x), 1.0, Absolute(2e-3));
     close(p.mesh_in_corner_gap_m(0.0).unwrap_or(f64::NAN), 0.0, 1e-16);
 }
 
@@ -83,22 +95,30 @@ fn starts_quadratically() {
 #[test]
 fn effective_radius_is_the_slope_of_the_gap() {
     let p = pair(&worked_pair());
-    for x in [2e-4, 5e-4, 1e-3] {
+    let errors = [2e-4, 5e-4, 1e-3].map(|x| {
         let h = 1e-7;
         let gap = |x| p.mesh_in_corner_gap_m(x).unwrap_or(f64::NAN);
         let slope = (gap(x + h) - gap(x - h)) / (2.0 * h);
         let corner = p.mesh_in_corner(x).unwrap_or(CornerContact { theta_rad: f64::NAN, ..at_gap(&p, 1e-6) });
-        close(slope, 1.0 - corner.gear_arm_m / p.gear.base_radius_m, 1e-7);
-    }
+        slope - (1.0 - corner.gear_arm_m / p.gear.base_radius_m)
+    });
+    check_worst(
+        "Impact: corner gap near the path of contact",
+        "closing speed against the slope of the gap",
+        errors,
+        1e-7,
+    );
 }
 
 #[test]
 fn mesh_out_mirrors_mesh_in() {
     let p = pair(&spec(4.0, 20.0, 12.0, 30.0, gear(31, 0.0), gear(31, 0.0)));
-    for x in [0.0, 1e-4, 1e-3, 2e-3] {
+    let errors = [0.0, 1e-4, 1e-3, 2e-3].map(|x| {
         let (a, b) = (p.mesh_in_corner_gap_m(x), p.mesh_out_corner_gap_m(x));
-        close(a.unwrap_or(f64::NAN), b.unwrap_or(f64::NAN), 1e-15);
-    }
+        a.unwrap_or(f64::NAN) - b.unwrap_or(f64::NAN)
+    });
+    let topic = "Impact: corner gap near the path of contact";
+    check_worst(topic, "mesh-out against mesh-in of equal gears, m", errors, 1e-15);
 }
 
 #[test]

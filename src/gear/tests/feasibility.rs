@@ -2,6 +2,8 @@
 
 use crate::gear::fixtures::{close, gear, pair, source_pair, spec, undercut_pair, worked_pair};
 use crate::gear::{FlankModification, GearSpec, Half, Infeasibility, Pair, PairSpec, ReliefShape, TipRelief};
+use crate::oracle::Tolerance::Absolute;
+use crate::oracle::check;
 use proptest::prelude::*;
 
 fn reasons(spec: &PairSpec) -> Vec<Infeasibility> {
@@ -26,7 +28,8 @@ fn warning_codes(spec: &PairSpec) -> Vec<String> {
 fn interference_limit_of_the_source_pair() {
     let refused = reason(&source_pair(1.30), "tip-interference");
     assert_eq!(refused.pointer, "/design/gear/addendum");
-    close(refused.limit, 1.26970, 5e-6);
+    let topic = "Geometry: limits of feasible designs";
+    check(topic, "source pair, addendum at which the gear's tip interferes", refused.limit, 1.26970, Absolute(5e-6));
     close(refused.value, 1.30, 1e-12);
     let unclipped = {
         let p = pair(&source_pair(1.0));
@@ -35,7 +38,7 @@ fn interference_limit_of_the_source_pair() {
         let e = roll(p.pinion.reference_radius_m + m * refused.limit, p.pinion.base_radius_m);
         e / p.base_pitch_m + p.overlap_ratio
     };
-    close(unclipped, 3.48, 5e-3);
+    check(topic, "source pair, total contact ratio at that addendum", unclipped, 3.48, Absolute(5e-3));
 }
 
 #[test]
@@ -74,7 +77,8 @@ fn contact_ratio_below_one() {
 #[test]
 fn center_distance_below_the_base_circles() {
     let refused = reason(&PairSpec { center_distance_m: Some(0.18), ..worked_pair() }, "center-distance-too-small");
-    close(refused.limit, 186.63513, 2e-5);
+    let topic = "Geometry: limits of feasible designs";
+    check(topic, "least centre distance of the worked example, mm", refused.limit, 186.63513, Absolute(2e-5));
 }
 
 #[test]

@@ -3,6 +3,8 @@
 use super::*;
 use crate::gear::fixtures::{close, gear, pair, source_pair, spec, worked_pair};
 use crate::gear::{Half, Pair, ReliefShape, TipRelief};
+use crate::oracle::Tolerance::Absolute;
+use crate::oracle::{check, check_worst};
 use std::f64::consts::PI;
 
 mod pulse;
@@ -30,18 +32,21 @@ fn solved(p: &Pair, entry: &Entry, deflection_m: f64) -> Impact {
 fn worked_example() {
     let p = pair(&worked_pair());
     let impact = solved(&p, &worked_entry(), 1e-5);
-    close(impact.theta_rad.to_degrees(), 2.86237, 5e-6);
-    close(impact.equivalent_mass_kg, 4.32750, 2e-4);
-    close(impact.zhou2008_force_n, 11827.0, 0.2);
-    close(impact.force_n, 11152.1, 0.2);
-    close(impact.duration_s * 1e6, 585.8, 0.05);
-    close(impact.velocity_m_s * 1e3, 480.50, 5e-3);
-    close(impact.delta_phi2_rad, 0.00501, 5e-6);
-    close(impact.effective_gear_base_radius_m * 1e3, 130.6634, 5e-5);
+    let topic = "Impact: mesh-in impact, worked example";
+    check(topic, "inclination θ, deg", impact.theta_rad.to_degrees(), 2.86237, Absolute(5e-6));
+    check(topic, "equivalent mass, kg", impact.equivalent_mass_kg, 4.32750, Absolute(2e-4));
+    check(topic, "force without the other pairs, N", impact.zhou2008_force_n, 11827.0, Absolute(0.2));
+    check(topic, "force, N", impact.force_n, 11152.1, Absolute(0.2));
+    check(topic, "duration by the energy balance, µs", impact.duration_s * 1e6, 585.8, Absolute(0.05));
+    check(topic, "impact velocity, mm/s", impact.velocity_m_s * 1e3, 480.50, Absolute(5e-3));
+    check(topic, "turn of the gear before the path, rad", impact.delta_phi2_rad, 0.00501, Absolute(5e-6));
+    let effective = impact.effective_gear_base_radius_m * 1e3;
+    check(topic, "r'_b2, mm", effective, 130.6634, Absolute(5e-5));
     close(impact.single_pair_stiffness_n_per_m, 1.4e8, 1.0);
     close(impact.other_pairs_stiffness_n_per_m, 1.12e9, 1.0);
     close(impact.lead_s, impact.overrun_m / (100.0 * PI * p.pinion.base_radius_m), 1e-18);
-    close(impact.reduction_percent, 100.0 * (1.0 - 11152.1 / 11827.0), 1e-3);
+    let expected = 100.0 * (1.0 - 11152.1 / 11827.0);
+    check(topic, "reduction by the other pairs' give, %", impact.reduction_percent, expected, Absolute(1e-3));
 }
 
 /// Velocities of the source pair at 2000 rpm.
@@ -53,8 +58,10 @@ fn source_pair_velocities() {
         [(5.0, 0.2607, 2.533), (10.0, 0.3617, 3.444), (20.0, 0.5013, 4.650), (40.0, 0.6949, 6.237)]
     {
         let impact = solved(&p, &entry, deflection_um * 1e-6);
-        close(impact.velocity_m_s, velocity, 5e-5);
-        close(impact.theta_rad.to_degrees(), theta_deg, 5e-4);
+        let topic = "Impact: solved first contact, source pair at 2000 r/min";
+        let of = |what: &str| format!("{what}, deflection {deflection_um} µm");
+        check(topic, &of("impact velocity, m/s"), impact.velocity_m_s, velocity, Absolute(5e-5));
+        check(topic, &of("inclination θ, deg"), impact.theta_rad.to_degrees(), theta_deg, Absolute(5e-4));
     }
 }
 
@@ -62,16 +69,18 @@ fn source_pair_velocities() {
 #[test]
 fn energy_is_balanced() {
     let p = pair(&worked_pair());
-    for share in [0.01, 0.076, 0.5, 0.9] {
+    let errors = [0.01, 0.076, 0.5, 0.9].map(|share| {
         let entry = Entry { load_share: share, ..worked_entry() };
         let impact = solved(&p, &entry, 1e-5);
         let (q_s, q_r) = (1.0 / impact.single_pair_stiffness_n_per_m, 1.0 / impact.other_pairs_stiffness_n_per_m);
         let kinetic = 0.5 * impact.equivalent_mass_kg * impact.velocity_m_s.powi(2);
         let strain = 0.5 * impact.force_n.powi(2) * (q_s + q_r * impact.theta_rad.cos().powi(2));
-        close(strain / kinetic, 1.0, 1e-12);
         let unbuffered = 0.5 * impact.zhou2008_force_n.powi(2) * q_s;
-        close(unbuffered / kinetic, 1.0, 1e-12);
-    }
+        [strain / kinetic - 1.0, unbuffered / kinetic - 1.0]
+    });
+    let topic = "Impact: balances and limits";
+    check_worst(topic, "strain energy over kinetic energy", errors.map(|e| e[0]), 1e-12);
+    check_worst(topic, "the same with the other pairs rigid", errors.map(|e| e[1]), 1e-12);
 }
 
 /// `v_s -> omega_1 r_b1 sqrt(2 kappa delta)` for small deflections.
@@ -80,11 +89,14 @@ fn small_deflection_limit() {
     let p = pair(&worked_pair());
     let rho_1 = p.path_start_m;
     let kappa = p.line_of_action_m * (p.line_of_action_m - rho_1) / (p.gear.base_radius_m.powi(2) * rho_1);
-    for delta in [1e-9, 1e-8, 1e-7] {
+    let errors = [1e-9, 1e-8, 1e-7].map(|delta| {
         let expected = 100.0 * PI * p.pinion.base_radius_m * (2.0 * kappa * delta).sqrt();
         let error = solved(&p, &worked_entry(), delta).velocity_m_s / expected - 1.0;
         assert!(error.abs() < 0.006 * (delta / 1e-7).sqrt(), "{delta}: {error}");
-    }
+        error
+    });
+    let quantity = "velocity against ω r_b1 √(2 κ δ), δ of 1 to 100 nm";
+    check_worst("Impact: balances and limits", quantity, errors, 0.006);
 }
 
 #[test]
@@ -97,7 +109,14 @@ fn relief_delays_and_prevents_the_impact() {
     let full = solved(&pair(&worked_pair()), &worked_entry(), 4e-6);
     let less = solved(&relieved(6e-6), &worked_entry(), 1e-5);
     // Six of ten micrometres are relieved: what is left is the impact of four.
-    close(less.force_n / full.force_n, 1.0, 1e-6);
+    let topic = "Impact: balances and limits";
+    check(
+        topic,
+        "6 µm of relief against 6 µm less deflection, forces",
+        less.force_n / full.force_n,
+        1.0,
+        Absolute(1e-6),
+    );
     let none = solved(&relieved(12e-6), &worked_entry(), 1e-5);
     assert_eq!(none.force_n, 0.0);
     assert_eq!(none.pulse(0.0), None);
@@ -112,7 +131,9 @@ fn relief_delays_and_prevents_the_impact() {
 fn pitch_error_acts_as_deflection() {
     let p = pair(&worked_pair());
     let entry = Entry { base_pitch_error_m: 5e-6, ..worked_entry() };
-    close(solved(&p, &entry, 5e-6).force_n / solved(&p, &worked_entry(), 1e-5).force_n, 1.0, 1e-6);
+    let ratio = solved(&p, &entry, 5e-6).force_n / solved(&p, &worked_entry(), 1e-5).force_n;
+    let topic = "Impact: balances and limits";
+    check(topic, "5 µm of pitch error against 5 µm more deflection, forces", ratio, 1.0, Absolute(1e-6));
 }
 
 /// A deflection that changes with the overrun is solved together with it.
@@ -122,7 +143,9 @@ fn deflection_may_depend_on_the_overrun() -> Result<(), ImpactError> {
     let law = |x: f64| 1e-5 * (1.0 + 0.2 * (x / 1e-4).sin());
     match first_contact(&p, Half::Left, 0.0, law)? {
         Entrance::Early(contact) => {
-            close(contact.separation_m, law(contact.overrun_m), 1e-13);
+            let error = contact.separation_m - law(contact.overrun_m);
+            let topic = "Impact: balances and limits";
+            check_worst(topic, "gap at first contact against a deflection that varies, m", [error], 1e-13);
             // Nothing touches further out.
             for i in 1..1000 {
                 let x = contact.overrun_m * (1.0 + f64::from(i) * 1e-3);
