@@ -8,6 +8,7 @@ CREATE TABLE jobs (
     state                  TEXT    NOT NULL CHECK (state IN ('queued', 'running', 'succeeded', 'failed', 'canceled')),
     revision               INTEGER NOT NULL,                       -- grows with every visible change
     attempt                INTEGER NOT NULL,                       -- counts claims; fences lost workers out
+    losses                 INTEGER NOT NULL DEFAULT 0,             -- how often its process died while it ran
     priority               INTEGER NOT NULL DEFAULT 0,             -- larger runs first
     progress               REAL    NOT NULL DEFAULT 0,             -- fraction of the whole job, 0 to 1
     stage                  TEXT,

@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::lifecycle::JobId;
 use super::record::{JobRecord, job_columns, record_event};
 use jiff::Timestamp;
-use sqlx::{Row, Sqlite, Transaction};
+use sqlx::{FromRow, Row, Sqlite, Transaction};
 
 /// A job that was just started.
 #[derive(Debug, Clone)]
@@ -22,7 +22,7 @@ pub struct Recovery {
     pub requeued: u64,
     /// Running jobs whose cancellation was already asked for.
     pub canceled: u64,
-    /// Running jobs that were started as often as allowed.
+    /// Running jobs that were lost as often as allowed.
     pub given_up: u64,
     /// Jobs that wait, the requeued ones included.
     pub waiting: u64,
@@ -77,23 +77,28 @@ impl Store {
         Ok(released)
     }
 
-    /// Takes up what a dead process left: its running jobs wait again, unless they were started `max_attempts` times.
-    pub async fn recover(&self, max_attempts: u32, now: Timestamp) -> Result<Recovery, StoreError> {
+    /// Takes up what a dead process left: its running jobs wait again, unless they were lost `max_losses` times.
+    pub async fn recover(&self, max_losses: u32, now: Timestamp) -> Result<Recovery, StoreError> {
         let mut transaction = self.write().await?;
-        let running: Vec<JobRecord> =
-            sqlx::query_as(concat!("SELECT ", job_columns!(), " FROM jobs WHERE state = 'running' ORDER BY id"))
-                .fetch_all(&mut *transaction)
-                .await?;
+        let lost = sqlx::query(concat!(
+            "UPDATE jobs SET losses = losses + 1 WHERE state = 'running' RETURNING losses, ",
+            job_columns!()
+        ))
+        .fetch_all(&mut *transaction)
+        .await?;
         let mut recovery = Recovery::default();
-        for job in running {
-            if job.cancel_requested_at.is_none() && job.attempt >= i64::from(max_attempts) {
-                give_up(&mut transaction, &job, now).await?;
+        for row in lost {
+            let job = JobRecord::from_row(&row)?;
+            let losses: i64 = row.try_get("losses")?;
+            if job.cancel_requested_at.is_some() {
+                release_in(&mut transaction, job.id, job.attempt, now).await?;
+                recovery.canceled += 1;
+            } else if losses >= i64::from(max_losses) {
+                give_up(&mut transaction, &job, losses, now).await?;
                 recovery.given_up += 1;
             } else {
                 release_in(&mut transaction, job.id, job.attempt, now).await?;
-                let counter =
-                    if job.cancel_requested_at.is_some() { &mut recovery.canceled } else { &mut recovery.requeued };
-                *counter += 1;
+                recovery.requeued += 1;
             }
         }
         let row =
@@ -134,9 +139,10 @@ async fn release_in(
 async fn give_up(
     transaction: &mut Transaction<'static, Sqlite>,
     job: &JobRecord,
+    losses: i64,
     now: Timestamp,
 ) -> Result<(), StoreError> {
-    let detail = format!("the process ended while the job ran, {} times; it is not started again", job.attempt);
+    let detail = format!("the process ended while the job ran, {losses} times; it is not started again");
     super::finish::fail_in(transaction, job.id, job.attempt, &Failure::new("worker-lost", detail), now).await?;
     Ok(())
 }

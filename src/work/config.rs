@@ -19,10 +19,10 @@ pub struct WorkConfig {
           value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub queue_capacity: u32,
 
-    /// How often a job is started again after its process died, before it is given up.
-    #[arg(long, env = "HERRINGBONE_MAX_ATTEMPTS", value_name = "N", default_value_t = 3,
+    /// A job is given up when its process has died so often while it ran; shutdowns do not count.
+    #[arg(long, env = "HERRINGBONE_MAX_LOSSES", value_name = "N", default_value_t = 3,
           value_parser = clap::value_parser!(u32).range(1..=100))]
-    pub max_attempts: u32,
+    pub max_losses: u32,
 
     /// How long a shutdown waits for running jobs to stop; they run again after the restart.
     #[arg(long, env = "HERRINGBONE_DRAIN_S", value_name = "SECONDS", default_value_t = 10,
@@ -32,7 +32,7 @@ pub struct WorkConfig {
 
 impl Default for WorkConfig {
     fn default() -> Self {
-        Self { workers: None, threads: None, queue_capacity: 10_000, max_attempts: 3, drain_s: 10 }
+        Self { workers: None, threads: None, queue_capacity: 10_000, max_losses: 3, drain_s: 10 }
     }
 }
 

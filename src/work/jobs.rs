@@ -69,7 +69,7 @@ impl Jobs {
         solver: Arc<dyn Solver>,
         clock: Clock,
     ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
-        let recovery = store.recover(config.max_attempts, clock()).await?;
+        let recovery = store.recover(config.max_losses, clock()).await?;
         if recovery.waiting > 0 || recovery.given_up > 0 || recovery.canceled > 0 {
             let (waiting, requeued, given_up) = (recovery.waiting, recovery.requeued, recovery.given_up);
             tracing::info!(

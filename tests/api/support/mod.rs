@@ -32,7 +32,7 @@ pub struct App {
 
 /// Two workers, a queue of ten.
 pub fn small() -> WorkConfig {
-    WorkConfig { workers: Some(2), threads: Some(2), queue_capacity: 10, max_attempts: 3, drain_s: 5 }
+    WorkConfig { workers: Some(2), threads: Some(2), queue_capacity: 10, max_losses: 3, drain_s: 5 }
 }
 
 pub async fn app() -> App {
