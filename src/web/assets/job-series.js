@@ -3,7 +3,7 @@
 import * as api from "./api.js";
 import { byId, download, el, notify, show } from "./dom.js";
 import { number, sentence, shownUnit } from "./format.js";
-import { autorange, draw, line, onZoom, points, stems } from "./plots.js";
+import { draw, line, onZoom, points, stems } from "./plots.js";
 
 const MAX_POINTS = 2000;
 /** Most points of the phase plane: its two channels have to be complete over the time shown. */
@@ -40,7 +40,6 @@ class SeriesPanel {
   /** Shows a window [from, to] in seconds, or the whole record. */
   zoom(window) {
     this.window = window;
-    if (!window) autorange(this.plot);
     return this.load();
   }
 

@@ -42,7 +42,7 @@ export function stems(x, y, name) {
 
 export const heatMap = (x, y, z, unit) => ({ type: "heatmap", x, y, z, colorbar: { title: { text: unit }, thickness: 14, outlinewidth: 0 }, colorscale: "Viridis", hoverongaps: false });
 
-/** Draws traces into a box; `axes` has the titles `x`, `y` (and `y2`), and perhaps the `range` of x. */
+/** Draws traces into a box; `axes` has the titles `x`, `y` (and `y2`), and the `range` of x if it is not all of it. */
 export async function draw(node, traces, axes) {
   const plotly = await load();
   drawn.set(node, { traces, axes });
@@ -52,11 +52,6 @@ export async function draw(node, traces, axes) {
   node.setAttribute("role", "img");
   node.setAttribute("aria-label", `Plot: ${axes.title ?? axes.y} over ${axes.x}`);
   return node;
-}
-
-export async function autorange(node) {
-  const plotly = await load();
-  if (node.layout) await plotly.relayout(node, { "xaxis.autorange": true, "yaxis.autorange": true });
 }
 
 /** Calls `zoomed` with [from, to] when the user changes the range of x, and with null when it is set free. */
