@@ -43,13 +43,30 @@ async fn the_example_goes_from_the_form_to_its_result() {
             let shown = read_number(&shown);
             assert!((shown / reported - 1.0).abs() < 1e-4, "{side}: {shown} shown, {reported} reported");
         }
+        let force = result["impact"]["force_n"].as_f64().unwrap();
+        let shown = browser.text("#impact-table tbody tr:first-child td").await;
+        let shown = read_number(shown.trim_end_matches(" N"));
+        assert!((shown / force - 1.0).abs() < 1e-4, "impact force: {shown} shown, {force} reported");
         let geometry = browser.text("#geometry-values").await;
         assert!(geometry.contains("Transverse contact ratio"), "{geometry}");
         assert_eq!(browser.value("document.querySelectorAll('#impact-table tbody tr').length").await, json!(3));
-        for plot in ["stiffness", "error", "share", "series", "phase", "spectrum"] {
+        let spectrum = !result["response"]["spectrum"].is_null();
+        assert_eq!(browser.value("!document.querySelector('#spectrum').hidden").await, json!(spectrum));
+        let plots = ["stiffness", "error", "share", "series", "phase", "spectrum"];
+        for plot in plots.into_iter().filter(|plot| spectrum || *plot != "spectrum") {
             let lines = format!("document.querySelectorAll('#{plot}-plot .scatterlayer .trace').length");
             assert!(browser.value(&lines).await.as_i64().unwrap() >= 1, "{plot}");
         }
+
+        // On a telephone nothing sticks out, the plots included.
+        browser.driver.set_window_rect(0, 0, 390, 844).await.unwrap();
+        browser.driver.refresh().await.unwrap();
+        succeeded(browser).await;
+        let sticking = "[...document.querySelectorAll('main *')].filter((node) => node.getBoundingClientRect().right > \
+                        window.innerWidth && !node.closest('.scroll, .visually-hidden, defs, clipPath')).map((node) => \
+                        `${node.tagName} ${node.id} ${node.getAttribute('class')}`)";
+        assert_eq!(browser.value(sticking).await, json!([]));
+        browser.driver.set_window_rect(0, 0, 1280, 1000).await.unwrap();
 
         // The document can be taken up again in the form.
         browser.element("#again").await.click().await.unwrap();

@@ -45,9 +45,9 @@ export function number(value, digits = 5) {
     return `${Number(mantissa)}·10${superscript(Number(exponent))}`;
   }
   if (Number.isInteger(value)) return grouped(String(value));
-  if (size >= 10 ** digits) return grouped(value.toFixed(0));
   const decimals = Math.max(0, Math.min(digits, digits - 1 - Math.floor(Math.log10(size))));
-  return grouped(value.toFixed(decimals).replace(/\.?0+$/, ""));
+  const text = value.toFixed(decimals);
+  return grouped(decimals > 0 ? text.replace(/\.?0+$/, "") : text);
 }
 
 function superscript(exponent) {

@@ -106,11 +106,13 @@ async function showPhase(id, response, catalogue) {
   const from = n > PHASE_POINTS ? end - PHASE_POINTS * dt : t0;
   const [x, v] = await Promise.all(names.map((name) => api.series(id, name, { from, to: end, method: "none" })));
   const micrometres = (values) => values.map((value) => value * 1e6);
-  const traces = [line(micrometres(x.y), v.y, "path")];
+  // A periodic record ends one sample before it begins again.
+  const closed = (values) => (response?.method === "periodic" ? [...values, values[0]] : values);
+  const traces = [line(closed(micrometres(x.y)), closed(v.y), "path")];
   const { x_left_m: px = [], v_x_left_m_s: pv = [] } = response?.poincare ?? {};
   if (px.length) traces.push(points(micrometres(px), pv, "once per mesh period"));
   await draw(byId("phase-plot"), traces, { x: "x_left, µm", y: "v_x_left, m/s" });
-  byId("phase-note").textContent = `${number(x.n_returned)} samples of the record's end${px.length ? `; ${number(px.length)} points, one per mesh period` : ""}.`;
+  byId("phase-note").textContent = `${number(x.n_returned)} samples of the record's end${px.length ? `; ${number(px.length)} ${px.length === 1 ? "point" : "points"}, one per mesh period` : ""}.`;
 }
 
 async function showSpectrum(response) {
