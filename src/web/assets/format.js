@@ -45,7 +45,7 @@ export function number(value, digits = 5) {
     return `${Number(mantissa)}·10${superscript(Number(exponent))}`;
   }
   if (Number.isInteger(value)) return grouped(String(value));
-  const decimals = Math.max(0, Math.min(digits, digits - 1 - Math.floor(Math.log10(size))));
+  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
   const text = value.toFixed(decimals);
   return grouped(decimals > 0 ? text.replace(/\.?0+$/, "") : text);
 }

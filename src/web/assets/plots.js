@@ -2,9 +2,17 @@
 
 import { byId, el } from "./dom.js";
 
-const CONFIG = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"], toImageButtonOptions: { scale: 2 } };
+const CONFIG = { displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"], toImageButtonOptions: { scale: 2 } };
 const drawn = new Map();
 let loading = null;
+
+/** Plots follow the width of their boxes. */
+const fit = new ResizeObserver((changes) => {
+  for (const { target, contentRect } of changes) {
+    const width = target._fullLayout?.width;
+    if (contentRect.width > 0 && width && Math.abs(width - contentRect.width) > 1) window.Plotly.Plots.resize(target);
+  }
+});
 
 /**
  * Plotly writes some style attributes as text, which the content security policy forbids; through the style object
@@ -45,6 +53,7 @@ export const heatMap = (x, y, z, unit) => ({ type: "heatmap", x, y, z, colorbar:
 /** Draws traces into a box; `axes` has the titles `x`, `y` (and `y2`), and the `range` of x if it is not all of it. */
 export async function draw(node, traces, axes) {
   const plotly = await load();
+  if (!drawn.has(node)) fit.observe(node);
   drawn.set(node, { traces, axes });
   const colours = palette();
   const coloured = traces.map((trace, index) => withColour(trace, colours.lines[index % colours.lines.length]));
