@@ -90,7 +90,7 @@ function layoutOf({ x, y, y2, range, title, fromZero }, colours, node) {
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "rgba(0,0,0,0)",
     font: { color: colours.text, family: "system-ui, sans-serif", size: 12 },
-    xaxis: axis(x),
+    xaxis: { ...axis(x), exponentformat: "none" },
     yaxis: axis(y),
     legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
     separators: ".\u202f",
