@@ -15,6 +15,7 @@ import { showSweep } from "./job-sweep.js";
 const { id } = byId("job").dataset;
 const notice = byId("notice");
 let shown = false;
+let revision = -1;
 
 function showLife(job) {
   const title = job.name ?? `Job ${job.id}`;
@@ -45,6 +46,9 @@ function showLife(job) {
 }
 
 function follow(job) {
+  // Events and answers may overtake each other; what is older than what is shown does not count.
+  if (job.revision < revision) return;
+  revision = job.revision;
   showLife(job);
   if (job.state === "failed") notify(notice, { problem: { title: "The job failed", ...(job.error ?? {}) } });
   if (job.state === "succeeded" && !shown) {

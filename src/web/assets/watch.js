@@ -9,7 +9,6 @@ export function watchJob(id, onJob) {
   let stopped = false;
   let source = null;
   let timer = null;
-  let latest = null;
 
   function stop() {
     stopped = true;
@@ -19,9 +18,6 @@ export function watchJob(id, onJob) {
 
   function take(job) {
     if (stopped) return;
-    // An event may be older than an answer that overtook it.
-    if (latest && job.revision < latest.revision) return;
-    latest = job;
     if (api.isEnded(job)) stop();
     onJob(job);
   }
