@@ -18,11 +18,14 @@ pub fn check(topic: &str, quantity: &str, got: f64, expected: f64, tolerance: To
         Tolerance::Absolute(limit) => ((got - expected).abs(), limit, "abs"),
     };
     let allowed = if kind == "rel" { limit * expected.abs() } else { limit };
-    // One digit beyond the tolerance's.
-    let digits = (1.0 - allowed.log10().floor()).clamp(0.0, 15.0) as usize;
-    // As the reference states it; one that was calculated, to the same digits.
-    let reference = [format!("{expected}"), format!("{expected:.digits$}")].into_iter().min_by_key(String::len);
-    let reference = reference.unwrap_or_default();
+    let stated = format!("{expected}");
+    let decimals = stated.split_once('.').map_or(0, |(_, after)| after.len());
+    // One digit beyond the tolerance's, and all that are stated; a calculated reference has many more than it needs.
+    let mut digits = (1.0 - allowed.log10().floor()).clamp(0.0, 15.0) as usize;
+    if stated.len() <= 12 {
+        digits = digits.max(decimals);
+    }
+    let reference = if decimals > digits { format!("{expected:.digits$}") } else { stated };
     println!("oracle|{topic}|{quantity}|{reference}|{got:.digits$}|{error:.1e} {kind}|{limit:.1e} {kind}");
     assert!(error <= limit, "{topic}, {quantity}: {got} instead of {expected}, off by {error:e}, allowed {limit:e}");
 }

@@ -5,6 +5,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::dynamics::tests::reference::{parameters, reference};
 use crate::dynamics::{DynamicsError, Harmonic, Impact, Integrator, Parameters, Spring, Stiffness};
+use crate::oracle::Tolerance::{Absolute, Relative};
+use crate::oracle::{check, check_worst};
 use crate::watch::{Canceled, Watch};
 
 fn integrate(name: &str, mesh_periods: u64, record: u64, accuracy: f64, integrator: Integrator) -> Response {
@@ -28,10 +30,13 @@ fn mesh_rms(r: &Response) -> f64 {
 }
 
 /// The estimate is not below the error, nor more than a hundred times above (above the rounding it starts from).
-fn honest(error: f64, r: &Response, accuracy: f64, what: &str) {
+fn honest(name: &str, what: &str, r: &Response, accuracy: f64) {
+    let expected = reference().cases[name].rms_200_to_300.unwrap();
+    let error = (mesh_rms(r) / expected - 1.0).abs();
     let estimate = r.summary.error_estimate;
     println!("{what} {accuracy:.0e}: error {error:.1e} estimate {estimate:.1e} steps {}", r.summary.numerics.steps);
-    assert!(error < accuracy, "{what} {accuracy}: {error}");
+    let topic = format!("Response: reference case {name}, RMS of x_left''");
+    check(&topic, &format!("{what}, accuracy {accuracy:.0e}, m/s²"), mesh_rms(r), expected, Relative(accuracy));
     assert!(error <= estimate, "{what} {accuracy}: {error} {estimate}");
     assert!(estimate <= 100.0 * error.max(3e-14), "{what} {accuracy}: {error} {estimate}");
 }
@@ -39,14 +44,13 @@ fn honest(error: f64, r: &Response, accuracy: f64, what: &str) {
 #[test]
 fn integrated_cases_meet_the_reference() {
     for (name, regime) in [("A", Regime::Period1), ("C", Regime::PeriodN)] {
-        let expected = reference().cases[name].rms_200_to_300.unwrap();
         for accuracy in [1e-4, 1e-6, 1e-8, 1e-10] {
             let r = integrate(name, 300, 100, accuracy, Integrator::Taylor);
-            honest((mesh_rms(&r) / expected - 1.0).abs(), &r, accuracy, name);
+            honest(name, "periods 200 to 300 integrated", &r, accuracy);
             assert_eq!((r.summary.regime, r.summary.degrees_of_freedom), (regime, 6));
         }
         let r = integrate(name, 300, 100, 1e-6, Integrator::RungeKutta);
-        honest((mesh_rms(&r) / expected - 1.0).abs(), &r, 1e-6, &format!("{name} Runge-Kutta"));
+        honest(name, "the same by Runge–Kutta", &r, 1e-6);
         assert_eq!(r.summary.regime, regime);
     }
 }
@@ -54,17 +58,17 @@ fn integrated_cases_meet_the_reference() {
 #[test]
 fn the_steady_state_needs_no_transient() {
     for (name, n, contact) in [("A", 1, ContactState::Continuous), ("C", 2, ContactState::SingleSided)] {
-        let case = &reference().cases[name];
         for accuracy in [1e-6, 1e-9] {
             let r = auto(&parameters(name), accuracy);
-            honest((mesh_rms(&r) / case.rms_200_to_300.unwrap() - 1.0).abs(), &r, accuracy, name);
+            honest(name, "periodic motion solved for", &r, accuracy);
             assert_eq!(r.summary.period_mesh_periods, Some(n));
             assert_eq!((r.summary.contact, r.summary.method.as_str()), (contact, "periodic"));
         }
     }
     // From an independent solution: slowest multiplier 0.891 with both halves free to move on their own.
     let r = auto(&parameters("A"), 1e-6);
-    assert!((r.summary.floquet_modulus.unwrap() - 0.891).abs() < 5e-4);
+    let modulus = r.summary.floquet_modulus.unwrap();
+    check("Response: regime", "slowest multiplier of case A", modulus, 0.891, Absolute(5e-4));
 }
 
 /// Over the whole run, transient included: share in contact and extremes of s.
@@ -85,13 +89,17 @@ fn contact_and_extremes_meet_the_reference() {
         // Case B is chaotic: only its statistics can be compared. The reference's extremes are those of the ends of its
         // (long) steps, so the true ones lie outside.
         let close = if name == "B" { 0.05 } else { 5e-3 };
-        assert!(
-            (r.summary.contact_share.left - case.fraction_contact).abs() < close,
-            "{name} {:?}",
-            r.summary.contact_share
+        let topic = "Response: contact and extremes over 300 periods";
+        let of = |what: &str| format!("case {name}, {what}");
+        check(
+            topic,
+            &of("share of time in contact"),
+            r.summary.contact_share.left,
+            case.fraction_contact,
+            Absolute(close),
         );
-        assert!((s.min * 1e6 / case.s_min_um - 1.0).abs() < close, "{name} {s:?}");
-        assert!((s.max * 1e6 / case.s_max_um - 1.0).abs() < close, "{name} {s:?}");
+        check(topic, &of("least s, µm"), s.min * 1e6, case.s_min_um, Relative(close));
+        check(topic, &of("greatest s, µm"), s.max * 1e6, case.s_max_um, Relative(close));
         assert!(name == "B" || (s.min * 1e6 < case.s_min_um && s.max * 1e6 > case.s_max_um), "{name} {s:?}");
     }
 }
@@ -105,9 +113,11 @@ fn chaos_is_recognised() {
     let r = auto(&parameters("B"), 1e-6);
     assert_eq!((r.summary.regime, r.summary.contact), (Regime::Chaotic, ContactState::SingleSided));
     assert_eq!(r.summary.degrees_of_freedom, 12);
-    assert!((r.summary.lyapunov_per_mesh_period.unwrap() - 0.37).abs() < 0.08, "{:?}", r.summary);
-    let error = (mesh_rms(&r) / 120.85 - 1.0).abs();
-    assert!(error < 3.0 * r.summary.error_estimate && r.summary.error_estimate < 0.02, "{:?}", r.summary);
+    let exponent = r.summary.lyapunov_per_mesh_period.unwrap();
+    check("Response: regime", "Lyapunov exponent of case B, per mesh period", exponent, 0.37, Absolute(0.08));
+    assert!(r.summary.error_estimate < 0.02, "{:?}", r.summary);
+    let threefold = Relative(3.0 * r.summary.error_estimate);
+    check("Response: reference case B, RMS of x_left''", "on the attractor, m/s²", mesh_rms(&r), 120.85, threefold);
     let periodic = Analysis { method: Method::Periodic, ..Analysis::default() };
     let refused = solve(&parameters("B"), &periodic, &Watch::none());
     assert!(matches!(refused, Err(DynamicsError::NotPeriodic { .. })), "{refused:?}");
@@ -122,10 +132,13 @@ fn six_and_twelve_coordinates_agree() {
         q.halves[1].gear_mass_kg *= 1.0 + 1e-13;
         let (six, twelve) = (auto(&p, 1e-9), auto(&q, 1e-9));
         assert_eq!((six.summary.degrees_of_freedom, twelve.summary.degrees_of_freedom), (6, 12));
-        assert!((mesh_rms(&six) / mesh_rms(&twelve) - 1.0).abs() < 1e-9);
+        let topic = "Response: six against twelve coordinates";
+        check_worst(topic, &format!("RMS of x_left'', case {name}"), [mesh_rms(&six) / mesh_rms(&twelve) - 1.0], 1e-9);
         let axial = |r: &Response| r.summary.rms.pinion_axial_acceleration_m_s2;
-        assert!((axial(&six).right / axial(&twelve).right - 1.0).abs() < 1e-9);
-        assert!((six.summary.floquet_modulus.unwrap() - twelve.summary.floquet_modulus.unwrap()).abs() < 1e-6);
+        let error = axial(&six).right / axial(&twelve).right - 1.0;
+        check_worst(topic, &format!("RMS of the pinion's axial acceleration, case {name}"), [error], 1e-9);
+        let error = six.summary.floquet_modulus.unwrap() - twelve.summary.floquet_modulus.unwrap();
+        check_worst(topic, &format!("slowest multiplier, case {name}"), [error], 1e-6);
     }
 }
 
@@ -179,11 +192,14 @@ fn series_are_the_motion() {
     // The mean mesh force carries the torque less the mean impact.
     let static_n = p.halves[0].pinion_torque_nm / p.pinion_radius_m;
     let mean_impact = p.halves[0].impact.as_ref().unwrap().mean_n();
-    assert!((r.summary.statistics["f_y_left"].mean / (static_n - mean_impact) - 1.0).abs() < 1e-9);
+    let mean = r.summary.statistics["f_y_left"].mean;
+    let topic = "Response: balances and equivalences";
+    check(topic, "mean mesh force of case A: torque less mean impact, N", mean, static_n - mean_impact, Relative(1e-9));
     assert_eq!(r.summary.degrees_of_freedom, 12);
     let spectrum = Spectrum::of(channel("a_x_left"), p.mesh_frequency_hz);
     let power: f64 = spectrum.amplitude.iter().map(|a| a * a / 2.0).sum();
-    assert!((power.sqrt() / r.summary.statistics["a_x_left"].rms - 1.0).abs() < 1e-4);
+    let error = power.sqrt() / r.summary.statistics["a_x_left"].rms - 1.0;
+    check_worst(topic, "power of the spectrum against the RMS", [error], 1e-4);
 }
 
 /// The same curve as Fourier series and as samples.
@@ -196,7 +212,9 @@ fn sampled_stiffness_is_met() {
         h.mesh_stiffness = Stiffness::Samples { values_n_per_m };
     }
     let (a, b) = (auto(&p, 1e-6), auto(&q, 1e-6));
-    assert!((mesh_rms(&a) / mesh_rms(&b) - 1.0).abs() < 1e-4, "{} {}", mesh_rms(&a), mesh_rms(&b));
+    let topic = "Response: balances and equivalences";
+    let error = mesh_rms(&b) / mesh_rms(&a) - 1.0;
+    check_worst(topic, "stiffness as 512 samples against its Fourier series, RMS", [error], 1e-4);
     // And both methods use the samples alike.
     let rk = Analysis {
         method: Method::Integrate { mesh_periods: 250, record_mesh_periods: 20 },
@@ -204,7 +222,8 @@ fn sampled_stiffness_is_met() {
         ..Analysis::default()
     };
     let c = solve(&q, &rk, &Watch::none()).unwrap();
-    assert!((mesh_rms(&c) / mesh_rms(&b) - 1.0).abs() < 1e-6, "{} {}", mesh_rms(&c), mesh_rms(&b));
+    let error = mesh_rms(&c) / mesh_rms(&b) - 1.0;
+    check_worst(topic, "sampled stiffness, Runge–Kutta against the Taylor series, RMS", [error], 1e-6);
 }
 
 #[test]
@@ -216,7 +235,13 @@ fn no_excitation_no_motion() {
     }
     for method in [Method::Auto, Method::Integrate { mesh_periods: 50, record_mesh_periods: 40 }] {
         let r = solve(&p, &Analysis { method, ..Analysis::default() }, &Watch::none()).unwrap();
-        assert!(mesh_rms(&r) < 1e-6, "{:?}", r.summary);
+        let topic = "Response: balances and equivalences";
+        check_worst(
+            topic,
+            &format!("no excitation, RMS of x_left'' by {}, m/s²", r.summary.method),
+            [mesh_rms(&r)],
+            1e-6,
+        );
         assert_eq!((r.summary.regime, r.summary.contact), (Regime::Period1, ContactState::Continuous));
         assert!((r.summary.dynamic_factor.unwrap() - 1.0).abs() < 1e-9);
     }

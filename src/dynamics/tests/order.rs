@@ -2,6 +2,8 @@
 
 use super::reference::parameters;
 use crate::dynamics::*;
+use crate::oracle::Tolerance::Absolute;
+use crate::oracle::check;
 use crate::watch::Watch;
 
 /// Case A without impact: smooth, contact kept.
@@ -39,7 +41,7 @@ fn order(model: &Model<6>, with: impl Fn(Motion<'_, 6>, f64) -> Motion<'_, 6>, s
 #[test]
 fn runge_kutta_is_of_fourth_order() {
     let p = order(&smooth(), |m, h| m.with_fixed_runge_kutta(h), [100, 200]);
-    assert!((p - 4.0).abs() < 0.3, "{p}");
+    check("Dynamics: order of convergence", "Runge–Kutta", p, 4.0, Absolute(0.3));
 }
 
 #[test]
@@ -47,7 +49,8 @@ fn taylor_has_the_order_it_says() {
     // Displacements are carried to the power n of the step, velocities to n − 1: the method's order is n − 1.
     for (n, steps) in [(6, [40, 80]), (10, [30, 60]), (14, [24, 36])] {
         let p = order(&smooth(), |m, h| m.with_fixed_taylor(n, h), steps);
-        assert!((p - (n as f64 - 1.0)).abs() < 0.3, "{n}: {p}");
+        let quantity = format!("Taylor series of degree {n}");
+        check("Dynamics: order of convergence", &quantity, p, n as f64 - 1.0, Absolute(0.3));
     }
 }
 
