@@ -59,9 +59,13 @@ impl LineContact {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::oracle::Tolerance::Absolute;
+    use crate::oracle::{check, check_worst};
 
     #[test]
     fn approach_matches_reference_values() {
+        let topic = "Contact: Hertzian approach of line contacts";
+        let mut slopes = Vec::new();
         // E 206000 MPa, ρ 8 mm with depths 6 + 6 mm, ρ 4 mm with depths 1.6 + 1.6 mm; w in N/mm, approach in µm.
         for (radius, depth, table) in [
             (8e-3, 6e-3, [(10.0, 0.325), (50.0, 1.398), (100.0, 2.602), (300.0, 6.879), (1000.0, 19.547)]),
@@ -70,11 +74,13 @@ mod tests {
             let contact = LineContact::new(206e9, 0.3, radius, [depth; 2]);
             for (w, micrometres) in table {
                 let (value, slope) = contact.approach(w * 1e3);
-                assert!((value * 1e6 - micrometres).abs() < 6e-4, "{w}: {value}");
+                let quantity = format!("ρ {} mm, depths {} mm, {w} N/mm, µm", radius * 1e3, depth * 1e3);
+                check(topic, &quantity, value * 1e6, micrometres, Absolute(6e-4));
                 let step = w;
                 let (up, down) = (contact.approach(w * 1e3 + step).0, contact.approach(w * 1e3 - step).0);
-                assert!(((up - down) / (2.0 * step) / slope - 1.0).abs() < 1e-6);
+                slopes.push((up - down) / (2.0 * step) / slope - 1.0);
             }
         }
+        check_worst(topic, "slope against differences", slopes, 1e-6);
     }
 }

@@ -1,12 +1,17 @@
 //! The whole analysis against three-dimensional finite elements of a z 29/67 pair (tests/data/fe_pair_29_67.json). The
 //! bounds are what the analytic model reaches; examples/contact_validation.rs prints the errors.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
 use super::{pair, spec};
 use crate::contact::{BodyHold, Settings, solve_half};
 use crate::gear::{Half, Pair, ReliefShape, Rotation, TipRelief};
+use crate::oracle::check_worst;
 use crate::watch::Watch;
+
+const TOPIC: &str = "Contact: loaded pair 29/67 against finite elements";
 
 fn variant(name: &str) -> Pair {
     let mut spec = spec([29, 67], 30.0, 45e-3);
@@ -33,6 +38,11 @@ fn variant(name: &str) -> Pair {
 #[test]
 fn stiffness_error_and_shares_stay_within_their_stated_deviation() {
     let reference: Value = serde_json::from_str(include_str!("../../../tests/data/fe_pair_29_67.json")).unwrap();
+    // Relative errors (of the shares: differences) of each variant and quantity over its torques, with their bound.
+    let mut errors: BTreeMap<(String, &str), (f64, Vec<f64>)> = BTreeMap::new();
+    let mut note = |name: &str, what, error: f64, bound: f64| {
+        errors.entry((name.replace('_', " "), what)).or_insert((bound, Vec::new())).1.push(error);
+    };
     for case in reference["cases"].as_array().unwrap() {
         let name = case["variant"].as_str().unwrap();
         let number = |key: &str| case[key].as_f64().unwrap();
@@ -45,16 +55,18 @@ fn stiffness_error_and_shares_stay_within_their_stated_deviation() {
         };
         let force = number("torque_nm") / pair.pinion.base_radius_m;
         let cycle = solve_half(&pair, Half::Left, force, &settings, Watch::none()).unwrap();
-        let label = format!("{name} {}", number("torque_nm"));
         let bound = if name == "nominal_rim_clamped" { 0.055 } else { 0.035 };
         let error = |value: f64, key: &str| value / number(key) - 1.0;
-        let secant = error(cycle.secant_stiffness.mean, "secant_n_per_m");
-        let tangent = error(cycle.stiffness.mean, "tangent_n_per_m");
-        let mean = error(cycle.transmission_error.mean * 1e6, "te_mean_um");
-        assert!(secant.abs().max(tangent.abs()).max(mean.abs()) < bound, "{label}: {secant} {tangent} {mean}");
+        note(name, "mean secant stiffness", error(cycle.secant_stiffness.mean, "secant_n_per_m"), bound);
+        note(name, "mean tangent stiffness", error(cycle.stiffness.mean, "tangent_n_per_m"), bound);
+        note(name, "mean transmission error", error(cycle.transmission_error.mean * 1e6, "te_mean_um"), bound);
         // Tip relief leaves a small remainder of two large effects: its first harmonic is a third too low.
+        let bound = if name == "tip_relief" { 0.4 } else { 0.18 };
         let harmonic = error(cycle.transmission_error_harmonics_m[0] * 1e6, "te_harmonic_1_um");
-        assert!(harmonic.abs() < if name == "tip_relief" { 0.4 } else { 0.18 }, "{label}: {harmonic}");
+        note(name, "transmission error, first harmonic", harmonic, bound);
+        let swing = cycle.transmission_error.max - cycle.transmission_error.min;
+        let bound = if name == "tip_relief" { 0.3 } else { 0.18 };
+        note(name, "transmission error, peak to peak", error(swing * 1e6, "te_pp_um"), bound);
         for entry in case["share"].as_array().unwrap() {
             let (at, expected) = (entry[0].as_f64().unwrap(), entry[1].as_f64().unwrap());
             let i = cycle.load_share_phase.partition_point(|&p| p < at);
@@ -62,7 +74,10 @@ fn stiffness_error_and_shares_stay_within_their_stated_deviation() {
             let got = s[i - 1] + (at - p[i - 1]) / (p[i] - p[i - 1]) * (s[i] - s[i - 1]);
             // Half-loaded faces (8 µm lead at small torque) reach 0.035.
             let bound = if name.starts_with("lead") { 0.04 } else { 0.02 };
-            assert!((got - expected).abs() < bound, "{label}: share at {at}: {got} {expected}");
+            note(name, "load share of a pair, difference", got - expected, bound);
         }
+    }
+    for ((name, what), (bound, errors)) in errors {
+        check_worst(TOPIC, &format!("{name}: {what}, three torques"), errors, bound);
     }
 }

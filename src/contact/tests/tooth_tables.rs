@@ -11,8 +11,12 @@ use super::{pair, spec};
 use crate::contact::coupling::ToothChain;
 use crate::contact::flank::{BodyHold, Flank};
 use crate::gear::Pair;
+use crate::oracle::Tolerance::Relative;
+use crate::oracle::{check, check_worst};
 
 const E: f64 = 206e9;
+
+const HELICAL: &str = "Contact: helical tooth against finite elements";
 
 fn helical() -> Pair {
     let mut spec = spec([29, 67], 30.0, 45e-3);
@@ -49,7 +53,8 @@ fn plane_teeth_are_within_nine_percent_of_finite_elements() {
             let middle = n / 2;
             let ring = (0..n).map(|j| flank.ring.between(0, middle, j, &w, &w)).sum::<f64>() / n as f64;
             let got = E * (at.line_compliance_m2_per_n + ring * pair.spec.face_width_m);
-            assert!((got / expected - 1.0).abs() < 0.09, "z {z} h {h} r {r}: {got} {expected}");
+            let topic = "Contact: plane tooth against finite elements";
+            check(topic, &format!("C*, z {z}, h {h}, r {r} modules"), got, expected, Relative(0.09));
         }
     }
 }
@@ -72,7 +77,8 @@ fn neighbouring_teeth_couple_as_in_finite_elements() {
         };
         let got = sum(&b, &a);
         let mean = expected.iter().sum::<f64>() / 4.0;
-        assert!((got / mean - 1.0).abs() < 0.08, "z {z} h {h}: {got} {expected:?}");
+        let topic = "Contact: neighbouring teeth against finite elements";
+        check(topic, &format!("C* one base pitch away, z {z}, h {h}"), got, mean, Relative(0.08));
     }
 }
 
@@ -88,13 +94,16 @@ fn waves_along_the_face_decay_as_in_finite_elements() {
         let n = 96;
         let flank = Flank::new(&pair, 1.0, BodyHold::Bore, n, 1);
         let (at, w) = (flank.at(roll_m(&pair, r)), flank.weights(roll_m(&pair, r)));
+        let mut errors = Vec::new();
         for (k, expected) in ks.into_iter().zip(table) {
             let wave = |j: usize| (k * 24.0 * (j as f64 - 48.0) / n as f64).cos();
             let ring: f64 = (0..n).map(|j| flank.ring.between(0, 48, j, &w, &w) * wave(j)).sum();
             let own = at.line_compliance_m2_per_n / (1.0 + (k * at.decay_length_m / 4e-3).powi(2));
             let got = E * (own + ring * pair.spec.face_width_m / n as f64);
-            assert!((got - expected).abs() < 0.16 * table[0], "r {r} k {k}: {got} {expected}");
+            errors.push((got - expected) / table[0]);
         }
+        let quantity = format!("eight waves along the face, r {r} modules, of the plane value");
+        check_worst("Contact: coupling along the face", &quantity, errors, 0.16);
     }
 }
 
@@ -145,8 +154,10 @@ fn helical_teeth_under_uniform_load_are_within_six_percent_of_finite_elements() 
                 / f64::from(points * points);
             let got = mean(0) + at.line_compliance_m2_per_n / 45e-3;
             let expected = bulk * 1e-10 + below;
-            assert!((got / expected - 1.0).abs() < 0.06, "roll {roll}: {got:e} {expected:e}");
-            assert!((mean(1) / (next * 1e-10) - 1.0).abs() < 0.06, "roll {roll}: next {} {next}", mean(1) * 1e10);
+            let member = if side > 0.0 { "pinion" } else { "gear" };
+            let of = |what: &str| format!("{what}, {member}, roll {roll} mm, 1e-4 µm/N");
+            check(HELICAL, &of("uniform load, own tooth"), got * 1e10, expected * 1e10, Relative(0.06));
+            check(HELICAL, &of("uniform load, next tooth"), mean(1) * 1e10, next, Relative(0.06));
         }
     }
 }
@@ -188,6 +199,7 @@ fn helical_teeth_under_a_load_in_the_middle_are_within_twelve_percent_of_finite_
             }
         }
         let expected = bulk * 1e-10 + below;
-        assert!((got / expected - 1.0).abs() < 0.12, "{member} {roll}: {got:e} {expected:e}");
+        let of = format!("load in the middle, {}, roll {roll} mm, 1e-4 µm/N", ["pinion", "gear"][member]);
+        check(HELICAL, &of, got * 1e10, expected * 1e10, Relative(0.12));
     }
 }
