@@ -1,11 +1,13 @@
 //! Child processes that end with the test.
 
 use std::io::{BufRead, BufReader, Read};
+use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-/// A child process whose output is read line by line; killed when dropped.
+/// A child process whose output is read line by line; killed when dropped, with the processes that it has started
+/// itself (a driver's browser, when a page hangs and the driver cannot close it).
 pub struct Process {
     child: Child,
     lines: Receiver<String>,
@@ -14,7 +16,7 @@ pub struct Process {
 impl Process {
     /// Starts a command. `hint` says what to do when it cannot be started.
     pub fn start(mut command: Command, hint: &str) -> Self {
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.process_group(0).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap_or_else(|error| panic!("{command:?}: {error}. {hint}"));
         let (sender, lines) = channel();
         read_lines(child.stdout.take().unwrap(), sender.clone());
@@ -41,6 +43,8 @@ impl Process {
 
 impl Drop for Process {
     fn drop(&mut self) {
+        let group = format!("-{}", self.child.id());
+        let _ = Command::new("kill").args(["-KILL", "--", &group]).status();
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
