@@ -99,7 +99,7 @@ fn calculated(
         let (duration_s, start) = timing(impact);
         // Shorter than this the pulse has no effect that could be computed.
         let duration_mesh_periods = duration_s * prepared.mesh_frequency_hz;
-        (force > 0.0 && duration_mesh_periods >= 1e-9).then(|| dynamics::Impact::HalfSine {
+        (force > 0.0 && duration_mesh_periods >= 1e-9).then_some(dynamics::Impact::HalfSine {
             force_n: force * plane.force_factor,
             duration_mesh_periods,
             start_mesh_periods: start + shift,

@@ -73,10 +73,8 @@ pub fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
 fn supported(document: &JobDocument) -> Result<(), DocumentError> {
     let mut unsupported = Vec::new();
     let mut refuse = |pointer: &str, detail: &str| unsupported.push(Violation::new(pointer, "unsupported", detail));
-    if let doc::MeshStiffness::Ltca(ltca) = &document.model.mesh_stiffness {
-        if ltca.fidelity == doc::Fidelity::Fe {
-            refuse("/model/mesh_stiffness/fidelity", "\"fe\" is not available in this version; use \"analytic\"");
-        }
+    if let doc::MeshStiffness::Ltca(doc::Ltca { fidelity: doc::Fidelity::Fe, .. }) = &document.model.mesh_stiffness {
+        refuse("/model/mesh_stiffness/fidelity", "\"fe\" is not available in this version; use \"analytic\"");
     }
     let given = matches!(document.model.mesh_stiffness, doc::MeshStiffness::Given(_));
     if !given && document.operation.pinion_torque_nm <= 0.0 {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Refuses axes that point at nothing, at something that is not a number, or at values out of range at either end.
+/// Refuses axes that point at nothing, at something that is not a number, or at values out of range.
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] with pointers into `/axes`.
@@ -33,12 +33,18 @@ pub fn check_axes(document: &JobDocument) -> Result<(), DocumentError> {
                 continue;
             }
         }
-        for end in [0, axis.len().saturating_sub(1)] {
+        // Ranges are intervals, so the extremes stand for all values; of whole numbers every value has to be one.
+        let whole = is_whole_number_field(&axis.pointer);
+        let values = || (0..axis.len()).map(|position| axis.value(position));
+        let least = values().fold(f64::INFINITY, f64::min);
+        let greatest = values().fold(f64::NEG_INFINITY, f64::max);
+        let fractional = values().find(|number| whole && number.fract() != 0.0);
+        for number in [Some(least), Some(greatest), fractional].into_iter().flatten() {
             let mut value = base.clone();
-            set(&mut value, &axis.pointer, axis.value(end));
+            set(&mut value, &axis.pointer, number);
             if let Err(DocumentError::Invalid(found)) = parse_value(&value) {
                 violations.extend(found.into_iter().map(|violation| Violation {
-                    detail: format!("at {} = {}: {}", axis.pointer, axis.value(end), violation.detail),
+                    detail: format!("at {} = {number}: {}", axis.pointer, violation.detail),
                     pointer: format!("/axes/{index}"),
                     ..violation
                 }));
@@ -46,18 +52,26 @@ pub fn check_axes(document: &JobDocument) -> Result<(), DocumentError> {
             }
         }
     }
-    if let [first, second] = document.axes.as_slice() {
-        if first.pointer == second.pointer {
-            violations.push(Violation::new("/axes/1/pointer", "conflict", "is the same input as the first axis"));
-        }
+    if let [first, second] = document.axes.as_slice()
+        && first.pointer == second.pointer
+    {
+        violations.push(Violation::new("/axes/1/pointer", "conflict", "is the same input as the first axis"));
     }
     if violations.is_empty() { Ok(()) } else { Err(DocumentError::Invalid(violations)) }
 }
 
 fn is_number_field(pointer: &str) -> bool {
-    crate::job::schema::field_descriptions()
-        .iter()
-        .any(|field| field.pointer == pointer && matches!(field.schema["type"].as_str(), Some("number" | "integer")))
+    field_type(pointer).is_some_and(|word| word == "number" || word == "integer")
+}
+
+fn is_whole_number_field(pointer: &str) -> bool {
+    field_type(pointer).is_some_and(|word| word == "integer")
+}
+
+fn field_type(pointer: &str) -> Option<String> {
+    let fields = crate::job::schema::field_descriptions();
+    let field = fields.into_iter().find(|field| field.pointer == pointer)?;
+    field.schema["type"].as_str().map(str::to_owned)
 }
 
 /// The document of one point, before the swept values are put in.
