@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::job::parse_value;
+use crate::oracle::Tolerance::{Absolute, Relative};
+use crate::oracle::{check as check_value, check_worst};
 use serde_json::{Value, json};
 
 fn example(name: &str) -> Value {
@@ -17,9 +19,11 @@ fn document(value: &Value) -> JobDocument {
 fn table1_has_the_contact_ratios_of_its_geometry() {
     let report = check(&document(&example("table1"))).expect("feasible");
     let geometry = &report.geometry;
-    assert!((geometry.transverse_contact_ratio - 1.4968).abs() < 5e-5, "{geometry:?}");
-    assert!((geometry.overlap_ratio - 1.6456).abs() < 5e-5, "{geometry:?}");
-    assert!((geometry.mesh_frequency_hz - 566.6667).abs() < 1e-3);
+    let topic = "Job: example documents";
+    let ratio = geometry.transverse_contact_ratio;
+    check_value(topic, "table1, transverse contact ratio", ratio, 1.4968, Absolute(5e-5));
+    check_value(topic, "table1, overlap ratio", geometry.overlap_ratio, 1.6456, Absolute(5e-5));
+    check_value(topic, "table1, mesh frequency, Hz", geometry.mesh_frequency_hz, 566.6667, Absolute(1e-3));
     assert_eq!(geometry.pinion.inertia_kg_m2, 0.065);
 }
 
@@ -33,7 +37,8 @@ fn the_variants_of_table2_reach_their_contact_ratios() {
         ("table2_4_07", 4.07),
     ] {
         let report = check(&document(&example(name))).expect("feasible");
-        assert!((report.geometry.total_contact_ratio - ratio).abs() < 5e-4, "{name}: {:?}", report.geometry);
+        let got = report.geometry.total_contact_ratio;
+        check_value("Job: example documents", &format!("{name}, total contact ratio"), got, ratio, Absolute(5e-4));
     }
 }
 
@@ -85,7 +90,8 @@ fn constant_stiffness_without_backlash_gives_the_static_deflection() {
     let radius_m = geometry.pinion.base_diameter_mm * 0.5e-3;
     let normal_n = 400.0 / radius_m / geometry.base_helix_angle_deg.to_radians().cos();
     let expected_um = normal_n / 900.0;
-    assert!((response.min_displacement_um / expected_um - 1.0).abs() < 1e-9, "{}", response.min_displacement_um);
+    let quantity = "static deflection of table1 at 900 N/µm, µm";
+    check_value("Job: balances", quantity, response.min_displacement_um, expected_um, Relative(1e-9));
     assert!(response.rms.mesh_circumferential_acceleration_m_s2.left < 1e-6);
 }
 
@@ -107,7 +113,13 @@ fn both_planes_have_the_same_torsional_stiffness() {
         frequencies.into_iter().find(|hz| *hz > 1.0).expect("a mode")
     };
     let (base, pitch) = (frequency("base"), frequency("pitch"));
-    assert!((base / pitch - 1.0).abs() < 2e-3, "{base} Hz and {pitch} Hz");
+    check_value(
+        "Job: balances",
+        "torsional frequency, pitch plane against base plane, Hz",
+        pitch,
+        base,
+        Relative(2e-3),
+    );
 }
 
 #[test]
@@ -178,12 +190,18 @@ fn staggering_the_halves_shifts_the_right_one_by_its_part_of_the_period() {
     let mesh = result.mesh.expect("a mesh");
     let right = mesh.right_curve.expect("the halves differ in phase");
     let n = mesh.curve.stiffness_n_per_um.len();
-    for i in 0..n {
+    let errors = (0..n).map(|i| {
         let left = mesh.curve.stiffness_n_per_um[(i + n / 2) % n];
-        assert!((right.stiffness_n_per_um[i] / left - 1.0).abs() < 1e-6, "{i}");
-    }
+        right.stiffness_n_per_um[i] / left - 1.0
+    });
+    check_worst("Job: balances", "stiffness of a half staggered by half a period", errors, 1e-6);
     let rms = result.response.expect("a response").rms.mesh_circumferential_acceleration_m_s2;
-    assert!((rms.left / rms.right - 1.0).abs() < 1e-5, "{rms:?}");
+    check_worst(
+        "Job: balances",
+        "RMS of x'' of staggered halves, one over the other",
+        [rms.left / rms.right - 1.0],
+        1e-5,
+    );
 }
 
 #[test]
@@ -194,5 +212,6 @@ fn reference_case_c_repeats_every_second_period() {
     assert_eq!(response.contact, "single-sided");
     // Event-exact reference: 95.76514756474366 m/s² over mesh periods 200 to 300.
     let rms = response.rms.mesh_circumferential_acceleration_m_s2.left;
-    assert!((rms / 95.765_147_564_743_66 - 1.0).abs() < 1e-6, "{rms}");
+    let topic = "Job: example documents";
+    check_value(topic, "given_stiffness, RMS of x_left'', m/s²", rms, 95.765_147_564_743_66, Relative(1e-6));
 }
