@@ -42,6 +42,29 @@ fn the_variants_of_table2_reach_their_contact_ratios() {
     }
 }
 
+/// What the pairs in mesh take off the impact force, beside the two columns of the source's Table 2 (9.255 and 8.896 kN, …):
+/// less for every higher contact ratio. The bound is what is reached, 1.5 percentage points.
+#[test]
+fn the_buffering_of_table2_falls_with_the_contact_ratio() {
+    let printed = [
+        ("table2_2_72", 9.255, 8.896),
+        ("table2_2_91", 8.661, 8.378),
+        ("table2_3_30", 6.593, 6.469),
+        ("table2_3_68", 5.180, 5.121),
+        ("table2_4_07", 2.107, 2.096),
+    ];
+    let reductions = printed.map(|(name, unbuffered, buffered)| {
+        let mut value = example(name);
+        value["kind"] = json!("mesh");
+        let impact = solved(&value).result.impact.expect("an impact");
+        let expected = 100.0 * (1.0 - buffered / unbuffered);
+        let got = impact.reduction_percent;
+        check_value("Job: impact reduced by the pairs in mesh", &format!("{name}, %"), got, expected, Absolute(1.5));
+        got
+    });
+    assert!(reductions.windows(2).all(|two| two[0] > two[1]), "{reductions:?}");
+}
+
 #[test]
 fn an_impossible_gear_is_refused_with_its_field() {
     let mut value = example("table1");
