@@ -89,7 +89,7 @@ pub struct Halves<T> {
     pub right: T,
 }
 
-/// RMS values, mean removed, exact time means.
+/// RMS values, exact time means; the mean removed except of accelerations (see [`Statistics::rms`]).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rms {
     /// x'' of each half.

@@ -140,6 +140,10 @@ impl ChannelId {
         }
     }
 
+    pub(super) fn is_acceleration(self) -> bool {
+        self.derivative == 2
+    }
+
     /// How the channel follows from the solver's coordinates.
     pub(super) fn probe<const D: usize>(self, model: &Model<D>) -> Probe<D> {
         let half = usize::from(self.half);

@@ -44,7 +44,13 @@ impl<const D: usize> Recorder<D> {
                     track.extremes |= extremes;
                     track.samples = track.samples.take().or(samples);
                 }
-                None => tracks.push(Track { id, probe: id.probe(model), gathered: Gathered::new(), extremes, samples }),
+                None => tracks.push(Track {
+                    id,
+                    probe: id.probe(model),
+                    gathered: Gathered::new(id.is_acceleration()),
+                    extremes,
+                    samples,
+                }),
             }
         };
         for &(id, extremes) in statistics {

@@ -48,7 +48,7 @@ pub(super) fn report<const D: usize>(
     let recorded = record.points.len() as u64;
     let last = record.last;
     let right = if D > PER_HALF { 1 } else { 0 };
-    let rms_of = |id: ChannelId| recorder.gathered(id).map_or(0.0, |g| g.mean_and_variance().1.sqrt());
+    let rms_of = |id: ChannelId| recorder.gathered(id).map_or(0.0, |g| g.mean_and_square().1.sqrt());
     let both = |id: fn(u8) -> ChannelId| Halves { left: rms_of(id(0)), right: rms_of(id(right)) };
     let mesh = both(ChannelId::mesh_acceleration);
     let axial = both(ChannelId::pinion_axial_acceleration);

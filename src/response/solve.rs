@@ -243,7 +243,7 @@ impl Run<'_> {
         let batch = (periods / BATCHES).max(1);
         let mut batches = Vec::new();
         let main = ChannelId::mesh_acceleration(0);
-        let mut snapshot = Gathered::new();
+        let mut snapshot = Gathered::new(false);
         for period in 0..periods {
             recent.push(motion.state);
             points.push(poincare(model, &motion.state));
@@ -351,7 +351,7 @@ fn smallest<const D: usize>(model: &Model<D>) -> f64 {
 fn rms_difference<const D: usize>(a: &Recorder<D>, b: &Recorder<D>, floor: f64) -> f64 {
     b.all().fold(0.0f64, |worst, (id, gb, _)| {
         let Some(ga) = a.gathered(id) else { return worst };
-        let (ra, rb) = (ga.mean_and_variance().1.sqrt(), gb.mean_and_variance().1.sqrt());
+        let (ra, rb) = (ga.mean_and_square().1.sqrt(), gb.mean_and_square().1.sqrt());
         if rb > floor { worst.max((ra - rb).abs() / rb) } else { worst }
     })
 }

@@ -10,7 +10,8 @@ use crate::dynamics::MAX_ORDER;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     pub mean: f64,
-    /// Root mean square with the mean removed.
+    /// Root mean square: of displacements, velocities and forces with the mean removed; of accelerations as they are, because
+    /// their mean over a periodic motion is zero and over a transient it is part of the motion.
     pub rms: f64,
     pub min: f64,
     pub max: f64,
@@ -30,11 +31,21 @@ pub(super) struct Gathered {
     length: f64,
     min: f64,
     max: f64,
+    keeps_mean: bool,
 }
 
 impl Gathered {
-    pub fn new() -> Self {
-        Self { offset: None, first: 0.0, second: 0.0, length: 0.0, min: f64::INFINITY, max: f64::NEG_INFINITY }
+    /// `keeps_mean`: whether the mean counts in the mean square.
+    pub fn new(keeps_mean: bool) -> Self {
+        Self {
+            keeps_mean,
+            offset: None,
+            first: 0.0,
+            second: 0.0,
+            length: 0.0,
+            min: f64::INFINITY,
+            max: f64::NEG_INFINITY,
+        }
     }
 
     /// Adds the polynomial `c` over [0, h].
@@ -107,10 +118,12 @@ impl Gathered {
         }
     }
 
-    /// Mean of the channel, and mean square about that mean.
-    pub fn mean_and_variance(&self) -> (f64, f64) {
+    /// Mean of the channel, and mean square: about that mean unless the mean is kept.
+    pub fn mean_and_square(&self) -> (f64, f64) {
         let first = self.first / self.length;
-        (self.offset.unwrap_or(0.0) + first, (self.second / self.length - first * first).max(0.0))
+        let mean = self.offset.unwrap_or(0.0) + first;
+        let variance = (self.second / self.length - first * first).max(0.0);
+        (mean, if self.keeps_mean { variance + mean * mean } else { variance })
     }
 
     /// Variance of what came after the snapshot `earlier`.
@@ -121,8 +134,8 @@ impl Gathered {
     }
 
     pub fn finish(&self) -> Statistics {
-        let (mean, variance) = self.mean_and_variance();
-        Statistics { mean, rms: variance.sqrt(), min: self.min, max: self.max }
+        let (mean, square) = self.mean_and_square();
+        Statistics { mean, rms: square.sqrt(), min: self.min, max: self.max }
     }
 }
 
@@ -148,12 +161,15 @@ mod tests {
     #[test]
     fn means_and_extremes_of_a_parabola() {
         // 5 + t - t² over [0, 1], in two pieces: mean 5 + 1/6, variance 1/180, maximum 5.25 inside.
-        let mut g = Gathered::new();
+        let mut g = Gathered::new(false);
         g.add(&[5.0, 1.0, -1.0], 0.25, true);
         g.add(&[5.1875, 0.5, -1.0], 0.75, true);
         let s = g.finish();
         assert!((s.mean - (5.0 + 1.0 / 6.0)).abs() < 1e-15);
         assert!((s.rms * s.rms - 1.0 / 180.0).abs() < 1e-16);
+        let mut kept = Gathered::new(true);
+        kept.add(&[5.0, 1.0, -1.0], 1.0, false);
+        assert!((kept.finish().rms.powi(2) - (31.0_f64 / 6.0).powi(2) - 1.0 / 180.0).abs() < 1e-13);
         assert!((s.max - 5.25).abs() < 1e-15 && (s.min - 5.0).abs() < 1e-15, "{s:?}");
     }
 }

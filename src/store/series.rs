@@ -19,7 +19,7 @@ pub struct SeriesEntry {
     pub n: u64,
     pub t0_s: f64,
     pub dt_s: f64,
-    /// Extremes and exact root mean square (mean removed); `None` where they are not finite.
+    /// Extremes and exact root mean square (mean removed except of accelerations); `None` where they are not finite.
     pub min: Option<f64>,
     pub max: Option<f64>,
     pub rms: Option<f64>,

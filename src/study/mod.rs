@@ -84,7 +84,7 @@ pub struct Channel {
     pub unit: String,
     pub t0_s: f64,
     pub dt_s: f64,
-    /// Exact root mean square over the recorded time, mean removed.
+    /// Exact root mean square over the recorded time; the mean removed, except of accelerations.
     pub rms: f64,
     pub values: Vec<f64>,
 }

@@ -238,3 +238,33 @@ fn reference_case_c_repeats_every_second_period() {
     let topic = "Job: example documents";
     check_value(topic, "given_stiffness, RMS of x_left'', m/s²", rms, 95.765_147_564_743_66, Relative(1e-6));
 }
+
+/// Event-exact references over the first twenty mesh periods from the static deflection, through the document: the mean of an
+/// acceleration over a transient counts.
+#[test]
+fn the_first_twenty_periods_of_the_reference_cases() {
+    for (torque_nm, backlash_um, damping, amplitude, expected) in [
+        (800.0, 2.0, 0.1, 0.12, 88.210_182_452_240_15),
+        (40.0, 40.0, 0.03, 0.24, 113.431_531_238_139_42),
+        (80.0, 40.0, 0.03, 0.24, 118.844_515_553_357_06),
+    ] {
+        let mut value = example("given_stiffness");
+        value["design"]["backlash_um"] = json!(backlash_um);
+        value["operation"]["pinion_torque_nm"] = json!(torque_nm);
+        value["model"]["mesh_damping_ratio"] = json!(damping);
+        let parts = [(1.0, 0.3), (0.05 / 0.12, 1.1), (0.25, 2.0), (0.125, 0.7)];
+        value["model"]["mesh_stiffness"]["harmonics"] =
+            parts.iter().map(|(a, phase)| json!({"amplitude": a * amplitude, "phase_rad": phase})).collect();
+        value["analysis"] =
+            json!({"method": "integrate", "accuracy": 1e-10, "mesh_periods": 20, "record_mesh_periods": 20});
+        let response = solved(&value).result.response.expect("a response");
+        let rms = response.rms.mesh_circumferential_acceleration_m_s2.left;
+        check_value(
+            "Job: reference cases from rest",
+            &format!("RMS over 20 mesh periods at {torque_nm} N m, m/s²"),
+            rms,
+            expected,
+            Relative(2e-8),
+        );
+    }
+}

@@ -31,7 +31,7 @@ pub struct Series {
     pub dt: f64,
     pub min: Option<f64>,
     pub max: Option<f64>,
-    /// Exact root mean square over the recorded time, mean removed.
+    /// Exact root mean square over the recorded time; the mean removed, except of accelerations.
     pub rms: Option<f64>,
 }
 
