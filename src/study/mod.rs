@@ -1,6 +1,8 @@
 //! What a job needs: which stages run, what can be reused, in which order; and the only place where documents
 //! meet physics.
 
+mod axes;
+mod check;
 mod equations;
 mod hash;
 mod impact;
@@ -19,8 +21,9 @@ use crate::watch::Canceled;
 use mesh::MeshMemo;
 use serde::{Deserialize, Serialize};
 
+pub use check::check;
 pub use hash::input_hash;
-pub use prepare::check;
+
 pub use vibration::is_channel;
 
 /// Version of the calculation: results and stages stored under another version are not reused.

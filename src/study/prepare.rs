@@ -1,9 +1,8 @@
 //! From a document to physics in SI: the pair, its inertias, its operating point, and whether all of it can exist.
 
-use super::{CheckReport, sweep, vibration};
 use crate::contact;
 use crate::gear::{self, Infeasibility, Pair, PairSpec, Warning};
-use crate::job::document::{self as doc, JobDocument, Kind, PressureAnglePlane};
+use crate::job::document::{self as doc, JobDocument, PressureAnglePlane};
 use crate::job::result::{GearGeometry, Geometry};
 use crate::job::{DocumentError, Violation};
 
@@ -55,19 +54,6 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
         pair,
         warnings,
     })
-}
-
-/// The report of `check`: geometry and warnings.
-///
-/// # Errors
-/// As [`prepare`].
-pub fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
-    let prepared = prepare(document)?;
-    vibration::channels(document)?;
-    if document.kind == Kind::Sweep {
-        sweep::check_axes(document)?;
-    }
-    Ok(CheckReport { geometry: geometry(&prepared), warnings: prepared.warnings })
 }
 
 fn supported(document: &JobDocument) -> Result<(), DocumentError> {

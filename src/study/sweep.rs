@@ -1,94 +1,15 @@
 //! A response over the values of one or two inputs.
 
+use super::axes::{base, set};
 use super::mesh::MeshMemo;
 use super::point::{self, Point};
 use super::{SolveError, Stage, Surroundings};
-use crate::job::document::{Axis, Continuation, JobDocument, Kind};
+use crate::job::document::{Axis, Continuation, JobDocument};
 use crate::job::result::{Sweep, SweepAxis, SweepPoint};
-use crate::job::{DocumentError, Violation, parse_value};
+use crate::job::{DocumentError, parse_value};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Refuses axes that point at nothing, at something that is not a number, or at values out of range.
-///
-/// # Errors
-/// [`DocumentError::Invalid`] with pointers into `/axes`.
-pub fn check_axes(document: &JobDocument) -> Result<(), DocumentError> {
-    let base = base(document);
-    let mut violations = Vec::new();
-    for (index, axis) in document.axes.iter().enumerate() {
-        let here = format!("/axes/{index}/pointer");
-        match base.pointer(&axis.pointer) {
-            Some(Value::Number(_)) => {}
-            Some(Value::Null) if is_number_field(&axis.pointer) => {}
-            Some(_) => {
-                let detail = format!("\"{}\" is not a number; a sweep varies one number", axis.pointer);
-                violations.push(Violation::new(here, "conflict", detail));
-                continue;
-            }
-            None => {
-                let detail = format!("\"{}\" is not a field of the document", axis.pointer);
-                violations.push(Violation::new(here, "conflict", detail));
-                continue;
-            }
-        }
-        // Ranges are intervals, so the extremes stand for all values; of whole numbers every value has to be one.
-        let whole = is_whole_number_field(&axis.pointer);
-        let values = || (0..axis.len()).map(|position| axis.value(position));
-        let least = values().fold(f64::INFINITY, f64::min);
-        let greatest = values().fold(f64::NEG_INFINITY, f64::max);
-        let fractional = values().find(|number| whole && number.fract() != 0.0);
-        for number in [Some(least), Some(greatest), fractional].into_iter().flatten() {
-            let mut value = base.clone();
-            set(&mut value, &axis.pointer, number);
-            if let Err(DocumentError::Invalid(found)) = parse_value(&value) {
-                violations.extend(found.into_iter().map(|violation| Violation {
-                    detail: format!("at {} = {number}: {}", axis.pointer, violation.detail),
-                    pointer: format!("/axes/{index}"),
-                    ..violation
-                }));
-                break;
-            }
-        }
-    }
-    if let [first, second] = document.axes.as_slice()
-        && first.pointer == second.pointer
-    {
-        violations.push(Violation::new("/axes/1/pointer", "conflict", "is the same input as the first axis"));
-    }
-    if violations.is_empty() { Ok(()) } else { Err(DocumentError::Invalid(violations)) }
-}
-
-fn is_number_field(pointer: &str) -> bool {
-    field_type(pointer).is_some_and(|word| word == "number" || word == "integer")
-}
-
-fn is_whole_number_field(pointer: &str) -> bool {
-    field_type(pointer).is_some_and(|word| word == "integer")
-}
-
-fn field_type(pointer: &str) -> Option<String> {
-    let fields = crate::job::schema::field_descriptions();
-    let field = fields.into_iter().find(|field| field.pointer == pointer)?;
-    field.schema["type"].as_str().map(str::to_owned)
-}
-
-/// The document of one point, before the swept values are put in.
-fn base(document: &JobDocument) -> Value {
-    let plain = JobDocument { kind: Kind::Response, axes: Vec::new(), continuation: None, ..document.clone() };
-    // A document holds finite numbers and strings only, so writing it cannot fail.
-    let mut value = serde_json::to_value(plain).unwrap_or_default();
-    // Series are not kept for the points of a sweep.
-    value["analysis"]["channels"] = Value::Array(Vec::new());
-    value
-}
-
-fn set(value: &mut Value, pointer: &str, number: f64) {
-    if let Some(slot) = value.pointer_mut(pointer) {
-        *slot = serde_json::json!(number);
-    }
-}
 
 /// Solves every point. Points without continuation are independent and run in parallel; with it, each line along the first
 /// axis is followed in order, the lines of the second axis in parallel.

@@ -1,0 +1,261 @@
+//! The gear pair: teeth, flanks, supports, assembly errors.
+
+use super::{conflict, number};
+use crate::job::document::*;
+use crate::job::reader::Object;
+use crate::job::violation::Violation;
+
+pub(super) fn design(object: Object) -> Design {
+    let pinion_hand = Hand::Left;
+    let pinion = gear(object.object("pinion", true, "The driving gear."), pinion_hand);
+    let gear_hand = pinion.left_half_hand.opposite();
+    let gear = gear(object.object("gear", true, "The driven gear."), gear_hand);
+    if pinion.left_half_hand == gear.left_half_hand {
+        object.reading().violate(Violation::new(
+            object.pointer_to("gear/left_half_hand"),
+            "conflict",
+            "is the same hand as the pinion's left half; mating halves of an external pair have opposite hands",
+        ));
+    }
+    let design = Design {
+        normal_module_mm: object.number("normal_module_mm", number(0.1, 100.0, "mm", None, "Normal module m_n.")),
+        pressure_angle_deg: object
+            .number("pressure_angle_deg", number(10.0, 35.0, "deg", Some(20.0), "Pressure angle of the rack.")),
+        pressure_angle_plane: object.choice(
+            "pressure_angle_plane",
+            &[("normal", PressureAnglePlane::Normal), ("transverse", PressureAnglePlane::Transverse)],
+            PressureAnglePlane::Normal,
+            "normal",
+            "Section in which the pressure angle is given.",
+        ),
+        helix_angle_deg: object
+            .number("helix_angle_deg", number(0.0, 50.0, "deg", None, "Helix angle at the reference circle.")),
+        face_width_mm: object.number("face_width_mm", number(0.5, 2000.0, "mm", None, "Face width of one half.")),
+        gap_width_mm: object
+            .number("gap_width_mm", number(0.0, 1000.0, "mm", Some(30.0), "Width of the gap between the halves.")),
+        center_distance_mm: object.optional_number(
+            "center_distance_mm",
+            number(1.0, 20_000.0, "mm", None, "Working centre distance; derived from the profile shifts when null."),
+        ),
+        backlash_um: object.number(
+            "backlash_um",
+            number(0.0, 1000.0, "um", Some(2.0), "Total play along the direction of the mesh displacement s."),
+        ),
+        half_stagger: object.number(
+            "half_stagger",
+            number(0.0, 1.0, "1", Some(0.0), "Stagger of the right half as a fraction of the transverse pitch."),
+        ),
+        material: material(object.object("material", false, "Material of both gears.")),
+        supports: supports(object.object("supports", false, "Shafts and bearings, per half.")),
+        assembly: assembly(object.object("assembly", false, "Assembly errors.")),
+        pinion,
+        gear,
+    };
+    object.finish();
+    design
+}
+
+fn material(object: Object) -> Material {
+    let material = Material {
+        youngs_modulus_gpa: object
+            .number("youngs_modulus_gpa", number(1.0, 1000.0, "GPa", Some(206.0), "Young's modulus.")),
+        poissons_ratio: object.number("poissons_ratio", number(0.0, 0.49, "1", Some(0.3), "Poisson's ratio.")),
+        density_kg_m3: object.number("density_kg_m3", number(100.0, 30_000.0, "kg/m3", Some(7850.0), "Density.")),
+    };
+    object.finish();
+    material
+}
+
+fn gear(object: Object, default_hand: Hand) -> Gear {
+    let default_word = if default_hand == Hand::Left { "left" } else { "right" };
+    let flank = flank(&object, None);
+    let side = |name: &'static str, help| {
+        object.optional_object(name, help).map(|half| {
+            let modification = self::flank(&half, Some(&flank));
+            half.finish();
+            modification
+        })
+    };
+    let left = side("left", "Flank modifications of the left half where they differ.");
+    let right = side("right", "Flank modifications of the right half where they differ.");
+    let gear = Gear {
+        teeth: object.integer("teeth", 5, 1000, None, "Number of teeth.") as u32,
+        left_half_hand: object.choice(
+            "left_half_hand",
+            &[("left", Hand::Left), ("right", Hand::Right)],
+            default_hand,
+            default_word,
+            "Hand of the left half's helix.",
+        ),
+        profile_shift: object
+            .number("profile_shift", number(-2.0, 2.0, "1", Some(0.0), "Profile shift coefficient x.")),
+        addendum: object.number(
+            "addendum",
+            number(0.3, 2.5, "1", Some(1.0), "Addendum of the rack, multiple of the normal module."),
+        ),
+        dedendum: object.number(
+            "dedendum",
+            number(0.3, 3.0, "1", Some(1.25), "Dedendum of the rack, multiple of the normal module."),
+        ),
+        fillet_radius: object.number(
+            "fillet_radius",
+            number(0.0, 1.0, "1", Some(0.38), "Root fillet radius of the rack, multiple of the normal module."),
+        ),
+        tip_alteration: object.number(
+            "tip_alteration",
+            number(-1.0, 0.5, "1", Some(0.0), "Tip alteration coefficient k; negative shortens the tooth."),
+        ),
+        bore_diameter_mm: object.optional_number(
+            "bore_diameter_mm",
+            number(0.0, 20_000.0, "mm", None, "Bore; 0.4 of the reference diameter when null."),
+        ),
+        mass_kg: object.optional_number(
+            "mass_kg",
+            number(1e-6, 1e6, "kg", None, "Mass of the whole gear; a solid disc of both halves when null."),
+        ),
+        inertia_kg_m2: object.optional_number(
+            "inertia_kg_m2",
+            number(
+                1e-9,
+                1e9,
+                "kg m2",
+                None,
+                "Moment of inertia of the whole gear; a solid disc of both halves when null.",
+            ),
+        ),
+        flank,
+        left,
+        right,
+    };
+    object.finish();
+    gear
+}
+
+/// Flank modifications among the fields of `object`; what is left out comes from `base`, or is zero.
+fn flank(object: &Object, base: Option<&Flank>) -> Flank {
+    let default = |pick: fn(&Flank) -> f64| Some(base.map_or(0.0, pick));
+    let tip = object.object("tip_relief", false, "Tip relief.");
+    let base_shape = base.map_or(ReliefShape::Parabolic, |flank| flank.tip_relief.shape);
+    let tip_relief = TipRelief {
+        amount_um: tip
+            .number("amount_um", number(0.0, 1000.0, "um", default(|f| f.tip_relief.amount_um), "Relief at the tip.")),
+        length_mm: tip.number(
+            "length_mm",
+            number(
+                0.0,
+                500.0,
+                "mm",
+                default(|f| f.tip_relief.length_mm),
+                "Roll length along the path of contact from the tip.",
+            ),
+        ),
+        shape: tip.choice(
+            "shape",
+            &[("linear", ReliefShape::Linear), ("parabolic", ReliefShape::Parabolic)],
+            base_shape,
+            if base_shape == ReliefShape::Linear { "linear" } else { "parabolic" },
+            "Course over the length.",
+        ),
+    };
+    if tip_relief.amount_um > 0.0 && tip_relief.length_mm == 0.0 {
+        conflict(&tip, "length_mm", "is 0 mm while amount_um is above 0; a relief needs a roll length above 0 mm");
+    }
+    tip.finish();
+    let end = object.object("end_relief", false, "End relief at both ends of the face width.");
+    let end_relief = EndRelief {
+        amount_um: end
+            .number("amount_um", number(0.0, 1000.0, "um", default(|f| f.end_relief.amount_um), "Relief at the ends.")),
+        length_mm: end.number(
+            "length_mm",
+            number(0.0, 1000.0, "mm", default(|f| f.end_relief.length_mm), "Axial length of the relief."),
+        ),
+    };
+    if end_relief.amount_um > 0.0 && end_relief.length_mm == 0.0 {
+        conflict(&end, "length_mm", "is 0 mm while amount_um is above 0; a relief needs a length above 0 mm");
+    }
+    end.finish();
+    Flank {
+        tip_relief,
+        lead_crowning_um: object.number(
+            "lead_crowning_um",
+            number(
+                -500.0,
+                1000.0,
+                "um",
+                default(|f| f.lead_crowning_um),
+                "Crowning: zero at mid-width, this at both ends.",
+            ),
+        ),
+        helix_slope_um: object.number(
+            "helix_slope_um",
+            number(
+                -1000.0,
+                1000.0,
+                "um",
+                default(|f| f.helix_slope_um),
+                "Helix slope: zero at the inner end, this at the outer.",
+            ),
+        ),
+        end_relief,
+    }
+}
+
+fn supports(object: Object) -> Supports {
+    let spring = |name, default, help| object.number(name, number(0.0, 1e7, "N/um", Some(default), help));
+    let torsion = |name, help| object.number(name, number(0.0, 1e13, "N m/rad", Some(0.0), help));
+    let supports = Supports {
+        pinion_lateral_n_per_um: spring("pinion_lateral_n_per_um", 600.0, "Lateral support of each pinion half."),
+        gear_lateral_n_per_um: spring("gear_lateral_n_per_um", 600.0, "Lateral support of each gear half."),
+        pinion_halves_axial_n_per_um: spring(
+            "pinion_halves_axial_n_per_um",
+            300.0,
+            "Axial spring between the pinion halves.",
+        ),
+        gear_axial_n_per_um: spring("gear_axial_n_per_um", 200.0, "Axial support of each gear half."),
+        gear_halves_axial_n_per_um: spring(
+            "gear_halves_axial_n_per_um",
+            300.0,
+            "Axial spring between the gear halves.",
+        ),
+        damping_ratio: object
+            .number("damping_ratio", number(0.0, 2.0, "1", Some(0.03), "Damping ratio of supports and couplings.")),
+        pinion_halves_torsional_nm_per_rad: torsion(
+            "pinion_halves_torsional_nm_per_rad",
+            "Torsional spring between the pinion halves; none in the source's model.",
+        ),
+        gear_halves_torsional_nm_per_rad: torsion(
+            "gear_halves_torsional_nm_per_rad",
+            "Torsional spring between the gear halves; none in the source's model.",
+        ),
+        pinion_halves_lateral_n_per_um: spring(
+            "pinion_halves_lateral_n_per_um",
+            0.0,
+            "Lateral (bending) spring between the pinion halves; none in the source's model.",
+        ),
+        gear_halves_lateral_n_per_um: spring(
+            "gear_halves_lateral_n_per_um",
+            0.0,
+            "Lateral (bending) spring between the gear halves; none in the source's model.",
+        ),
+    };
+    object.finish();
+    supports
+}
+
+fn assembly(object: Object) -> Assembly {
+    let error = |name, help| object.number(name, number(-2000.0, 2000.0, "um", Some(0.0), help));
+    let assembly = Assembly {
+        center_distance_error_um: error("center_distance_error_um", "Added to the centre distance."),
+        in_plane_misalignment_um: error(
+            "in_plane_misalignment_um",
+            "Linear gap over the face width of one half, in the plane of action.",
+        ),
+        out_of_plane_misalignment_um: error(
+            "out_of_plane_misalignment_um",
+            "Linear deviation over the face width of one half, out of the plane of action.",
+        ),
+        apex_offset_um: error("apex_offset_um", "Axial offset between the apexes of pinion and gear."),
+    };
+    object.finish();
+    assembly
+}

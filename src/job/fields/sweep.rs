@@ -1,0 +1,89 @@
+//! The inputs of a sweep.
+
+use super::{MAX_SWEEP_POINTS, conflict, number};
+use crate::job::document::*;
+use crate::job::reader::Object;
+use crate::job::violation::Violation;
+
+pub(super) fn axes(root: &Object, kind: Kind) -> Vec<Axis> {
+    let help = "sweep: one or two inputs to vary.";
+    let Some(objects) = root.objects("axes", 1, 2, help) else {
+        if kind == Kind::Sweep && !root.has("axes") {
+            root.reading().violate(Violation::new("/axes", "missing", "is required for a sweep: one or two axes"));
+        }
+        return Vec::new();
+    };
+    if kind != Kind::Sweep {
+        conflict(root, "axes", "is given, but kind is not \"sweep\"");
+    }
+    let axes: Vec<Axis> = objects.into_iter().map(axis).collect();
+    let points: usize = axes.iter().map(Axis::len).product();
+    if points > MAX_SWEEP_POINTS {
+        let detail = format!("have {points} points together; permitted: at most {MAX_SWEEP_POINTS}");
+        conflict(root, "axes", &detail);
+    }
+    axes
+}
+
+fn axis(object: Object) -> Axis {
+    let any = |help| number(-1e12, 1e12, "unit of the input", None, help);
+    let pointer = object.text("pointer", 200, "JSON pointer of the input that varies.");
+    let from = object.optional_number("from", any("First value."));
+    let to = object.optional_number("to", any("Last value."));
+    let points = object.integer("points", 1, MAX_SWEEP_POINTS as u64, Some(50), "Number of values.") as u32;
+    let spacing = object.choice(
+        "spacing",
+        &[("linear", Spacing::Linear), ("logarithmic", Spacing::Logarithmic)],
+        Spacing::Linear,
+        "linear",
+        "Spacing of the values.",
+    );
+    let values = object.numbers("values", 1, MAX_SWEEP_POINTS, any("The values, instead of from, to and points."));
+    if pointer.is_none() && !object.has("pointer") {
+        object.reading().violate(Violation::new(
+            object.pointer_to("pointer"),
+            "missing",
+            "is required: a JSON pointer",
+        ));
+    }
+    let points = match (values, from, to) {
+        (Some(values), None, None) => AxisPoints::Values { values },
+        (Some(values), ..) => {
+            conflict(&object, "values", "is given together with from or to; give one or the other");
+            AxisPoints::Values { values }
+        }
+        (None, Some(from), Some(to)) => {
+            if spacing == Spacing::Logarithmic && (from <= 0.0 || to <= 0.0) {
+                conflict(&object, "spacing", "is logarithmic, which needs from and to above 0");
+            }
+            AxisPoints::Range { from, to, points, spacing }
+        }
+        (None, from, _) => {
+            let name = if from.is_none() { "from" } else { "to" };
+            if !object.has("values") && !object.has(name) {
+                object.reading().violate(Violation::new(
+                    object.pointer_to(name),
+                    "missing",
+                    "is required, unless values is given: -1000000000000 to 1000000000000, in the unit of the input",
+                ));
+            }
+            AxisPoints::Values { values: vec![0.0] }
+        }
+    };
+    object.finish();
+    Axis { pointer: pointer.unwrap_or_default(), points }
+}
+
+pub(super) fn continuation(root: &Object, kind: Kind) -> Option<Continuation> {
+    let value = root.choice(
+        "continuation",
+        &[("none", Continuation::None), ("up", Continuation::Up), ("down", Continuation::Down)],
+        Continuation::None,
+        "none",
+        "sweep: whether a point starts cold or from its neighbour below (up) or above (down).",
+    );
+    if kind != Kind::Sweep && root.has("continuation") {
+        conflict(root, "continuation", "is given, but kind is not \"sweep\"");
+    }
+    (kind == Kind::Sweep).then_some(value)
+}
