@@ -26,7 +26,7 @@ pub struct Job {
     pub attempt: i64,
     /// Fraction of the whole job, 0 to 1.
     pub progress: f64,
-    /// Stage that runs, or ran last.
+    /// Stage reported last; null once the job has ended (the `error` of a failed one names its stage).
     pub stage: Option<String>,
     pub submitted_at: String,
     pub started_at: Option<String>,
@@ -66,7 +66,7 @@ impl From<&JobRecord> for Job {
             revision: job.revision,
             attempt: job.attempt,
             progress: job.progress,
-            stage: job.stage.clone(),
+            stage: if job.state.is_ended() { None } else { job.stage.clone() },
             submitted_at: job.submitted_at.to_string(),
             started_at: job.started_at.map(|time| time.to_string()),
             ended_at: job.ended_at.map(|time| time.to_string()),
