@@ -186,8 +186,11 @@ impl<'a> Object<'a> {
         if number.is_finite() && (declaration.min..=declaration.max).contains(&number) {
             return number;
         }
-        let mut violation =
-            Violation::new(pointer, "out-of-range", format!("is {number}; permitted: {}", range_text(declaration)));
+        let mut violation = Violation::new(
+            pointer,
+            "out-of-range",
+            format!("is {}; permitted: {}", shown(number), range_text(declaration)),
+        );
         bound(&mut violation, declaration);
         self.reading.violate(violation);
         fallback
@@ -452,7 +455,13 @@ fn bound(violation: &mut Violation, declaration: &Number) {
 
 fn range_text(declaration: &Number) -> String {
     let unit = if declaration.unit == "1" { String::new() } else { format!(" {}", declaration.unit) };
-    format!("{} to {}{unit}", declaration.min, declaration.max)
+    format!("{} to {}{unit}", shown(declaration.min), shown(declaration.max))
+}
+
+/// A number as a person writes it: very large and very small ones with a power of ten.
+fn shown(number: f64) -> String {
+    let size = number.abs();
+    if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{number:e}") } else { format!("{number}") }
 }
 
 fn wrong_type(pointer: &str, expected: &str, found: &Value) -> Violation {

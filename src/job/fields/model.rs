@@ -107,7 +107,7 @@ fn given_stiffness(object: &Object, wanted: bool) -> GivenStiffness {
             (None, None) => object.reading().violate(Violation::new(
                 object.pointer_to("mean_n_per_um"),
                 "missing",
-                "is required with source \"given\" (0.001 to 10000000 N/um), unless samples_n_per_um is given",
+                "is required with source \"given\" (0.001 to 1e7 N/um), unless samples_n_per_um is given",
             )),
             (Some(_), Some(_)) => {
                 conflict(object, "samples_n_per_um", "is given together with mean_n_per_um; give one")
@@ -176,7 +176,7 @@ fn impact(object: Object) -> Impact {
     );
     if source == 3 {
         for (name, value, range) in
-            [("force_n", force, "0 to 1000000000 N"), ("duration_mesh_periods", duration, "1e-9 to 1 mesh periods")]
+            [("force_n", force, "0 to 1e9 N"), ("duration_mesh_periods", duration, "1e-9 to 1 mesh periods")]
         {
             if value.is_none() {
                 object.reading().violate(Violation::new(

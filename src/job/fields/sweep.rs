@@ -64,7 +64,7 @@ fn axis(object: Object) -> Axis {
                 object.reading().violate(Violation::new(
                     object.pointer_to(name),
                     "missing",
-                    "is required, unless values is given: -1000000000000 to 1000000000000, in the unit of the input",
+                    "is required, unless values is given: -1e12 to 1e12, in the unit of the input",
                 ));
             }
             AxisPoints::Values { values: vec![0.0] }
