@@ -29,8 +29,12 @@ pub fn write(out: &mut impl Write, result: &JobResult) -> Result<()> {
     }
     if let Some(impact) = &result.impact {
         row("mesh-in impact force", impact.force_n, "N")?;
-        row("mesh-in impact force, Zhou et al. 2008", impact.zhou2008_force_n, "N")?;
-        row("impact velocity", impact.velocity_m_s, "m/s")?;
+        if let Some(force_n) = impact.zhou2008_force_n {
+            row("mesh-in impact force, Zhou et al. 2008", force_n, "N")?;
+        }
+        if let Some(velocity_m_s) = impact.velocity_m_s {
+            row("impact velocity", velocity_m_s, "m/s")?;
+        }
         row("impact duration", impact.duration_us, "us")?;
     }
     if let Some(response) = &result.response {

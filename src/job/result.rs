@@ -125,22 +125,23 @@ pub struct FlankLoad {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct Impact {
+    /// Force buffered by the pairs in mesh, or the given one. What only a calculated impact has is null for a given one.
     pub force_n: f64,
-    pub zhou2008_force_n: f64,
-    pub reduction_percent: f64,
-    pub velocity_m_s: f64,
+    pub zhou2008_force_n: Option<f64>,
+    pub reduction_percent: Option<f64>,
+    pub velocity_m_s: Option<f64>,
     /// Length of the pulse in the equations.
     pub duration_us: f64,
     /// Half the period of the equivalent mass on the compliance of the impact.
-    pub energy_balance_duration_us: f64,
-    pub theta_deg: f64,
-    pub equivalent_mass_kg: f64,
-    pub single_pair_stiffness_n_per_um: f64,
-    pub other_pairs_stiffness_n_per_um: f64,
+    pub energy_balance_duration_us: Option<f64>,
+    pub theta_deg: Option<f64>,
+    pub equivalent_mass_kg: Option<f64>,
+    pub single_pair_stiffness_n_per_um: Option<f64>,
+    pub other_pairs_stiffness_n_per_um: Option<f64>,
     /// Deflection of the pairs in mesh at the first contact, which the corner gap equals.
-    pub corner_deflection_um: f64,
+    pub corner_deflection_um: Option<f64>,
     /// Roll before the theoretical start of contact at which the tip corner touches.
-    pub corner_overrun_mm: f64,
+    pub corner_overrun_mm: Option<f64>,
     pub start_mesh_periods: f64,
     /// Which law excites the response: `corner_contact`, `zhou2008`, `none` or `given`.
     pub source: String,

@@ -58,7 +58,7 @@ fn the_buffering_of_table2_falls_with_the_contact_ratio() {
         value["kind"] = json!("mesh");
         let impact = solved(&value).result.impact.expect("an impact");
         let expected = 100.0 * (1.0 - buffered / unbuffered);
-        let got = impact.reduction_percent;
+        let got = impact.reduction_percent.expect("a calculated impact");
         check_value("Job: impact reduced by the pairs in mesh", &format!("{name}, %"), got, expected, Absolute(1.5));
         got
     });

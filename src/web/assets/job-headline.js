@@ -9,7 +9,7 @@ export function showHeadline({ geometry, mesh, impact, response }) {
     ["Circumferential acceleration, RMS", pair(rms?.mesh_circumferential_acceleration_m_s2), "m/s²", "left / right"],
     ["Axial acceleration of the pinion, RMS", pair(rms?.pinion_axial_acceleration_m_s2), "m/s²", "left / right"],
     ["Dynamic factor", value(response?.dynamic_factor, 4), "", [response?.regime, response?.contact].filter(Boolean).join(", ")],
-    ["Impact force", value(impact?.force_n, 4), "N", impact ? `Zhou 2008: ${number(impact.zhou2008_force_n, 4)} N` : ""],
+    ["Impact force", value(impact?.force_n, 4), "N", impactNote(impact)],
     ["Mean mesh stiffness of a half", value(mesh?.stiffness_mean_n_per_um, 4), "N/µm", mesh?.source ?? ""],
     ["Transmission error, peak to peak", value(mesh?.transmission_error_pp_um, 3), "µm", ""],
     ["Total contact ratio", value(geometry?.total_contact_ratio, 4), "", geometry ? `transverse ${number(geometry.transverse_contact_ratio, 4)}, overlap ${number(geometry.overlap_ratio, 4)}` : ""],
@@ -24,4 +24,5 @@ export function showHeadline({ geometry, mesh, impact, response }) {
 }
 
 const value = (shown, digits) => (shown === null || shown === undefined ? null : number(shown, digits));
+const impactNote = (impact) => (typeof impact?.zhou2008_force_n === "number" ? `Zhou 2008: ${number(impact.zhou2008_force_n, 4)} N` : impact?.source ?? "");
 const pair = (sides) => (sides ? `${number(sides.left, 4)} / ${number(sides.right, 4)}` : null);

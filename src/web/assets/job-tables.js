@@ -16,10 +16,10 @@ export function showGeometry({ geometry }) {
 export function showImpact({ impact }) {
   if (!impact) return;
   const buffered = impact.source === "given" ? "Given" : "Corner contact, buffered by the pairs in mesh";
+  const calculated = typeof impact.zhou2008_force_n === "number";
   fillRows(byId("impact-table").tBodies[0], [
     [buffered, `${number(impact.force_n)} N`],
-    ["Zhou 2008, unbuffered", `${number(impact.zhou2008_force_n)} N`],
-    ["Reduction", `${number(impact.reduction_percent, 4)} %`],
+    ...(calculated ? [["Zhou 2008, unbuffered", `${number(impact.zhou2008_force_n)} N`], ["Reduction", `${number(impact.reduction_percent, 4)} %`]] : []),
   ]);
   const { source, ...rest } = impact;
   fillValues(byId("impact-values"), [
