@@ -55,6 +55,26 @@ impl<const D: usize> Section<D> {
         let enough = (10.0 * best).max(1e-3 * limit).min(limit);
         (1..=LONGEST_PERIOD).find_map(|n| self.change(n).filter(|c| *c <= enough).map(|c| (n, c)))
     }
+
+    /// The period of a motion that is followed without being made exact: the shortest over which the state changes by no
+    /// more than `limit`. A longer one than a mesh period has to stand out from the shorter ones: what is left of a
+    /// transient turns and decays, and comes closer to itself after some numbers of periods than after others.
+    pub fn settled_period(&self, limit: f64) -> Option<usize> {
+        const STANDS_OUT: f64 = 0.03;
+        let mut least = f64::INFINITY;
+        let mut close = None;
+        for n in 1..=LONGEST_PERIOD {
+            let Some(change) = self.change(n) else { break };
+            if change <= limit {
+                if n == 1 || change <= STANDS_OUT * least {
+                    return Some(n);
+                }
+                close = close.or(Some(1));
+            }
+            least = least.min(change);
+        }
+        close
+    }
 }
 
 /// Largest component of a deviation, free rotation apart.

@@ -187,14 +187,14 @@ impl Run<'_> {
         let recorded = self.motion(&model, from, integrator, tolerance);
         let section = self.record(recorded, record, &mut recorder)?;
         numerics += section.numerics;
-        let repeats = section.recent.repeats(REPEATS);
+        let period = section.recent.settled_period(REPEATS);
         let mut verdict = Verdict {
-            regime: match repeats {
-                Some((1, _)) => Regime::Period1,
+            regime: match period {
+                Some(1) => Regime::Period1,
                 Some(_) => Regime::PeriodN,
                 None => Regime::QuasiPeriodic,
             },
-            period: repeats.map(|(n, _)| n as u64),
+            period: period.map(|n| n as u64),
             floquet: None,
             lyapunov: None,
             method: "integrate",
@@ -202,7 +202,7 @@ impl Run<'_> {
             t0_s: from.period as f64 * self.p.mesh_period_s(),
             numerics: Numerics::default(),
         };
-        if repeats.is_none() {
+        if period.is_none() {
             let mut motion = self.motion(&model, section.last, integrator, tolerance);
             let exponent = lyapunov(&mut motion, &model, LYAPUNOV_MESH_PERIODS, self.watch)?;
             numerics += motion.numerics;

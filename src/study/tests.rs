@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::job::parse_value;
+use crate::job::result::SweepPoint;
 use crate::oracle::Tolerance::{Absolute, Relative};
 use crate::oracle::{check as check_value, check_worst};
 use serde_json::{Value, json};
@@ -267,4 +268,29 @@ fn the_first_twenty_periods_of_the_reference_cases() {
             Relative(2e-8),
         );
     }
+}
+
+/// Primary resonance with loss of contact: two motions at the same speed, found by coming from below and from above.
+#[test]
+fn continuation_finds_both_branches_of_the_resonance() {
+    let mut value = example("given_stiffness");
+    value["kind"] = json!("sweep");
+    value["axes"] = json!([{"pointer": "/operation/pinion_speed_rpm", "from": 8500, "to": 9600, "points": 12}]);
+    value["analysis"] = json!({"accuracy": 1e-5, "mesh_periods": 400, "record_mesh_periods": 50});
+    value["operation"]["pinion_torque_nm"] = json!(200.0);
+    value["model"]["impact"] = json!({"source": "none"});
+    let mut branch = |direction: &str| {
+        value["continuation"] = json!(direction);
+        solved(&value).result.sweep.expect("a sweep").points
+    };
+    let (up, down) = (branch("up"), branch("down"));
+    let rms = |row: &SweepPoint| row.mesh_circumferential_acceleration_rms_m_s2.expect("a response").left;
+    // Far from the jumps there is one motion; between them, at 9100 r/min, the upper one is more than twice as strong.
+    assert!((rms(&up[0]) / rms(&down[0]) - 1.0).abs() < 1e-4 && (rms(&up[11]) / rms(&down[11]) - 1.0).abs() < 1e-4);
+    assert_eq!(
+        (up[6].values[0], up[6].contact.as_deref(), down[6].contact.as_deref()),
+        (9100.0, Some("continuous"), Some("single-sided"))
+    );
+    assert!(rms(&down[6]) > 2.0 * rms(&up[6]), "{} and {}", rms(&down[6]), rms(&up[6]));
+    assert!(up.iter().all(|row| row.regime.as_deref() == Some("period-1")));
 }

@@ -91,14 +91,16 @@ pub fn run(
 fn analysis(document: &JobDocument, start: Option<&[f64]>) -> Result<Analysis, DocumentError> {
     let asked = &document.analysis;
     let state = start.or(asked.initial_state.as_deref());
+    // Of several steady motions the one that follows from the neighbour's is wanted: only integration from there finds it.
+    let integrate = start.is_some() || asked.method == Method::Integrate;
     Ok(Analysis {
         method: match asked.method {
-            Method::Auto => response::Method::Auto,
-            Method::Periodic => response::Method::Periodic,
-            Method::Integrate => response::Method::Integrate {
+            _ if integrate => response::Method::Integrate {
                 mesh_periods: u64::from(asked.mesh_periods),
                 record_mesh_periods: u64::from(asked.record_mesh_periods),
             },
+            Method::Periodic => response::Method::Periodic,
+            _ => response::Method::Auto,
         },
         integrator: match asked.integrator {
             Integrator::Taylor => dynamics::Integrator::Taylor,

@@ -80,7 +80,8 @@ pub(super) fn continuation(root: &Object, kind: Kind) -> Option<Continuation> {
         &[("none", Continuation::None), ("up", Continuation::Up), ("down", Continuation::Down)],
         Continuation::None,
         "none",
-        "sweep: whether a point starts cold or from its neighbour below (up) or above (down).",
+        "sweep: whether a point starts cold, or from the end of its neighbour below (up) or above (down); continued points \
+         are integrated over analysis.mesh_periods.",
     );
     if kind != Kind::Sweep && root.has("continuation") {
         conflict(root, "continuation", "is given, but kind is not \"sweep\"");
