@@ -122,6 +122,20 @@ impl<'a> Corner<'a> {
     }
 }
 
+impl Standing {
+    /// What it is to the pair, when the gear stands `gear_turn_rad` outside its path; arms of pinion and gear.
+    fn contact(&self, gear_turn_rad: f64, [pinion_arm_m, gear_arm_m]: [f64; 2]) -> CornerContact {
+        CornerContact {
+            gap_m: self.gap_m,
+            gear_turn_rad,
+            flank_radius_m: self.flank_radius_m,
+            theta_rad: self.theta_rad,
+            pinion_arm_m,
+            gear_arm_m,
+        }
+    }
+}
+
 /// Relative rounding of radii at the ends of a flank.
 const ROUNDING: f64 = 1e-12;
 
@@ -137,25 +151,15 @@ impl Pair {
         let edge = Corner::new(self, &self.pinion, self.pinion.root_form_radius_m, &self.gear);
         let clipped_m = self.path_start_m - tip.start_roll_m();
         let turn_rad = overrun_m / self.gear.base_radius_m;
-        let by_tip = tip.on_flank((overrun_m - clipped_m) / self.gear.base_radius_m, false).map(|s| CornerContact {
-            gap_m: s.gap_m,
-            gear_turn_rad: turn_rad,
-            flank_radius_m: s.flank_radius_m,
-            theta_rad: s.theta_rad,
-            pinion_arm_m: self.pinion.base_radius_m,
-            gear_arm_m: s.arm_m,
-        });
+        let by_tip = tip
+            .on_flank((overrun_m - clipped_m) / self.gear.base_radius_m, false)
+            .map(|s| s.contact(turn_rad, [self.pinion.base_radius_m, s.arm_m]));
         if clipped_m <= ROUNDING * self.line_of_action_m {
             return by_tip;
         }
-        let by_edge = edge.on_flank(-overrun_m / self.pinion.base_radius_m, true).map(|s| CornerContact {
-            gap_m: s.gap_m,
-            gear_turn_rad: turn_rad,
-            flank_radius_m: s.flank_radius_m,
-            theta_rad: s.theta_rad,
-            pinion_arm_m: s.arm_m,
-            gear_arm_m: self.gear.base_radius_m,
-        });
+        let by_edge = edge
+            .on_flank(-overrun_m / self.pinion.base_radius_m, true)
+            .map(|s| s.contact(turn_rad, [s.arm_m, self.gear.base_radius_m]));
         nearer(by_tip, by_edge)
     }
 
@@ -166,25 +170,15 @@ impl Pair {
         let edge = Corner::new(self, &self.gear, self.gear.root_form_radius_m, &self.pinion);
         let clipped_m = self.line_of_action_m - self.path_end_m - tip.start_roll_m();
         let turn_rad = overrun_m / self.gear.base_radius_m;
-        let by_tip = tip.on_flank((overrun_m - clipped_m) / self.pinion.base_radius_m, false).map(|s| CornerContact {
-            gap_m: s.gap_m,
-            gear_turn_rad: turn_rad,
-            flank_radius_m: s.flank_radius_m,
-            theta_rad: s.theta_rad,
-            pinion_arm_m: s.arm_m,
-            gear_arm_m: self.gear.base_radius_m,
-        });
+        let by_tip = tip
+            .on_flank((overrun_m - clipped_m) / self.pinion.base_radius_m, false)
+            .map(|s| s.contact(turn_rad, [s.arm_m, self.gear.base_radius_m]));
         if clipped_m <= ROUNDING * self.line_of_action_m {
             return by_tip;
         }
-        let by_edge = edge.on_flank(-overrun_m / self.gear.base_radius_m, true).map(|s| CornerContact {
-            gap_m: s.gap_m,
-            gear_turn_rad: turn_rad,
-            flank_radius_m: s.flank_radius_m,
-            theta_rad: s.theta_rad,
-            pinion_arm_m: self.pinion.base_radius_m,
-            gear_arm_m: s.arm_m,
-        });
+        let by_edge = edge
+            .on_flank(-overrun_m / self.gear.base_radius_m, true)
+            .map(|s| s.contact(turn_rad, [self.pinion.base_radius_m, s.arm_m]));
         nearer(by_tip, by_edge)
     }
 

@@ -1,9 +1,9 @@
 //! Content hashes: what a result, or a stage, depends on, and nothing else.
 
 use super::SOLVER_VERSION;
-use crate::job::document::{JobDocument, MeshStiffness};
+use super::mesh::ContactCase;
+use crate::job::document::JobDocument;
 use serde::Serialize;
-use serde_json::json;
 use sha2::{Digest, Sha256};
 
 /// Hash of everything that decides a document's result (name and label do not), with the solver's version.
@@ -12,42 +12,10 @@ pub fn input_hash(document: &JobDocument) -> String {
     hash("result", &unnamed)
 }
 
-/// Hash of what the mesh stage depends on: the teeth, the torque and the contact model; not speed, supports, inertias
-/// or analysis. `None` where the stiffness is not calculated from the teeth, so that there is nothing worth keeping.
-pub fn mesh_hash(document: &JobDocument) -> Option<String> {
-    let MeshStiffness::Ltca(ltca) = &document.model.mesh_stiffness else { return None };
-    let design = &document.design;
-    let member = |gear: &crate::job::document::Gear| {
-        json!([
-            gear.teeth,
-            gear.profile_shift,
-            gear.addendum,
-            gear.dedendum,
-            gear.fillet_radius,
-            gear.tip_alteration,
-            gear.bore_diameter_mm,
-            gear.flank,
-            gear.left,
-            gear.right
-        ])
-    };
-    let key = json!([
-        design.normal_module_mm,
-        design.pressure_angle_deg,
-        design.pressure_angle_plane,
-        design.helix_angle_deg,
-        design.face_width_mm,
-        design.center_distance_mm,
-        design.half_stagger,
-        design.material,
-        member(&design.pinion),
-        member(&design.gear),
-        design.assembly,
-        document.operation.rotation,
-        document.operation.pinion_torque_nm,
-        ltca
-    ]);
-    Some(hash("mesh", &key))
+/// Hash of a contact analysis: the teeth with their errors, the torque and the choices of the model; not speed, supports,
+/// inertias or the analysis of the response.
+pub fn mesh_hash(case: &ContactCase) -> String {
+    hash("mesh", case)
 }
 
 fn hash(stage: &str, value: &impl Serialize) -> String {

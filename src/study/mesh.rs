@@ -7,18 +7,16 @@ use super::{SolveError, Stage, Surroundings};
 use crate::contact::iso6336::{Blank, MethodB};
 use crate::contact::{self, BodyHold, ContactError, HalfCycle, LoadedContact, MESH_IN_PHASE, Settings};
 use crate::dynamics::Stiffness;
-use crate::gear::Pair;
+use crate::gear::{Pair, PairSpec};
 use crate::job::document::{Body, JobDocument, Ltca, MeshStiffness, StiffnessLaw};
 use crate::job::result::{FlankLoad, Mesh, MeshCurve, PerHalf};
 use crate::watch::Watch;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Positions of the closed-form and given curves over one mesh period.
 const CURVE_POSITIONS: usize = 128;
-/// Positions of the contact analysis over one mesh period where the document does not say.
-const CONTACT_POSITIONS: usize = 64;
 
 /// What the mesh stage leaves to the later stages.
 #[derive(Debug, Clone)]
@@ -56,20 +54,45 @@ impl EntryState {
     }
 }
 
-/// The contact analysis as it is kept for reuse.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct StoredContact(LoadedContact);
+/// Everything the contact analysis depends on: what is solved is what is hashed.
+#[derive(Debug, Serialize)]
+pub struct ContactCase<'a> {
+    spec: &'a PairSpec,
+    torque_nm: f64,
+    half_stagger: f64,
+    settings: Settings,
+}
+
+impl<'a> ContactCase<'a> {
+    pub fn new(document: &JobDocument, ltca: &Ltca, prepared: &'a Prepared) -> Self {
+        let default = Settings::default();
+        Self {
+            spec: &prepared.pair.spec,
+            torque_nm: document.operation.pinion_torque_nm,
+            half_stagger: document.design.half_stagger,
+            settings: Settings {
+                positions: ltca.positions.map_or(default.positions, |positions| positions as usize),
+                slices: ltca.slices.map(|slices| slices as usize),
+                body: match ltca.body {
+                    Body::Rim => BodyHold::Rim,
+                    Body::Bore => BodyHold::Bore,
+                },
+                corner_contact: ltca.corner_contact,
+            },
+        }
+    }
+}
 
 /// Contact analyses of one job, so that the points of a sweep share them.
 #[derive(Default)]
-pub struct MeshMemo(Mutex<HashMap<String, Arc<StoredContact>>>);
+pub struct MeshMemo(Mutex<HashMap<String, Arc<LoadedContact>>>);
 
 impl MeshMemo {
-    fn get(&self, key: &str) -> Option<Arc<StoredContact>> {
+    fn get(&self, key: &str) -> Option<Arc<LoadedContact>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
     }
 
-    fn put(&self, key: String, contact: Arc<StoredContact>) {
+    fn put(&self, key: String, contact: Arc<LoadedContact>) {
         let mut map = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         // A sweep over the teeth has no use for old entries; one over speed has one.
         if map.len() >= 64 {
@@ -92,8 +115,9 @@ pub fn run(
 ) -> Result<(MeshStage, bool), SolveError> {
     match &document.model.mesh_stiffness {
         MeshStiffness::Ltca(ltca) => {
-            let (contact, reused) = loaded_contact(document, ltca, prepared, surroundings, memo)?;
-            Ok((from_contact(&contact.0, ltca, prepared, plane), reused))
+            let case = ContactCase::new(document, ltca, prepared);
+            let (contact, reused) = loaded_contact(&case, &prepared.pair, surroundings, memo)?;
+            Ok((from_contact(&contact, ltca, prepared, plane), reused))
         }
         MeshStiffness::Iso6336 => Ok((iso6336(document, prepared, plane)?, false)),
         MeshStiffness::Given(given) => {
@@ -107,52 +131,38 @@ pub fn run(
 }
 
 fn loaded_contact(
-    document: &JobDocument,
-    ltca: &Ltca,
-    prepared: &Prepared,
+    case: &ContactCase,
+    pair: &Pair,
     surroundings: &Surroundings,
     memo: &MeshMemo,
-) -> Result<(Arc<StoredContact>, bool), SolveError> {
-    let key = mesh_hash(document).unwrap_or_default();
+) -> Result<(Arc<LoadedContact>, bool), SolveError> {
+    let key = mesh_hash(case);
     if let Some(contact) = memo.get(&key) {
         return Ok((contact, true));
     }
-    let stored = surroundings.stages.load(&key).and_then(|bytes| serde_json::from_slice::<StoredContact>(&bytes).ok());
+    let stored = surroundings.stages.load(&key).and_then(|bytes| serde_json::from_slice::<LoadedContact>(&bytes).ok());
     let (contact, reused) = match stored {
-        Some(contact) => (Arc::new(contact), true),
-        None => (Arc::new(solve_contact(document, ltca, prepared, surroundings)?), false),
+        Some(contact) => (contact, true),
+        None => {
+            let contact = solve_contact(case, pair, surroundings)?;
+            surroundings.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&contact).unwrap_or_default());
+            (contact, false)
+        }
     };
-    if !reused {
-        surroundings.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&*contact).unwrap_or_default());
-    }
+    let contact = Arc::new(contact);
     memo.put(key, contact.clone());
     Ok((contact, reused))
 }
 
-fn solve_contact(
-    document: &JobDocument,
-    ltca: &Ltca,
-    prepared: &Prepared,
-    surroundings: &Surroundings,
-) -> Result<StoredContact, SolveError> {
-    let settings = Settings {
-        positions: ltca.positions.map_or(CONTACT_POSITIONS, |positions| positions as usize),
-        slices: ltca.slices.map(|slices| slices as usize),
-        body: match ltca.body {
-            Body::Rim => BodyHold::Rim,
-            Body::Bore => BodyHold::Bore,
-        },
-        corner_contact: ltca.corner_contact,
-    };
+fn solve_contact(case: &ContactCase, pair: &Pair, surroundings: &Surroundings) -> Result<LoadedContact, SolveError> {
     let progress = |fraction: f64| (surroundings.progress)(Stage::Mesh, fraction);
     let watch = Watch::new(&progress, surroundings.canceled);
-    let torque_nm = document.operation.pinion_torque_nm;
-    contact::solve_pair_of_halves(&prepared.pair, torque_nm, document.design.half_stagger, &settings, watch)
-        .map(StoredContact)
-        .map_err(|error| match error {
+    contact::solve_pair_of_halves(pair, case.torque_nm, case.half_stagger, &case.settings, watch).map_err(|error| {
+        match error {
             ContactError::Canceled(canceled) => canceled.into(),
             other => SolveError::failed(Stage::Mesh, contact_code(&other), &other),
-        })
+        }
+    })
 }
 
 fn contact_code(error: &ContactError) -> &'static str {

@@ -29,7 +29,7 @@ pub use vibration::is_channel;
 /// Version of the calculation: results and stages stored under another version are not reused.
 pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-1");
 
-/// Stages in the order they run; progress is reported as (stage, fraction of the stage).
+/// Stages in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {

@@ -25,6 +25,8 @@ pub fn solve(
     memo: &MeshMemo,
     start: Option<&[f64]>,
 ) -> Result<Point, SolveError> {
+    let progress = |stage, fraction| (surroundings.progress)(stage, of_whole(document.kind, stage, fraction));
+    let surroundings = &Surroundings { progress: &progress, ..*surroundings };
     let mut numerics = Numerics { solver_version: super::SOLVER_VERSION.to_owned(), ..Numerics::default() };
     let mut clock = Lap::new(surroundings);
     let prepared = prepare(document)?;
@@ -62,6 +64,18 @@ pub fn solve(
     }
     result.mesh = Some(mesh.summary);
     Ok(Point { result, series, end_state })
+}
+
+/// Fraction of the whole point at a fraction of one of its stages, by what the stages usually cost.
+fn of_whole(kind: Kind, stage: Stage, fraction: f64) -> f64 {
+    let mesh_ends = if kind == Kind::Mesh { 0.98 } else { 0.6 };
+    let (start, end) = match stage {
+        Stage::Geometry => (0.0, 0.01),
+        Stage::Mesh => (0.01, mesh_ends),
+        Stage::Impact => (mesh_ends, mesh_ends + 0.02),
+        Stage::Response | Stage::Sweep => (mesh_ends + 0.02, 1.0),
+    };
+    start + (end - start) * fraction.clamp(0.0, 1.0)
 }
 
 /// Time from lap to lap by the clock of the surroundings.

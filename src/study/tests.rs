@@ -75,6 +75,12 @@ fn an_impossible_gear_is_refused_with_its_field() {
     assert!(violations.iter().any(|v| v.code == "pointed-tip"), "{violations:?}");
 }
 
+fn contact_key(document: &JobDocument) -> String {
+    let prepared = prepare::prepare(document).expect("feasible");
+    let crate::job::document::MeshStiffness::Ltca(ltca) = &document.model.mesh_stiffness else { panic!("no contact") };
+    hash::mesh_hash(&mesh::ContactCase::new(document, ltca, &prepared))
+}
+
 #[test]
 fn a_hash_depends_on_what_decides_and_on_nothing_else() {
     let base = document(&example("table1"));
@@ -84,10 +90,14 @@ fn a_hash_depends_on_what_decides_and_on_nothing_else() {
     let mut faster = base.clone();
     faster.operation.pinion_speed_rpm += 1.0;
     assert_ne!(input_hash(&base), input_hash(&faster));
-    assert_eq!(hash::mesh_hash(&base), hash::mesh_hash(&faster));
+    assert_eq!(contact_key(&base), contact_key(&faster));
     let mut loaded = base.clone();
     loaded.operation.pinion_torque_nm += 1.0;
-    assert_ne!(hash::mesh_hash(&base), hash::mesh_hash(&loaded));
+    assert_ne!(contact_key(&base), contact_key(&loaded));
+    // The gap between the halves enters through an axis that is out of the plane of action.
+    let mut wider = base.clone();
+    wider.design.gap_width_mm += 10.0;
+    assert_ne!(contact_key(&base), contact_key(&wider));
 }
 
 fn solved(value: &Value) -> Outcome {
@@ -293,4 +303,22 @@ fn continuation_finds_both_branches_of_the_resonance() {
     );
     assert!(rms(&down[6]) > 2.0 * rms(&up[6]), "{} and {}", rms(&down[6]), rms(&up[6]));
     assert!(up.iter().all(|row| row.regime.as_deref() == Some("period-1")));
+}
+
+#[test]
+fn progress_is_that_of_the_whole_job_and_never_goes_back() {
+    use std::sync::Mutex;
+
+    for kind in ["mesh", "response"] {
+        let mut value = example("table1");
+        value["kind"] = json!(kind);
+        let told = Mutex::new(Vec::new());
+        let progress = |_: Stage, fraction: f64| told.lock().expect("unpoisoned").push(fraction);
+        let surroundings =
+            Surroundings { stages: &NoStageStore, progress: &progress, canceled: &|| false, clock_ms: &|| 0.0 };
+        solve(&document(&value), &surroundings).expect("solved");
+        let told = told.into_inner().expect("unpoisoned");
+        assert!(told.windows(2).all(|pair| pair[0] <= pair[1]), "{kind}: {told:?}");
+        assert!(told[0] < 0.05 && told.iter().all(|fraction| (0.0..=1.0).contains(fraction)), "{kind}: {told:?}");
+    }
 }
