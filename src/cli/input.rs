@@ -1,5 +1,6 @@
 //! What `solve` and `check` share: reading a document from a file or standard input, and failing in the service's form.
 
+use herringbone::api::{MAX_BODY_BYTES, Problem};
 use herringbone::job::document::JobDocument;
 use herringbone::job::{self, DocumentError};
 use std::io::Read;
@@ -7,7 +8,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// Largest document read, as over HTTP.
-const MAX_BYTES: u64 = 1 << 20;
+const MAX_BYTES: u64 = MAX_BODY_BYTES as u64;
 
 /// Reads and parses the document at `path` (`-`: standard input); on failure the exit code, with the problem already
 /// on standard error.
@@ -21,7 +22,7 @@ pub fn read_document(path: &Path) -> Result<JobDocument, ExitCode> {
 
 /// Prints why a document is invalid, as problem+json; the exit code for invalid input is 2.
 pub fn invalid(error: DocumentError) -> ExitCode {
-    super::problem::print(&herringbone::api::Problem::from(error));
+    super::problem::print(&Problem::from(error));
     ExitCode::from(2)
 }
 

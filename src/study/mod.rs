@@ -139,12 +139,13 @@ impl SolveError {
 /// # Errors
 /// [`SolveError`].
 pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
+    // All that can be refused is refused before anything is solved.
+    let report = check(document)?;
     let memo = MeshMemo::default();
     if document.kind != Kind::Sweep {
         let point = point::solve(document, surroundings, &memo, None)?;
         return Ok(Outcome { result: point.result, series: point.series });
     }
-    let report = check(document)?;
     let started_ms = (surroundings.clock_ms)();
     let sweep = sweep::run(document, surroundings, &memo)?;
     let mut result = JobResult {
