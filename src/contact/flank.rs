@@ -39,7 +39,8 @@ pub fn hold_radius_m(member: &Member, hold: BodyHold, normal_module_m: f64) -> f
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flank {
     tooth: Tooth,
-    pub ring: ProfileInfluence,
+    /// All compliance of tooth and body between slices and places of the profile, contact indentation excepted.
+    pub bulk: ProfileInfluence,
     side: f64,
     places_m: [f64; NODES],
 }
@@ -91,11 +92,13 @@ impl Flank {
         });
         let step = pair.spec.face_width_m / slices as f64;
         let raw = RingInfluence::new(&ring, &layout, slices, offsets);
-        let ring = raw.along_profile(step, &places_m.map(|roll| tooth.at(roll, side)));
-        Flank { tooth, ring, side, places_m }
+        let places = places_m.map(|roll| tooth.at(roll, side));
+        let mut bulk = raw.along_profile(step, &places);
+        bulk.add_tooth(step, &places);
+        Flank { tooth, bulk, side, places_m }
     }
 
-    /// Interpolation weights of the ring's influence at roll length `roll_m`.
+    /// Interpolation weights of the bulk compliance at roll length `roll_m`.
     pub fn weights(&self, roll_m: f64) -> [f64; NODES] {
         let places = &self.places_m;
         std::array::from_fn(|a| {

@@ -1,6 +1,5 @@
 //! One position of the mesh: the points, their compliance, the distribution of the force.
 
-use super::coupling::ToothChain;
 use super::distribution::{Distribution, Problem, Stalled, Workspace, distribute};
 use super::flank::Flank;
 use super::hertz::LineContact;
@@ -53,8 +52,6 @@ pub struct Solver<'a> {
     matrix: Vec<f64>,
     shapes: Vec<Shapes>,
     contacts: Vec<LineContact>,
-    chain: ToothChain,
-    column: Vec<f64>,
     work: Workspace,
     /// Largest corner gap that was worth looking at so far.
     corner_gap_m: f64,
@@ -98,8 +95,6 @@ impl<'a> Solver<'a> {
             matrix: Vec::new(),
             shapes: Vec::new(),
             contacts: Vec::new(),
-            chain: ToothChain::default(),
-            column: vec![0.0; slices],
             work: Workspace::default(),
             corner_gap_m: 0.0,
         }
@@ -182,47 +177,15 @@ impl<'a> Solver<'a> {
                 let mut sum = 0.0;
                 for side in 0..2 {
                     let (fa, fb) = (&self.shapes[a].0[side], &self.shapes[b].0[side]);
-                    sum += self.flanks[side].ring.between(offset, p.slice, q.slice, fa, fb);
+                    sum += self.flanks[side].bulk.between(offset, p.slice, q.slice, fa, fb);
                 }
                 self.matrix[a * n + b] = sum;
             }
         }
-        self.add_teeth();
         for a in 0..n {
             for b in 0..a {
                 self.matrix[b * n + a] = self.matrix[a * n + b];
             }
-        }
-    }
-
-    /// The teeth's own compliance, tooth by tooth.
-    fn add_teeth(&mut self) {
-        let pair = self.pair;
-        let n = self.points.len();
-        let step = pair.spec.face_width_m / self.slices as f64;
-        let slope = pair.base_helix_angle_rad.tan();
-        let mut from = 0;
-        while from < n {
-            let k = self.points[from].pair;
-            let to = from + self.points[from..].iter().take_while(|p| p.pair == k).count();
-            let base = self.points[from].x_m - self.points[from].entry_m * slope;
-            for (side, flank) in self.flanks.iter().enumerate() {
-                self.chain.prepare(
-                    step,
-                    (0..self.slices).map(|i| {
-                        let x = (base + (i as f64 + 0.5) * step * slope).clamp(pair.path_start_m, pair.path_end_m);
-                        let at = flank.at(if side == 0 { x } else { pair.line_of_action_m - x });
-                        (at.line_compliance_m2_per_n, at.decay_length_m)
-                    }),
-                );
-                for b in from..to {
-                    self.chain.column(self.points[b].slice, &mut self.column);
-                    for a in b..to {
-                        self.matrix[a * n + b] += self.column[self.points[a].slice];
-                    }
-                }
-            }
-            from = to;
         }
     }
 }

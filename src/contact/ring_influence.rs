@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use super::annulus::arc_shapes;
 use super::body::{HarmonicFlexibility, Ring, WidthBasis, harmonic};
-use super::coupling::ToothChain;
+use super::coupling::{ToothChain, ToothModes};
 use super::tooth::ProfilePoint;
 
 /// Waves across the tooth longer than the first (in multiples of the normal module per radian) belong wholly to the
@@ -200,7 +200,7 @@ impl RingInfluence {
         let chains = places.map(|place| {
             place.root_spread_m.map(|decay| {
                 let mut chain = ToothChain::default();
-                chain.prepare(step_m, (0..n).map(|_| (1.0, decay)));
+                chain.prepare(step_m, std::iter::repeat_n(decay, n));
                 chain
             })
         });
@@ -249,10 +249,11 @@ fn split(row: &[f64], load: &[f64; LOADS]) -> (f64, f64) {
     (row[0] * load[0] + row[2] * load[2] + row[3] * load[3], row[1] * load[1] + row[4] * load[4])
 }
 
-/// Places of the profile between which the influence is interpolated (cubic).
-pub const NODES: usize = 4;
+/// Places of the profile between which the influence is interpolated (Chebyshev nodes, a polynomial through all).
+pub const NODES: usize = 5;
 
-/// Normal displacements through the ring per normal force, for every pair of slices and places of the profile.
+/// Normal displacements per normal force of teeth and ring together, for every pair of slices and places of the profile:
+/// all but the contact indentation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProfileInfluence {
     slices: usize,
@@ -260,6 +261,17 @@ pub struct ProfileInfluence {
 }
 
 impl ProfileInfluence {
+    /// Adds the tooth's own compliance above the ring (`coupling`) between all places of one tooth.
+    pub fn add_tooth(&mut self, step_m: f64, places: &[ProfilePoint; NODES]) {
+        let n = self.slices;
+        let own = ToothModes::new(step_m, n, &places.map(|p| (p.line_compliance_m2_per_n, p.decay_length_m)));
+        for (i, row) in self.table[..n * n].chunks_exact_mut(n).enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                own.add(i, j, entry);
+            }
+        }
+    }
+
     /// Displacement at slice `i` from a force at slice `j`, both on one tooth (`offset` 0) or with the first `offset` pairs
     /// earlier in the mesh than the second; `wa` and `wb` are the interpolation weights of their places.
     pub fn between(&self, offset: usize, i: usize, j: usize, wa: &[f64; NODES], wb: &[f64; NODES]) -> f64 {

@@ -8,7 +8,6 @@
 use std::f64::consts::PI;
 
 use super::{pair, spec};
-use crate::contact::coupling::ToothChain;
 use crate::contact::flank::{BodyHold, Flank};
 use crate::gear::Pair;
 use crate::oracle::Tolerance::Relative;
@@ -48,11 +47,10 @@ fn plane_teeth_are_within_nine_percent_of_finite_elements() {
         let pair = spur(z, h, 24.0);
         let flank = Flank::new(&pair, 1.0, BodyHold::Bore, n, 1);
         for (r, expected) in table {
-            let at = flank.at(roll_m(&pair, r));
             let w = flank.weights(roll_m(&pair, r));
             let middle = n / 2;
-            let ring = (0..n).map(|j| flank.ring.between(0, middle, j, &w, &w)).sum::<f64>() / n as f64;
-            let got = E * (at.line_compliance_m2_per_n + ring * pair.spec.face_width_m);
+            let mean = (0..n).map(|j| flank.bulk.between(0, middle, j, &w, &w)).sum::<f64>() / n as f64;
+            let got = E * mean * pair.spec.face_width_m;
             let topic = "Contact: plane tooth against finite elements";
             check(topic, &format!("C*, z {z}, h {h}, r {r} modules"), got, expected, Relative(0.09));
         }
@@ -72,7 +70,7 @@ fn neighbouring_teeth_couple_as_in_finite_elements() {
         let flank = Flank::new(&pair, 1.0, BodyHold::Bore, n, 1);
         let (a, b) = (flank.weights(roll_m(&pair, low)), flank.weights(roll_m(&pair, high)));
         let sum = |wa, wb| {
-            let line: f64 = (0..n).map(|j| flank.ring.between(1, n / 2, j, wa, wb)).sum();
+            let line: f64 = (0..n).map(|j| flank.bulk.between(1, n / 2, j, wa, wb)).sum();
             E * pair.spec.face_width_m * line / n as f64
         };
         let got = sum(&b, &a);
@@ -93,13 +91,12 @@ fn waves_along_the_face_decay_as_in_finite_elements() {
         let pair = spur(25, 1.4, 24.0);
         let n = 96;
         let flank = Flank::new(&pair, 1.0, BodyHold::Bore, n, 1);
-        let (at, w) = (flank.at(roll_m(&pair, r)), flank.weights(roll_m(&pair, r)));
+        let w = flank.weights(roll_m(&pair, r));
         let mut errors = Vec::new();
         for (k, expected) in ks.into_iter().zip(table) {
             let wave = |j: usize| (k * 24.0 * (j as f64 - 48.0) / n as f64).cos();
-            let ring: f64 = (0..n).map(|j| flank.ring.between(0, 48, j, &w, &w) * wave(j)).sum();
-            let own = at.line_compliance_m2_per_n / (1.0 + (k * at.decay_length_m / 4e-3).powi(2));
-            let got = E * (own + ring * pair.spec.face_width_m / n as f64);
+            let sum: f64 = (0..n).map(|j| flank.bulk.between(0, 48, j, &w, &w) * wave(j)).sum();
+            let got = E * sum * pair.spec.face_width_m / n as f64;
             errors.push((got - expected) / table[0]);
         }
         let quantity = format!("eight waves along the face, r {r} modules, of the plane value");
@@ -139,7 +136,7 @@ fn helical_teeth_under_uniform_load_are_within_six_percent_of_finite_elements() 
         for (roll, bulk, next) in table {
             let (at, w) = (flank.at(roll * 1e-3), flank.weights(roll * 1e-3));
             let mean = |offset: usize| {
-                let sum: f64 = (0..n * n).map(|ij| flank.ring.between(offset, ij / n, ij % n, &w, &w)).sum();
+                let sum: f64 = (0..n * n).map(|ij| flank.bulk.between(offset, ij / n, ij % n, &w, &w)).sum();
                 sum / (n * n) as f64
             };
             let length = 45e-3 / pair.base_helix_angle_rad.cos();
@@ -152,7 +149,7 @@ fn helical_teeth_under_uniform_load_are_within_six_percent_of_finite_elements() 
                 })
                 .sum::<f64>()
                 / f64::from(points * points);
-            let got = mean(0) + at.line_compliance_m2_per_n / 45e-3;
+            let got = mean(0);
             let expected = bulk * 1e-10 + below;
             let member = if side > 0.0 { "pinion" } else { "gear" };
             let of = |what: &str| format!("{what}, {member}, roll {roll} mm, 1e-4 µm/N");
@@ -185,16 +182,12 @@ fn helical_teeth_under_a_load_in_the_middle_are_within_twelve_percent_of_finite_
     for (member, roll, bulk) in TABLE {
         let flank = &flanks[member];
         let (at, w) = (flank.at(roll * 1e-3), flank.weights(roll * 1e-3));
-        let mut chain = ToothChain::default();
-        chain.prepare(step, (0..n).map(|_| (at.line_compliance_m2_per_n, at.decay_length_m)));
-        let mut column = vec![0.0; n];
         let (mut got, mut below) = (0.0, 0.0);
         for j in 0..n {
-            chain.column(j, &mut column);
             for i in 0..n {
                 let weight = hat[i] * hat[j] / (sum * sum);
                 let d = (i as f64 - j as f64) * step / pair.base_helix_angle_rad.cos();
-                got += weight * (column[i] + flank.ring.between(0, i, j, &w, &w));
+                got += weight * flank.bulk.between(0, i, j, &w, &w);
                 below += weight * half_space(d, at.depth_m);
             }
         }
