@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::half::HalfContact;
 use super::hertz::LineContact;
+use super::local::relative_radius_m;
 use super::position::Loaded;
 use super::settings::ContactError;
 use crate::gear::Pair;
@@ -229,14 +230,10 @@ impl<'a> CycleBuilder<'a> {
                     continue;
                 }
                 let w = f * cos / p.width_m;
-                let radius = p.x_m * (self.pair.line_of_action_m - p.x_m) / self.pair.line_of_action_m / cos;
+                let radius = relative_radius_m(self.pair, p.x_m);
                 load = load.max(w);
-                let contact = LineContact::new(
-                    material.youngs_modulus_pa,
-                    material.poissons_ratio,
-                    radius.max(1e-3 * self.pair.spec.normal_module_m),
-                    [radius; 2],
-                );
+                let contact =
+                    LineContact::new(material.youngs_modulus_pa, material.poissons_ratio, radius, [radius; 2]);
                 pressure = pressure.max(contact.pressure_pa(w));
             }
         }

@@ -98,7 +98,13 @@ impl Flank {
         Flank { tooth, bulk, side, places_m }
     }
 
+    /// Rolls between which the flexibility is interpolated.
+    pub fn places_m(&self) -> &[f64] {
+        &self.places_m
+    }
+
     /// Interpolation weights of the bulk compliance at roll length `roll_m`.
+    #[cfg(test)]
     pub fn weights(&self, roll_m: f64) -> [f64; NODES] {
         let places = &self.places_m;
         std::array::from_fn(|a| {

@@ -1,7 +1,9 @@
 //! Loaded contact of one helix half, ready to be asked at any phase of the mesh period.
 
 use super::flank::Flank;
+use super::influence::Influence;
 use super::lines::CORNER_REACH;
+use super::local::LocalModel;
 use super::position::{Loaded, Solver, Trouble};
 use super::settings::{ContactError, Settings};
 use crate::gear::{Half, Pair};
@@ -10,28 +12,51 @@ use crate::gear::{Half, Pair};
 /// it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compliance {
-    flanks: [Flank; 2],
+    pub(super) influence: Influence,
+    pub(super) local: LocalModel,
     slices: usize,
 }
+
+/// Points of the table of centreline depths.
+const DEPTHS: usize = 33;
 
 impl Compliance {
     /// Computes teeth and rings of both members.
     pub fn new(pair: &Pair, settings: &Settings) -> Compliance {
-        let slices = settings.slice_count(pair);
-        // Points lie within the path and, with corner contact, half a base pitch beyond either end.
-        let reach = if settings.corner_contact { 2.0 * CORNER_REACH } else { 0.0 };
-        let offsets = (pair.total_contact_ratio() + reach + 1e-6).floor() as usize;
+        let stations = settings.station_count(pair);
+        let offsets = pair_offsets(pair, settings.corner_contact);
         let (pinion, gear) = rayon::join(
-            || Flank::new(pair, 1.0, settings.body, slices, offsets),
-            || Flank::new(pair, -1.0, settings.body, slices, offsets),
+            || Flank::new(pair, 1.0, settings.body, stations, offsets),
+            || Flank::new(pair, -1.0, settings.body, stations, offsets),
         );
-        Compliance { flanks: [pinion, gear], slices }
+        // Places of both members are Chebyshev nodes of the same path, run through in opposite directions.
+        let places_m = pinion.places_m().to_vec();
+        let last = places_m.len() - 1;
+        let step = pair.spec.face_width_m / stations as f64;
+        let stations_m = (0..stations).map(|i| (i as f64 + 0.5) * step).collect();
+        let influence = Influence::new(places_m, stations_m, offsets, |offset, (i, a), (j, b)| {
+            pinion.bulk.entry(offset, (i, a), (j, b)) + gear.bulk.entry(offset, (i, last - a), (j, last - b))
+        });
+        let depths = (0..DEPTHS)
+            .map(|i| {
+                let x = pair.path_start_m + (pair.path_end_m - pair.path_start_m) * i as f64 / (DEPTHS - 1) as f64;
+                [pinion.at(x).depth_m, gear.at(pair.line_of_action_m - x).depth_m]
+            })
+            .collect();
+        Compliance { influence, local: LocalModel::CenterlineDepth(depths), slices: settings.slice_count(pair) }
     }
 
-    /// Number of width slices.
+    /// Number of width slices that the contact lines are cut into.
     pub fn slices(&self) -> usize {
         self.slices
     }
+}
+
+/// Tooth pairs that can be in contact at once lie up to this many pitches apart: points lie within the path and, with corner
+/// contact, half a base pitch beyond either end.
+pub fn pair_offsets(pair: &Pair, corner_contact: bool) -> usize {
+    let reach = if corner_contact { 2.0 * CORNER_REACH } else { 0.0 };
+    (pair.total_contact_ratio() + reach + 1e-6).floor() as usize
 }
 
 /// One half under one force.
@@ -47,8 +72,7 @@ const ALL_PAIRS: i32 = i32::MIN;
 impl<'a> HalfContact<'a> {
     /// The half `half` of `pair` with its compliance.
     pub fn new(pair: &'a Pair, half: Half, compliance: &'a Compliance, settings: &Settings) -> HalfContact<'a> {
-        let solver = Solver::new(pair, half, &compliance.flanks, compliance.slices, settings.corner_contact);
-        HalfContact { pair, half, solver }
+        HalfContact { pair, half, solver: Solver::new(pair, half, compliance, settings.corner_contact) }
     }
 
     /// The loaded state when pair 0 stands `phase` base pitches after its first theoretical contact.

@@ -5,6 +5,8 @@
 
 use std::f64::consts::PI;
 
+use super::half_space;
+
 /// One point of contact: curvature and depths are fixed, the line load varies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineContact {
@@ -38,6 +40,20 @@ impl LineContact {
     /// Largest pressure under the line load `w`.
     pub fn pressure_pa(&self, w: f64) -> f64 {
         if w > 0.0 { 2.0 * w / (PI * self.half_width_m(w)) } else { 0.0 }
+    }
+
+    /// Approach of both half-spaces in the middle of a segment of length `length_m`, by its own load, and its derivative with
+    /// respect to the line load, at `w > 0`.
+    pub fn half_space_approach(&self, w: f64, length_m: f64) -> (f64, f64) {
+        let r = 0.5 * length_m / self.half_width_m(w);
+        let (value, slope) = half_space::own(r);
+        // dr/dw = -r / (2 w).
+        (2.0 * self.factor * w * value, 2.0 * self.factor * (value - 0.5 * r * slope))
+    }
+
+    /// Approach of both half-spaces per force at a point of the line at `at_m`, by a segment elsewhere on the line.
+    pub fn half_space_beside(&self, at_m: f64, (from_m, to_m): (f64, f64)) -> f64 {
+        self.factor * half_space::beside(at_m, from_m, to_m) / (to_m - from_m)
     }
 
     /// Approach of both bodies and its derivative with respect to the line load, at `w > 0`.

@@ -27,6 +27,41 @@ pub fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {
     }
 }
 
+/// Solves A X = B for several right-hand sides, which follow one another in `sides`, by LU with partial pivoting; `a` is destroyed.
+/// `false` when a pivot vanishes.
+pub fn lu_solve(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs())).unwrap_or(k);
+        if pivot != k {
+            let (upper, lower) = a.split_at_mut(pivot * n);
+            upper[k * n..(k + 1) * n].swap_with_slice(&mut lower[..n]);
+            sides.chunks_exact_mut(n).for_each(|side| side.swap(k, pivot));
+        }
+        let (upper, lower) = a.split_at_mut((k + 1) * n);
+        let head = &upper[k * n..];
+        let d = head[k];
+        if d == 0.0 || !d.is_finite() {
+            return false;
+        }
+        for row in lower.chunks_exact_mut(n) {
+            let factor = row[k] / d;
+            row[k] = factor;
+            row[k + 1..].iter_mut().zip(&head[k + 1..]).for_each(|(r, h)| *r -= factor * h);
+        }
+    }
+    for side in sides.chunks_exact_mut(n) {
+        for i in 1..n {
+            let (done, rest) = side.split_at_mut(i);
+            rest[0] -= dot(&a[i * n..i * n + i], done);
+        }
+        for i in (0..n).rev() {
+            let (rest, done) = side.split_at_mut(i + 1);
+            rest[i] = (rest[i] - dot(&a[i * n + i + 1..(i + 1) * n], done)) / a[i * n + i];
+        }
+    }
+    true
+}
+
 /// Cholesky factor L (lower triangle, in place) of a symmetric positive definite n×n matrix given by its lower triangle.
 /// `false` when a pivot is not positive.
 pub fn cholesky(a: &mut [f64], n: usize) -> bool {

@@ -1,15 +1,13 @@
-//! One position of the mesh: the points, their compliance, the distribution of the force.
+//! One position of the mesh: the points, their flexibility, the distribution of the force.
 
-use super::distribution::{Distribution, Problem, Stalled, Workspace, distribute};
-use super::flank::Flank;
-use super::hertz::LineContact;
-use super::lines::{Point, Reach, collect};
-use super::ring_influence::NODES;
+use std::ops::Range;
+
+use super::distribution::{Distribution, Stalled, System, Workspace, distribute};
+use super::half::Compliance;
+use super::influence::{LineWeights, Stencil};
+use super::lines::{Point, Reach, collect, reference_roll_m};
+use super::local::LocalContacts;
 use crate::gear::{Half, Pair};
-
-/// Interpolation weights of one point on both members.
-#[derive(Debug, Clone, Copy)]
-struct Shapes([[f64; NODES]; 2]);
 
 /// The loaded points of one position.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,58 +41,49 @@ pub enum Trouble {
 pub struct Solver<'a> {
     pair: &'a Pair,
     half: Half,
-    flanks: &'a [Flank; 2],
-    slices: usize,
+    compliance: &'a Compliance,
     corner_contact: bool,
     points: Vec<Point>,
-    previous: Vec<(i32, usize, [u8; 2], f64)>,
+    /// Place of a point and its force at the position before, ascending.
+    previous: Vec<(Place, f64)>,
     start: Vec<f64>,
-    matrix: Vec<f64>,
-    shapes: Vec<Shapes>,
-    contacts: Vec<LineContact>,
+    /// Points of every line.
+    lines: Vec<Range<usize>>,
+    weights: Vec<LineWeights>,
+    gaps: Vec<f64>,
+    stencils: Vec<Stencil>,
+    bulk: Vec<f64>,
+    block: Vec<f64>,
+    scratch: Vec<f64>,
+    local: LocalContacts,
+    coupling: Vec<Vec<f64>>,
     work: Workspace,
     /// Largest corner gap that was worth looking at so far.
     corner_gap_m: f64,
 }
 
-struct Assembled<'s> {
-    matrix: &'s [f64],
-    points: &'s [Point],
-    contacts: &'s [LineContact],
-    cos: f64,
-}
-
-impl Problem for Assembled<'_> {
-    fn len(&self) -> usize {
-        self.points.len()
-    }
-    fn compliance(&self) -> &[f64] {
-        self.matrix
-    }
-    fn gap(&self, i: usize) -> f64 {
-        self.points[i].gap_m * self.cos
-    }
-    fn local(&self, i: usize, force: f64) -> (f64, f64) {
-        let per_force = self.cos / self.points[i].width_m;
-        let (value, slope) = self.contacts[i].approach(force * per_force);
-        (value, slope * per_force)
-    }
-}
+/// Pair, slice, zone and part of a point.
+type Place = (i32, usize, u8, u8);
 
 impl<'a> Solver<'a> {
-    pub fn new(pair: &'a Pair, half: Half, flanks: &'a [Flank; 2], slices: usize, corner_contact: bool) -> Solver<'a> {
+    pub fn new(pair: &'a Pair, half: Half, compliance: &'a Compliance, corner_contact: bool) -> Solver<'a> {
         Solver {
             pair,
             half,
-            flanks,
-            slices,
+            compliance,
             corner_contact,
             points: Vec::new(),
             previous: Vec::new(),
             start: Vec::new(),
-            matrix: Vec::new(),
-            shapes: Vec::new(),
-            contacts: Vec::new(),
+            lines: Vec::new(),
+            weights: Vec::new(),
+            gaps: Vec::new(),
+            stencils: Vec::new(),
+            bulk: Vec::new(),
+            block: Vec::new(),
+            scratch: Vec::new(),
+            local: LocalContacts::default(),
+            coupling: Vec::new(),
             work: Workspace::default(),
             corner_gap_m: 0.0,
         }
@@ -105,13 +94,11 @@ impl<'a> Solver<'a> {
         let cos = self.pair.base_helix_angle_rad.cos();
         for _ in 0..8 {
             let reach = Reach { lowest_pair, corner_gap_m: if self.corner_contact { self.corner_gap_m } else { 0.0 } };
-            let mut points = std::mem::take(&mut self.points);
-            collect(self.pair, self.half, phase, self.slices, &reach, &mut points);
-            self.points = points;
+            collect(self.pair, self.half, phase, self.compliance.slices(), &reach, &mut self.points);
             if self.points.is_empty() {
                 return Err(Trouble::NoContact);
             }
-            self.assemble();
+            self.assemble(phase);
             let solved = self.distribute(force_bt_n / cos).map_err(Trouble::Stalled)?;
             let approach_m = solved.approach / cos;
             self.remember(&solved);
@@ -131,61 +118,86 @@ impl<'a> Solver<'a> {
     }
 
     fn distribute(&mut self, total: f64) -> Result<Distribution, Stalled> {
+        // Both lists ascend.
         self.start.clear();
+        let mut before = self.previous.iter().peekable();
         for p in &self.points {
-            let before = self.previous.iter().find(|q| (q.0, q.1, q.2) == (p.pair, p.slice, [p.zone, p.part]));
-            self.start.push(before.map_or(0.0, |q| q.3));
+            let place = place(p);
+            while before.next_if(|(other, _)| *other < place).is_some() {}
+            self.start.push(before.next_if(|(other, _)| *other == place).map_or(0.0, |(_, force)| *force));
         }
-        let problem = Assembled {
-            matrix: &self.matrix,
-            points: &self.points,
-            contacts: &self.contacts,
-            cos: self.pair.base_helix_angle_rad.cos(),
+        let system = System {
+            gaps: &self.gaps,
+            stencils: &self.stencils,
+            stations: self.weights.iter().map(|w| w.count).sum(),
+            bulk: &self.bulk,
+            lines: &self.lines,
+            coupling: &self.coupling,
+            local: &self.local,
         };
-        distribute(&problem, total, Some(&self.start), &mut self.work)
+        distribute(&system, total, &self.start, &mut self.work)
     }
 
     fn remember(&mut self, solved: &Distribution) {
         self.previous.clear();
-        self.previous
-            .extend(self.points.iter().zip(&solved.forces).map(|(p, &f)| (p.pair, p.slice, [p.zone, p.part], f)));
+        self.previous.extend(self.points.iter().zip(&solved.forces).map(|(p, &f)| (place(p), f)));
     }
 
-    /// Compliance matrix and local contacts of the current points.
-    fn assemble(&mut self) {
+    /// Lines, gaps, bulk flexibility and local contacts of the current points.
+    fn assemble(&mut self, phase: f64) {
         let pair = self.pair;
-        let (e, nu) = (pair.material().youngs_modulus_pa, pair.material().poissons_ratio);
+        let influence = &self.compliance.influence;
         let cos = pair.base_helix_angle_rad.cos();
-        let n = self.points.len();
-        self.shapes.clear();
-        self.contacts.clear();
-        for p in &self.points {
-            let x = p.x_m.clamp(pair.path_start_m, pair.path_end_m);
-            let other = pair.line_of_action_m - x;
-            let on = [self.flanks[0].at(x), self.flanks[1].at(other)];
-            self.shapes.push(Shapes([self.flanks[0].weights(x), self.flanks[1].weights(other)]));
-            let radius = (x * other / pair.line_of_action_m / cos).max(1e-3 * pair.spec.normal_module_m);
-            self.contacts.push(LineContact::new(e, nu, radius, on.map(|o| o.depth_m)));
+        let slope = pair.base_helix_angle_rad.tan();
+        let x0 = reference_roll_m(pair, phase);
+        self.gaps.clear();
+        self.gaps.extend(self.points.iter().map(|p| p.gap_m * cos));
+        self.lines.clear();
+        self.stencils.clear();
+        let (mut from, mut stations) = (0, 0);
+        while from < self.points.len() {
+            let k = self.points[from].pair;
+            let to = from + self.points[from..].iter().take_while(|p| p.pair == k).count();
+            self.stencils.extend(self.points[from..to].iter().map(|p| influence.stencil(p.entry_m)));
+            let own = &mut self.stencils[from..];
+            let (low, high) = own.iter().fold((usize::MAX, 0), |(l, h), s| (l.min(s.first), h.max(s.last())));
+            own.iter_mut().for_each(|s| s.first = s.first - low + stations);
+            let line = self.lines.len();
+            if self.weights.len() == line {
+                self.weights.push(LineWeights::default());
+            }
+            let base = x0 + f64::from(k) * pair.base_pitch_m;
+            influence.line(&mut self.weights[line], k, (base, slope), (low, high));
+            self.lines.push(from..to);
+            stations += high + 1 - low;
+            from = to;
         }
-        self.matrix.clear();
-        self.matrix.resize(n * n, 0.0);
-        for a in 0..n {
-            for b in 0..=a {
-                let (p, q) = (&self.points[a], &self.points[b]);
-                // Points come in the order of the pairs, so that the first is never the later one.
-                let offset = (p.pair - q.pair) as usize;
-                let mut sum = 0.0;
-                for side in 0..2 {
-                    let (fa, fb) = (&self.shapes[a].0[side], &self.shapes[b].0[side]);
-                    sum += self.flanks[side].bulk.between(offset, p.slice, q.slice, fa, fb);
+        self.weights.truncate(self.lines.len());
+        self.bulk.clear();
+        self.bulk.resize(stations * stations, 0.0);
+        let (mut row, n) = (0, stations);
+        for (p, response) in self.weights.iter().enumerate() {
+            let mut column = 0;
+            for load in &self.weights[..=p] {
+                // Lines come in the order of the pairs, so that the first is never the later one.
+                influence.between(response, load, &mut self.scratch, &mut self.block);
+                for (i, values) in self.block.chunks_exact(load.count).enumerate() {
+                    let start = (row + i) * n + column;
+                    self.bulk[start..start + load.count].copy_from_slice(values);
+                    if column != row {
+                        for (j, value) in values.iter().enumerate() {
+                            self.bulk[(column + j) * n + row + i] = *value;
+                        }
+                    }
                 }
-                self.matrix[a * n + b] = sum;
+                column += load.count;
             }
+            row += response.count;
         }
-        for a in 0..n {
-            for b in 0..a {
-                self.matrix[b * n + a] = self.matrix[a * n + b];
-            }
-        }
+        self.local.prepare(pair, &self.compliance.local, &self.points, &self.lines, &mut self.coupling);
     }
+}
+
+fn place(p: &Point) -> Place {
+    (p.pair, p.slice, p.zone, p.part)
 }

@@ -274,6 +274,7 @@ impl ProfileInfluence {
 
     /// Displacement at slice `i` from a force at slice `j`, both on one tooth (`offset` 0) or with the first `offset` pairs
     /// earlier in the mesh than the second; `wa` and `wb` are the interpolation weights of their places.
+    #[cfg(test)]
     pub fn between(&self, offset: usize, i: usize, j: usize, wa: &[f64; NODES], wb: &[f64; NODES]) -> f64 {
         let entry = &self.table[(offset * self.slices + i) * self.slices + j];
         let mut sum = 0.0;
@@ -286,6 +287,13 @@ impl ProfileInfluence {
             sum += wa[a] * inner;
         }
         sum
+    }
+}
+
+impl ProfileInfluence {
+    /// The same between two of the places themselves.
+    pub fn entry(&self, offset: usize, (i, a): (usize, usize), (j, b): (usize, usize)) -> f64 {
+        self.table[(offset * self.slices + i) * self.slices + j][a * NODES + b]
     }
 }
 

@@ -11,7 +11,7 @@ use crate::watch::Canceled;
 pub struct Settings {
     /// Positions over one mesh period, equally spaced from phase 0.
     pub positions: usize,
-    /// Slices over the face width of a half; `None`: as many as the width and the overlap need.
+    /// Slices of the contact lines over the face width of a half; `None`: as many as the width and the overlap need.
     pub slices: Option<usize>,
     /// Where the gear bodies are held.
     pub body: BodyHold,
@@ -27,12 +27,17 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Slices in use for `pair`: two and a half per normal module of face width and sixteen per unit of overlap, 24 to 56; twice as
-    /// many change the mean stiffness by about half a per cent.
+    /// Slices in use for `pair`: four per normal module of face width and twenty per unit of overlap, 32 to 160.
     pub fn slice_count(&self, pair: &Pair) -> usize {
-        let per_width = 2.5 * pair.spec.face_width_m / pair.spec.normal_module_m;
-        let per_overlap = 16.0 * pair.overlap_ratio;
-        self.slices.unwrap_or(per_width.max(per_overlap).ceil().clamp(24.0, 56.0) as usize).clamp(2, 256)
+        let per_width = 4.0 * pair.spec.face_width_m / pair.spec.normal_module_m;
+        let per_overlap = 20.0 * pair.overlap_ratio;
+        self.slices.unwrap_or(per_width.max(per_overlap).ceil().clamp(32.0, 160.0) as usize).clamp(4, 256)
+    }
+
+    /// Stations of the bulk flexibility over the face width: two per normal module, 10 to 48. Its decay along the face is one and a half
+    /// normal modules.
+    pub fn station_count(&self, pair: &Pair) -> usize {
+        (2.0 * pair.spec.face_width_m / pair.spec.normal_module_m).ceil().clamp(10.0, 48.0) as usize
     }
 }
 

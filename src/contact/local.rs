@@ -1,0 +1,117 @@
+//! What a point of contact adds to the bulk flexibility by its own indentation.
+
+use super::distribution::Local;
+use super::hertz::LineContact;
+use super::lines::Point;
+use crate::gear::Pair;
+
+/// How the local part is told from the bulk.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LocalModel {
+    /// Plane-strain indentation down to the centrelines of both teeth: the bulk is the displacement of the centrelines. Depths of
+    /// both members at equally spaced roll coordinates from the start to the end of the path.
+    CenterlineDepth(Vec<[f64; 2]>),
+    /// Surface displacement of two half-spaces: the bulk has the half-space part taken out.
+    HalfSpace,
+}
+
+/// Local contact of the points of one position.
+#[derive(Debug, Clone, Default)]
+pub struct LocalContacts {
+    contacts: Vec<Contact>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Contact {
+    line: LineContact,
+    /// Line load per force.
+    per_force: f64,
+    /// Length of the segment on a half-space; `None` for plane strain.
+    length_m: Option<f64>,
+}
+
+/// Smallest radius of curvature, in normal modules: near the base circle the flank's vanishes.
+const SMALLEST_RADIUS: f64 = 1e-3;
+
+impl LocalContacts {
+    /// Sets up the contacts of `points`; `coupling` receives what couples the points of each of `lines`, nothing for plane strain.
+    pub fn prepare(
+        &mut self,
+        pair: &Pair,
+        model: &LocalModel,
+        points: &[Point],
+        lines: &[std::ops::Range<usize>],
+        coupling: &mut Vec<Vec<f64>>,
+    ) {
+        let material = pair.material();
+        let (e, nu) = (material.youngs_modulus_pa, material.poissons_ratio);
+        let cos = pair.base_helix_angle_rad.cos();
+        let (start, end) = (pair.path_start_m, pair.path_end_m);
+        self.contacts.clear();
+        for p in points {
+            let x = p.x_m.clamp(start, end);
+            let depths_m = match model {
+                LocalModel::CenterlineDepth(depths) => interpolated(depths, (x - start) / (end - start)),
+                LocalModel::HalfSpace => [0.0; 2],
+            };
+            let line = LineContact::new(e, nu, relative_radius_m(pair, x), depths_m);
+            let length_m = (*model == LocalModel::HalfSpace).then_some(p.width_m / cos);
+            self.contacts.push(Contact { line, per_force: cos / p.width_m, length_m });
+        }
+        coupling.clear();
+        if *model == LocalModel::HalfSpace {
+            coupling.extend(
+                lines.iter().map(|line| half_space_coupling(&self.contacts[line.clone()], &points[line.clone()], cos)),
+            );
+        }
+    }
+}
+
+/// Relative radius of curvature in the normal section at roll coordinate `x_m`.
+pub fn relative_radius_m(pair: &Pair, x_m: f64) -> f64 {
+    let cos = pair.base_helix_angle_rad.cos();
+    let radius = x_m * (pair.line_of_action_m - x_m) / pair.line_of_action_m / cos;
+    radius.max(SMALLEST_RADIUS * pair.spec.normal_module_m)
+}
+
+fn interpolated(table: &[[f64; 2]], part: f64) -> [f64; 2] {
+    let last = table.len() - 1;
+    let position = (part * last as f64).clamp(0.0, last as f64);
+    let i = (position as usize).min(last - 1);
+    let t = position - i as f64;
+    std::array::from_fn(|k| table[i][k] + t * (table[i + 1][k] - table[i][k]))
+}
+
+/// Displacement of every point of a line per force on every other (zero on the diagonal, whose part depends on the load).
+fn half_space_coupling(contacts: &[Contact], points: &[Point], cos: f64) -> Vec<f64> {
+    let n = points.len();
+    let mut matrix = vec![0.0; n * n];
+    let middle = |i: usize| points[i].entry_m / cos;
+    let ends = |i: usize| {
+        let half = 0.5 * points[i].width_m / cos;
+        (middle(i) - half, middle(i) + half)
+    };
+    for i in 0..n {
+        for j in 0..i {
+            // Unequal segments see each other's middles at slightly different distances: the mean keeps the symmetry.
+            let one = contacts[j].line.half_space_beside(middle(i), ends(j));
+            let other = contacts[i].line.half_space_beside(middle(j), ends(i));
+            let value = 0.5 * (one + other);
+            matrix[i * n + j] = value;
+            matrix[j * n + i] = value;
+        }
+    }
+    matrix
+}
+
+impl Local for LocalContacts {
+    fn approach(&self, i: usize, force: f64) -> (f64, f64) {
+        let contact = &self.contacts[i];
+        let w = force * contact.per_force;
+        let (value, slope) = match contact.length_m {
+            None => contact.line.approach(w),
+            Some(length_m) => contact.line.half_space_approach(w, length_m),
+        };
+        (value, slope * contact.per_force)
+    }
+}
