@@ -13,7 +13,7 @@
 use std::ops::Range;
 
 use super::influence::{STENCIL, Stencil};
-use super::linalg::{cholesky, forward_solve, lu_solve};
+use super::linalg::{cholesky, forward_solve, lu_solve, vectorised};
 
 /// Approach of one point under its own force.
 pub trait Local {
@@ -73,8 +73,12 @@ pub struct Workspace {
     unit: Vec<f64>,
 }
 
+/// Diagonals of W.
+const BAND: usize = 2 * STENCIL - 1;
 const QUICK_ITERATIONS: u32 = 30;
-const TOLERANCE: f64 = 1e-11;
+/// Change of a force, as a part of the whole, after which Newton's iteration ends: its convergence is quadratic, what is left is of the
+/// order of the change's square.
+const TOLERANCE: f64 = 1e-6;
 
 /// Distributes `total` over the points. `start` holds forces of a neighbouring state, zeros and all.
 pub fn distribute<L: Local>(
@@ -149,6 +153,9 @@ pub fn distribute<L: Local>(
                     if !careful {
                         member[j] = true;
                         same = false;
+                        // The force that takes the penetration up locally: where to linearise, not a part of the balance.
+                        let (_, slope) = system.local.approach(j, total / n as f64);
+                        forces[j] = (-opening / slope).min(total / n as f64);
                     } else if opening < worst.0 {
                         worst = (opening, j);
                     }
@@ -227,7 +234,6 @@ impl<L: Local> System<'_, L> {
 
     /// I + B W and the right-hand sides when D is diagonal: W is banded.
     fn add_points(&self, member: &[bool], work: &mut Workspace) {
-        const BAND: usize = 2 * STENCIL - 1;
         let r = self.stations;
         work.weight.clear();
         work.weight.resize(BAND * r, 0.0);
@@ -249,11 +255,21 @@ impl<L: Local> System<'_, L> {
         }
         work.matrix.clear();
         work.matrix.resize(r * r, 0.0);
+        vectorised(
+            #[inline(always)]
+            || self.identity_and_product(&work.weight, &mut work.matrix),
+        );
+    }
+
+    /// Adds I + B W to `matrix`, W by its diagonals.
+    #[inline(always)]
+    fn identity_and_product(&self, diagonals: &[f64], matrix: &mut [f64]) {
+        let r = self.stations;
         for i in 0..r {
             let source = &self.bulk[i * r..(i + 1) * r];
-            let target = &mut work.matrix[i * r..(i + 1) * r];
+            let target = &mut matrix[i * r..(i + 1) * r];
             for d in 0..BAND {
-                let weights = &work.weight[d * r..(d + 1) * r];
+                let weights = &diagonals[d * r..(d + 1) * r];
                 // Column k meets row k + d - 3 of W.
                 let from = (STENCIL - 1).saturating_sub(d);
                 let to = r.min(r + STENCIL - 1 - d);

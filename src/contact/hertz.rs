@@ -64,7 +64,8 @@ impl LineContact {
         for h in self.depths_m {
             let root = (h * h + b2).sqrt();
             let ratio = h / (root + h);
-            value += (h / b).asinh() - self.lateral * ratio;
+            // asinh(h/b), written out: both are positive, nothing cancels.
+            value += ((h + root) / b).ln() - self.lateral * ratio;
             // d asinh(h/b)/dw = -h/(2 w root); d ratio/dw = -h b²/(2 w root (root+h)²).
             change += -h / (2.0 * root) + self.lateral * h * b2 / (2.0 * root * (root + h).powi(2));
         }

@@ -4,6 +4,8 @@
 //! *stations* along the face. The bulk part is smooth, so that few stations carry it and the contact lines may be cut as finely
 //! as their ends and modifications need: the cost of a position grows linearly with its points.
 
+use super::linalg::vectorised;
+
 /// Normal approach of both members per normal force. It depends on neither load, modification nor assembly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Influence {
@@ -113,7 +115,7 @@ impl Influence {
     /// written to `out`, `response.count` rows of `load.count`. `scratch` is reused memory.
     pub fn between(&self, response: &LineWeights, load: &LineWeights, scratch: &mut Vec<f64>, out: &mut Vec<f64>) {
         let offset = (response.pair - load.pair) as usize;
-        let (p, s) = (self.places_m.len(), self.stations_m.len());
+        let p = self.places_m.len();
         let (rows, columns) = (response.count, load.count);
         out.clear();
         out.resize(rows * columns, 0.0);
@@ -122,6 +124,23 @@ impl Influence {
         }
         scratch.clear();
         scratch.resize(p * columns, 0.0);
+        vectorised(
+            #[inline(always)]
+            || self.contract(offset, response, load, scratch, out),
+        );
+    }
+
+    #[inline(always)]
+    fn contract(
+        &self,
+        offset: usize,
+        response: &LineWeights,
+        load: &LineWeights,
+        scratch: &mut [f64],
+        out: &mut [f64],
+    ) {
+        let (p, s) = (self.places_m.len(), self.stations_m.len());
+        let (rows, columns) = (response.count, load.count);
         for i in 0..rows {
             scratch.fill(0.0);
             let from = (offset * s + response.first + i) * p * p * s;

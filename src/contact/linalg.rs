@@ -1,5 +1,11 @@
 //! Small dense linear algebra on flat row-major slices: what the tooth contact needs, without allocation.
 
+/// Runs `work` compiled for the vector instructions this processor has. Everything hot in it has to be inlined into it.
+#[inline(always)]
+pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
+    pulp::Arch::new().dispatch(work)
+}
+
 /// Solves the n×n system by Gaussian elimination with partial pivoting; `a` is destroyed, `rhs` becomes the solution.
 pub fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {
     for k in 0..n {
@@ -30,6 +36,14 @@ pub fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {
 /// Solves A X = B for several right-hand sides, which follow one another in `sides`, by LU with partial pivoting; `a` is destroyed.
 /// `false` when a pivot vanishes.
 pub fn lu_solve(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
+    vectorised(
+        #[inline(always)]
+        || lu_solve_inlined(a, sides, n),
+    )
+}
+
+#[inline(always)]
+fn lu_solve_inlined(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
     for k in 0..n {
         let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs())).unwrap_or(k);
         if pivot != k {
@@ -65,6 +79,14 @@ pub fn lu_solve(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
 /// Cholesky factor L (lower triangle, in place) of a symmetric positive definite n×n matrix given by its lower triangle.
 /// `false` when a pivot is not positive.
 pub fn cholesky(a: &mut [f64], n: usize) -> bool {
+    vectorised(
+        #[inline(always)]
+        || cholesky_inlined(a, n),
+    )
+}
+
+#[inline(always)]
+fn cholesky_inlined(a: &mut [f64], n: usize) -> bool {
     for i in 0..n {
         let (above, row) = a.split_at_mut(i * n);
         for j in 0..i {
@@ -99,15 +121,16 @@ pub fn forward_solve(l: &[f64], b: &mut [f64], n: usize) {
     }
 }
 
-/// Scalar product, four sums at a time so that it vectorises.
+/// Scalar product, eight sums at a time so that it vectorises.
+#[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut acc = [0.0; 4];
-    let (ca, cb) = (a.chunks_exact(4), b.chunks_exact(4));
+    let mut acc = [0.0; 8];
+    let (ca, cb) = (a.chunks_exact(8), b.chunks_exact(8));
     let tail: f64 = ca.remainder().iter().zip(cb.remainder()).map(|(x, y)| x * y).sum();
     for (x, y) in ca.zip(cb) {
-        for k in 0..4 {
+        for k in 0..8 {
             acc[k] += x[k] * y[k];
         }
     }
-    acc[0] + acc[1] + acc[2] + acc[3] + tail
+    (acc[0] + acc[4]) + (acc[1] + acc[5]) + (acc[2] + acc[6]) + (acc[3] + acc[7]) + tail
 }

@@ -44,7 +44,7 @@ pub struct Solver<'a> {
     compliance: &'a Compliance,
     corner_contact: bool,
     points: Vec<Point>,
-    /// Place of a point and its force at the position before, ascending.
+    /// Place of a point and its force per face width at the position before, ascending.
     previous: Vec<(Place, f64)>,
     start: Vec<f64>,
     /// Points of every line.
@@ -118,13 +118,19 @@ impl<'a> Solver<'a> {
     }
 
     fn distribute(&mut self, total: f64) -> Result<Distribution, Stalled> {
-        // Both lists ascend.
+        // Both lists ascend. What comes onto the path is expected to carry like the rest of its line.
         self.start.clear();
         let mut before = self.previous.iter().peekable();
+        let mut beside = 0.0;
         for p in &self.points {
             let place = place(p);
-            while before.next_if(|(other, _)| *other < place).is_some() {}
-            self.start.push(before.next_if(|(other, _)| *other == place).map_or(0.0, |(_, force)| *force));
+            while let Some((_, load)) = before.next_if(|(other, _)| *other < place) {
+                beside = *load;
+            }
+            let same = before.next_if(|(other, _)| *other == place).map(|(_, load)| *load);
+            let expected = same.unwrap_or(if p.zone == 1 { beside } else { 0.0 });
+            self.start.push(expected * p.width_m);
+            beside = expected;
         }
         let system = System {
             gaps: &self.gaps,
@@ -140,7 +146,7 @@ impl<'a> Solver<'a> {
 
     fn remember(&mut self, solved: &Distribution) {
         self.previous.clear();
-        self.previous.extend(self.points.iter().zip(&solved.forces).map(|(p, &f)| (place(p), f)));
+        self.previous.extend(self.points.iter().zip(&solved.forces).map(|(p, &f)| (place(p), f / p.width_m)));
     }
 
     /// Lines, gaps, bulk flexibility and local contacts of the current points.
