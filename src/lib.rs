@@ -14,6 +14,7 @@
 
 pub mod contact;
 pub mod dynamics;
+pub mod fe;
 pub mod gear;
 pub mod impact;
 pub mod job;

@@ -1,0 +1,293 @@
+//! Elimination of the inside of one sector by fronts (multifrontal Cholesky; Duff & Reid 1983): what remains is the
+//! stiffness of the cut faces, the forces the loads put on them, and the compliance of the loads with the faces held.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization, cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{BlockStructure, matmul as triangular_matmul};
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, Mat, MatMut, Par, Spec};
+
+use super::dissection::Dissection;
+use super::input::FeError;
+use super::loads::Loads;
+use super::operator::Operator;
+use crate::watch::Watch;
+
+/// A sector without its inside.
+pub(super) struct Condensed {
+    /// Stiffness of the points that stayed, in the order given, three unknowns each; both triangles.
+    pub stiffness: Mat<f64>,
+    /// Forces on them by every load (unknowns x loads).
+    pub forces: Mat<f64>,
+    /// Displacement under every load by every load with those points held; both triangles.
+    pub compliance: Mat<f64>,
+}
+
+/// What a front hands on: a matrix over points not yet eliminated.
+struct Part {
+    points: Vec<usize>,
+    stiffness: Mat<f64>,
+    /// Loads with forces on these points.
+    loads: Vec<usize>,
+    forces: Mat<f64>,
+    /// Compliance by the eliminated points, none without loads.
+    compliance: Option<Mat<f64>>,
+}
+
+struct Plan<'a> {
+    operator: &'a Operator,
+    loads: &'a Loads,
+    /// Place of every point in the order of elimination.
+    rank: Vec<usize>,
+    watch: Watch<'a>,
+    done: std::sync::atomic::AtomicUsize,
+    /// Progress of the elimination, from and to.
+    progress: (f64, f64),
+}
+
+const NOWHERE: usize = usize::MAX;
+
+/// Eliminates all of `tree`; `kept` are the points that stay.
+pub(super) fn condense(
+    operator: &Operator,
+    loads: &Loads,
+    load_count: usize,
+    tree: &Dissection,
+    kept: &[usize],
+    watch: Watch,
+    progress: (f64, f64),
+) -> Result<Condensed, FeError> {
+    let mut rank = vec![NOWHERE; operator.points()];
+    let mut next = 0;
+    enumerate(tree, &mut rank, &mut next);
+    for &point in kept {
+        rank[point] = next;
+        next += 1;
+    }
+    let plan = Plan { operator, loads, rank, watch, done: Default::default(), progress };
+    let inside = plan.eliminate(tree)?;
+    // What couples the kept points directly, and what the inside left.
+    let mut index = vec![NOWHERE; operator.points()];
+    for (i, &point) in kept.iter().enumerate() {
+        index[point] = i;
+    }
+    let size = 3 * kept.len();
+    let mut stiffness = Mat::<f64>::zeros(size, size);
+    plan.assemble(kept, &index, &mut stiffness);
+    extend(&mut stiffness, &inside, &index);
+    mirror(&mut stiffness);
+    let mut forces = Mat::<f64>::zeros(size, load_count);
+    for (column, &load) in inside.loads.iter().enumerate() {
+        for (i, &point) in inside.points.iter().enumerate() {
+            for c in 0..3 {
+                forces[(3 * index[point] + c, load)] += inside.forces[(3 * i + c, column)];
+            }
+        }
+    }
+    let mut compliance = inside.compliance.unwrap_or_else(|| Mat::zeros(load_count, load_count));
+    mirror(&mut compliance);
+    Ok(Condensed { stiffness, forces, compliance })
+}
+
+fn enumerate(tree: &Dissection, rank: &mut [usize], next: &mut usize) {
+    for child in &tree.children {
+        enumerate(child, rank, next);
+    }
+    for &point in &tree.own {
+        rank[point] = *next;
+        *next += 1;
+    }
+}
+
+/// Adds the lower triangle of `part` into that of `target`.
+fn extend(target: &mut Mat<f64>, part: &Part, index: &[usize]) {
+    // Ranks rise in both, so the triangle stays the lower one.
+    for (j, &pj) in part.points.iter().enumerate() {
+        for b in 0..3 {
+            let column = 3 * index[pj] + b;
+            let source = 3 * j + b;
+            for (i, &pi) in part.points.iter().enumerate().skip(j) {
+                let row = 3 * index[pi];
+                for a in if i == j { b } else { 0 }..3 {
+                    target[(row + a, column)] += part.stiffness[(3 * i + a, source)];
+                }
+            }
+        }
+    }
+}
+
+fn mirror(matrix: &mut Mat<f64>) {
+    for j in 0..matrix.ncols() {
+        for i in j + 1..matrix.nrows() {
+            matrix[(j, i)] = matrix[(i, j)];
+        }
+    }
+}
+
+impl Plan<'_> {
+    fn eliminate(&self, tree: &Dissection) -> Result<Part, FeError> {
+        let parts: Vec<Part> = match tree.children.as_slice() {
+            [] => Vec::new(),
+            [a, b] => {
+                let (a, b) = rayon::join(|| self.eliminate(a), || self.eliminate(b));
+                vec![a?, b?]
+            }
+            more => more.iter().map(|child| self.eliminate(child)).collect::<Result<_, _>>()?,
+        };
+        let part = self.front(&tree.own, parts)?;
+        let done = self.done.fetch_add(tree.own.len(), std::sync::atomic::Ordering::Relaxed);
+        let fraction = done as f64 / self.rank.len() as f64;
+        self.watch.checkpoint(self.progress.0 + (self.progress.1 - self.progress.0) * fraction)?;
+        Ok(part)
+    }
+
+    /// Lower triangle of the stiffness between `points` (ranks rising) and all that come later, where `index` knows them.
+    fn assemble(&self, points: &[usize], index: &[usize], front: &mut Mat<f64>) {
+        for &point in points {
+            let column = 3 * index[point];
+            self.operator.for_each_neighbour(point, |other, block| {
+                let rank = self.rank[other];
+                if rank < self.rank[point] {
+                    return;
+                }
+                let row = 3 * index[other];
+                let values = block.values();
+                for a in 0..3 {
+                    for b in if other == point { a } else { 0 }..3 {
+                        front[(row + b, column + a)] += values[3 * a + b];
+                    }
+                }
+            });
+        }
+    }
+
+    fn front(&self, own: &[usize], parts: Vec<Part>) -> Result<Part, FeError> {
+        // Points of the front: its own, then all later ones that they or the parts are coupled to.
+        let mut index = vec![NOWHERE; self.rank.len()];
+        for (i, &point) in own.iter().enumerate() {
+            index[point] = i;
+        }
+        let mut later: Vec<usize> = Vec::new();
+        let mut note = |point: usize| {
+            if index[point] == NOWHERE {
+                index[point] = NOWHERE - 1;
+                later.push(point);
+            }
+        };
+        for &point in own {
+            self.operator.for_each_neighbour(point, |other, _| {
+                if self.rank[other] > self.rank[point] {
+                    note(other);
+                }
+            });
+        }
+        for part in &parts {
+            part.points.iter().for_each(|&point| note(point));
+        }
+        later.sort_unstable_by_key(|&point| self.rank[point]);
+        for (i, &point) in later.iter().enumerate() {
+            index[point] = own.len() + i;
+        }
+        let (inner, outer) = (3 * own.len(), 3 * later.len());
+        let mut front = Mat::<f64>::zeros(inner + outer, inner + outer);
+        self.assemble(own, &index, &mut front);
+        for part in &parts {
+            extend(&mut front, part, &index);
+        }
+
+        // Loads.
+        let mut loads: Vec<usize> = parts.iter().flat_map(|part| part.loads.iter().copied()).collect();
+        for &point in own {
+            let (node, function) = self.operator.place(point);
+            if self.loads.touches(node) {
+                self.loads.for_each(self.operator, node, function, |load, _| loads.push(load));
+            }
+        }
+        loads.sort_unstable();
+        loads.dedup();
+        let column = |load: usize| loads.partition_point(|&l| l < load);
+        let mut forces = Mat::<f64>::zeros(inner + outer, loads.len());
+        for &point in own {
+            let (node, function) = self.operator.place(point);
+            if self.loads.touches(node) {
+                let row = 3 * index[point];
+                self.loads.for_each(self.operator, node, function, |load, force| {
+                    let column = column(load);
+                    for (c, f) in force.into_iter().enumerate() {
+                        forces[(row + c, column)] += f;
+                    }
+                });
+            }
+        }
+        let mut compliance = (!loads.is_empty()).then(|| Mat::<f64>::zeros(loads.len(), loads.len()));
+        for part in &parts {
+            let columns: Vec<usize> = part.loads.iter().map(|&load| column(load)).collect();
+            for (source, &target) in columns.iter().enumerate() {
+                for (i, &point) in part.points.iter().enumerate() {
+                    for c in 0..3 {
+                        forces[(3 * index[point] + c, target)] += part.forces[(3 * i + c, source)];
+                    }
+                }
+            }
+            if let (Some(sum), Some(old)) = (&mut compliance, &part.compliance) {
+                for (b, &column) in columns.iter().enumerate() {
+                    for (a, &row) in columns.iter().enumerate().skip(b) {
+                        sum[(row, column)] += old[(a, b)];
+                    }
+                }
+            }
+        }
+        drop(parts);
+
+        let place = "inside of a sector";
+        let (left, mut right) = front.as_mut().split_at_col_mut(inner);
+        let (mut diagonal, mut below) = left.split_at_row_mut(inner);
+        factor(diagonal.as_mut(), place)?;
+        solve_lower_triangular_in_place(diagonal.as_ref(), below.as_mut().transpose_mut(), Par::Seq);
+        triangular_matmul(
+            right.as_mut().subrows_mut(inner, outer),
+            BlockStructure::TriangularLower,
+            Accum::Add,
+            below.as_ref(),
+            BlockStructure::Rectangular,
+            below.as_ref().transpose(),
+            BlockStructure::Rectangular,
+            -1.0,
+            Par::Seq,
+        );
+        if let Some(compliance) = &mut compliance {
+            let (mut top, mut bottom) = forces.as_mut().split_at_row_mut(inner);
+            solve_lower_triangular_in_place(diagonal.as_ref(), top.as_mut(), Par::Seq);
+            matmul(bottom.as_mut(), Accum::Add, below.as_ref(), top.as_ref(), -1.0, Par::Seq);
+            triangular_matmul(
+                compliance.as_mut(),
+                BlockStructure::TriangularLower,
+                Accum::Add,
+                top.as_ref().transpose(),
+                BlockStructure::Rectangular,
+                top.as_ref(),
+                BlockStructure::Rectangular,
+                1.0,
+                Par::Seq,
+            );
+        }
+        Ok(Part {
+            points: later,
+            stiffness: front.submatrix(inner, inner, outer, outer).to_owned(),
+            forces: forces.submatrix(inner, 0, outer, loads.len()).to_owned(),
+            loads,
+            compliance,
+        })
+    }
+}
+
+/// Cholesky factor of a Hermitian matrix in its lower triangle.
+pub(super) fn factor<T: faer::traits::ComplexField>(matrix: MatMut<'_, T>, place: &'static str) -> Result<(), FeError> {
+    let params = Spec::<LltParams, T>::default();
+    let size = matrix.nrows();
+    let mut memory = MemBuffer::new(cholesky_in_place_scratch::<T>(size, Par::Seq, params));
+    cholesky_in_place(matrix, LltRegularization::default(), Par::Seq, MemStack::new(&mut memory), params)
+        .map(|_| ())
+        .map_err(|_| FeError::Singular { place })
+}

@@ -1,0 +1,211 @@
+//! The flexibility of one loaded flank.
+
+use super::condense::condense;
+use super::cyclic::expand;
+use super::dissection::Dissection;
+use super::half_space::half_space;
+use super::input::{FeError, FlankInput};
+use super::loads::{Grid, Loads};
+use super::operator::{Body, Operator};
+use super::section::{Border, Involute, Section};
+use super::sizes::Sizes;
+use super::spline::{SplineSpace, graded_cells};
+use crate::watch::Watch;
+
+/// Bulk influence between the points of one flank and those of the teeth ahead of it.
+///
+/// Nodes are the hats of a load grid, bilinear in the arc length of the transverse involute and in the axial place;
+/// node `profile * stations + station`. Values are mean normal displacements under the hat of the response node (into the
+/// tooth) per unit normal force spread as the hat of the load node: Galerkin means, symmetric.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlankFlexibility {
+    pub(super) rolls_m: Vec<f64>,
+    pub(super) profile_m: Vec<f64>,
+    pub(super) stations_m: Vec<f64>,
+    /// One matrix per offset, row-major; half-space part subtracted at offset 0.
+    pub(super) bulk: Vec<Vec<f64>>,
+    pub(super) half_space: Vec<f64>,
+}
+
+/// Parts of the work by time, for the progress.
+const ELIMINATED: f64 = 0.5;
+const EXPANDED: f64 = 0.95;
+
+impl FlankFlexibility {
+    /// Solves the elements.
+    ///
+    /// # Errors
+    /// [`FeError::Canceled`] when the watch says so; a tooth form that cannot be meshed; a singular matrix.
+    pub fn new(input: &FlankInput, watch: Watch) -> Result<FlankFlexibility, FeError> {
+        FlankFlexibility::with_sizes(input, &Sizes::new(input.key().resolution), watch)
+    }
+
+    pub(super) fn with_sizes(input: &FlankInput, sizes: &Sizes, watch: Watch) -> Result<FlankFlexibility, FeError> {
+        let key = input.key();
+        let involute = Involute::new(input.member())?;
+        let m = key.normal_module_m;
+        let (profile_cells, station_cells) = sizes.load_cells(involute.length_m / m, key.face_width_m / m);
+        let grid = Grid {
+            profile_m: (0..=profile_cells).map(|i| involute.length_m * i as f64 / profile_cells as f64).collect(),
+            stations_m: graded_cells(key.face_width_m, station_cells),
+        };
+        let section = Section::new(input.member(), &involute, m, key.hold_radius_m, &grid.profile_m, &sizes.section)?;
+        let cell = key.face_width_m / station_cells as f64 / sizes.splines_per_cell as f64;
+        let fine = subdivided(&grid.stations_m, sizes.splines_per_cell);
+        let mut spaces = vec![SplineSpace::cubic(fine.clone())];
+        let mut count = fine.len() - 1;
+        while count > 3 {
+            count = (count / 2).max(3);
+            spaces.push(SplineSpace::cubic(graded_cells(key.face_width_m, count)));
+        }
+        let levels = levels(&section, spaces.len(), cell, sizes.reach);
+        let body = Body {
+            section: &section,
+            youngs_pa: key.youngs_modulus_pa,
+            nu: key.poissons_ratio,
+            twist_per_m: input.twist_per_m(),
+        };
+        let total = solve(&body, spaces, levels, &fine, &involute, &grid, key.teeth, key.offsets, watch)?;
+        let half_space =
+            half_space(&involute, &grid, body.twist_per_m, (body.youngs_pa, body.nu), watch, (EXPANDED, 1.0))?;
+        let mut bulk = total;
+        for (b, h) in bulk[0].iter_mut().zip(&half_space) {
+            *b -= h;
+        }
+        if key.side == super::input::Side::Gear {
+            // The sector's angle grows towards the loaded flank, which on the gear looks back to the teeth behind.
+            for matrix in &mut bulk[1..] {
+                transpose(matrix, grid.len());
+            }
+        }
+        watch.checkpoint(1.0)?;
+        Ok(FlankFlexibility {
+            rolls_m: grid.profile_m.iter().map(|&s| involute.roll_m(s)).collect(),
+            profile_m: grid.profile_m,
+            stations_m: grid.stations_m,
+            bulk,
+            half_space,
+        })
+    }
+
+    /// Roll lengths of the profile nodes on this member, from the form point to the tip.
+    pub fn rolls_m(&self) -> &[f64] {
+        &self.rolls_m
+    }
+
+    /// Arc lengths of the profile nodes from the form point, `(ρ² - ρ_form²)/(2 r_b)`: the hats are linear in these.
+    pub fn profile_m(&self) -> &[f64] {
+        &self.profile_m
+    }
+
+    /// Axial places of the stations, entry coordinate: 0 at the mesh-out end, face width at the mesh-in end.
+    pub fn stations_m(&self) -> &[f64] {
+        &self.stations_m
+    }
+
+    /// Highest offset there is.
+    pub fn offsets(&self) -> usize {
+        self.bulk.len() - 1
+    }
+
+    /// Number of nodes: profile nodes times stations.
+    pub fn nodes(&self) -> usize {
+        self.rolls_m.len() * self.stations_m.len()
+    }
+
+    /// Influence of a load on tooth 0 on the tooth that entered the mesh `offset` pitches earlier, without the half-space
+    /// part (offset 0): `[response * nodes + load]`. The way back is the transpose. `None` beyond the highest offset.
+    pub fn bulk(&self, offset: usize) -> Option<&[f64]> {
+        self.bulk.get(offset).map(Vec::as_slice)
+    }
+
+    /// The half-space part that was subtracted.
+    pub fn half_space(&self) -> &[f64] {
+        &self.half_space
+    }
+
+    /// One value of the whole influence, half-space part included.
+    pub fn total(&self, offset: usize, response: usize, load: usize) -> Option<f64> {
+        let n = self.nodes();
+        let index = (response < n && load < n).then_some(response * n + load)?;
+        let bulk = self.bulk.get(offset)?[index];
+        Some(if offset == 0 { bulk + self.half_space[index] } else { bulk })
+    }
+}
+
+fn transpose(matrix: &mut [f64], n: usize) {
+    for i in 0..n {
+        for j in 0..i {
+            matrix.swap(i * n + j, j * n + i);
+        }
+    }
+}
+
+fn subdivided(borders: &[f64], parts: usize) -> Vec<f64> {
+    let mut out = vec![borders[0]];
+    for cell in borders.windows(2) {
+        out.extend((1..=parts).map(|k| cell[0] + (cell[1] - cell[0]) * k as f64 / parts as f64));
+    }
+    out
+}
+
+/// Space of every node's line: cells double while they stay below `reach` times the distance from the loaded flank.
+fn levels(section: &Section, spaces: usize, cell: f64, reach: f64) -> Vec<u8> {
+    let flank: Vec<(f64, f64)> = section
+        .flank
+        .iter()
+        .flat_map(|edge| edge.nodes)
+        .map(|node| (section.nodes[node].x_m, section.nodes[node].y_m))
+        .collect();
+    let distance = |x: f64, y: f64| flank.iter().map(|p| (p.0 - x).hypot(p.1 - y)).fold(f64::INFINITY, f64::min);
+    section
+        .nodes
+        .iter()
+        .zip(&section.borders)
+        .map(|(node, border)| {
+            let mut d = distance(node.x_m, node.y_m);
+            if !matches!(border, Border::Inside | Border::Held) {
+                // Both cut faces alike.
+                d = d.min(distance(-node.x_m, node.y_m));
+            }
+            let mut level = 0;
+            while level + 1 < spaces && cell * f64::from(1_u32 << (level + 1)) <= reach * d {
+                level += 1;
+            }
+            level as u8
+        })
+        .collect()
+}
+
+/// Total influence for all offsets towards growing angle, row-major.
+#[allow(clippy::too_many_arguments)]
+pub(super) fn solve(
+    body: &Body,
+    spaces: Vec<SplineSpace>,
+    levels: Vec<u8>,
+    cells: &[f64],
+    involute: &Involute,
+    grid: &Grid,
+    teeth: u32,
+    offsets: usize,
+    watch: Watch,
+) -> Result<Vec<Vec<f64>>, FeError> {
+    watch.checkpoint(0.0)?;
+    let section = body.section;
+    let operator = Operator::new(body, spaces, levels);
+    let loads = Loads::new(section, involute, grid, &operator, body.twist_per_m);
+    let tree = Dissection::new(section, &operator, &cells[1..cells.len() - 1]);
+    // Both faces from outside inwards.
+    let face = |which: fn(&Border) -> Option<usize>| {
+        let mut nodes: Vec<(usize, usize)> =
+            section.borders.iter().enumerate().filter_map(|(node, border)| Some((which(border)?, node))).collect();
+        nodes.sort_unstable();
+        nodes.into_iter().flat_map(|(_, node)| operator.line(node)).collect::<Vec<_>>()
+    };
+    let mut kept = face(|border| if let Border::Low(k) = border { Some(*k) } else { None });
+    kept.extend(face(|border| if let Border::High(k) = border { Some(*k) } else { None }));
+    let sector = condense(&operator, &loads, grid.len(), &tree, &kept, watch, (0.0, ELIMINATED))?;
+    let matrices = expand(&sector, teeth, offsets, watch, (ELIMINATED, EXPANDED))?;
+    let n = grid.len();
+    Ok(matrices.into_iter().map(|matrix| (0..n * n).map(|k| matrix[(k / n, k % n)]).collect()).collect())
+}

@@ -1,0 +1,129 @@
+//! What the flexibility of a flank depends on, and what can go wrong.
+
+use serde::Serialize;
+
+use crate::gear::{Member, Pair};
+use crate::watch::Canceled;
+
+/// Version of meshes, elements and load grid: part of every key, raised whenever a value may change.
+pub const MESH_VERSION: u32 = 1;
+
+/// Which member of the pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    Pinion,
+    Gear,
+}
+
+/// How fine the elements and the load grid are; `examples/fe_validation.rs` prints cost and error of each.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Resolution {
+    /// Half the load grid in both directions.
+    Coarse,
+    /// About 11 profile nodes and one station per 0.57 normal modules.
+    Standard,
+    /// The load grid of `Standard`, elements of half the size.
+    Fine,
+}
+
+/// Everything the flexibility of one flank depends on: hash this (lengths in m, angles in rad).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FlankKey {
+    pub mesh_version: u32,
+    pub resolution: Resolution,
+    pub side: Side,
+    pub teeth: u32,
+    pub normal_module_m: f64,
+    pub normal_pressure_angle_rad: f64,
+    pub helix_angle_rad: f64,
+    pub profile_shift: f64,
+    pub dedendum: f64,
+    pub fillet_radius: f64,
+    pub tip_radius_m: f64,
+    pub face_width_m: f64,
+    pub hold_radius_m: f64,
+    pub youngs_modulus_pa: f64,
+    pub poissons_ratio: f64,
+    pub offsets: usize,
+}
+
+/// One member of a pair, ready for the elements.
+#[derive(Debug, Clone)]
+pub struct FlankInput {
+    key: FlankKey,
+    member: Member,
+    base_helix_angle_rad: f64,
+}
+
+impl FlankInput {
+    /// The flank of one helix half of `side`, held at `hold_radius_m` (all displacements zero over the face width, end
+    /// faces free), with answers of the teeth up to `offsets` pitches ahead.
+    pub fn new(pair: &Pair, side: Side, hold_radius_m: f64, offsets: usize, resolution: Resolution) -> FlankInput {
+        let (member, spec) = match side {
+            Side::Pinion => (&pair.pinion, &pair.spec.pinion),
+            Side::Gear => (&pair.gear, &pair.spec.gear),
+        };
+        let key = FlankKey {
+            mesh_version: MESH_VERSION,
+            resolution,
+            side,
+            teeth: member.teeth,
+            normal_module_m: pair.spec.normal_module_m,
+            normal_pressure_angle_rad: pair.spec.normal_pressure_angle_rad,
+            helix_angle_rad: pair.spec.helix_angle_rad,
+            profile_shift: member.profile_shift,
+            dedendum: spec.dedendum,
+            fillet_radius: spec.fillet_radius,
+            tip_radius_m: member.tip_radius_m,
+            face_width_m: pair.spec.face_width_m,
+            hold_radius_m,
+            youngs_modulus_pa: pair.spec.material.youngs_modulus_pa,
+            poissons_ratio: pair.spec.material.poissons_ratio,
+            offsets,
+        };
+        FlankInput { key, member: member.clone(), base_helix_angle_rad: pair.base_helix_angle_rad }
+    }
+
+    /// What the result depends on.
+    pub fn key(&self) -> &FlankKey {
+        &self.key
+    }
+
+    pub(super) fn member(&self) -> &Member {
+        &self.member
+    }
+
+    /// Turn of the section per axial length, positive towards the loaded flank. The section is drawn with the loaded
+    /// flank on the side of growing angle: the leading flank of the driving pinion, the trailing one of the gear.
+    pub(super) fn twist_per_m(&self) -> f64 {
+        let turn = self.base_helix_angle_rad.tan() / self.member.base_radius_m;
+        match self.key.side {
+            Side::Pinion => turn,
+            Side::Gear => -turn,
+        }
+    }
+}
+
+/// Why there is no flexibility.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FeError {
+    #[error(transparent)]
+    Canceled(#[from] Canceled),
+    /// The held cylinder leaves no rim.
+    #[error("the held radius {hold_radius_m} m leaves no rim below the root radius {root_radius_m} m")]
+    NoRim { hold_radius_m: f64, root_radius_m: f64 },
+    /// The flank or the tip land has no length.
+    #[error("the tooth has no usable form: {what} is {value_m} m")]
+    Form { what: &'static str, value_m: f64 },
+    /// An element is turned inside out.
+    #[error("element {element} of the tooth section is degenerate (Jacobian {jacobian:e} of its mean)")]
+    Mesh { element: usize, jacobian: f64 },
+    /// The stiffness matrix is not positive definite.
+    #[error("the stiffness matrix is not positive definite ({place})")]
+    Singular { place: &'static str },
+    /// Stored bytes are not a flexibility of this version.
+    #[error("the stored flexibility cannot be read: {reason}")]
+    Stored { reason: &'static str },
+}

@@ -1,0 +1,75 @@
+//! Sizes of elements and load cells at every resolution.
+
+use super::input::Resolution;
+use super::section::SectionSizes;
+
+/// All that a resolution decides; lengths in normal modules.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Sizes {
+    /// Load cell along the profile.
+    pub profile_cell: f64,
+    /// Load cell along the face.
+    pub station_cell: f64,
+    /// Spline cells per load cell along the face.
+    pub splines_per_cell: usize,
+    /// Cells along the face may be this many times as long as the distance from the loaded flank.
+    pub reach: f64,
+    pub section: SectionSizes,
+}
+
+impl Sizes {
+    pub fn new(resolution: Resolution) -> Sizes {
+        match resolution {
+            Resolution::Coarse => Sizes {
+                profile_cell: 0.4,
+                station_cell: 1.14,
+                splines_per_cell: 1,
+                reach: 1.0,
+                section: SectionSizes {
+                    rows_per_cell: 1,
+                    fillet_rows: 2,
+                    columns: vec![0.28, 0.30, 0.26, 0.16],
+                    land_columns: 1,
+                    first_rim_row: 0.6,
+                    growth: 2.0,
+                },
+            },
+            Resolution::Standard => Sizes {
+                profile_cell: 0.2,
+                station_cell: 0.57,
+                splines_per_cell: 1,
+                reach: 1.0,
+                section: SectionSizes {
+                    rows_per_cell: 1,
+                    fillet_rows: 3,
+                    columns: vec![0.18, 0.22, 0.22, 0.18, 0.12, 0.08],
+                    land_columns: 2,
+                    first_rim_row: 0.35,
+                    growth: 1.6,
+                },
+            },
+            Resolution::Fine => Sizes {
+                profile_cell: 0.2,
+                station_cell: 0.57,
+                splines_per_cell: 2,
+                reach: 0.7,
+                section: SectionSizes {
+                    rows_per_cell: 2,
+                    fillet_rows: 6,
+                    columns: vec![0.12, 0.14, 0.15, 0.14, 0.13, 0.11, 0.09, 0.06, 0.04, 0.02],
+                    land_columns: 3,
+                    first_rim_row: 0.2,
+                    growth: 1.4,
+                },
+            },
+        }
+    }
+
+    /// Load cells on a flank of `length` and `width`, both in normal modules.
+    pub fn load_cells(&self, length: f64, width: f64) -> (usize, usize) {
+        let cells = |size: f64, cell: f64, range: (usize, usize)| {
+            ((size / cell).round().clamp(range.0 as f64, range.1 as f64)) as usize
+        };
+        (cells(length, self.profile_cell, (4, 20)), cells(width, self.station_cell, (4, 64)))
+    }
+}
