@@ -13,6 +13,7 @@
 mod annulus;
 mod body;
 mod coupling;
+mod curve;
 mod cycle;
 mod distribution;
 mod equivalent;
@@ -28,6 +29,7 @@ mod lines;
 mod local;
 mod plate;
 mod position;
+mod refine;
 mod ring_influence;
 mod settings;
 mod tooth;

@@ -48,7 +48,8 @@ fn stiffness_error_and_shares_stay_within_their_stated_deviation() {
         let number = |key: &str| case[key].as_f64().unwrap();
         let pair = variant(name);
         let settings = Settings {
-            positions: 32,
+            positions: Some(32),
+            accuracy: 1e-3,
             slices: None,
             body: if name == "nominal_rim_clamped" { BodyHold::Rim } else { BodyHold::Bore },
             corner_contact: name == "nominal_ext",
