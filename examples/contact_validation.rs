@@ -79,11 +79,10 @@ fn main() {
         let number = |key: &str| case[key].as_f64().unwrap_or(f64::NAN);
         let pair = reference_pair(variant);
         let settings = Settings {
-            positions: std::env::args().nth(2).map_or(Some(64), |a| a.parse().ok()),
+            positions: 64,
             slices,
             body: if variant == "nominal_rim_clamped" { BodyHold::Rim } else { BodyHold::Bore },
             corner_contact: variant == "nominal_ext",
-            ..Settings::default()
         };
         let force = number("torque_nm") / pair.pinion.base_radius_m;
         let begin = Instant::now();

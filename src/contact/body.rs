@@ -8,7 +8,7 @@
 //! width separate (U, V even with W odd, and the reverse). A Galerkin flexibility is positive definite and never larger
 //! than the exact one.
 
-use super::linalg::{cholesky, cholesky_solve, forward_solve};
+use super::linalg::{cholesky, forward_solve};
 
 /// The ring and its material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,47 +58,66 @@ impl WidthBasis {
         WidthBasis { order, width_m, mixed, stiff }
     }
 
-    /// Mean of every polynomial over `count` equal slices: `count` rows of `order + 1`.
-    pub fn slice_means(&self, count: usize) -> Vec<f64> {
+    /// ∫ P_p P_q' dy.
+    pub fn mixed(&self, p: usize, q: usize) -> f64 {
+        self.mixed[p * (self.order + 1) + q]
+    }
+
+    /// ∫ P_p' P_q' dy.
+    pub fn stiff(&self, p: usize, q: usize) -> f64 {
+        self.stiff[p * (self.order + 1) + q]
+    }
+
+    /// Values of all polynomials at `y_m`; beyond the ends of the face those of the end.
+    pub fn values(&self, y_m: f64, out: &mut [f64]) {
+        let inside = (2.0 * y_m / self.width_m - 1.0).clamp(-1.0, 1.0);
+        let (mut before, mut now) = (1.0, inside);
+        for (p, value) in out.iter_mut().enumerate() {
+            *value = if p == 0 { 1.0 } else { now };
+            if p > 0 {
+                let next = ((2 * p + 1) as f64 * inside * now - p as f64 * before) / (p + 1) as f64;
+                (before, now) = (now, next);
+            }
+            *value *= ((2 * p + 1) as f64 / self.width_m).sqrt();
+        }
+    }
+
+    /// Mean of every polynomial over `count` equal slices of the face moved by `shift_m`: `count` rows of `order + 1`.
+    pub fn slice_means(&self, count: usize, shift_m: f64) -> Vec<f64> {
+        /// 3-point Gauss rule on [-1, 1].
+        const GAUSS_3: [(f64, f64); 3] =
+            [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
         let size = self.order + 1;
+        let step = self.width_m / count as f64;
         let mut out = vec![0.0; count * size];
-        // ∫P_p dξ = (P_{p+1} - P_{p-1}) / (2p+1).
-        let integral = |xi: f64| {
-            let mut p = vec![0.0; size + 2];
-            p[0] = 1.0;
-            p[1] = xi;
-            for k in 1..=size {
-                p[k + 1] = ((2 * k + 1) as f64 * xi * p[k] - k as f64 * p[k - 1]) / (k + 1) as f64;
+        let mut values = vec![0.0; size];
+        for (i, row) in out.chunks_exact_mut(size).enumerate() {
+            for (x, w) in GAUSS_3 {
+                self.values((i as f64 + 0.5 + 0.5 * x) * step + shift_m, &mut values);
+                for (mean, value) in row.iter_mut().zip(&values) {
+                    *mean += 0.5 * w * value;
+                }
             }
-            let mut q = vec![0.0; size];
-            q[0] = xi;
-            for k in 1..size {
-                q[k] = (p[k + 1] - p[k - 1]) / (2 * k + 1) as f64;
-            }
-            q
-        };
-        let mut low = integral(-1.0);
-        for i in 0..count {
-            let high = integral(2.0 * (i + 1) as f64 / count as f64 - 1.0);
-            for p in 0..size {
-                let norm = ((2 * p + 1) as f64 / self.width_m).sqrt();
-                out[i * size + p] = norm * (high[p] - low[p]) * count as f64 / 2.0;
-            }
-            low = high;
         }
         out
     }
 }
 
-/// Flexibility of the outer circle at one harmonic: displacement coefficients per load coefficients over the width basis,
-/// as two blocks (U, V of even degree with W of odd degree; and the reverse).
-#[derive(Debug, Clone, PartialEq)]
-pub struct HarmonicFlexibility {
+/// The ring's elements over a width basis, ready to be put together at any harmonic.
+///
+/// Flexibilities of the outer circle (displacement coefficients per load coefficients) come as two symmetric row-major
+/// blocks: U, V of even degree with W of odd degree, and the reverse.
+#[derive(Debug, Clone)]
+pub struct RingSolver {
     /// (component 0 U, 1 V, 2 W; degree) of every row of a block.
     pub rows: [Vec<(usize, usize)>; 2],
-    /// Symmetric, row-major.
-    pub blocks: [Vec<f64>; 2],
+    mesh: Vec<f64>,
+    /// Per block and element: stiffness without n, with n and with n².
+    elements: [Vec<[Vec<f64>; 3]>; 2],
 }
+
+/// Displacements of harmonic n have fallen to this part of their value at the outer circle where the ring is cut off.
+const NEGLIGIBLE: f64 = 1e-3;
 
 /// Radial boundaries of the elements, from the holding radius outwards.
 fn radial_mesh(ring: &Ring) -> Vec<f64> {
@@ -115,81 +134,93 @@ fn radial_mesh(ring: &Ring) -> Vec<f64> {
     radii
 }
 
-/// Flexibility of `ring` at harmonic `n`; `planar` keeps U and V of degree zero only (plane strain, for verification).
-pub fn harmonic(ring: &Ring, basis: &WidthBasis, n: u32, planar: bool) -> HarmonicFlexibility {
-    let rows = [0, 1].map(|parity| {
-        let mut rows = Vec::new();
-        for component in 0..3 {
-            for degree in 0..=basis.order {
-                let wanted = (degree + usize::from(component == 2)) % 2 == parity;
-                if wanted && (!planar || (component < 2 && degree == 0)) {
-                    rows.push((component, degree));
-                }
-            }
-        }
-        rows
-    });
-    let blocks = [0, 1].map(|p| condense(ring, basis, n as f64, &rows[p]));
-    HarmonicFlexibility { rows, blocks }
+impl RingSolver {
+    /// Prepares `ring` over the functions of `basis`.
+    pub fn new(ring: &Ring, basis: &WidthBasis) -> RingSolver {
+        let rows = [0, 1].map(|parity| {
+            let degrees = |component: usize| {
+                ((parity + usize::from(component == 2)) % 2..=basis.order).step_by(2).map(move |q| (component, q))
+            };
+            (0..3).flat_map(degrees).collect::<Vec<_>>()
+        });
+        let mesh = radial_mesh(ring);
+        let elements = [0, 1]
+            .map(|p| mesh.windows(2).map(|span| element_stiffness(ring, basis, &rows[p], span[0], span[1])).collect());
+        RingSolver { rows, mesh, elements }
+    }
+
+    /// Flexibility of the outer circle at harmonic `n`.
+    pub fn flexibility(&self, n: f64) -> [Vec<f64>; 2] {
+        let outer = self.mesh[self.mesh.len() - 1];
+        // Elements that the harmonic does not reach stay out: the first one in use is held at its inner boundary.
+        let first = (0..self.mesh.len() - 1).rev().find(|&e| (self.mesh[e] / outer).powf(n) < NEGLIGIBLE).unwrap_or(0);
+        [0, 1].map(|p| condense(&self.elements[p][first..], n, self.rows[p].len()))
+    }
 }
 
-fn condense(ring: &Ring, basis: &WidthBasis, n: f64, rows: &[(usize, usize)]) -> Vec<f64> {
-    let size = rows.len();
+fn condense(elements: &[[Vec<f64>; 3]], n: f64, size: usize) -> Vec<f64> {
     if size == 0 {
         return Vec::new();
     }
-    let mesh = radial_mesh(ring);
-    let mut inner_stiffness: Option<Vec<f64>> = None;
+    let width = 3 * size;
+    let mut element = vec![0.0; width * width];
     let mut outer = vec![0.0; size * size];
-    for span in mesh.windows(2) {
-        let element = element_stiffness(ring, basis, n, rows, span[0], span[1]);
-        // Order: inner and middle nodes (eliminated), then the outer node.
-        let first = if inner_stiffness.is_some() { 0 } else { 1 };
-        let gone = (2 - first) * size;
-        let at = |a: usize, i: usize, b: usize, j: usize| element[(a * size + i) * 3 * size + b * size + j];
-        let mut k = vec![0.0; gone * gone];
-        for i in 0..gone {
-            for j in 0..=i {
-                k[i * gone + j] = at(first + i / size, i % size, first + j / size, j % size);
-            }
+    let mut k = vec![0.0; 4 * size * size];
+    let mut columns = vec![0.0; 2 * size * size];
+    for (e, [still, once, twice]) in elements.iter().enumerate() {
+        for (((value, a), b), c) in element.iter_mut().zip(still).zip(once).zip(twice) {
+            *value = a + n * (b + n * c);
         }
-        if let Some(previous) = &inner_stiffness {
+        // Order: inner and middle nodes (eliminated), then the outer node.
+        let skip = if e == 0 { size } else { 0 };
+        let gone = 2 * size - skip;
+        for i in 0..gone {
+            k[i * gone..=i * gone + i]
+                .copy_from_slice(&element[(skip + i) * width + skip..=(skip + i) * width + skip + i]);
+        }
+        if e > 0 {
             for i in 0..size {
-                for j in 0..=i {
-                    k[i * gone + j] += previous[i * size + j];
+                for (value, previous) in k[i * gone..=i * gone + i].iter_mut().zip(&outer[i * size..]) {
+                    *value += previous;
                 }
             }
         }
-        cholesky(&mut k, gone);
-        let mut columns = vec![0.0; size * gone];
+        cholesky(&mut k[..gone * gone], gone);
         for j in 0..size {
             let column = &mut columns[j * gone..(j + 1) * gone];
-            for (i, value) in column.iter_mut().enumerate() {
-                *value = at(first + i / size, i % size, 2, j);
-            }
+            column.copy_from_slice(&element[(2 * size + j) * width + skip..(2 * size + j) * width + 2 * size]);
             forward_solve(&k, column, gone);
         }
         for i in 0..size {
             for j in 0..=i {
                 let minus = super::linalg::dot(&columns[i * gone..(i + 1) * gone], &columns[j * gone..(j + 1) * gone]);
-                outer[i * size + j] = at(2, i, 2, j) - minus;
+                outer[i * size + j] = element[(2 * size + i) * width + 2 * size + j] - minus;
                 outer[j * size + i] = outer[i * size + j];
             }
         }
-        inner_stiffness = Some(outer.clone());
     }
     cholesky(&mut outer, size);
-    let mut flexibility = vec![0.0; size * size];
+    // The inverse: L⁻¹ by columns, then its products.
+    let lower = &mut columns[..size * size];
+    lower.fill(0.0);
     for j in 0..size {
-        let column = &mut flexibility[j * size..(j + 1) * size];
-        column[j] = 1.0;
-        cholesky_solve(&outer, column, size);
+        lower[j * size + j] = 1.0;
+        forward_solve(&outer, &mut lower[j * size..(j + 1) * size], size);
+    }
+    let mut flexibility = vec![0.0; size * size];
+    for i in 0..size {
+        for j in 0..=i {
+            let value = super::linalg::dot(&lower[i * size + i..(i + 1) * size], &lower[j * size + i..(j + 1) * size]);
+            flexibility[i * size + j] = value;
+            flexibility[j * size + i] = value;
+        }
     }
     flexibility
 }
 
-/// Stiffness of one quadratic radial element (nodes: inner, middle, outer) per radian of the harmonic's circumference.
-fn element_stiffness(ring: &Ring, basis: &WidthBasis, n: f64, rows: &[(usize, usize)], r0: f64, r1: f64) -> Vec<f64> {
+/// Stiffness of one quadratic radial element (nodes: inner, middle, outer) per radian of the harmonic's circumference, by
+/// powers of n.
+fn element_stiffness(ring: &Ring, basis: &WidthBasis, rows: &[(usize, usize)], r0: f64, r1: f64) -> [Vec<f64>; 3] {
     let mu = 0.5 * ring.youngs_pa / (1.0 + ring.nu);
     let lame = 2.0 * mu * ring.nu / (1.0 - 2.0 * ring.nu);
     let stiff = lame + 2.0 * mu;
@@ -231,31 +262,31 @@ fn element_stiffness(ring: &Ring, basis: &WidthBasis, n: f64, rows: &[(usize, us
         }
     }
     let size = rows.len();
-    let total = basis.order + 1;
-    let mut k = vec![0.0; 9 * size * size];
+    let mut k = [0, 1, 2].map(|_| vec![0.0; 9 * size * size]);
     for (i, &(ci, p)) in rows.iter().enumerate() {
         for (j, &(cj, q)) in rows.iter().enumerate() {
             let m = f64::from(u8::from(p == q));
-            let kk = basis.stiff[p * total + q];
-            let pq = basis.mixed[p * total + q];
-            let qp = basis.mixed[q * total + p];
+            let kk = basis.stiff(p, q);
+            let (pq, qp) = (basis.mixed(p, q), basis.mixed(q, p));
             for a in 0..3 {
                 for b in 0..3 {
                     let t = radial[a][b];
-                    let value = match (ci, cj) {
+                    let parts = match (ci, cj) {
                         (0, 0) => {
-                            m * (stiff * (t.dd + t.ss) + lame * (t.ds + t.sd) + mu * n * n * t.ss) + mu * kk * t.nn
+                            [m * (stiff * (t.dd + t.ss) + lame * (t.ds + t.sd)) + mu * kk * t.nn, 0.0, m * mu * t.ss]
                         }
-                        (0, 1) => m * n * (-stiff * t.ss - lame * t.ds + mu * (t.sd - t.ss)),
-                        (1, 0) => m * n * (-stiff * t.ss - lame * t.sd + mu * (t.ds - t.ss)),
-                        (1, 1) => m * (stiff * n * n * t.ss + mu * (t.dd - t.ds - t.sd + t.ss)) + mu * kk * t.nn,
-                        (0, 2) => lame * pq * (t.dn + t.sn) + mu * qp * t.nd,
-                        (2, 0) => lame * qp * (t.nd + t.ns) + mu * pq * t.dn,
-                        (1, 2) => -lame * n * pq * t.sn + mu * n * qp * t.ns,
-                        (2, 1) => -lame * n * qp * t.ns + mu * n * pq * t.sn,
-                        _ => stiff * kk * t.nn + m * mu * (t.dd + n * n * t.ss),
+                        (0, 1) => [0.0, m * (-stiff * t.ss - lame * t.ds + mu * (t.sd - t.ss)), 0.0],
+                        (1, 0) => [0.0, m * (-stiff * t.ss - lame * t.sd + mu * (t.ds - t.ss)), 0.0],
+                        (1, 1) => [m * mu * (t.dd - t.ds - t.sd + t.ss) + mu * kk * t.nn, 0.0, m * stiff * t.ss],
+                        (0, 2) => [lame * pq * (t.dn + t.sn) + mu * qp * t.nd, 0.0, 0.0],
+                        (2, 0) => [lame * qp * (t.nd + t.ns) + mu * pq * t.dn, 0.0, 0.0],
+                        (1, 2) => [0.0, -lame * pq * t.sn + mu * qp * t.ns, 0.0],
+                        (2, 1) => [0.0, -lame * qp * t.ns + mu * pq * t.sn, 0.0],
+                        _ => [stiff * kk * t.nn + m * mu * t.dd, 0.0, m * mu * t.ss],
                     };
-                    k[(a * size + i) * 3 * size + b * size + j] = value;
+                    for (k, part) in k.iter_mut().zip(parts) {
+                        k[(a * size + i) * 3 * size + b * size + j] = part;
+                    }
                 }
             }
         }
@@ -288,7 +319,7 @@ mod tests {
         let basis = WidthBasis::new(0, 1.0);
         let mut errors = Vec::new();
         for n in [0, 1, 2, 5, 17, 30] {
-            let got = &harmonic(&ring(0.7, 1.0), &basis, n, true).blocks[0];
+            let got = &RingSolver::new(&ring(0.7, 1.0), &basis).flexibility(f64::from(n))[0];
             let exact = harmonic_flexibility(n, 0.7, 0.3);
             for i in 0..2 {
                 for j in 0..2 {
@@ -305,11 +336,12 @@ mod tests {
         // Torsion of the whole width: u_θ = T (1/q² - 1) / (4π μ b r), exact for free faces.
         let basis = WidthBasis::new(6, 0.4);
         let q = 0.5;
-        let f = harmonic(&Ring { element_m: 0.05, ..ring(q, 0.4) }, &basis, 0, false);
-        let i = f.rows[0].iter().position(|&r| r == (1, 0)).unwrap();
+        let solver = RingSolver::new(&Ring { element_m: 0.05, ..ring(q, 0.4) }, &basis);
+        let f = solver.flexibility(0.0);
+        let i = solver.rows[0].iter().position(|&r| r == (1, 0)).unwrap();
         let mu = 0.5 / 1.3;
         let exact = (1.0 / (q * q) - 1.0) / (2.0 * mu);
-        let got = f.blocks[0][i * f.rows[0].len() + i];
+        let got = f[0][i * solver.rows[0].len() + i];
         check(TOPIC, "torsion of a ring, unit modulus", got, exact, Relative(2e-3));
         // Thin annular plate, clamped inside, ring load Q per unit length on its free outer edge, axisymmetric (Roark's
         // case: outer edge free, inner edge fixed, line load at the rim): integrated here from the plate equation
@@ -331,11 +363,12 @@ mod tests {
             })
             .sum();
         let basis = WidthBasis::new(5, b);
-        let f = harmonic(&Ring { element_m: 0.02, ..ring(q, b) }, &basis, 0, false);
-        let parity = f.rows.iter().position(|r| r.contains(&(2, 0))).unwrap();
-        let i = f.rows[parity].iter().position(|&r| r == (2, 0)).unwrap();
+        let solver = RingSolver::new(&Ring { element_m: 0.02, ..ring(q, b) }, &basis);
+        let f = solver.flexibility(0.0);
+        let parity = solver.rows.iter().position(|r| r.contains(&(2, 0))).unwrap();
+        let i = solver.rows[parity].iter().position(|&r| r == (2, 0)).unwrap();
         // Load coefficient of a unit total per radian: P_0 = 1/sqrt(b); traction Q/b over b gives Q sqrt(b)/b.
-        let got = f.blocks[parity][i * f.rows[parity].len() + i] / b;
+        let got = f[parity][i * solver.rows[parity].len() + i] / b;
         check(TOPIC, "bending of a thin disc held inside, unit modulus", got, w.abs(), Relative(0.02));
     }
 }

@@ -2,9 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::body::Ring;
-use super::ring_influence::{NODES, ProfileInfluence, RingInfluence, ToothLayout, ring_weight};
-use super::tooth::{ProfilePoint, Tooth, ToothForm};
+use super::body::{Ring, WidthBasis};
+use super::bulk::{BulkCompliance, NODES, Parts};
+use super::edge::AcuteEnd;
+use super::ring_influence::{RingFlexibility, ToothLayout, ring_weight};
+use super::tooth::{Place, RootRemainder, Tooth, ToothForm, compression, plate};
 use crate::gear::{Member, Pair};
 
 /// Where the gear bodies are held (all displacements zero on a cylinder over the face width, end faces free).
@@ -35,12 +37,18 @@ pub fn hold_radius_m(member: &Member, hold: BodyHold, normal_module_m: f64) -> f
     radius.max(SMALLEST_HOLD * root)
 }
 
+/// Degree of the Legendre functions along the face, by the face width in normal modules: about five per three wavelengths of
+/// the shortest wave that teeth and ring follow, 3.5 modules.
+fn width_order(width_modules: f64) -> usize {
+    (4.0 + 0.63 * width_modules).ceil().clamp(5.0, 26.0) as usize
+}
+
 /// Compliance of one member.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flank {
     tooth: Tooth,
     /// All compliance of tooth and body between slices and places of the profile, contact indentation excepted.
-    pub bulk: ProfileInfluence,
+    pub bulk: BulkCompliance,
     side: f64,
     places_m: [f64; NODES],
 }
@@ -68,7 +76,7 @@ impl Flank {
             half_angle: &|r| member.half_angle_rad(r),
         };
         let (e, nu) = (material.youngs_modulus_pa, material.poissons_ratio);
-        let tooth = Tooth::new(&form, e, nu, rolls, &|wave| 1.0 - ring_weight(wave, module));
+        let tooth = Tooth::new(&form);
         let ring = Ring {
             outer_radius_m: member.root_radius_m,
             inner_radius_m: hold_radius_m(member, hold, module),
@@ -90,11 +98,21 @@ impl Flank {
             let angle = std::f64::consts::PI * (2 * i + 1) as f64 / (2 * NODES) as f64;
             0.5 * (rolls.0 + rolls.1) - 0.5 * (rolls.1 - rolls.0) * angle.cos()
         });
-        let step = pair.spec.face_width_m / slices as f64;
-        let raw = RingInfluence::new(&ring, &layout, slices, offsets);
         let places = places_m.map(|roll| tooth.at(roll, side));
-        let mut bulk = raw.along_profile(step, &places);
-        bulk.add_tooth(step, &places);
+        let basis = WidthBasis::new(width_order(pair.spec.face_width_m / module), pair.spec.face_width_m);
+        let bulk = BulkCompliance::new(&Parts {
+            plate: &plate(&form, nu, &basis),
+            root: &RootRemainder::new(&form, nu, &|wave| 1.0 - ring_weight(wave, module)),
+            ring: &RingFlexibility::new(&ring, &basis, &layout, offsets),
+            end: AcuteEnd::new(pair.base_helix_angle_rad, side, pair.spec.face_width_m, slices, e, nu),
+            basis: &basis,
+            places: &places,
+            compression_m: places.map(|p| compression(&form, nu, p.lever_m)),
+            youngs_pa: e,
+            root_radius_m: member.root_radius_m,
+            root_helix_angle_rad: layout.root_helix_angle_rad,
+            slices,
+        });
         Flank { tooth, bulk, side, places_m }
     }
 
@@ -113,7 +131,7 @@ impl Flank {
     }
 
     /// The tooth at roll length `roll_m` of this member.
-    pub fn at(&self, roll_m: f64) -> ProfilePoint {
+    pub fn at(&self, roll_m: f64) -> Place {
         self.tooth.at(roll_m, self.side)
     }
 }

@@ -81,14 +81,6 @@ impl<'a> HalfContact<'a> {
         self.solver.solve(phase, ALL_PAIRS, force_bt_n).map_err(|trouble| failed(trouble, half, phase))
     }
 
-    /// The same, starting from the state of a neighbouring position.
-    pub fn at_near(&mut self, phase: f64, force_bt_n: f64, near: Option<&Loaded>) -> Result<Loaded, ContactError> {
-        if let Some(state) = near {
-            self.solver.start_from(state);
-        }
-        self.at(phase, force_bt_n)
-    }
-
     /// The state of the pairs already in mesh when the entering pair stands `overrun_m` of roll before its theoretical start
     /// of contact and carries nothing.
     pub fn before_entry(&mut self, overrun_m: f64, force_bt_n: f64) -> Result<Loaded, ContactError> {

@@ -8,9 +8,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::cycle::{CURVE_POSITIONS, CycleBuilder, HalfCycle};
+use super::cycle::{CycleBuilder, HalfCycle};
 use super::half::{Compliance, HalfContact};
-use super::refine::refine;
 use super::settings::{ContactError, Settings};
 use crate::gear::{Half, Pair};
 use crate::watch::Watch;
@@ -96,8 +95,8 @@ fn check(torque_nm: f64, settings: &Settings) -> Result<(), ContactError> {
     if !(torque_nm > 0.0 && torque_nm.is_finite()) {
         return Err(ContactError::Torque { torque_nm });
     }
-    if let Some(positions) = settings.positions.filter(|&n| n < 2) {
-        return Err(ContactError::Positions { positions });
+    if settings.positions < 2 {
+        return Err(ContactError::Positions { positions: settings.positions });
     }
     Ok(())
 }
@@ -125,31 +124,13 @@ fn period(
     progress: &mut dyn FnMut(f64) -> Result<(), ContactError>,
 ) -> Result<HalfCycle, ContactError> {
     let mut contact = HalfContact::new(pair, half, compliance, settings);
-    let builder = match settings.positions {
-        Some(count) => {
-            let mut states = Vec::with_capacity(count);
-            for i in 0..count {
-                let position = i as f64 / count as f64;
-                let phase = (position + stagger).fract();
-                states.push((phase, contact.at(phase, force)?));
-                progress(position)?;
-            }
-            CycleBuilder::at_positions(
-                pair,
-                compliance.slices(),
-                states.into_iter().map(|(p, s)| (p, force, s)).collect(),
-            )
-        }
-        None => {
-            let mut solved = 0.0;
-            let positions = refine(pair, settings.accuracy, |phase, near| {
-                solved += 1.0;
-                progress(solved / (solved + 32.0))?;
-                contact.at_near(phase, force, near)
-            })?;
-            CycleBuilder::refined(pair, compliance.slices(), positions, force, stagger)
-        }
-    };
+    let mut builder = CycleBuilder::new(pair, compliance.slices());
+    for i in 0..settings.positions {
+        let position = i as f64 / settings.positions as f64;
+        let phase = (position + stagger).fract();
+        builder.push(phase, force, contact.at(phase, force)?);
+        progress(position)?;
+    }
     builder.finish(&mut contact, &|_| force)
 }
 
@@ -163,12 +144,11 @@ fn shared(
     watch: Watch<'_>,
 ) -> Result<[HalfCycle; 2], ContactError> {
     let mut contacts = Half::BOTH.map(|half| HalfContact::new(pair, half, compliance, settings));
-    let count = settings.positions.unwrap_or(CURVE_POSITIONS);
-    let mut states = [(); 2].map(|()| Vec::with_capacity(count));
+    let mut builders = [(); 2].map(|()| CycleBuilder::new(pair, compliance.slices()));
     let mut left_part: f64 = 0.5;
-    let mut forces = Vec::with_capacity(count);
-    for i in 0..count {
-        let position = i as f64 / count as f64;
+    let mut forces = Vec::with_capacity(settings.positions);
+    for i in 0..settings.positions {
+        let position = i as f64 / settings.positions as f64;
         watch.checkpoint(position)?;
         let phases = [position, (position + stagger).fract()];
         let (mut low, mut high) = (0.0, 1.0);
@@ -180,8 +160,8 @@ fn shared(
             difference = gap.abs() / (left.approach_m.abs() + right.approach_m.abs());
             // One half may carry all of it: the other's gap is then larger than the deflection.
             if difference < 1e-10 || high - low < 1e-12 {
-                states[0].push((phases[0], left_part * total, left));
-                states[1].push((phases[1], (1.0 - left_part) * total, right));
+                builders[0].push(phases[0], left_part * total, left);
+                builders[1].push(phases[1], (1.0 - left_part) * total, right);
                 difference = 0.0;
                 break;
             }
@@ -201,7 +181,7 @@ fn shared(
     }
     let part = |phase: f64| forces[(phase * forces.len() as f64).round() as usize % forces.len()];
     let [left_contact, right_contact] = &mut contacts;
-    let [left, right] = states.map(|states| CycleBuilder::at_positions(pair, compliance.slices(), states));
+    let [left, right] = builders;
     Ok([
         left.finish(left_contact, &|phase| part(phase) * total)?,
         right.finish(right_contact, &|phase| (1.0 - part((phase - stagger).rem_euclid(1.0))) * total)?,

@@ -26,7 +26,7 @@ pub struct Point {
 pub const CORNER_REACH: f64 = 0.5;
 
 /// Parts of a slice beyond the path.
-const CORNER_PARTS: u8 = 8;
+const CORNER_PARTS: u8 = 2;
 
 /// Which pairs to look at and how far beyond the path.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,11 @@
 //! Loaded tooth contact of one helix half and of both: tooth and body compliance, load distribution over all tooth pairs
 //! in mesh, mesh stiffness, transmission error and load shares over one mesh period.
 //!
-//! The model (fidelity `analytic`), per member: the tooth is a cantilever of its true profile in the normal section
-//! (`tooth`), its slices coupled along the face (`coupling`), on a three-dimensional elastic ring with free end faces,
-//! held at rim or bore (`body`, `ring_influence`); short waves at the root come from a plane-strain annulus (`annulus`);
-//! the contact itself is Hertzian (`hertz`). `lines` and `position` put the contact lines of one position together,
+//! The model (fidelity `analytic`), per member: the tooth (`tooth`) is a clamped plate of its true profile with free end
+//! faces (`plate`); the reactions of its root load a three-dimensional elastic ring with free end faces, held at rim or
+//! bore (`body`, `ring_influence`); short waves at the root come from a plane-strain annulus (`annulus`); the acute corner of a
+//! helical end face gives as an elastic wedge does (`edge`). `bulk` puts these together over Legendre functions of the
+//! face; the contact itself is Hertzian (`hertz`). `lines` and `position` put the contact lines of one position together,
 //! `distribution` shares the force out, `cycle` and `halves` run over the mesh period.
 //!
 //! Everything is SI and along the transverse base tangent unless a name says otherwise; coordinates are those of
@@ -12,10 +13,10 @@
 
 mod annulus;
 mod body;
-mod coupling;
-mod curve;
+mod bulk;
 mod cycle;
 mod distribution;
+mod edge;
 mod equivalent;
 mod flank;
 mod half;
@@ -29,7 +30,6 @@ mod lines;
 mod local;
 mod plate;
 mod position;
-mod refine;
 mod ring_influence;
 mod settings;
 mod tooth;

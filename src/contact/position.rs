@@ -89,12 +89,6 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Takes `state` as the neighbour to start from.
-    pub fn start_from(&mut self, state: &Loaded) {
-        self.previous.clear();
-        self.previous.extend(state.points.iter().zip(&state.forces_n).map(|(p, &f)| (place(p), f / p.width_m)));
-    }
-
     /// Distributes `force_bt_n` at `phase`. Pairs below `lowest_pair` stay out.
     pub fn solve(&mut self, phase: f64, lowest_pair: i32, force_bt_n: f64) -> Result<Loaded, Trouble> {
         let cos = self.pair.base_helix_angle_rad.cos();

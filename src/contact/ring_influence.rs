@@ -1,12 +1,11 @@
-//! Influence between the loads that the teeth of one member hand to its ring: every pair of width slices, on the same
-//! tooth and on teeth some pitches apart, following the helix.
+//! Flexibility of a ring under the loads that its teeth hand to it: forces and moments distributed along the roots (Legendre
+//! functions of the face, following the helix), on one tooth and between teeth some pitches apart.
 
 use std::f64::consts::PI;
 
 use super::annulus::arc_shapes;
-use super::body::{HarmonicFlexibility, Ring, WidthBasis, harmonic};
-use super::coupling::{ToothChain, ToothModes};
-use super::tooth::ProfilePoint;
+use super::body::{Ring, RingSolver, WidthBasis};
+use super::linalg::dot;
 
 /// Waves across the tooth longer than the first (in multiples of the normal module per radian) belong wholly to the
 /// ring, shorter than the second wholly to the tooth's own root; between them they share. A tooth pitch is π m_n, so
@@ -33,319 +32,280 @@ pub struct ToothLayout {
     pub side: f64,
 }
 
-/// Number of load components per slice; order as in `tooth::RootLoad`.
-pub const LOADS: usize = 5;
+/// Kinds of root load: tangential force, moment / r_f (radial traction linear across the tooth), radial force, axial force.
+pub const KINDS: usize = 4;
 
-/// Displacements of the slices per load (the displacement conjugate to each load component).
+/// Displacements of root loads (conjugate to them) per root load: kinds times Legendre functions of the face.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RingInfluence {
-    slices: usize,
-    table: Vec<[f64; LOADS * LOADS]>,
+pub struct RingFlexibility {
+    /// Functions of the face per kind.
+    pub size: usize,
+    /// One square row-major matrix over (kind, degree) per pitch between the teeth. Row: the tooth that is ahead in the mesh.
+    pub offsets: Vec<Vec<f64>>,
 }
 
-/// Flexibilities of ascending harmonics: the low ones and every so many of the high ones are computed, the others
-/// interpolated linearly in n times flexibility, which tends to the half-space's constant.
-struct Harmonics<'a> {
-    ring: &'a Ring,
-    basis: &'a WidthBasis,
-    below: (u32, HarmonicFlexibility),
-    above: (u32, HarmonicFlexibility),
-    between: HarmonicFlexibility,
+/// Flexibilities of all harmonics: the low ones and every so many of the high ones are computed, the others interpolated
+/// (cubic through four) in n times flexibility, which tends to the half-space's constant.
+struct Harmonics {
+    orders: Vec<f64>,
+    computed: Vec<[Vec<f64>; 2]>,
+    between: [Vec<f64>; 2],
 }
 
-/// Harmonics up to this one are all computed, the steps beyond grow by an eighth of the order.
-const EVERY_HARMONIC: u32 = 8;
+/// Harmonics up to this one are all computed, the steps beyond grow by a quarter of the order.
+const EVERY_HARMONIC: f64 = 5.0;
 
-impl<'a> Harmonics<'a> {
-    fn new(ring: &'a Ring, basis: &'a WidthBasis) -> Harmonics<'a> {
-        let first = harmonic(ring, basis, 0, false);
-        Harmonics { ring, basis, below: (0, first.clone()), above: (0, first.clone()), between: first }
+impl Harmonics {
+    fn new(solver: &RingSolver, highest: u32) -> Harmonics {
+        let mut orders = vec![0.0];
+        let mut n = 0.0;
+        while n < f64::from(highest) {
+            n += if n < EVERY_HARMONIC { 1.0 } else { (n / 4.0).ceil() };
+            orders.push(n);
+        }
+        let computed: Vec<_> = orders.iter().map(|&n| solver.flexibility(n)).collect();
+        let between = computed[0].clone();
+        Harmonics { orders, computed, between }
     }
 
-    /// Harmonic `n`; orders must ascend.
-    fn at(&mut self, n: u32) -> &HarmonicFlexibility {
-        while self.above.0 < n {
-            let step = if self.above.0 < EVERY_HARMONIC { 1 } else { (self.above.0 / 8).max(1) };
-            let next = self.above.0 + step;
-            let fresh = (next, harmonic(self.ring, self.basis, next, false));
-            self.below = std::mem::replace(&mut self.above, fresh);
+    fn at(&mut self, n: u32) -> &[Vec<f64>; 2] {
+        let n = f64::from(n);
+        let above = self.orders.partition_point(|&o| o < n);
+        if self.orders[above] == n {
+            return &self.computed[above];
         }
-        if self.above.0 == n {
-            return &self.above.1;
-        }
-        let (low, high) = (f64::from(self.below.0), f64::from(self.above.0));
-        let t = (f64::from(n) - low) / (high - low);
-        let (a, b) = ((1.0 - t) * low / f64::from(n), t * high / f64::from(n));
-        for (parity, block) in self.between.blocks.iter_mut().enumerate() {
-            let (below, above) = (&self.below.1.blocks[parity], &self.above.1.blocks[parity]);
-            for ((value, x), y) in block.iter_mut().zip(below).zip(above) {
-                *value = a * x + b * y;
+        let first = above.saturating_sub(2).min(self.orders.len() - 4);
+        let near = &self.orders[first..first + 4];
+        let weights: [f64; 4] = std::array::from_fn(|a| {
+            let others = (0..4).filter(|&b| b != a).map(|b| (n - near[b]) / (near[a] - near[b]));
+            others.product::<f64>() * near[a] / n
+        });
+        for (parity, block) in self.between.iter_mut().enumerate() {
+            block.fill(0.0);
+            for (a, w) in weights.iter().enumerate() {
+                for (value, x) in block.iter_mut().zip(&self.computed[first + a][parity]) {
+                    *value += w * x;
+                }
             }
         }
         &self.between
     }
 }
 
-/// Sum over harmonics and its slice-space workspace.
-struct Accumulator {
-    slices: usize,
-    size: usize,
-    /// Slice means of the width functions, degree by degree.
-    shapes: Vec<f64>,
-    /// Slice-space flexibility per pair of components.
-    components: [Vec<f64>; 9],
-    rows: Vec<f64>,
+/// Load columns of one harmonic: degree of the tooth by degree of the ring, ∫ P_p P_q cos or sin of the twist.
+struct Twist {
+    points: usize,
+    /// Angle of the tooth at the points per harmonic, from the middle of the face.
+    angles: Vec<f64>,
+    /// Weighted products P_p P_q at the points: (p, q ≤ p).
+    products: Vec<f64>,
 }
 
-impl RingInfluence {
-    /// Influence for `slices` equal slices and teeth up to `offsets` pitches apart.
-    pub fn new(ring: &Ring, layout: &ToothLayout, slices: usize, offsets: usize) -> RingInfluence {
+impl Twist {
+    fn new(basis: &WidthBasis, width_m: f64, twist_per_m: f64, highest: u32) -> Twist {
+        // The trapezoidal rule in the angle of a circle (Clenshaw-Curtis without its end corrections) would do as well; Gauss
+        // points by Newton are exact for the products and resolve the highest wave.
+        let half_turn = 0.5 * width_m * twist_per_m * f64::from(highest);
+        let points = basis.order + 6 + (0.6 * half_turn).ceil() as usize;
+        let size = basis.order + 1;
+        let mut angles = Vec::with_capacity(points);
+        let mut products = vec![0.0; size * (size + 1) / 2 * points];
+        let mut values = vec![0.0; size];
+        for (i, (x, w)) in gauss_legendre(points).into_iter().enumerate() {
+            angles.push(0.5 * width_m * x * twist_per_m);
+            basis.values(0.5 * width_m * (1.0 + x), &mut values);
+            let mut row = 0;
+            for p in 0..size {
+                for q in 0..=p {
+                    products[row * points + i] = 0.5 * width_m * w * values[p] * values[q];
+                    row += 1;
+                }
+            }
+        }
+        Twist { points, angles, products }
+    }
+
+    /// Fills `out[p * size + q]`: the integral with the cosine where p + q is even, with the sine where it is odd.
+    fn at(&self, n: f64, size: usize, waves: &mut [Vec<f64>; 2], out: &mut [f64]) {
+        for wave in waves.iter_mut() {
+            wave.resize(self.points, 0.0);
+        }
+        for (i, angle) in self.angles.iter().enumerate() {
+            let (s, c) = (n * angle).sin_cos();
+            waves[0][i] = c;
+            waves[1][i] = s;
+        }
+        let mut rows = self.products.chunks_exact(self.points);
+        for p in 0..size {
+            for q in 0..=p {
+                let value = rows.next().map_or(0.0, |row| dot(row, &waves[(p + q) % 2]));
+                out[p * size + q] = value;
+                out[q * size + p] = value;
+            }
+        }
+    }
+}
+
+/// Points and weights of the Gauss-Legendre rule on [-1, 1], by Newton's method.
+fn gauss_legendre(points: usize) -> Vec<(f64, f64)> {
+    let n = points as f64;
+    (0..points)
+        .map(|i| {
+            let mut x = -(PI * (i as f64 + 0.75) / (n + 0.5)).cos();
+            let mut slope = 1.0;
+            for _ in 0..20 {
+                let (mut before, mut now) = (1.0, x);
+                for k in 1..points {
+                    let next = ((2 * k + 1) as f64 * x * now - k as f64 * before) / (k + 1) as f64;
+                    (before, now) = (now, next);
+                }
+                slope = n * (x * now - before) / (x * x - 1.0);
+                let step = now / slope;
+                x -= step;
+                if step.abs() < 1e-15 {
+                    break;
+                }
+            }
+            (x, 2.0 / ((1.0 - x * x) * slope * slope))
+        })
+        .collect()
+}
+
+impl RingFlexibility {
+    /// Flexibility over the functions of `basis`, for teeth up to `offsets` pitches apart.
+    pub fn new(ring: &Ring, basis: &WidthBasis, layout: &ToothLayout, offsets: usize) -> RingFlexibility {
         let reach = ring.outer_radius_m * layout.root_helix_angle_rad.cos();
         let highest = (RING_WAVES_PER_MODULE.1 / layout.normal_module_m * reach).ceil().max(3.0) as u32;
-        let waves = RING_WAVES_PER_MODULE.1 * ring.face_width_m / (PI * layout.normal_module_m);
-        let basis = WidthBasis::new((4.0 + 1.1 * waves).ceil().clamp(5.0, 26.0) as usize, ring.face_width_m);
-        let mut sum = Accumulator::new(&basis, slices);
-        let mut series = Harmonics::new(ring, &basis);
-        let mut table = vec![[0.0; LOADS * LOADS]; (offsets + 1) * slices * slices];
-        let pitch = 2.0 * PI / layout.teeth as f64;
-        let turn = ring.face_width_m / slices as f64 * layout.twist_per_m;
+        let solver = RingSolver::new(ring, basis);
+        let mut harmonics = Harmonics::new(&solver, highest);
+        let twist = Twist::new(basis, ring.face_width_m, layout.twist_per_m, highest);
+        let size = basis.order + 1;
+        let width = KINDS * size;
+        // A load of unit phase e^{inψ} is i^τ times a real column: tangential displacements and the moment carry one i, the
+        // sine of the twist carries -i. Their product takes the cosine or the sine of the angle between the teeth.
+        let mut even = vec![vec![0.0; width * width]; offsets + 1];
+        let mut work = Columns::new(size);
+        let mut waves = [Vec::new(), Vec::new()];
+        let mut twisted = vec![0.0; size * size];
+        let pitch = 2.0 * PI / f64::from(layout.teeth);
         for n in 0..=highest {
-            let weight = ring_weight(n as f64 / reach, layout.normal_module_m);
+            let weight = ring_weight(f64::from(n) / reach, layout.normal_module_m);
             if weight <= 0.0 {
                 continue;
             }
-            sum.transform(series.at(n));
+            twist.at(f64::from(n), size, &mut waves, &mut twisted);
+            work.multiply(&solver.rows, harmonics.at(n), &twisted, layout.side);
             let factor = weight * if n == 0 { 0.5 } else { 1.0 } / PI;
-            let (uniform, linear) = arc_shapes(n as f64, layout.root_half_angle_rad);
-            // (component, shape, odd) of tangential, moment, radial and axial load.
-            let kinds = [(1, uniform, true), (0, -linear, true), (0, uniform, false), (2, uniform, false)];
-            for k in 0..=offsets {
-                for shift in 0..2 * slices - 1 {
-                    let steps = shift as f64 - (slices - 1) as f64;
-                    let psi = -layout.side * (k as f64 * pitch + steps * turn);
-                    let (sin, cos) = (n as f64 * psi).sin_cos();
-                    let mut coefficients = [0.0; 16];
-                    for (a, &(_, fa, odd_a)) in kinds.iter().enumerate() {
-                        for (b, &(_, fb, odd_b)) in kinds.iter().enumerate() {
-                            let phase = match (odd_a, odd_b) {
-                                (true, false) => -sin,
-                                (false, true) => sin,
-                                _ => cos,
-                            };
-                            coefficients[a * 4 + b] = factor * fa * fb * phase;
-                        }
-                    }
-                    let first = (shift + 1).saturating_sub(slices);
-                    for i in first..slices.min(shift + 1) {
-                        let j = i + slices - 1 - shift;
-                        let entry = &mut table[(k * slices + i) * slices + j];
-                        for (a, &(ca, ..)) in kinds.iter().enumerate() {
-                            for (b, &(cb, ..)) in kinds.iter().enumerate() {
-                                entry[a * LOADS + b] +=
-                                    coefficients[a * 4 + b] * sum.components[ca * 3 + cb][i * slices + j];
+            let (uniform, linear) = arc_shapes(f64::from(n), layout.root_half_angle_rad);
+            // (component, shape, τ) of the kinds.
+            let kinds = [(1, uniform, 1i32), (0, -linear, 1), (0, uniform, 0), (2, uniform, 0)];
+            for (k, target) in even.iter_mut().enumerate() {
+                let (sin, cos) = (f64::from(n) * layout.side * k as f64 * pitch).sin_cos();
+                for (a, &(ca, fa, ta)) in kinds.iter().enumerate() {
+                    for (b, &(cb, fb, tb)) in kinds.iter().enumerate() {
+                        let scale = factor * fa * fb;
+                        for p in 0..size {
+                            let source = &work.product[((ca * size + p) * 3 + cb) * size..][..size];
+                            let row = &mut target[(a * size + p) * width + b * size..][..size];
+                            let xa = sine(ca, p);
+                            // i^d of even and of odd degrees.
+                            let by = [0, 1].map(|q| scale * real_part(ta - tb + sine(cb, q) - xa, sin, cos));
+                            for (pair, from) in row.chunks_mut(2).zip(source.chunks(2)) {
+                                for ((r, s), f) in pair.iter_mut().zip(from).zip(by) {
+                                    *r += f * s;
+                                }
                             }
                         }
                     }
                 }
             }
         }
-        let mut influence = RingInfluence { slices, table };
-        influence.add_dipoles(ring.face_width_m / slices as f64, offsets);
-        influence
+        RingFlexibility { size, offsets: even }
+    }
+}
+
+/// Whether degree `q` of component `c` takes the sine of the twist in the first block of the ring (in the second block it is
+/// the reverse).
+fn sine(c: usize, q: usize) -> i32 {
+    ((usize::from(c == 2) + q) % 2) as i32
+}
+
+/// Real part of i^d e^{-iφ}.
+fn real_part(d: i32, sin: f64, cos: f64) -> f64 {
+    match d.rem_euclid(4) {
+        0 => cos,
+        1 => sin,
+        2 => -cos,
+        _ => -sin,
+    }
+}
+
+/// Ring flexibility of one harmonic between the functions of two teeth, without the angle between them.
+struct Columns {
+    size: usize,
+    /// (component, degree; component, degree).
+    product: Vec<f64>,
+    half: Vec<f64>,
+}
+
+impl Columns {
+    fn new(size: usize) -> Columns {
+        Columns { size, product: vec![0.0; 9 * size * size], half: vec![0.0; size * size] }
     }
 
-    /// The dipole's displacement is the slope of the radial displacement along the tooth: central differences between
-    /// slices, one-sided at the ends.
-    fn add_dipoles(&mut self, step: f64, offsets: usize) {
-        const RADIAL: usize = 2;
-        const DIPOLE: usize = 4;
-        let n = self.slices;
-        if n < 2 {
-            return;
-        }
-        let neighbours = |i: usize| {
-            let (low, high) = (i.saturating_sub(1), (i + 1).min(n - 1));
-            (low, high, 1.0 / ((high - low) as f64 * step))
-        };
-        for k in 0..=offsets {
-            let base = k * n * n;
-            for i in 0..n {
-                let (low, high, scale) = neighbours(i);
-                for j in 0..n {
-                    for b in 0..4 {
-                        let difference = self.table[base + high * n + j][RADIAL * LOADS + b]
-                            - self.table[base + low * n + j][RADIAL * LOADS + b];
-                        self.table[base + i * n + j][DIPOLE * LOADS + b] = difference * scale;
-                    }
-                }
-            }
-            for i in 0..n {
-                for j in 0..n {
-                    let (low, high, scale) = neighbours(j);
-                    for a in 0..LOADS {
-                        let difference = self.table[base + i * n + high][a * LOADS + RADIAL]
-                            - self.table[base + i * n + low][a * LOADS + RADIAL];
-                        self.table[base + i * n + j][a * LOADS + DIPOLE] = difference * scale;
-                    }
-                }
-            }
-        }
-    }
-
-    /// Contracts the load components at `NODES` places of the profile, spreading each load along the tooth before it
-    /// reaches the ring and each displacement on its way back.
-    pub fn along_profile(&self, step_m: f64, places: &[ProfilePoint; NODES]) -> ProfileInfluence {
-        let n = self.slices;
-        let offsets = self.table.len() / (n * n);
-        let chains = places.map(|place| {
-            place.root_spread_m.map(|decay| {
-                let mut chain = ToothChain::default();
-                chain.prepare(step_m, std::iter::repeat_n(decay, n));
-                chain
-            })
-        });
-        let mut table = vec![[0.0; NODES * NODES]; self.table.len()];
-        let mut loaded = vec![0.0; LOADS * n * n];
-        let (mut forces, mut moments) = (vec![0.0; n], vec![0.0; n]);
-        for k in 0..offsets {
-            let raw = &self.table[k * n * n..(k + 1) * n * n];
-            for b in 0..NODES {
-                let load = &places[b].root_load.components;
-                for i in 0..n {
-                    for a in 0..LOADS {
-                        for (j, entry) in raw[i * n..(i + 1) * n].iter().enumerate() {
-                            (forces[j], moments[j]) = split(&entry[a * LOADS..(a + 1) * LOADS], load);
+    /// Twists the flexibility `blocks` over `rows` from the ring's functions to the tooth's.
+    fn multiply(&mut self, rows: &[Vec<(usize, usize)>; 2], blocks: &[Vec<f64>; 2], twisted: &[f64], side: f64) {
+        let size = self.size;
+        self.product.fill(0.0);
+        for (parity, (rows, block)) in rows.iter().zip(blocks).enumerate() {
+            let of = |c: usize| {
+                let first = rows.partition_point(|r| r.0 < c);
+                first..rows.partition_point(|r| r.0 <= c)
+            };
+            for ca in 0..3 {
+                for cb in ca..3 {
+                    for r in of(ca) {
+                        // F times the twisted functions of the second tooth.
+                        self.half[..size].fill(0.0);
+                        for s in of(cb) {
+                            let f = block[r * rows.len() + s];
+                            let t = &twisted[rows[s].1 * size..][..size];
+                            for (h, t) in self.half[..size].iter_mut().zip(t) {
+                                *h += f * t;
+                            }
                         }
-                        chains[b][0].spread(step_m, &mut forces);
-                        chains[b][1].spread(step_m, &mut moments);
-                        let target = &mut loaded[(a * n + i) * n..(a * n + i + 1) * n];
-                        for ((t, f), m) in target.iter_mut().zip(&forces).zip(&moments) {
-                            *t = f + m;
-                        }
-                    }
-                }
-                for a in 0..NODES {
-                    let answer = &places[a].root_load.components;
-                    for j in 0..n {
-                        for i in 0..n {
-                            let column: [f64; LOADS] = std::array::from_fn(|c| loaded[(c * n + i) * n + j]);
-                            (forces[i], moments[i]) = split(&column, answer);
-                        }
-                        chains[a][0].spread(step_m, &mut forces);
-                        chains[a][1].spread(step_m, &mut moments);
-                        for i in 0..n {
-                            table[(k * n + i) * n + j][a * NODES + b] = forces[i] + moments[i];
+                        let degree = rows[r].1;
+                        for p in 0..size {
+                            let xa = sine(ca, p);
+                            let left = twisted[degree * size + p];
+                            // The sine changes sign with the side, and between the blocks where only one column has it.
+                            let by = [0, 1].map(|q| {
+                                let xb = sine(cb, q);
+                                if xa == xb {
+                                    left
+                                } else if parity == 0 {
+                                    left * side
+                                } else {
+                                    -left * side
+                                }
+                            });
+                            let target = &mut self.product[((ca * size + p) * 3 + cb) * size..][..size];
+                            for (pair, from) in target.chunks_mut(2).zip(self.half.chunks(2)) {
+                                for ((t, h), f) in pair.iter_mut().zip(from).zip(by) {
+                                    *t += f * h;
+                                }
+                            }
                         }
                     }
                 }
             }
         }
-        ProfileInfluence { slices: n, table }
-    }
-}
-
-/// Parts of a contraction by forces (tangential, radial, axial) and by moments (moment, dipole).
-fn split(row: &[f64], load: &[f64; LOADS]) -> (f64, f64) {
-    (row[0] * load[0] + row[2] * load[2] + row[3] * load[3], row[1] * load[1] + row[4] * load[4])
-}
-
-/// Places of the profile between which the influence is interpolated (Chebyshev nodes, a polynomial through all).
-pub const NODES: usize = 5;
-
-/// Normal displacements per normal force of teeth and ring together, for every pair of slices and places of the profile:
-/// all but the contact indentation.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ProfileInfluence {
-    slices: usize,
-    table: Vec<[f64; NODES * NODES]>,
-}
-
-impl ProfileInfluence {
-    /// Adds the tooth's own compliance above the ring (`coupling`) between all places of one tooth.
-    pub fn add_tooth(&mut self, step_m: f64, places: &[ProfilePoint; NODES]) {
-        let n = self.slices;
-        let own = ToothModes::new(step_m, n, &places.map(|p| (p.line_compliance_m2_per_n, p.decay_length_m)));
-        for (i, row) in self.table[..n * n].chunks_exact_mut(n).enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                own.add(i, j, entry);
-            }
-        }
-    }
-
-    /// Displacement at slice `i` from a force at slice `j`, both on one tooth (`offset` 0) or with the first `offset` pairs
-    /// earlier in the mesh than the second; `wa` and `wb` are the interpolation weights of their places.
-    #[cfg(test)]
-    pub fn between(&self, offset: usize, i: usize, j: usize, wa: &[f64; NODES], wb: &[f64; NODES]) -> f64 {
-        let entry = &self.table[(offset * self.slices + i) * self.slices + j];
-        let mut sum = 0.0;
-        for a in 0..NODES {
-            let row = &entry[a * NODES..(a + 1) * NODES];
-            let mut inner = 0.0;
-            for b in 0..NODES {
-                inner += row[b] * wb[b];
-            }
-            sum += wa[a] * inner;
-        }
-        sum
-    }
-}
-
-impl ProfileInfluence {
-    /// The same between two of the places themselves.
-    pub fn entry(&self, offset: usize, (i, a): (usize, usize), (j, b): (usize, usize)) -> f64 {
-        self.table[(offset * self.slices + i) * self.slices + j][a * NODES + b]
-    }
-}
-
-impl Accumulator {
-    fn new(basis: &WidthBasis, slices: usize) -> Accumulator {
-        let size = basis.order + 1;
-        let means = basis.slice_means(slices);
-        let mut shapes = vec![0.0; size * slices];
-        for i in 0..slices {
-            for p in 0..size {
-                shapes[p * slices + i] = means[i * size + p];
-            }
-        }
-        Accumulator {
-            slices,
-            size,
-            shapes,
-            components: std::array::from_fn(|_| vec![0.0; slices * slices]),
-            rows: Vec::new(),
-        }
-    }
-
-    /// From width functions to slices.
-    fn transform(&mut self, harmonic: &HarmonicFlexibility) {
-        let n = self.slices;
-        for c in &mut self.components {
-            c.fill(0.0);
-        }
-        for (rows, block) in harmonic.rows.iter().zip(&harmonic.blocks) {
-            let count = rows.len();
-            self.rows.clear();
-            self.rows.resize(count * 3 * n, 0.0);
-            for r in 0..count {
-                for (c, &(component, degree)) in rows.iter().enumerate() {
-                    debug_assert!(degree < self.size);
-                    let value = block[r * count + c];
-                    let target = &mut self.rows[(r * 3 + component) * n..(r * 3 + component + 1) * n];
-                    let shape = &self.shapes[degree * n..(degree + 1) * n];
-                    for (t, s) in target.iter_mut().zip(shape) {
-                        *t += value * s;
-                    }
-                }
-            }
-            for (r, &(component, degree)) in rows.iter().enumerate() {
-                for other in 0..3 {
-                    let source = &self.rows[(r * 3 + other) * n..(r * 3 + other + 1) * n];
-                    let target = &mut self.components[component * 3 + other];
-                    for i in 0..n {
-                        let factor = self.shapes[degree * n + i];
-                        for (t, s) in target[i * n..(i + 1) * n].iter_mut().zip(source) {
-                            *t += factor * s;
-                        }
+        for ca in 1..3 {
+            for cb in 0..ca {
+                for p in 0..size {
+                    for q in 0..size {
+                        self.product[((ca * size + p) * 3 + cb) * size + q] =
+                            self.product[((cb * size + q) * 3 + ca) * size + p];
                     }
                 }
             }

@@ -25,4 +25,3 @@ mod stored;
 
 pub use flexibility::FlankFlexibility;
 pub use input::{FeError, FlankInput, FlankKey, MESH_VERSION, Resolution, Side};
-

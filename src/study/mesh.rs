@@ -71,8 +71,7 @@ impl<'a> ContactCase<'a> {
             torque_nm: document.operation.pinion_torque_nm,
             half_stagger: document.design.half_stagger,
             settings: Settings {
-                positions: ltca.positions.map(|positions| positions as usize),
-                accuracy: default.accuracy,
+                positions: ltca.positions.map_or(default.positions, |positions| positions as usize),
                 slices: ltca.slices.map(|slices| slices as usize),
                 body: match ltca.body {
                     Body::Rim => BodyHold::Rim,

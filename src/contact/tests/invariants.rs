@@ -13,7 +13,7 @@ use crate::watch::Watch;
 const TOPIC: &str = "Contact: balances of the loaded analysis";
 
 fn quick() -> Settings {
-    Settings { positions: Some(16), slices: Some(20), ..Settings::default() }
+    Settings { positions: 16, slices: Some(20), ..Settings::default() }
 }
 
 #[test]
@@ -103,12 +103,12 @@ fn integer_overlap_gives_a_nearly_constant_stiffness() {
     let constant = pair(&spec([40, 60], helix, width));
     let other = pair(&spec([40, 60], helix, 0.8 * width));
     let spread = |pair| {
-        let settings = Settings { corner_contact: false, positions: Some(16), slices: Some(48), ..Settings::default() };
+        let settings = Settings { corner_contact: false, positions: 16, slices: Some(48), ..Settings::default() };
         let cycle = solve_half(pair, Half::Left, 1e4, &settings, Watch::none()).unwrap();
         (cycle.stiffness.max - cycle.stiffness.min) / cycle.stiffness.mean
     };
     let (flat, wavy) = (spread(&constant), spread(&other));
-    check_worst(TOPIC, "whole overlap ratio: swing of the stiffness over its mean", [flat], 0.02);
+    check_worst(TOPIC, "whole overlap ratio: swing of the stiffness over its mean", [flat], 0.025);
     assert!(wavy > 4.0 * flat, "{flat} {wavy}");
 }
 

@@ -28,8 +28,7 @@ proptest! {
         spec.gear.flanks[1].helix_slope_m = errors.2;
         let Ok((pair, _)) = Pair::new(&spec) else { return Ok(()) };
         let settings = Settings {
-            positions: Some(6),
-            accuracy: 1e-3,
+            positions: 6,
             slices: Some(12),
             body: if bore_hold { BodyHold::Bore } else { BodyHold::Rim },
             corner_contact,

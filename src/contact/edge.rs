@@ -1,0 +1,122 @@
+//! The sharp end of a helical tooth: what its acute corner gives beyond half-space and plate.
+//!
+//! Where flank and end face meet at less than a right angle, the flank normal of a contact near the end leaves the tooth through
+//! the end face before it reaches the middle surface: the load stands on a wedge. An elastic wedge has no length of its own, so
+//! that its displacement at the distance t from the edge under a point load at t' (both on one line across the edge), less
+//! that of the half-space, is
+//!
+//! ```text
+//! κ(φ) (1-ν²)/(πE) / (t + t')
+//! ```
+//!
+//! with a factor κ that depends on the dihedral angle φ and, for t/t' between 1/7 and 7, within 15 % on nothing else. The
+//! contact line of an involute helicoid is perpendicular to the edge, and φ = 90° ± β_b all along it. Where the normal
+//! meets the middle surface within the tooth again, at t = ℓ = depth × tanβ_b, the plate knows the end face:
+//! 1/(t+t') - 1/(t+t'+ℓ) remains of the wedge. At the obtuse corner and at spur teeth ℓ vanishes.
+
+use std::f64::consts::PI;
+
+/// κ at dihedral angles in degrees, for ν = 0.3: waves cos(ky) along the edge on a section of 9-node finite elements, graded
+/// from 0.002/k to 14/k, less the same of the half-space, integrated over k; mean of t/t' = 1.3 and 1.6. The mesh
+/// reproduces the half-space within 3 %.
+const WEDGE: [(f64, f64); 10] = [
+    (45.0, 31.3),
+    (50.0, 21.7),
+    (55.0, 15.3),
+    (60.0, 11.0),
+    (65.0, 8.05),
+    (70.0, 5.92),
+    (75.0, 4.38),
+    (80.0, 3.25),
+    (85.0, 2.41),
+    (90.0, 1.78),
+];
+
+/// The acute end of a tooth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AcuteEnd {
+    factor: f64,
+    tan: f64,
+    /// Length of a slice across the edge.
+    slice_m: f64,
+    /// The slice at the end.
+    first: usize,
+}
+
+/// κ(φ), logarithmically interpolated.
+fn wedge_factor(degrees: f64) -> f64 {
+    let i = WEDGE.partition_point(|w| w.0 < degrees).clamp(1, WEDGE.len() - 1);
+    let ((x0, y0), (x1, y1)) = (WEDGE[i - 1], WEDGE[i]);
+    let t = ((degrees - x0) / (x1 - x0)).clamp(0.0, 1.0);
+    y0 * (y1 / y0).powf(t)
+}
+
+impl AcuteEnd {
+    /// The acute end of the pinion's (`side` +1) or gear's teeth, whose faces of `width_m` are cut into `slices`.
+    pub fn new(base_helix_angle_rad: f64, side: f64, width_m: f64, slices: usize, youngs_pa: f64, nu: f64) -> AcuteEnd {
+        let (sin, cos) = base_helix_angle_rad.abs().sin_cos();
+        let last = slices.saturating_sub(1);
+        AcuteEnd {
+            factor: wedge_factor(90.0 - base_helix_angle_rad.abs().to_degrees()) * (1.0 - nu * nu) / (PI * youngs_pa),
+            tan: sin / cos,
+            slice_m: width_m / slices as f64 / cos,
+            first: if side > 0.0 { last } else { 0 },
+        }
+    }
+
+    /// Mean displacement of slice `i` per force spread over slice `j`, at places of the smaller depth `depth_m`.
+    pub fn between(&self, i: usize, j: usize, depth_m: f64) -> f64 {
+        let reach = depth_m * self.tan;
+        if reach <= 0.0 {
+            return 0.0;
+        }
+        // Twice integrated 1/x: x ln x - x.
+        let twice = |x: f64| if x > 0.0 { x * x.ln() - x } else { 0.0 };
+        let d = self.slice_m;
+        let from = (i.abs_diff(self.first) + j.abs_diff(self.first)) as f64 * d;
+        let mean = |x: f64| (twice(x + 2.0 * d) - 2.0 * twice(x + d) + twice(x)) / (d * d);
+        self.factor * (mean(from) - mean(from + reach)).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::linalg::cholesky;
+    use crate::oracle::check_worst;
+
+    #[test]
+    fn slices_see_the_mean_of_the_kernel() {
+        let end = AcuteEnd::new(0.5, 1.0, 40.0, 20, 1.0, 0.3);
+        let (d, depth) = (end.slice_m, 3.0);
+        let mut errors = Vec::new();
+        for (i, j) in [(19, 19), (19, 18), (17, 12)] {
+            let n = 400;
+            let at = |slice: usize, k: usize| ((19 - slice) as f64 + (k as f64 + 0.5) / f64::from(n)) * d;
+            let mut sum = 0.0;
+            for k in 0..n as usize {
+                for l in 0..n as usize {
+                    let x = at(i, k) + at(j, l);
+                    sum += 1.0 / x - 1.0 / (x + depth * 0.5f64.tan());
+                }
+            }
+            errors.push(end.between(i, j, depth) / (end.factor * sum / f64::from(n * n)) - 1.0);
+        }
+        check_worst("Contact: acute end of a helical tooth", "slices against direct integration", errors, 2e-3);
+    }
+
+    #[test]
+    fn places_of_different_depth_stay_positive() {
+        let end = AcuteEnd::new(0.6, -1.0, 30.0, 6, 1.0, 0.3);
+        let depths = [1.0, 1.7, 2.5, 4.0];
+        let n = 6 * depths.len();
+        let mut matrix = vec![0.0; n * n];
+        for a in 0..n {
+            for b in 0..n {
+                let depth = f64::min(depths[a % 4], depths[b % 4]);
+                matrix[a * n + b] = end.between(a / 4, b / 4, depth) + if a == b { 1e-9 } else { 0.0 };
+            }
+        }
+        assert!(cholesky(&mut matrix, n));
+    }
+}
