@@ -103,7 +103,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/fe_tooth_29_67.json"))?;
     let reference: Value = serde_json::from_str(&text)?;
     let only: Vec<String> = std::env::args().skip(1).collect();
-    let all = [("coarse", Resolution::Coarse), ("standard", Resolution::Standard), ("fine", Resolution::Fine)];
+    let all = [
+        ("coarse", Resolution::Coarse),
+        ("medium", Resolution::Medium),
+        ("standard", Resolution::Standard),
+        ("fine", Resolution::Fine),
+    ];
     for (name, resolution) in all {
         if !only.is_empty() && !only.iter().any(|o| o == name) {
             continue;

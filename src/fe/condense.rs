@@ -6,7 +6,7 @@ use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization, cholesky
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul as triangular_matmul};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::{Accum, Mat, MatMut, Par, Spec};
+use faer::{Accum, Mat, MatMut, MatRef, Par, Spec};
 
 use super::dissection::Dissection;
 use super::input::FeError;
@@ -24,10 +24,39 @@ pub(super) struct Condensed {
     pub compliance: Mat<f64>,
 }
 
+/// A matrix by columns, zero at first; pages that are never written cost nothing.
+struct Square {
+    rows: usize,
+    columns: usize,
+    values: Vec<f64>,
+}
+
+impl Square {
+    fn zeros(rows: usize, columns: usize) -> Square {
+        Square { rows, columns, values: vec![0.0; rows * columns] }
+    }
+
+    fn column(&self, j: usize) -> &[f64] {
+        &self.values[j * self.rows..(j + 1) * self.rows]
+    }
+
+    fn column_mut(&mut self, j: usize) -> &mut [f64] {
+        &mut self.values[j * self.rows..(j + 1) * self.rows]
+    }
+
+    fn as_mut(&mut self) -> MatMut<'_, f64> {
+        MatMut::from_column_major_slice_mut(&mut self.values, self.rows, self.columns)
+    }
+
+    fn as_ref(&self) -> MatRef<'_, f64> {
+        MatRef::from_column_major_slice(&self.values, self.rows, self.columns)
+    }
+}
+
 /// What a front hands on: a matrix over points not yet eliminated.
 struct Part {
     points: Vec<usize>,
-    stiffness: Mat<f64>,
+    stiffness: Square,
     /// Loads with forces on these points.
     loads: Vec<usize>,
     forces: Mat<f64>,
@@ -73,9 +102,10 @@ pub(super) fn condense(
         index[point] = i;
     }
     let size = 3 * kept.len();
-    let mut stiffness = Mat::<f64>::zeros(size, size);
-    plan.assemble(kept, &index, &mut stiffness);
-    extend(&mut stiffness, &inside, &index);
+    let mut front = Square::zeros(size, size);
+    plan.assemble(kept, &index, &mut front);
+    extend(&mut front, &mut Square::zeros(0, 0), &inside, &index);
+    let mut stiffness = front.as_ref().to_owned();
     mirror(&mut stiffness);
     let mut forces = Mat::<f64>::zeros(size, load_count);
     for (column, &load) in inside.loads.iter().enumerate() {
@@ -100,17 +130,20 @@ fn enumerate(tree: &Dissection, rank: &mut [usize], next: &mut usize) {
     }
 }
 
-/// Adds the lower triangle of `part` into that of `target`.
-fn extend(target: &mut Mat<f64>, part: &Part, index: &[usize]) {
+/// Adds the lower triangle of `part` into the front: columns below `inner` go to `left`, the others to `right`.
+fn extend(left: &mut Square, right: &mut Square, part: &Part, index: &[usize]) {
+    let inner = left.columns;
     // Ranks rise in both, so the triangle stays the lower one.
     for (j, &pj) in part.points.iter().enumerate() {
         for b in 0..3 {
             let column = 3 * index[pj] + b;
-            let source = 3 * j + b;
-            for (i, &pi) in part.points.iter().enumerate().skip(j) {
-                let row = 3 * index[pi];
-                for a in if i == j { b } else { 0 }..3 {
-                    target[(row + a, column)] += part.stiffness[(3 * i + a, source)];
+            let source = &part.stiffness.column(3 * j + b)[3 * j..];
+            let (target, shift) =
+                if column < inner { (left.column_mut(column), 0) } else { (right.column_mut(column - inner), inner) };
+            for (values, &point) in source.chunks_exact(3).zip(&part.points[j..]) {
+                let row = 3 * index[point] - shift;
+                for (t, v) in target[row..row + 3].iter_mut().zip(values) {
+                    *t += v;
                 }
             }
         }
@@ -143,19 +176,19 @@ impl Plan<'_> {
     }
 
     /// Lower triangle of the stiffness between `points` (ranks rising) and all that come later, where `index` knows them.
-    fn assemble(&self, points: &[usize], index: &[usize], front: &mut Mat<f64>) {
+    fn assemble(&self, points: &[usize], index: &[usize], front: &mut Square) {
         for &point in points {
-            let column = 3 * index[point];
+            let first = 3 * index[point];
             self.operator.for_each_neighbour(point, |other, block| {
                 let rank = self.rank[other];
                 if rank < self.rank[point] {
                     return;
                 }
                 let row = 3 * index[other];
-                let values = block.values();
-                for a in 0..3 {
-                    for b in if other == point { a } else { 0 }..3 {
-                        front[(row + b, column + a)] += values[3 * a + b];
+                // Above the diagonal nothing is read.
+                for (a, values) in block.values().chunks_exact(3).enumerate() {
+                    for (t, v) in front.column_mut(first + a)[row..row + 3].iter_mut().zip(values) {
+                        *t += v;
                     }
                 }
             });
@@ -190,10 +223,11 @@ impl Plan<'_> {
             index[point] = own.len() + i;
         }
         let (inner, outer) = (3 * own.len(), 3 * later.len());
-        let mut front = Mat::<f64>::zeros(inner + outer, inner + outer);
+        let mut front = Square::zeros(inner + outer, inner);
+        let mut remainder = Square::zeros(outer, outer);
         self.assemble(own, &index, &mut front);
         for part in &parts {
-            extend(&mut front, part, &index);
+            extend(&mut front, &mut remainder, part, &index);
         }
 
         // Loads.
@@ -241,12 +275,11 @@ impl Plan<'_> {
         drop(parts);
 
         let place = "inside of a sector";
-        let (left, mut right) = front.as_mut().split_at_col_mut(inner);
-        let (mut diagonal, mut below) = left.split_at_row_mut(inner);
+        let (mut diagonal, mut below) = front.as_mut().split_at_row_mut(inner);
         factor(diagonal.as_mut(), place)?;
         solve_lower_triangular_in_place(diagonal.as_ref(), below.as_mut().transpose_mut(), Par::Seq);
         triangular_matmul(
-            right.as_mut().subrows_mut(inner, outer),
+            remainder.as_mut(),
             BlockStructure::TriangularLower,
             Accum::Add,
             below.as_ref(),
@@ -274,7 +307,7 @@ impl Plan<'_> {
         }
         Ok(Part {
             points: later,
-            stiffness: front.submatrix(inner, inner, outer, outer).to_owned(),
+            stiffness: remainder,
             forces: forces.submatrix(inner, 0, outer, loads.len()).to_owned(),
             loads,
             compliance,

@@ -18,7 +18,7 @@ struct Faces<'a> {
 
 impl Faces<'_> {
     /// Complex compliance of the loads at `phase`.
-    fn compliance(&self, phase: f64) -> Result<(Mat<f64>, Mat<f64>), FeError> {
+    fn compliance(&self, phase: f64) -> Result<Parts, FeError> {
         let n = self.size;
         let s = &self.sector.stiffness;
         let (sin, cos) = phase.sin_cos();
@@ -46,7 +46,21 @@ impl Faces<'_> {
     }
 }
 
+/// Even and odd part of the compliance at one phase.
+type Parts = (Mat<f64>, Mat<f64>);
+
+/// Up to this many waves all are calculated.
+const ALL: usize = 24;
+/// Waves up to this number are always calculated: the blank answers each in its own way.
+const DIRECT: usize = 5;
+/// Largest error at the next finer phases, as a part of the largest entry, at which interpolation stops refining. The result
+/// uses the finer phases too, which about squares the error (geometric convergence).
+const INTERPOLATION_ERROR: f64 = 5e-4;
+
 /// Displacement under load a of the sector m places ahead (growing angle) by load b, for m = 0..=offsets.
+///
+/// Of many waves the high ones are interpolated in the logarithm of the phase (Chebyshev points, refined until the error is
+/// below [`INTERPOLATION_ERROR`]).
 pub(super) fn expand(
     sector: &Condensed,
     teeth: u32,
@@ -57,34 +71,106 @@ pub(super) fn expand(
     let faces = Faces { sector, size: sector.stiffness.nrows() / 2 };
     let loads = sector.forces.ncols();
     let highest = teeth as usize / 2;
+    let direct = if highest <= ALL { highest } else { DIRECT };
+    let step = 2.0 * std::f64::consts::PI / f64::from(teeth);
     let mut sums = vec![Mat::<f64>::zeros(loads, loads); offsets + 1];
-    let all: Vec<usize> = (0..=highest).collect();
+    let at = |phases: &[f64], done: f64| -> Result<Vec<Parts>, FeError> {
+        let parts = phases.par_iter().map(|&phase| {
+            let part = faces.compliance(phase)?;
+            watch.checkpoint(progress.0 + (progress.1 - progress.0) * done)?;
+            Ok(part)
+        });
+        parts.collect()
+    };
+    // n and N - n are conjugate.
+    let weight = |n: usize| if n == 0 || 2 * n == teeth as usize { 1.0 } else { 2.0 } / f64::from(teeth);
+    let angle = |m: usize, n: usize| step * ((m * n) % teeth as usize) as f64;
     // A few at a time: sums in a fixed order, whatever the threads.
+    let all: Vec<usize> = (0..=direct).collect();
     for some in all.chunks(8) {
-        let fraction = some[0] as f64 / (highest + 1) as f64;
-        watch.checkpoint(progress.0 + (progress.1 - progress.0) * fraction)?;
-        let parts: Vec<(Mat<f64>, Mat<f64>)> = some
-            .par_iter()
-            .map(|&n| {
-                let part = faces.compliance(2.0 * std::f64::consts::PI * n as f64 / f64::from(teeth))?;
-                watch.checkpoint(progress.0 + (progress.1 - progress.0) * fraction)?;
-                Ok(part)
-            })
-            .collect::<Result<_, FeError>>()?;
-        for (&n, (even, odd)) in some.iter().zip(&parts) {
-            // n and N - n are conjugate.
-            let single = n == 0 || 2 * n == teeth as usize;
-            let weight = if single { 1.0 } else { 2.0 } / f64::from(teeth);
+        let phases: Vec<f64> = some.iter().map(|&n| step * n as f64).collect();
+        let parts = at(&phases, 0.5 * some[0] as f64 / (direct + 1) as f64)?;
+        for (&n, parts) in some.iter().zip(&parts) {
             for (m, sum) in sums.iter_mut().enumerate() {
-                let (sin, cos) =
-                    (2.0 * std::f64::consts::PI * ((m * n) % teeth as usize) as f64 / f64::from(teeth)).sin_cos();
-                for j in 0..loads {
-                    for i in 0..loads {
-                        sum[(i, j)] += weight * (cos * even[(i, j)] - sin * odd[(i, j)]);
-                    }
-                }
+                let (sin, cos) = angle(m, n).sin_cos();
+                add(sum, parts, weight(n) * cos, weight(n) * sin);
             }
         }
     }
+    if direct == highest {
+        return Ok(sums);
+    }
+    let range = ((step * (direct + 1) as f64).ln(), (step * highest as f64).ln());
+    let phase = |x: f64| (range.0 + (range.1 - range.0) * 0.5 * (1.0 + x)).exp();
+    let mut places: Vec<f64> = lobatto(4).collect();
+    let mut parts = at(&places.iter().map(|&x| phase(x)).collect::<Vec<_>>(), 0.5)?;
+    let mut count = 4;
+    while count < 32 {
+        count *= 2;
+        let new: Vec<f64> = lobatto(count).skip(1).step_by(2).collect();
+        let exact = at(&new.iter().map(|&x| phase(x)).collect::<Vec<_>>(), 0.5 + 0.1 * (count as f64).log2() - 0.2)?;
+        let error = new
+            .iter()
+            .zip(&exact)
+            .map(|(&x, exact)| {
+                let weights = interpolation(&places, x);
+                let mut guess = (Mat::<f64>::zeros(loads, loads), Mat::<f64>::zeros(loads, loads));
+                for (part, w) in parts.iter().zip(weights) {
+                    add(&mut guess.0, part, w, 0.0);
+                    add(&mut guess.1, part, 0.0, -w);
+                }
+                let scale = largest(&exact.0);
+                largest(&(&guess.0 - &exact.0)).max(largest(&(&guess.1 - &exact.1))) / scale
+            })
+            .fold(0.0, f64::max);
+        places.extend(new);
+        parts.extend(exact);
+        if error <= INTERPOLATION_ERROR {
+            break;
+        }
+    }
+    let mut shares = vec![vec![(0.0, 0.0); parts.len()]; offsets + 1];
+    for n in direct + 1..=highest {
+        let x = 2.0 * ((step * n as f64).ln() - range.0) / (range.1 - range.0) - 1.0;
+        for (k, w) in interpolation(&places, x).into_iter().enumerate() {
+            for (m, shares) in shares.iter_mut().enumerate() {
+                let (sin, cos) = angle(m, n).sin_cos();
+                shares[k].0 += w * weight(n) * cos;
+                shares[k].1 += w * weight(n) * sin;
+            }
+        }
+    }
+    for (sum, shares) in sums.iter_mut().zip(&shares) {
+        for (part, &(cos, sin)) in parts.iter().zip(shares) {
+            add(sum, part, cos, sin);
+        }
+    }
     Ok(sums)
+}
+
+/// Adds `cos · even - sin · odd`.
+fn add(sum: &mut Mat<f64>, (even, odd): &Parts, cos: f64, sin: f64) {
+    for j in 0..sum.ncols() {
+        let sources = even.col_as_slice(j).iter().zip(odd.col_as_slice(j));
+        for (s, (e, o)) in sum.col_as_slice_mut(j).iter_mut().zip(sources) {
+            *s += cos * e - sin * o;
+        }
+    }
+}
+
+fn largest(matrix: &Mat<f64>) -> f64 {
+    (0..matrix.ncols()).flat_map(|j| matrix.col_as_slice(j)).fold(0.0, |most, v| most.max(v.abs()))
+}
+
+/// Chebyshev points with the ends, `count + 1` of them.
+fn lobatto(count: usize) -> impl Iterator<Item = f64> {
+    (0..=count).map(move |k| -(std::f64::consts::PI * k as f64 / count as f64).cos())
+}
+
+/// Lagrange weights of the values at `places` for `x` within [-1, 1].
+fn interpolation(places: &[f64], x: f64) -> Vec<f64> {
+    let product = |k: usize| {
+        places.iter().enumerate().filter(|&(j, _)| j != k).map(|(_, &p)| (x - p) / (places[k] - p)).product()
+    };
+    (0..places.len()).map(product).collect()
 }

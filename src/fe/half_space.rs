@@ -7,6 +7,8 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use super::loads::{Grid, hat_lengths};
 use super::quadrature::{gauss, gauss_on};
 use super::section::Involute;
@@ -140,15 +142,14 @@ pub(super) fn half_space(
     let plain = gauss(4);
     let stations = grid.stations_m.len();
     let size = grid.len();
-    let mut matrix = vec![0.0; size * size];
-    let mut sums = vec![[0.0; 16]; strips.len()];
-    let mut points: Vec<(f64, f64, f64)> = Vec::new();
-    for i in 0..rows - 1 {
-        for j in i..rows - 1 {
+    let pairs: Vec<(usize, usize)> = (0..rows - 1).flat_map(|i| (i..rows - 1).map(move |j| (i, j))).collect();
+    let blocks = pairs
+        .par_iter()
+        .map(|&(i, j)| {
             watch.checkpoint(progress.0 + (progress.1 - progress.0) * i as f64 / rows as f64)?;
             let (a0, a1) = (profile[i], profile[i + 1]);
             let (b0, b1) = (profile[j], profile[j + 1]);
-            points.clear();
+            let mut points: Vec<(f64, f64, f64)> = Vec::new();
             if i == j {
                 for (s, ws) in gauss_on(&outer, a0, a1) {
                     for (v, wv) in gauss_on(&inner, 0.0, 1.0) {
@@ -170,7 +171,7 @@ pub(super) fn half_space(
                     }
                 }
             }
-            sums.iter_mut().for_each(|sum| *sum = [0.0; 16]);
+            let mut sums = vec![[0.0; 16]; strips.len()];
             for &(s, t, weight) in &points {
                 let distance = Distance { a: involute.at(s).0, b: involute.at(t).0, twist_per_m };
                 let (u, v) = ((s - a0) / (a1 - a0), (t - b0) / (b1 - b0));
@@ -184,17 +185,21 @@ pub(super) fn half_space(
                     }
                 }
             }
-            for (strip, sum) in strips.iter().zip(&sums) {
-                for &(p, q) in &strip.cells {
-                    for k in 0..4 {
-                        let (row, other) = (i + k / 2, j + k % 2);
-                        for l in 0..4 {
-                            let a = row * stations + p + l / 2;
-                            let b = other * stations + q + l % 2;
-                            matrix[a * size + b] += sum[4 * k + l];
-                            if i != j {
-                                matrix[b * size + a] += sum[4 * k + l];
-                            }
+            Ok(sums)
+        })
+        .collect::<Result<Vec<_>, Canceled>>()?;
+    let mut matrix = vec![0.0; size * size];
+    for (&(i, j), sums) in pairs.iter().zip(&blocks) {
+        for (strip, sum) in strips.iter().zip(sums) {
+            for &(p, q) in &strip.cells {
+                for k in 0..4 {
+                    let (row, other) = (i + k / 2, j + k % 2);
+                    for l in 0..4 {
+                        let a = row * stations + p + l / 2;
+                        let b = other * stations + q + l % 2;
+                        matrix[a * size + b] += sum[4 * k + l];
+                        if i != j {
+                            matrix[b * size + a] += sum[4 * k + l];
                         }
                     }
                 }
@@ -238,9 +243,10 @@ impl Strip {
                 }
                 let (ta, tb) = (((a - w0) / scale).asinh(), ((b - w0) / scale).asinh());
                 for (t, weight) in gauss_on(near_rule, ta, tb) {
-                    let w = w0 + scale * t.sinh();
+                    let grown = t.exp();
+                    let w = w0 + 0.5 * scale * (grown - 1.0 / grown);
                     let (sin, cos) = (distance.twist_per_m * w).sin_cos();
-                    let factor = weight * scale * t.cosh() / distance.squared(w, sin, cos).sqrt();
+                    let factor = 0.5 * weight * scale * (grown + 1.0 / grown) / distance.squared(w, sin, cos).sqrt();
                     for (o, c) in out.iter_mut().zip(correlation(self.lengths, w - self.shift)) {
                         *o += c * factor;
                     }

@@ -22,9 +22,11 @@ pub enum Side {
 pub enum Resolution {
     /// Half the load grid in both directions.
     Coarse,
-    /// About 11 profile nodes and one station per 0.57 normal modules.
+    /// About 11 profile nodes and one station per 0.57 normal modules, one element or spline cell per load cell.
+    Medium,
+    /// The load grid of `Medium`, two spline cells per load cell along the face.
     Standard,
-    /// The load grid of `Standard`, elements of half the size.
+    /// The load grid of `Medium`, elements of half and spline cells of a third of the size: for validation.
     Fine,
 }
 

@@ -13,6 +13,8 @@ use crate::gear::Member;
 pub(super) struct SectionSizes {
     /// Rows between two profile nodes of the load grid.
     pub rows_per_cell: usize,
+    /// Rows in the first and the last cell of the profile, whose outer hats are half as wide.
+    pub rows_per_end_cell: usize,
     /// Rows in the fillet above the 45° point.
     pub fillet_rows: usize,
     /// Column widths over the tooth from the unloaded to the loaded flank, as parts that add up to one.
@@ -21,7 +23,9 @@ pub(super) struct SectionSizes {
     pub land_columns: usize,
     /// Thickness of the first row of the rim.
     pub first_rim_row: f64,
-    /// Growth of the rim's rows.
+    /// Thickness of the row at the held circle.
+    pub held_row: f64,
+    /// Growth of the rim's rows from both ends.
     pub growth: f64,
 }
 
@@ -110,6 +114,13 @@ impl Involute {
 /// Slope of the surface at which rows end and columns begin.
 const TURN: f64 = 1.0;
 
+impl SectionSizes {
+    /// Rows in every cell of the profile, from the tip inwards.
+    fn rows(&self, cells: usize) -> Vec<usize> {
+        (0..cells).map(|i| if i == 0 || i + 1 == cells { self.rows_per_end_cell } else { self.rows_per_cell }).collect()
+    }
+}
+
 impl Section {
     /// The mesh of `member` down to `hold_radius_m`, with rows at the profile nodes `profile_m` (arc lengths from 0 to the
     /// flank's length).
@@ -135,7 +146,7 @@ impl Section {
         let mut builder = Builder::new(member, sizes, radii.len() as i32 - 1);
         builder.tooth(&radii);
         builder.rim(turn, hold_radius_m, m);
-        let section = builder.finish(profile_m, sizes.rows_per_cell);
+        let section = builder.finish(profile_m);
         section.check()?;
         Ok(section)
     }
@@ -242,10 +253,9 @@ fn row_radii_m(
 ) -> Vec<f64> {
     let rb = member.base_radius_m;
     let mut radii = Vec::new();
-    let per_cell = 2 * sizes.rows_per_cell;
-    for cell in profile_m.windows(2).rev() {
-        for i in 0..per_cell {
-            let s = cell[1] + (cell[0] - cell[1]) * i as f64 / per_cell as f64;
+    for (cell, rows) in profile_m.windows(2).rev().zip(sizes.rows(profile_m.len() - 1)) {
+        for i in 0..2 * rows {
+            let s = cell[1] + (cell[0] - cell[1]) * i as f64 / (2 * rows) as f64;
             radii.push(involute.roll_m(s).hypot(rb));
         }
     }
@@ -322,10 +332,15 @@ impl<'a> Builder<'a> {
 
     fn rim(&mut self, turn: f64, hold: f64, m: f64) {
         let depth = self.member.root_radius_m - hold;
-        let mut heights = vec![self.sizes.first_rim_row * m];
-        while heights.iter().sum::<f64>() < depth * 0.9 {
-            heights.push(heights[heights.len() - 1] * self.sizes.growth);
+        // Thin rows at both ends: the surface above, the held edge (a singular line on the end faces) below.
+        let (mut above, mut below) = (vec![self.sizes.first_rim_row * m], Vec::new());
+        let mut next = (above[0] * self.sizes.growth, self.sizes.held_row * m);
+        while above.iter().sum::<f64>() + below.iter().sum::<f64>() < 0.9 * depth {
+            let (rows, height) = if next.1 < next.0 { (&mut below, &mut next.1) } else { (&mut above, &mut next.0) };
+            rows.push(*height);
+            *height *= self.sizes.growth;
         }
+        let heights: Vec<f64> = above.into_iter().chain(below.into_iter().rev()).collect();
         let total: f64 = heights.iter().sum();
         let mut parts = vec![0.0];
         let mut sum = 0.0;
@@ -353,7 +368,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn finish(self, profile_m: &[f64], rows_per_cell: usize) -> Section {
+    fn finish(self, profile_m: &[f64]) -> Section {
         let last_row = self.turn_row + self.rim_rows;
         let high = 2 * self.land + self.across.len() as i32 - 1;
         let borders = self
@@ -384,9 +399,9 @@ impl<'a> Builder<'a> {
         let loaded = self.land + self.across.len() as i32 - 1;
         let mut flank = Vec::new();
         let mut row = 0;
-        for cell in profile_m.windows(2).rev() {
-            for part in 0..rows_per_cell {
-                let at = |k: usize| cell[1] + (cell[0] - cell[1]) * k as f64 / rows_per_cell as f64;
+        for (cell, rows) in profile_m.windows(2).rev().zip(self.sizes.rows(profile_m.len() - 1)) {
+            for part in 0..rows {
+                let at = |k: usize| cell[1] + (cell[0] - cell[1]) * k as f64 / rows as f64;
                 let nodes = [2, 1, 0].map(|k| self.index[&(loaded, row + k)]);
                 flank.push(FlankEdge { from_m: at(part + 1), to_m: at(part), nodes });
                 row += 2;
