@@ -1,9 +1,10 @@
-//! Compares the analytic loaded tooth contact with the finite-element reference of a z 29/67 helical pair and prints the
-//! errors: `cargo run --release --no-default-features --example contact_validation`.
+//! Compares the loaded tooth contact with the finite-element reference of a z 29/67 helical pair and prints the errors:
+//! `cargo run --release --no-default-features --example contact_validation [analytic|coarse|standard|fine [SLICES [POSITIONS]]]`.
 
 use std::time::Instant;
 
-use herringbone::contact::{BodyHold, Settings, solve_half};
+use herringbone::contact::{BodyHold, Compliance, Settings, solve_half};
+use herringbone::fe::{FlankFlexibility, Resolution};
 use herringbone::gear::{
     Assembly, FlankModification, GearSpec, Half, Material, Pair, PairSpec, ReliefShape, Rotation, TipRelief,
 };
@@ -69,7 +70,15 @@ fn share_at(path: &[f64], share: &[f64], at: f64) -> f64 {
 fn main() {
     let text = include_str!("../tests/data/fe_pair_29_67.json");
     let reference: serde_json::Value = serde_json::from_str(text).expect("the reference file is JSON");
-    let slices = std::env::args().nth(1).and_then(|a| a.parse().ok());
+    let resolution = match std::env::args().nth(1).as_deref() {
+        None | Some("analytic") => None,
+        Some("coarse") => Some(Resolution::Coarse),
+        Some("standard") => Some(Resolution::Standard),
+        Some("fine") => Some(Resolution::Fine),
+        Some(other) => panic!("{other} is no resolution"),
+    };
+    let slices = std::env::args().nth(2).and_then(|a| a.parse().ok());
+    let mut kept: Vec<((String, bool), Vec<FlankFlexibility>)> = Vec::new();
     println!(
         "{:26} {:>4} | {:>6} {:>6} | {:>6} {:>6} | {:>6} {:>6} | {:>6} {:>6} | {:>6} | share errors at p 0.05 0.1 0.25 0.5 1 | ms",
         "variant", "T", "ksec", "%", "ktan", "%", "TEpp", "%", "H1", "%", "w %"
@@ -79,14 +88,30 @@ fn main() {
         let number = |key: &str| case[key].as_f64().unwrap_or(f64::NAN);
         let pair = reference_pair(variant);
         let settings = Settings {
-            positions: 64,
+            positions: std::env::args().nth(3).map_or(Some(64), |a| a.parse().ok()),
             slices,
             body: if variant == "nominal_rim_clamped" { BodyHold::Rim } else { BodyHold::Bore },
             corner_contact: variant == "nominal_ext",
+            ..Settings::default()
         };
         let force = number("torque_nm") / pair.pinion.base_radius_m;
-        let begin = Instant::now();
-        let cycle = match solve_half(&pair, Half::Left, force, &settings, Watch::none()) {
+        let mut begin = Instant::now();
+        let compliance = match resolution {
+            None => Compliance::analytic(&pair, &settings),
+            Some(resolution) => {
+                let key = (format!("{:?}", settings.body), settings.corner_contact);
+                if !kept.iter().any(|(k, _)| *k == key) {
+                    let inputs = Compliance::finite_element_inputs(&pair, &settings, resolution);
+                    let flanks = inputs.iter().map(|i| FlankFlexibility::new(i, Watch::none()).expect("a flexibility"));
+                    kept.push((key.clone(), flanks.collect()));
+                    println!("{key:?}: finite elements of both gears {:.2} s", begin.elapsed().as_secs_f64());
+                }
+                let flanks = &kept.iter().find(|(k, _)| *k == key).expect("kept").1;
+                begin = Instant::now();
+                Compliance::finite_elements(&pair, &settings, [&flanks[0], &flanks[1]])
+            }
+        };
+        let cycle = match solve_half(&pair, Half::Left, force, &compliance, &settings, Watch::none()) {
             Ok(cycle) => cycle,
             Err(error) => {
                 println!("{variant:26} {:>4} | {error}", number("torque_nm"));

@@ -2,10 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::curve::PeriodicCurve;
 use super::half::HalfContact;
 use super::hertz::LineContact;
 use super::local::relative_radius_m;
 use super::position::Loaded;
+use super::refine::Positions;
 use super::settings::ContactError;
 use crate::gear::Pair;
 
@@ -81,7 +83,7 @@ pub struct HalfCycle {
     pub secant_stiffness_n_per_m: Vec<f64>,
     /// Loaded transmission error δ.
     pub transmission_error_m: Vec<f64>,
-    /// Pairs that carry force.
+    /// Pairs that carry force, at every solved position.
     pub pairs_in_contact: Vec<u32>,
     /// Path of one pair in base pitches since its first theoretical contact, overrun included.
     pub load_share_phase: Vec<f64>,
@@ -104,6 +106,10 @@ pub struct HalfCycle {
     pub transmission_error: Extent,
     /// Amplitudes of the first harmonics of the transmission error per mesh period.
     pub transmission_error_harmonics_m: Vec<f64>,
+    /// Positions solved.
+    pub positions: usize,
+    /// Change of the curves' Fourier coefficients by the last refinement, as a part of the means; `None` for given positions.
+    pub position_error: Option<f64>,
     /// Newton iterations over the whole period.
     pub iterations: u64,
 }
@@ -115,25 +121,39 @@ const MAP_ROWS: usize = 24;
 /// Harmonics that are reported.
 const HARMONICS: usize = 8;
 /// Points of the entry table.
-const ENTRY_POINTS: usize = 9;
+const ENTRY_POINTS: usize = 7;
 /// Smallest share that counts as carrying load.
 const CARRIES: f64 = 1e-9;
 
-/// Collects positions into a [`HalfCycle`].
+/// Positions of the curves when the solved positions are chosen by accuracy, and of spur halves that share the torque.
+pub const CURVE_POSITIONS: usize = 64;
+
+/// Puts positions together to a [`HalfCycle`].
 pub struct CycleBuilder<'a> {
     pair: &'a Pair,
     slices: usize,
+    /// Phase, F_bt, state.
     states: Vec<(f64, f64, Loaded)>,
+    /// Phase of the first curve position when the curves are interpolated, and the error of that.
+    resampled: Option<(f64, f64)>,
 }
 
 impl<'a> CycleBuilder<'a> {
-    pub fn new(pair: &'a Pair, slices: usize) -> CycleBuilder<'a> {
-        CycleBuilder { pair, slices, states: Vec::new() }
+    /// Curves over the solved positions themselves, equally spaced: phase, F_bt and state of each.
+    pub fn at_positions(pair: &'a Pair, slices: usize, states: Vec<(f64, f64, Loaded)>) -> CycleBuilder<'a> {
+        CycleBuilder { pair, slices, states, resampled: None }
     }
 
-    /// Adds the state at `phase` under `force_bt_n`; phases ascend over [0, 1).
-    pub fn push(&mut self, phase: f64, force_bt_n: f64, state: Loaded) {
-        self.states.push((phase, force_bt_n, state));
+    /// Curves over equally spaced positions from `from` between positions solved where they were needed.
+    pub fn refined(
+        pair: &'a Pair,
+        slices: usize,
+        positions: Positions,
+        force_bt_n: f64,
+        from: f64,
+    ) -> CycleBuilder<'a> {
+        let states = positions.states.into_iter().map(|(phase, state)| (phase, force_bt_n, state)).collect();
+        CycleBuilder { pair, slices, states, resampled: Some((from, positions.error)) }
     }
 
     /// Solves the special states (mesh-in share, begin and end of load, entry) and closes the period. `force_at` gives
@@ -144,7 +164,21 @@ impl<'a> CycleBuilder<'a> {
         force_at: &dyn Fn(f64) -> f64,
     ) -> Result<HalfCycle, ContactError> {
         let states = &self.states;
-        let column = |f: &dyn Fn(&(f64, f64, Loaded)) -> f64| states.iter().map(f).collect::<Vec<_>>();
+        let column = |f: &dyn Fn(&(f64, f64, Loaded)) -> f64| {
+            let solved: Vec<f64> = states.iter().map(f).collect();
+            match self.resampled {
+                None => solved,
+                Some((from, _)) => {
+                    PeriodicCurve::new(states.iter().map(|s| s.0).collect(), solved).samples(from, CURVE_POSITIONS)
+                }
+            }
+        };
+        let phase = match self.resampled {
+            None => states.iter().map(|s| s.0).collect(),
+            Some((from, _)) => {
+                (0..CURVE_POSITIONS).map(|i| (from + i as f64 / CURVE_POSITIONS as f64).fract()).collect()
+            }
+        };
         let stiffness = column(&|s| s.2.stiffness_n_per_m);
         let secant = column(&|s| s.1 / s.2.approach_m);
         let error = column(&|s| s.2.approach_m);
@@ -155,7 +189,7 @@ impl<'a> CycleBuilder<'a> {
         let (max_line_load, max_pressure) = self.extremes();
         let entry = self.entry(contact, force_at)?;
         Ok(HalfCycle {
-            phase: column(&|s| s.0),
+            phase,
             force_bt_n: column(&|s| s.1),
             stiffness: Extent::of(&stiffness),
             secant_stiffness: Extent::of(&secant),
@@ -174,6 +208,8 @@ impl<'a> CycleBuilder<'a> {
             max_hertz_pressure_pa: max_pressure,
             flank_map: self.map(),
             entry,
+            positions: states.len(),
+            position_error: self.resampled.map(|(_, error)| error),
             iterations: states.iter().map(|s| u64::from(s.2.iterations)).sum(),
         })
     }
@@ -196,15 +232,15 @@ impl<'a> CycleBuilder<'a> {
         path: &[f64],
         share: &[f64],
     ) -> Result<[f64; 2], ContactError> {
-        let spacing = 1.0 / self.states.len() as f64;
+        let step = 1.0 / 16.0;
         let first = share.iter().position(|&s| s > CARRIES).unwrap_or(0);
         let last = share.iter().rposition(|&s| s > CARRIES).unwrap_or(share.len() - 1);
+        let below = if first > 0 { path[first - 1] } else { path[first] - step };
+        let above = path.get(last + 1).copied().unwrap_or(path[last] + step);
         let mut out = [0.0; 2];
-        for (slot, (inside, outside)) in
-            out.iter_mut().zip([(path[first], path[first] - spacing), (path[last], path[last] + spacing)])
-        {
+        for (slot, (inside, outside)) in out.iter_mut().zip([(path[first], below), (path[last], above)]) {
             let (mut inside, mut outside) = (inside, outside);
-            for _ in 0..6 {
+            for _ in 0..4 {
                 let middle = 0.5 * (inside + outside);
                 let k = middle.floor();
                 let phase = middle - k;

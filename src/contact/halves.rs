@@ -8,8 +8,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::cycle::{CycleBuilder, HalfCycle};
-use super::half::{Compliance, HalfContact};
+use super::compliance::Compliance;
+use super::cycle::{CURVE_POSITIONS, CycleBuilder, HalfCycle};
+use super::half::HalfContact;
+use super::refine::refine;
 use super::settings::{ContactError, Settings};
 use crate::gear::{Half, Pair};
 use crate::watch::Watch;
@@ -34,19 +36,19 @@ pub struct LoadedContact {
 /// Helix angles below this leave no axial coupling.
 const SPUR: f64 = 1e-4;
 
-/// Solves one half under `force_bt_n` over the mesh period.
+/// Solves one half under `force_bt_n` over the mesh period with its compliance.
 pub fn solve_half(
     pair: &Pair,
     half: Half,
     force_bt_n: f64,
+    compliance: &Compliance,
     settings: &Settings,
     watch: Watch<'_>,
 ) -> Result<HalfCycle, ContactError> {
     check(force_bt_n * pair.pinion.base_radius_m, settings)?;
-    let compliance = Compliance::new(pair, settings);
     watch.checkpoint(0.0)?;
     let mut progress = |fraction: f64| watch.checkpoint(fraction).map_err(ContactError::from);
-    period(pair, half, &compliance, 0.0, force_bt_n, settings, &mut progress)
+    period(pair, half, compliance, 0.0, force_bt_n, settings, &mut progress)
 }
 
 /// Solves both halves of `pair` under the pinion's whole torque. `half_stagger` (part of a transverse pitch) advances the
@@ -55,11 +57,11 @@ pub fn solve_pair_of_halves(
     pair: &Pair,
     torque_nm: f64,
     half_stagger: f64,
+    compliance: &Compliance,
     settings: &Settings,
     watch: Watch<'_>,
 ) -> Result<LoadedContact, ContactError> {
     check(torque_nm, settings)?;
-    let compliance = Compliance::new(pair, settings);
     watch.checkpoint(0.0)?;
     let force = 0.5 * torque_nm / pair.pinion.base_radius_m;
     let stagger = half_stagger - half_stagger.floor();
@@ -67,16 +69,16 @@ pub fn solve_pair_of_halves(
     let tan = pair.base_helix_angle_rad.tan();
     let halves = if same_gaps && stagger == 0.0 {
         let mut progress = |fraction: f64| watch.checkpoint(fraction).map_err(ContactError::from);
-        let left = period(pair, Half::Left, &compliance, 0.0, force, settings, &mut progress)?;
+        let left = period(pair, Half::Left, compliance, 0.0, force, settings, &mut progress)?;
         [left.clone(), left]
     } else if pair.spec.helix_angle_rad.abs() > SPUR {
         let mut first = |fraction: f64| watch.checkpoint(0.5 * fraction).map_err(ContactError::from);
-        let left = period(pair, Half::Left, &compliance, 0.0, force, settings, &mut first)?;
+        let left = period(pair, Half::Left, compliance, 0.0, force, settings, &mut first)?;
         let mut second = |fraction: f64| watch.checkpoint(0.5 + 0.5 * fraction).map_err(ContactError::from);
-        let right = period(pair, Half::Right, &compliance, stagger, force, settings, &mut second)?;
+        let right = period(pair, Half::Right, compliance, stagger, force, settings, &mut second)?;
         [left, right]
     } else {
-        shared(pair, &compliance, stagger, 2.0 * force, settings, watch)?
+        shared(pair, compliance, stagger, 2.0 * force, settings, watch)?
     };
     let [left, right] = &halves;
     let both = || left.transmission_error_m.iter().zip(&right.transmission_error_m);
@@ -95,8 +97,8 @@ fn check(torque_nm: f64, settings: &Settings) -> Result<(), ContactError> {
     if !(torque_nm > 0.0 && torque_nm.is_finite()) {
         return Err(ContactError::Torque { torque_nm });
     }
-    if settings.positions < 2 {
-        return Err(ContactError::Positions { positions: settings.positions });
+    if let Some(positions) = settings.positions.filter(|&n| n < 2) {
+        return Err(ContactError::Positions { positions });
     }
     Ok(())
 }
@@ -124,13 +126,31 @@ fn period(
     progress: &mut dyn FnMut(f64) -> Result<(), ContactError>,
 ) -> Result<HalfCycle, ContactError> {
     let mut contact = HalfContact::new(pair, half, compliance, settings);
-    let mut builder = CycleBuilder::new(pair, compliance.slices());
-    for i in 0..settings.positions {
-        let position = i as f64 / settings.positions as f64;
-        let phase = (position + stagger).fract();
-        builder.push(phase, force, contact.at(phase, force)?);
-        progress(position)?;
-    }
+    let builder = match settings.positions {
+        Some(count) => {
+            let mut states = Vec::with_capacity(count);
+            for i in 0..count {
+                let position = i as f64 / count as f64;
+                let phase = (position + stagger).fract();
+                states.push((phase, contact.at(phase, force)?));
+                progress(position)?;
+            }
+            CycleBuilder::at_positions(
+                pair,
+                compliance.slices(),
+                states.into_iter().map(|(p, s)| (p, force, s)).collect(),
+            )
+        }
+        None => {
+            let mut solved = 0.0;
+            let positions = refine(pair, settings.accuracy, |phase, near| {
+                solved += 1.0;
+                progress(solved / (solved + 32.0))?;
+                contact.at_near(phase, force, near)
+            })?;
+            CycleBuilder::refined(pair, compliance.slices(), positions, force, stagger)
+        }
+    };
     builder.finish(&mut contact, &|_| force)
 }
 
@@ -144,11 +164,12 @@ fn shared(
     watch: Watch<'_>,
 ) -> Result<[HalfCycle; 2], ContactError> {
     let mut contacts = Half::BOTH.map(|half| HalfContact::new(pair, half, compliance, settings));
-    let mut builders = [(); 2].map(|()| CycleBuilder::new(pair, compliance.slices()));
+    let count = settings.positions.unwrap_or(CURVE_POSITIONS);
+    let mut states = [(); 2].map(|()| Vec::with_capacity(count));
     let mut left_part: f64 = 0.5;
-    let mut forces = Vec::with_capacity(settings.positions);
-    for i in 0..settings.positions {
-        let position = i as f64 / settings.positions as f64;
+    let mut forces = Vec::with_capacity(count);
+    for i in 0..count {
+        let position = i as f64 / count as f64;
         watch.checkpoint(position)?;
         let phases = [position, (position + stagger).fract()];
         let (mut low, mut high) = (0.0, 1.0);
@@ -160,8 +181,8 @@ fn shared(
             difference = gap.abs() / (left.approach_m.abs() + right.approach_m.abs());
             // One half may carry all of it: the other's gap is then larger than the deflection.
             if difference < 1e-10 || high - low < 1e-12 {
-                builders[0].push(phases[0], left_part * total, left);
-                builders[1].push(phases[1], (1.0 - left_part) * total, right);
+                states[0].push((phases[0], left_part * total, left));
+                states[1].push((phases[1], (1.0 - left_part) * total, right));
                 difference = 0.0;
                 break;
             }
@@ -181,7 +202,7 @@ fn shared(
     }
     let part = |phase: f64| forces[(phase * forces.len() as f64).round() as usize % forces.len()];
     let [left_contact, right_contact] = &mut contacts;
-    let [left, right] = builders;
+    let [left, right] = states.map(|states| CycleBuilder::at_positions(pair, compliance.slices(), states));
     Ok([
         left.finish(left_contact, &|phase| part(phase) * total)?,
         right.finish(right_contact, &|phase| (1.0 - part((phase - stagger).rem_euclid(1.0))) * total)?,

@@ -51,9 +51,10 @@ impl LineContact {
         (2.0 * self.factor * w * value, 2.0 * self.factor * (value - 0.5 * r * slope))
     }
 
-    /// Approach of both half-spaces per force at a point of the line at `at_m`, by a segment elsewhere on the line.
-    pub fn half_space_beside(&self, at_m: f64, (from_m, to_m): (f64, f64)) -> f64 {
-        self.factor * half_space::beside(at_m, from_m, to_m) / (to_m - from_m)
+    /// Approach of both half-spaces per force at a point of the line at `at_m`, by a segment elsewhere on the line whose band is that
+    /// of the line load `w`.
+    pub fn half_space_beside(&self, at_m: f64, segment_m: (f64, f64), w: f64) -> f64 {
+        self.factor * half_space::beside(at_m, segment_m, self.half_width_m(w)) / (segment_m.1 - segment_m.0)
     }
 
     /// Approach of both bodies and its derivative with respect to the line load, at `w > 0`.

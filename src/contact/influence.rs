@@ -69,29 +69,9 @@ impl Influence {
         Influence { places_m, stations_m, offsets, table }
     }
 
-    /// Weights of the stations about `entry_m`: cubic; linear beyond the outermost stations.
+    /// Weights of the stations about `entry_m`.
     pub fn stencil(&self, entry_m: f64) -> Stencil {
-        let z = &self.stations_m;
-        let last = z.len() - 1;
-        let mut weights = [0.0; STENCIL];
-        if entry_m <= z[0] {
-            let t = (entry_m - z[0]) / (z[1] - z[0]);
-            weights[0] = 1.0 - t;
-            weights[1] = t;
-            return Stencil { first: 0, weights };
-        }
-        if entry_m >= z[last] {
-            let t = (entry_m - z[last]) / (z[last] - z[last - 1]);
-            weights[STENCIL - 1] = 1.0 + t;
-            weights[STENCIL - 2] = -t;
-            return Stencil { first: last + 1 - STENCIL, weights };
-        }
-        let above = z.partition_point(|&s| s <= entry_m);
-        let first = above.saturating_sub(2).min(last + 1 - STENCIL);
-        for (k, weight) in weights.iter_mut().enumerate() {
-            *weight = lagrange(&z[first..first + STENCIL], k, entry_m);
-        }
-        Stencil { first, weights }
+        stencil(&self.stations_m, entry_m)
     }
 
     /// Sets `line` up for the pair `pair`, whose line of contact stands at the roll coordinate `base_m + slope z`, over the
@@ -159,6 +139,30 @@ impl Influence {
             }
         }
     }
+}
+
+/// Weights of the four `nodes` about `at`: cubic; linear beyond the outermost nodes. At least four nodes, ascending.
+pub fn stencil(nodes: &[f64], at: f64) -> Stencil {
+    let last = nodes.len() - 1;
+    let mut weights = [0.0; STENCIL];
+    if at <= nodes[0] {
+        let t = (at - nodes[0]) / (nodes[1] - nodes[0]);
+        weights[0] = 1.0 - t;
+        weights[1] = t;
+        return Stencil { first: 0, weights };
+    }
+    if at >= nodes[last] {
+        let t = (at - nodes[last]) / (nodes[last] - nodes[last - 1]);
+        weights[STENCIL - 1] = 1.0 + t;
+        weights[STENCIL - 2] = -t;
+        return Stencil { first: last + 1 - STENCIL, weights };
+    }
+    let above = nodes.partition_point(|&s| s <= at);
+    let first = above.saturating_sub(2).min(last + 1 - STENCIL);
+    for (k, weight) in weights.iter_mut().enumerate() {
+        *weight = lagrange(&nodes[first..first + STENCIL], k, at);
+    }
+    Stencil { first, weights }
 }
 
 /// Lagrange's polynomial of node `k` at `x`.

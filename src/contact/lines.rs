@@ -25,8 +25,8 @@ pub struct Point {
 /// tooth survives.
 pub const CORNER_REACH: f64 = 0.5;
 
-/// Parts of a slice beyond the path.
-const CORNER_PARTS: u8 = 2;
+/// Most parts of a slice beyond the path.
+const CORNER_PARTS: f64 = 8.0;
 
 /// Which pairs to look at and how far beyond the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,6 +35,8 @@ pub struct Reach {
     pub lowest_pair: i32,
     /// Corner contacts with a kinematic gap up to this are considered; zero: the path only.
     pub corner_gap_m: f64,
+    /// Least width of a part of a slice beyond the path.
+    pub least_part_m: f64,
 }
 
 /// Roll coordinate of pair 0 at entry 0 when pair 0 stands `phase` base pitches after its first theoretical contact.
@@ -75,7 +77,11 @@ pub fn collect(pair: &Pair, half: Half, phase: f64, slices: usize, reach: &Reach
                     continue;
                 }
                 // The corner gap grows with the square of the overrun: a slice there is looked at in parts.
-                let parts = if zone != 1 && slope > 0.0 { CORNER_PARTS } else { 1 };
+                let parts = if zone != 1 && slope > 0.0 {
+                    (share * step / reach.least_part_m).clamp(1.0, CORNER_PARTS) as u8
+                } else {
+                    1
+                };
                 for part in 0..parts {
                     let x = low + (high - low) * (f64::from(part) + 0.5) / f64::from(parts);
                     let entry = if slope > 0.0 { (x - base) / slope } else { 0.5 * (e0 + e1) };

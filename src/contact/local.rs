@@ -30,15 +30,37 @@ struct Contact {
     length_m: Option<f64>,
 }
 
+/// Segments on a half-space are kept this many times as long as the band of a line under twice the mean load is wide: shorter ones would
+/// see their neighbours' middles better than their own.
+const LENGTH_PER_BAND: f64 = 1.0;
+
+impl LocalModel {
+    /// Least axial width of a segment under the normal force `force_n` in all; 0 when there is none.
+    pub fn least_width_m(&self, pair: &Pair, force_n: f64) -> f64 {
+        match self {
+            LocalModel::CenterlineDepth(_) => 0.0,
+            LocalModel::HalfSpace => {
+                let material = pair.material();
+                let radius = relative_radius_m(pair, pair.pitch_point_m());
+                let line = LineContact::new(material.youngs_modulus_pa, material.poissons_ratio, radius, [0.0; 2]);
+                let band = 2.0 * line.half_width_m(2.0 * force_n / pair.mean_contact_length_m());
+                LENGTH_PER_BAND * band * pair.base_helix_angle_rad.cos()
+            }
+        }
+    }
+}
+
 /// Smallest radius of curvature, in normal modules: near the base circle the flank's vanishes.
 const SMALLEST_RADIUS: f64 = 1e-3;
 
 impl LocalContacts {
-    /// Sets up the contacts of `points`; `coupling` receives what couples the points of each of `lines`, nothing for plane strain.
+    /// Sets up the contacts of `points` under the normal force `force_n` in all; `coupling` receives what couples the points of each of
+    /// `lines`, nothing for plane strain.
     pub fn prepare(
         &mut self,
         pair: &Pair,
         model: &LocalModel,
+        force_n: f64,
         points: &[Point],
         lines: &[std::ops::Range<usize>],
         coupling: &mut Vec<Vec<f64>>,
@@ -60,8 +82,13 @@ impl LocalContacts {
         }
         coupling.clear();
         if *model == LocalModel::HalfSpace {
+            // Neighbours see a band of the mean load: its width matters only where segments are as short as it is wide.
+            let length = points.iter().filter(|p| p.zone == 1).map(|p| p.width_m).sum::<f64>() / cos;
+            let mean = force_n / length.max(1e-3 * pair.spec.face_width_m);
             coupling.extend(
-                lines.iter().map(|line| half_space_coupling(&self.contacts[line.clone()], &points[line.clone()], cos)),
+                lines
+                    .iter()
+                    .map(|line| half_space_coupling(&self.contacts[line.clone()], &points[line.clone()], cos, mean)),
             );
         }
     }
@@ -83,7 +110,7 @@ fn interpolated(table: &[[f64; 2]], part: f64) -> [f64; 2] {
 }
 
 /// Displacement of every point of a line per force on every other (zero on the diagonal, whose part depends on the load).
-fn half_space_coupling(contacts: &[Contact], points: &[Point], cos: f64) -> Vec<f64> {
+fn half_space_coupling(contacts: &[Contact], points: &[Point], cos: f64, mean: f64) -> Vec<f64> {
     let n = points.len();
     let mut matrix = vec![0.0; n * n];
     let middle = |i: usize| points[i].entry_m / cos;
@@ -94,8 +121,8 @@ fn half_space_coupling(contacts: &[Contact], points: &[Point], cos: f64) -> Vec<
     for i in 0..n {
         for j in 0..i {
             // Unequal segments see each other's middles at slightly different distances: the mean keeps the symmetry.
-            let one = contacts[j].line.half_space_beside(middle(i), ends(j));
-            let other = contacts[i].line.half_space_beside(middle(j), ends(i));
+            let one = contacts[j].line.half_space_beside(middle(i), ends(j), mean);
+            let other = contacts[i].line.half_space_beside(middle(j), ends(i), mean);
             let value = 0.5 * (one + other);
             matrix[i * n + j] = value;
             matrix[j * n + i] = value;

@@ -14,6 +14,8 @@
 mod annulus;
 mod body;
 mod bulk;
+mod compliance;
+mod curve;
 mod cycle;
 mod distribution;
 mod edge;
@@ -30,14 +32,16 @@ mod lines;
 mod local;
 mod plate;
 mod position;
+mod refine;
 mod ring_influence;
 mod settings;
 mod tooth;
 
+pub use compliance::Compliance;
 pub use cycle::{EntryDeflection, Extent, FlankMap, HalfCycle, MESH_IN_PHASE, harmonics};
 pub use equivalent::equivalent_stiffness;
 pub use flank::{BodyHold, hold_radius_m};
-pub use half::{Compliance, HalfContact};
+pub use half::HalfContact;
 pub use halves::{LoadedContact, solve_half, solve_pair_of_halves};
 pub use lines::Point;
 pub use position::Loaded;

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
+use super::compliance::Compliance;
 use super::distribution::{Distribution, Stalled, System, Workspace, distribute};
-use super::half::Compliance;
 use super::influence::{LineWeights, Stencil};
 use super::lines::{Point, Reach, collect, reference_roll_m};
 use super::local::LocalContacts;
@@ -89,16 +89,25 @@ impl<'a> Solver<'a> {
         }
     }
 
+    /// Takes `state` as the neighbour to start from.
+    pub fn start_from(&mut self, state: &Loaded) {
+        self.previous.clear();
+        self.previous.extend(state.points.iter().zip(&state.forces_n).map(|(p, &f)| (place(p), f / p.width_m)));
+    }
+
     /// Distributes `force_bt_n` at `phase`. Pairs below `lowest_pair` stay out.
     pub fn solve(&mut self, phase: f64, lowest_pair: i32, force_bt_n: f64) -> Result<Loaded, Trouble> {
         let cos = self.pair.base_helix_angle_rad.cos();
+        let least_part_m = self.compliance.local.least_width_m(self.pair, force_bt_n / cos);
+        let most = (self.pair.spec.face_width_m / least_part_m).clamp(4.0, 1e6) as usize;
         for _ in 0..8 {
-            let reach = Reach { lowest_pair, corner_gap_m: if self.corner_contact { self.corner_gap_m } else { 0.0 } };
-            collect(self.pair, self.half, phase, self.compliance.slices(), &reach, &mut self.points);
+            let corner_gap_m = if self.corner_contact { self.corner_gap_m } else { 0.0 };
+            let reach = Reach { lowest_pair, corner_gap_m, least_part_m };
+            collect(self.pair, self.half, phase, self.compliance.slices().min(most), &reach, &mut self.points);
             if self.points.is_empty() {
                 return Err(Trouble::NoContact);
             }
-            self.assemble(phase);
+            self.assemble(phase, force_bt_n / cos);
             let solved = self.distribute(force_bt_n / cos).map_err(Trouble::Stalled)?;
             let approach_m = solved.approach / cos;
             self.remember(&solved);
@@ -150,7 +159,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Lines, gaps, bulk flexibility and local contacts of the current points.
-    fn assemble(&mut self, phase: f64) {
+    fn assemble(&mut self, phase: f64, force_n: f64) {
         let pair = self.pair;
         let influence = &self.compliance.influence;
         let cos = pair.base_helix_angle_rad.cos();
@@ -200,7 +209,7 @@ impl<'a> Solver<'a> {
             }
             row += response.count;
         }
-        self.local.prepare(pair, &self.compliance.local, &self.points, &self.lines, &mut self.coupling);
+        self.local.prepare(pair, &self.compliance.local, force_n, &self.points, &self.lines, &mut self.coupling);
     }
 }
 

@@ -1,7 +1,9 @@
 //! Content hashes: what a result, or a stage, depends on, and nothing else.
 
 use super::SOLVER_VERSION;
+use super::compliance::bare;
 use super::mesh::ContactCase;
+use crate::fe::FlankKey;
 use crate::job::document::JobDocument;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -16,6 +18,16 @@ pub fn input_hash(document: &JobDocument) -> String {
 /// inertias or the analysis of the response.
 pub fn mesh_hash(case: &ContactCase) -> String {
     hash("mesh", case)
+}
+
+/// Hash of the teeth's compliance: what [`mesh_hash`] depends on without load, modifications and misalignments.
+pub fn compliance_hash(case: &ContactCase) -> String {
+    hash("compliance", &(bare(case), &case.settings, case.fidelity))
+}
+
+/// Hash of the finite elements of one gear.
+pub fn flank_hash(key: &FlankKey) -> String {
+    hash("flank", key)
 }
 
 fn hash(stage: &str, value: &impl Serialize) -> String {

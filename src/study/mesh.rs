@@ -1,5 +1,6 @@
 //! The mesh stage: stiffness of both halves over the mesh period, and what the impact needs to know of it.
 
+use super::compliance::{self, ComplianceMemo};
 use super::equations::{MotionPlane, given_stiffness};
 use super::hash::mesh_hash;
 use super::prepare::Prepared;
@@ -8,7 +9,7 @@ use crate::contact::iso6336::{Blank, MethodB};
 use crate::contact::{self, BodyHold, ContactError, HalfCycle, LoadedContact, MESH_IN_PHASE, Settings};
 use crate::dynamics::Stiffness;
 use crate::gear::{Pair, PairSpec};
-use crate::job::document::{Body, JobDocument, Ltca, MeshStiffness, StiffnessLaw};
+use crate::job::document::{Body, Fidelity, JobDocument, Ltca, MeshStiffness, StiffnessLaw};
 use crate::job::result::{FlankLoad, Mesh, MeshCurve, PerHalf};
 use crate::watch::Watch;
 use serde::Serialize;
@@ -57,10 +58,11 @@ impl EntryState {
 /// Everything the contact analysis depends on: what is solved is what is hashed.
 #[derive(Debug, Serialize)]
 pub struct ContactCase<'a> {
-    spec: &'a PairSpec,
+    pub spec: &'a PairSpec,
     torque_nm: f64,
     half_stagger: f64,
-    settings: Settings,
+    pub fidelity: Fidelity,
+    pub settings: Settings,
 }
 
 impl<'a> ContactCase<'a> {
@@ -70,8 +72,10 @@ impl<'a> ContactCase<'a> {
             spec: &prepared.pair.spec,
             torque_nm: document.operation.pinion_torque_nm,
             half_stagger: document.design.half_stagger,
+            fidelity: ltca.fidelity,
             settings: Settings {
-                positions: ltca.positions.map_or(default.positions, |positions| positions as usize),
+                positions: ltca.positions.map(|positions| positions as usize),
+                accuracy: default.accuracy,
                 slices: ltca.slices.map(|slices| slices as usize),
                 body: match ltca.body {
                     Body::Rim => BodyHold::Rim,
@@ -83,17 +87,20 @@ impl<'a> ContactCase<'a> {
     }
 }
 
-/// Contact analyses of one job, so that the points of a sweep share them.
+/// Contact analyses of one job and the compliances under them, so that the points of a sweep share them.
 #[derive(Default)]
-pub struct MeshMemo(Mutex<HashMap<String, Arc<LoadedContact>>>);
+pub struct MeshMemo {
+    contacts: Mutex<HashMap<String, Arc<LoadedContact>>>,
+    compliances: ComplianceMemo,
+}
 
 impl MeshMemo {
     fn get(&self, key: &str) -> Option<Arc<LoadedContact>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
+        self.contacts.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
     }
 
     fn put(&self, key: String, contact: Arc<LoadedContact>) {
-        let mut map = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut map = self.contacts.lock().unwrap_or_else(PoisonError::into_inner);
         // A sweep over the teeth has no use for old entries; one over speed has one.
         if map.len() >= 64 {
             map.clear();
@@ -102,7 +109,7 @@ impl MeshMemo {
     }
 }
 
-/// Runs the mesh stage; also whether its contact analysis came from the store.
+/// Runs the mesh stage; also what of it came from the store.
 ///
 /// # Errors
 /// [`SolveError`].
@@ -112,20 +119,20 @@ pub fn run(
     plane: &MotionPlane,
     surroundings: &Surroundings,
     memo: &MeshMemo,
-) -> Result<(MeshStage, bool), SolveError> {
+) -> Result<(MeshStage, Vec<&'static str>), SolveError> {
     match &document.model.mesh_stiffness {
         MeshStiffness::Ltca(ltca) => {
             let case = ContactCase::new(document, ltca, prepared);
             let (contact, reused) = loaded_contact(&case, &prepared.pair, surroundings, memo)?;
             Ok((from_contact(&contact, ltca, prepared, plane), reused))
         }
-        MeshStiffness::Iso6336 => Ok((iso6336(document, prepared, plane)?, false)),
+        MeshStiffness::Iso6336 => Ok((iso6336(document, prepared, plane)?, Vec::new())),
         MeshStiffness::Given(given) => {
             let stiffness = given_stiffness(given);
             let curve = |phase: f64| stiffness.at(phase) / plane.stiffness_factor;
             let mut stage = closed_form("given", prepared, curve);
             stage.stiffness = [stiffness.clone(), stiffness];
-            Ok((stage, false))
+            Ok((stage, Vec::new()))
         }
     }
 }
@@ -135,18 +142,19 @@ fn loaded_contact(
     pair: &Pair,
     surroundings: &Surroundings,
     memo: &MeshMemo,
-) -> Result<(Arc<LoadedContact>, bool), SolveError> {
+) -> Result<(Arc<LoadedContact>, Vec<&'static str>), SolveError> {
     let key = mesh_hash(case);
     if let Some(contact) = memo.get(&key) {
-        return Ok((contact, true));
+        return Ok((contact, vec![Stage::Mesh.word()]));
     }
     let stored = surroundings.stages.load(&key).and_then(|bytes| serde_json::from_slice::<LoadedContact>(&bytes).ok());
     let (contact, reused) = match stored {
-        Some(contact) => (contact, true),
+        Some(contact) => (contact, vec![Stage::Mesh.word()]),
         None => {
-            let contact = solve_contact(case, pair, surroundings)?;
+            let found = compliance::find(case, pair, surroundings, &memo.compliances)?;
+            let contact = solve_contact(case, pair, &found, surroundings)?;
             surroundings.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&contact).unwrap_or_default());
-            (contact, false)
+            (contact, if found.elements_reused { vec!["finite_elements"] } else { Vec::new() })
         }
     };
     let contact = Arc::new(contact);
@@ -154,10 +162,16 @@ fn loaded_contact(
     Ok((contact, reused))
 }
 
-fn solve_contact(case: &ContactCase, pair: &Pair, surroundings: &Surroundings) -> Result<LoadedContact, SolveError> {
-    let progress = |fraction: f64| (surroundings.progress)(Stage::Mesh, fraction);
+fn solve_contact(
+    case: &ContactCase,
+    pair: &Pair,
+    found: &compliance::Found,
+    surroundings: &Surroundings,
+) -> Result<LoadedContact, SolveError> {
+    let progress = |fraction: f64| (surroundings.progress)(Stage::Mesh, found.done + (1.0 - found.done) * fraction);
     let watch = Watch::new(&progress, surroundings.canceled);
-    contact::solve_pair_of_halves(pair, case.torque_nm, case.half_stagger, &case.settings, watch).map_err(|error| {
+    let (torque_nm, stagger) = (case.torque_nm, case.half_stagger);
+    contact::solve_pair_of_halves(pair, torque_nm, stagger, &found.compliance, &case.settings, watch).map_err(|error| {
         match error {
             ContactError::Canceled(canceled) => canceled.into(),
             other => SolveError::failed(Stage::Mesh, contact_code(&other), &other),

@@ -3,6 +3,7 @@
 
 mod axes;
 mod check;
+mod compliance;
 mod equations;
 mod hash;
 mod impact;
@@ -27,7 +28,7 @@ pub use hash::input_hash;
 pub use vibration::is_channel;
 
 /// Version of the calculation: results and stages stored under another version are not reused.
-pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-1");
+pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-2");
 
 /// Stages in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -36,9 +36,7 @@ pub fn solve(
 
     let plane = MotionPlane::new(document.model.plane, &prepared);
     let (mesh, reused) = mesh::run(document, &prepared, &plane, surroundings, memo)?;
-    if reused {
-        numerics.reused.push(Stage::Mesh.word().to_owned());
-    }
+    numerics.reused.extend(reused.into_iter().map(str::to_owned));
     numerics.wall_ms.mesh = clock.lap_ms();
 
     let impact = impact::run(document, &prepared, &plane, &mesh, &mut warnings)?;

@@ -59,9 +59,6 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
 fn supported(document: &JobDocument) -> Result<(), DocumentError> {
     let mut unsupported = Vec::new();
     let mut refuse = |pointer: &str, detail: &str| unsupported.push(Violation::new(pointer, "unsupported", detail));
-    if let doc::MeshStiffness::Ltca(doc::Ltca { fidelity: doc::Fidelity::Fe, .. }) = &document.model.mesh_stiffness {
-        refuse("/model/mesh_stiffness/fidelity", "\"fe\" is not available in this version; use \"analytic\"");
-    }
     let given = matches!(document.model.mesh_stiffness, doc::MeshStiffness::Given(_));
     if !given && document.operation.pinion_torque_nm <= 0.0 {
         let detail = "is zero or negative; the contact analysis needs a driving torque above 0 N m (a given mesh stiffness does not)";

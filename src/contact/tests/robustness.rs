@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use crate::contact::{BodyHold, Settings, solve_pair_of_halves};
+use crate::contact::{BodyHold, Compliance, Settings, solve_pair_of_halves};
 use crate::gear::{Pair, ReliefShape, TipRelief};
 use crate::watch::Watch;
 
@@ -28,13 +28,14 @@ proptest! {
         spec.gear.flanks[1].helix_slope_m = errors.2;
         let Ok((pair, _)) = Pair::new(&spec) else { return Ok(()) };
         let settings = Settings {
-            positions: 6,
+            positions: Some(6),
+            accuracy: 1e-3,
             slices: Some(12),
             body: if bore_hold { BodyHold::Bore } else { BodyHold::Rim },
             corner_contact,
         };
         let torque = 10f64.powf(torque_exponent);
-        let both = solve_pair_of_halves(&pair, torque, 0.3, &settings, Watch::none());
+        let both = solve_pair_of_halves(&pair, torque, 0.3, &Compliance::analytic(&pair, &settings), &settings, Watch::none());
         let both = both.map_err(|e| TestCaseError::fail(format!("{e}")))?;
         for half in &both.halves {
             for i in 0..6 {
