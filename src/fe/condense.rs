@@ -6,6 +6,7 @@ use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization, cholesky
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul as triangular_matmul};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::traits::ComplexField;
 use faer::{Accum, Mat, MatMut, MatRef, Par, Spec};
 
 use super::dissection::Dissection;
@@ -169,10 +170,14 @@ impl Plan<'_> {
             more => more.iter().map(|child| self.eliminate(child)).collect::<Result<_, _>>()?,
         };
         let part = self.front(&tree.own, parts)?;
-        let done = self.done.fetch_add(tree.own.len(), std::sync::atomic::Ordering::Relaxed);
-        let fraction = done as f64 / self.rank.len() as f64;
-        self.watch.checkpoint(self.progress.0 + (self.progress.1 - self.progress.0) * fraction)?;
+        self.done.fetch_add(tree.own.len(), std::sync::atomic::Ordering::Relaxed);
         Ok(part)
+    }
+
+    fn checkpoint(&self) -> Result<(), FeError> {
+        let done = self.done.load(std::sync::atomic::Ordering::Relaxed);
+        let fraction = done as f64 / self.rank.len() as f64;
+        Ok(self.watch.checkpoint(self.progress.0 + (self.progress.1 - self.progress.0) * fraction)?)
     }
 
     /// Lower triangle of the stiffness between `points` (ranks rising) and all that come later, where `index` knows them.
@@ -274,25 +279,13 @@ impl Plan<'_> {
         }
         drop(parts);
 
-        let place = "inside of a sector";
-        let (mut diagonal, mut below) = front.as_mut().split_at_row_mut(inner);
-        factor(diagonal.as_mut(), place)?;
-        solve_lower_triangular_in_place(diagonal.as_ref(), below.as_mut().transpose_mut(), Par::Seq);
-        triangular_matmul(
-            remainder.as_mut(),
-            BlockStructure::TriangularLower,
-            Accum::Add,
-            below.as_ref(),
-            BlockStructure::Rectangular,
-            below.as_ref().transpose(),
-            BlockStructure::Rectangular,
-            -1.0,
-            Par::Seq,
-        );
+        let mut checkpoint = || self.checkpoint();
+        factor_partly(front.as_mut(), remainder.as_mut(), "inside of a sector", &mut checkpoint)?;
+        let (diagonal, below) = front.as_ref().split_at_row(inner);
         if let Some(compliance) = &mut compliance {
             let (mut top, mut bottom) = forces.as_mut().split_at_row_mut(inner);
-            solve_lower_triangular_in_place(diagonal.as_ref(), top.as_mut(), Par::Seq);
-            matmul(bottom.as_mut(), Accum::Add, below.as_ref(), top.as_ref(), -1.0, Par::Seq);
+            solve_lower_triangular_in_place(diagonal, top.as_mut(), Par::Seq);
+            matmul(bottom.as_mut(), Accum::Add, below, top.as_ref(), -1.0, Par::Seq);
             triangular_matmul(
                 compliance.as_mut(),
                 BlockStructure::TriangularLower,
@@ -315,12 +308,60 @@ impl Plan<'_> {
     }
 }
 
-/// Cholesky factor of a Hermitian matrix in its lower triangle.
-pub(super) fn factor<T: faer::traits::ComplexField>(matrix: MatMut<'_, T>, place: &'static str) -> Result<(), FeError> {
+/// Work between two checkpoints, in multiplications.
+const PANEL_WORK: usize = 500_000_000;
+
+/// Cholesky elimination of the first unknowns of a Hermitian matrix (lower triangle): `left` has the columns that are
+/// eliminated and becomes their factor, `right` what is below and right of it and becomes the Schur complement.
+pub(super) fn factor_partly<T: ComplexField>(
+    mut left: MatMut<'_, T>,
+    mut right: MatMut<'_, T>,
+    place: &'static str,
+    checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
+) -> Result<(), FeError> {
+    let (size, inner) = (left.nrows(), left.ncols());
+    let width = (PANEL_WORK / (size * size).max(1)).max(48);
     let params = Spec::<LltParams, T>::default();
-    let size = matrix.nrows();
-    let mut memory = MemBuffer::new(cholesky_in_place_scratch::<T>(size, Par::Seq, params));
-    cholesky_in_place(matrix, LltRegularization::default(), Par::Seq, MemStack::new(&mut memory), params)
-        .map(|_| ())
-        .map_err(|_| FeError::Singular { place })
+    let mut memory = MemBuffer::new(cholesky_in_place_scratch::<T>(width.min(inner), Par::Seq, params));
+    let mut start = 0;
+    while start < inner {
+        checkpoint()?;
+        let end = (start + width).min(inner);
+        let (panel, rest) =
+            left.as_mut().submatrix_mut(start, start, size - start, inner - start).split_at_col_mut(end - start);
+        let (mut diagonal, mut below) = panel.split_at_row_mut(end - start);
+        cholesky_in_place(
+            diagonal.as_mut(),
+            LltRegularization::default(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+            params,
+        )
+        .map_err(|_| FeError::Singular { place })?;
+        solve_lower_triangular_in_place(diagonal.as_ref().conjugate(), below.as_mut().transpose_mut(), Par::Seq);
+        let (near, far) = below.as_ref().split_at_row(inner - end);
+        let (mut triangle, rectangle) =
+            rest.submatrix_mut(end - start, 0, size - end, inner - end).split_at_row_mut(inner - end);
+        let minus = -T::one_impl();
+        subtract_square(triangle.as_mut(), near);
+        matmul(rectangle, Accum::Add, far, near.adjoint(), minus, Par::Seq);
+        subtract_square(right.as_mut(), far);
+        start = end;
+    }
+    Ok(())
+}
+
+/// Takes `factor · factorᴴ` from the lower triangle of `matrix`.
+fn subtract_square<T: ComplexField>(matrix: MatMut<'_, T>, factor: MatRef<'_, T>) {
+    triangular_matmul(
+        matrix,
+        BlockStructure::TriangularLower,
+        Accum::Add,
+        factor,
+        BlockStructure::Rectangular,
+        factor.adjoint(),
+        BlockStructure::Rectangular,
+        -T::one_impl(),
+        Par::Seq,
+    );
 }

@@ -1,15 +1,15 @@
 //! The flexibility of one loaded flank.
 
-use super::condense::condense;
 use super::cyclic::expand;
-use super::dissection::Dissection;
 use super::half_space::half_space;
 use super::input::{FeError, FlankInput};
-use super::loads::{Grid, Loads};
-use super::operator::{Body, Operator};
-use super::section::{Border, Involute, Section};
+use super::loads::Grid;
+use super::operator::Body;
+use super::section::{Border, Section};
+use super::sector::Sector;
 use super::sizes::Sizes;
 use super::spline::{SplineSpace, graded_cells};
+use super::surface::Involute;
 use crate::watch::Watch;
 
 /// Bulk influence between the points of one flank and those of the teeth ahead of it.
@@ -40,7 +40,8 @@ impl FlankFlexibility {
         FlankFlexibility::with_sizes(input, &Sizes::new(input.key().resolution), watch)
     }
 
-    pub(super) fn with_sizes(input: &FlankInput, sizes: &Sizes, watch: Watch) -> Result<FlankFlexibility, FeError> {
+    fn with_sizes(input: &FlankInput, sizes: &Sizes, watch: Watch) -> Result<FlankFlexibility, FeError> {
+        watch.checkpoint(0.0)?;
         let key = input.key();
         let involute = Involute::new(input.member())?;
         let m = key.normal_module_m;
@@ -65,17 +66,21 @@ impl FlankFlexibility {
             nu: key.poissons_ratio,
             twist_per_m: input.twist_per_m(),
         };
-        let total = solve(&body, spaces, levels, &fine, &involute, &grid, key.teeth, key.offsets, watch)?;
+        let sector = Sector::new(&body, spaces, levels, &fine, &involute, &grid);
+        let condensed = sector.condense(watch, (0.0, ELIMINATED))?;
+        let total = expand(&condensed, key.teeth, key.offsets, watch, (ELIMINATED, EXPANDED))?;
         let half_space =
             half_space(&involute, &grid, body.twist_per_m, (body.youngs_pa, body.nu), watch, (EXPANDED, 1.0))?;
-        let mut bulk = total;
+        let n = grid.len();
+        let mut bulk: Vec<Vec<f64>> =
+            total.iter().map(|matrix| (0..n * n).map(|k| matrix[(k / n, k % n)]).collect()).collect();
         for (b, h) in bulk[0].iter_mut().zip(&half_space) {
             *b -= h;
         }
         if key.side == super::input::Side::Gear {
             // The sector's angle grows towards the loaded flank, which on the gear looks back to the teeth behind.
             for matrix in &mut bulk[1..] {
-                transpose(matrix, grid.len());
+                transpose(matrix, n);
             }
         }
         watch.checkpoint(1.0)?;
@@ -175,37 +180,4 @@ fn levels(section: &Section, spaces: usize, cell: f64, reach: f64) -> Vec<u8> {
             level as u8
         })
         .collect()
-}
-
-/// Total influence for all offsets towards growing angle, row-major.
-#[allow(clippy::too_many_arguments)]
-pub(super) fn solve(
-    body: &Body,
-    spaces: Vec<SplineSpace>,
-    levels: Vec<u8>,
-    cells: &[f64],
-    involute: &Involute,
-    grid: &Grid,
-    teeth: u32,
-    offsets: usize,
-    watch: Watch,
-) -> Result<Vec<Vec<f64>>, FeError> {
-    watch.checkpoint(0.0)?;
-    let section = body.section;
-    let operator = Operator::new(body, spaces, levels);
-    let loads = Loads::new(section, involute, grid, &operator, body.twist_per_m);
-    let tree = Dissection::new(section, &operator, &cells[1..cells.len() - 1]);
-    // Both faces from outside inwards.
-    let face = |which: fn(&Border) -> Option<usize>| {
-        let mut nodes: Vec<(usize, usize)> =
-            section.borders.iter().enumerate().filter_map(|(node, border)| Some((which(border)?, node))).collect();
-        nodes.sort_unstable();
-        nodes.into_iter().flat_map(|(_, node)| operator.line(node)).collect::<Vec<_>>()
-    };
-    let mut kept = face(|border| if let Border::Low(k) = border { Some(*k) } else { None });
-    kept.extend(face(|border| if let Border::High(k) = border { Some(*k) } else { None }));
-    let sector = condense(&operator, &loads, grid.len(), &tree, &kept, watch, (0.0, ELIMINATED))?;
-    let matrices = expand(&sector, teeth, offsets, watch, (ELIMINATED, EXPANDED))?;
-    let n = grid.len();
-    Ok(matrices.into_iter().map(|matrix| (0..n * n).map(|k| matrix[(k / n, k % n)]).collect()).collect())
 }

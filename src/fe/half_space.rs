@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::loads::{Grid, hat_lengths};
 use super::quadrature::{gauss, gauss_on};
-use super::section::Involute;
+use super::surface::Involute;
 use crate::watch::{Canceled, Watch};
 
 /// Two cells along the face at a given distance.

@@ -26,7 +26,7 @@ pub enum Resolution {
     Medium,
     /// The load grid of `Medium`, two spline cells per load cell along the face.
     Standard,
-    /// The load grid of `Medium`, elements of half and spline cells of a third of the size: for validation.
+    /// The load grid of `Medium`, elements and spline cells of half the size: for validation.
     Fine,
 }
 

@@ -2,7 +2,8 @@
 
 use super::operator::Operator;
 use super::quadrature::{gauss, gauss_on};
-use super::section::{Involute, Section, edge_shapes};
+use super::section::{Section, edge_shapes};
+use super::surface::Involute;
 
 /// The load grid: hats bilinear in the arc length of the involute and in the axial place.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,7 +2,7 @@
 //! neighbours.
 //!
 //! One helix half of one member: real involute, rack-generated fillet, tip and root land on a blank that is held on a
-//! cylinder over the face width, end faces free, all teeth present. One sector is meshed (`section`), screwed along the axis
+//! cylinder over the face width, end faces free, all teeth present. One sector is meshed (`surface`, `section`), screwed along the axis
 //! (`operator`, `spline`), eliminated up to its cut faces (`dissection`, `condense`) and put together to the whole gear by
 //! its circumferential waves (`cyclic`). Loads and responses are hats on the flank (`loads`); the half-space part of the same
 //! hats is taken away (`half_space`), so that what stays is smooth and can be interpolated to contact lines.
@@ -19,9 +19,14 @@ mod loads;
 mod operator;
 mod quadrature;
 mod section;
+mod sector;
 mod sizes;
 mod spline;
 mod stored;
+mod surface;
 
 pub use flexibility::FlankFlexibility;
 pub use input::{FeError, FlankInput, FlankKey, MESH_VERSION, Resolution, Side};
+
+#[cfg(test)]
+mod tests;

@@ -60,8 +60,8 @@ impl Sizes {
             Resolution::Fine => Sizes {
                 profile_cell: 0.2,
                 station_cell: 0.57,
-                splines_per_cell: 3,
-                reach: 0.5,
+                splines_per_cell: 2,
+                reach: 0.6,
                 section: SectionSizes {
                     rows_per_cell: 2,
                     rows_per_end_cell: 3,
