@@ -8,7 +8,7 @@
 //! width separate (U, V even with W odd, and the reverse). A Galerkin flexibility is positive definite and never larger
 //! than the exact one.
 
-use super::linalg::{cholesky, forward_solve};
+use super::linalg::{add_product, cholesky_inlined, forward_solve_columns, vectorised};
 
 /// The ring and its material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -159,9 +159,18 @@ impl RingSolver {
 }
 
 fn condense(elements: &[[Vec<f64>; 3]], n: f64, size: usize) -> Vec<f64> {
-    if size == 0 {
-        return Vec::new();
+    let mut flexibility = vec![0.0; size * size];
+    if size > 0 {
+        vectorised(
+            #[inline(always)]
+            || condense_inlined(elements, n, size, &mut flexibility),
+        );
     }
+    flexibility
+}
+
+#[inline(always)]
+fn condense_inlined(elements: &[[Vec<f64>; 3]], n: f64, size: usize, flexibility: &mut [f64]) {
     let width = 3 * size;
     let mut element = vec![0.0; width * width];
     let mut outer = vec![0.0; size * size];
@@ -175,8 +184,9 @@ fn condense(elements: &[[Vec<f64>; 3]], n: f64, size: usize) -> Vec<f64> {
         let skip = if e == 0 { size } else { 0 };
         let gone = 2 * size - skip;
         for i in 0..gone {
-            k[i * gone..=i * gone + i]
-                .copy_from_slice(&element[(skip + i) * width + skip..=(skip + i) * width + skip + i]);
+            let row = &element[(skip + i) * width..(skip + i + 1) * width];
+            k[i * gone..=i * gone + i].copy_from_slice(&row[skip..=skip + i]);
+            columns[i * size..(i + 1) * size].copy_from_slice(&row[2 * size..]);
         }
         if e > 0 {
             for i in 0..size {
@@ -185,37 +195,23 @@ fn condense(elements: &[[Vec<f64>; 3]], n: f64, size: usize) -> Vec<f64> {
                 }
             }
         }
-        cholesky(&mut k[..gone * gone], gone);
-        for j in 0..size {
-            let column = &mut columns[j * gone..(j + 1) * gone];
-            column.copy_from_slice(&element[(2 * size + j) * width + skip..(2 * size + j) * width + 2 * size]);
-            forward_solve(&k, column, gone);
+        cholesky_inlined(&mut k[..gone * gone], gone);
+        let columns = &mut columns[..gone * size];
+        forward_solve_columns(&k, columns, gone);
+        for (row, i) in outer.chunks_exact_mut(size).zip(2 * size..) {
+            row.copy_from_slice(&element[i * width + 2 * size..(i + 1) * width]);
         }
-        for i in 0..size {
-            for j in 0..=i {
-                let minus = super::linalg::dot(&columns[i * gone..(i + 1) * gone], &columns[j * gone..(j + 1) * gone]);
-                outer[i * size + j] = element[(2 * size + i) * width + 2 * size + j] - minus;
-                outer[j * size + i] = outer[i * size + j];
-            }
-        }
+        add_product(&mut outer, -1.0, columns, columns, gone);
     }
-    cholesky(&mut outer, size);
-    // The inverse: L⁻¹ by columns, then its products.
+    cholesky_inlined(&mut outer, size);
+    // The inverse: L⁻¹ and its products.
     let lower = &mut columns[..size * size];
     lower.fill(0.0);
     for j in 0..size {
         lower[j * size + j] = 1.0;
-        forward_solve(&outer, &mut lower[j * size..(j + 1) * size], size);
     }
-    let mut flexibility = vec![0.0; size * size];
-    for i in 0..size {
-        for j in 0..=i {
-            let value = super::linalg::dot(&lower[i * size + i..(i + 1) * size], &lower[j * size + i..(j + 1) * size]);
-            flexibility[i * size + j] = value;
-            flexibility[j * size + i] = value;
-        }
-    }
-    flexibility
+    forward_solve_columns(&outer, lower, size);
+    add_product(flexibility, 1.0, lower, lower, size);
 }
 
 /// Stiffness of one quadratic radial element (nodes: inner, middle, outer) per radian of the harmonic's circumference, by

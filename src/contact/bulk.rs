@@ -6,19 +6,20 @@
 
 use super::body::WidthBasis;
 use super::edge::AcuteEnd;
-use super::linalg::{cholesky, cholesky_solve};
+use super::linalg::{add_product, cholesky, cholesky_solve, vectorised};
 use super::plate::PlateModes;
 use super::ring_influence::{KINDS, RingFlexibility};
 use super::tooth::{Place, RootRemainder};
 
 /// Places of the profile between which the compliance is interpolated (Chebyshev nodes, a polynomial through all).
-pub const NODES: usize = 5;
+pub const NODES: usize = 4;
 
 /// Normal displacements per normal force of teeth and ring together, for every pair of slices and places of the profile.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BulkCompliance {
     slices: usize,
-    table: Vec<[f64; NODES * NODES]>,
+    /// By offset, places of response and load, slices of response and load.
+    table: Vec<f64>,
 }
 
 /// What the compliance is made of.
@@ -37,90 +38,68 @@ pub struct Parts<'a> {
     pub slices: usize,
 }
 
-/// `out += factor aᵀ b` for row-major matrices with `rows` rows.
-fn add_product(out: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows: usize) {
-    let (m, n) = (a.len() / rows, b.len() / rows);
-    for (left, right) in a.chunks_exact(m).zip(b.chunks_exact(n)) {
-        for (value, target) in left.iter().zip(out.chunks_exact_mut(n)) {
-            let scale = factor * value;
-            for (t, r) in target.iter_mut().zip(right) {
-                *t += scale * r;
-            }
-        }
-    }
-}
-
 impl BulkCompliance {
     pub fn new(parts: &Parts<'_>) -> BulkCompliance {
+        let count = parts.ring.offsets.len() * (NODES * parts.slices).pow(2);
+        let mut bulk = BulkCompliance { slices: parts.slices, table: vec![0.0; count] };
+        vectorised(
+            #[inline(always)]
+            || bulk.fill(parts),
+        );
+        bulk.mirror();
+        bulk
+    }
+
+    #[inline(always)]
+    fn fill(&mut self, parts: &Parts<'_>) {
         let size = parts.basis.order + 1;
         let n = parts.slices;
-        let shapes: [Vec<f64>; NODES] =
-            std::array::from_fn(|a| transposed(&parts.basis.slice_means(n, parts.places[a].shift_m), size));
-        let forces: [Vec<f64>; NODES] = std::array::from_fn(|a| parts.plate.root(0, parts.places[a].lever_m));
-        let moments: [Vec<f64>; NODES] = std::array::from_fn(|a| parts.plate.root(1, parts.places[a].lever_m));
+        let shapes = parts.places.map(|place| transposed(&parts.basis.slice_means(n, place.shift_m), size));
+        let [forces, moments] = [0, 1].map(|which| parts.places.map(|place| parts.plate.root(which, place.lever_m)));
         let loads: [Vec<f64>; NODES] = std::array::from_fn(|a| parts.ring_load(a, &forces[a], &moments[a]));
         let spread = parts.root_spread();
-        let mut bulk =
-            BulkCompliance { slices: n, table: vec![[0.0; NODES * NODES]; parts.ring.offsets.len() * n * n] };
         let mut joint = vec![0.0; size * size];
         let mut half = vec![0.0; KINDS * size * size];
         let mut slices = vec![0.0; n * size];
         for (k, flexibility) in parts.ring.offsets.iter().enumerate() {
+            let turned = transposed(flexibility, KINDS * size);
             for b in 0..NODES {
                 half.fill(0.0);
-                add_product(&mut half, 1.0, &transposed(flexibility, KINDS * size), &loads[b], KINDS * size);
-                for a in 0..NODES {
-                    // Of one tooth the table is symmetric.
-                    if k == 0 && a > b {
-                        continue;
-                    }
+                add_product(&mut half, 1.0, &turned, &loads[b], KINDS * size);
+                // Of one tooth the table is symmetric.
+                let upper = if k == 0 { b + 1 } else { NODES };
+                for a in 0..upper {
+                    // The transpose: degree of b by degree of a.
                     joint.fill(0.0);
-                    add_product(&mut joint, 1.0, &loads[a], &half, KINDS * size);
+                    add_product(&mut joint, 1.0, &half, &loads[a], KINDS * size);
                     if k == 0 {
-                        parts.add_tooth(&mut joint, (a, b), &forces, &moments, &spread);
+                        parts.add_tooth(&mut joint, (b, a), &forces, &moments, &spread);
                     }
+                    // Degree of a by slice of b.
                     slices.fill(0.0);
-                    add_product(&mut slices, 1.0, &transposed(&joint, size), &shapes[b], size);
-                    // slices: degree of a by slice of b.
-                    bulk.add(k, (a, b), &shapes[a], &slices, size);
+                    add_product(&mut slices, 1.0, &joint, &shapes[b], size);
+                    let target = &mut self.table[((k * NODES + a) * NODES + b) * n * n..][..n * n];
+                    add_product(target, 1.0, &shapes[a], &slices, size);
                     if k == 0 {
-                        bulk.add_end(&parts.end, parts.places, (a, b));
+                        let depth_m = parts.places[a].depth_m.min(parts.places[b].depth_m);
+                        parts.end.add(target, depth_m);
                     }
                 }
             }
         }
-        bulk
     }
 
-    fn add(&mut self, k: usize, (a, b): (usize, usize), shapes: &[f64], rows: &[f64], size: usize) {
-        let n = self.slices;
-        let mut line = vec![0.0; n];
-        for i in 0..n {
-            line.fill(0.0);
-            for p in 0..size {
-                let factor = shapes[p * n + i];
-                for (t, r) in line.iter_mut().zip(&rows[p * n..(p + 1) * n]) {
-                    *t += factor * r;
-                }
-            }
-            for (j, value) in line.iter().enumerate() {
-                self.table[(k * n + i) * n + j][a * NODES + b] = *value;
-                if k == 0 && a != b {
-                    self.table[(k * n + j) * n + i][b * NODES + a] = *value;
-                }
-            }
-        }
-    }
-
-    fn add_end(&mut self, end: &AcuteEnd, places: &[Place; NODES], (a, b): (usize, usize)) {
-        let n = self.slices;
-        let depth_m = places[a].depth_m.min(places[b].depth_m);
-        for i in 0..n {
-            for j in 0..n {
-                let value = end.between(i, j, depth_m);
-                self.table[i * n + j][a * NODES + b] += value;
-                if a != b {
-                    self.table[j * n + i][b * NODES + a] += value;
+    /// The other half of one tooth's own table.
+    fn mirror(&mut self) {
+        let n2 = self.slices * self.slices;
+        for a in 0..NODES {
+            for b in 0..a {
+                let (low, high) = self.table.split_at_mut((a * NODES + b) * n2);
+                let source = &low[(b * NODES + a) * n2..][..n2];
+                for (i, row) in source.chunks_exact(self.slices).enumerate() {
+                    for (j, value) in row.iter().enumerate() {
+                        high[j * self.slices + i] = *value;
+                    }
                 }
             }
         }
@@ -129,22 +108,18 @@ impl BulkCompliance {
     /// Displacement at slice `i` and place `a` from a force at slice `j` and place `b`, both on one tooth (`offset` 0) or with the
     /// first `offset` pairs earlier in the mesh than the second.
     pub fn entry(&self, offset: usize, (i, a): (usize, usize), (j, b): (usize, usize)) -> f64 {
-        self.table[(offset * self.slices + i) * self.slices + j][a * NODES + b]
+        self.table[(((offset * NODES + a) * NODES + b) * self.slices + i) * self.slices + j]
     }
 
     /// Displacement at slice `i` from a force at slice `j`, both on one tooth (`offset` 0) or with the first `offset` pairs
     /// earlier in the mesh than the second; `wa` and `wb` are the interpolation weights of their places.
     #[cfg(test)]
     pub fn between(&self, offset: usize, i: usize, j: usize, wa: &[f64; NODES], wb: &[f64; NODES]) -> f64 {
-        let entry = &self.table[(offset * self.slices + i) * self.slices + j];
         let mut sum = 0.0;
         for a in 0..NODES {
-            let row = &entry[a * NODES..(a + 1) * NODES];
-            let mut inner = 0.0;
             for b in 0..NODES {
-                inner += row[b] * wb[b];
+                sum += wa[a] * wb[b] * self.entry(offset, (i, a), (j, b));
             }
-            sum += wa[a] * inner;
         }
         sum
     }
@@ -209,6 +184,7 @@ impl Parts<'_> {
     }
 
     /// The tooth's plate, its compression and the remainder of its root.
+    #[inline(always)]
     fn add_tooth(
         &self,
         joint: &mut [f64],

@@ -37,10 +37,10 @@ pub fn hold_radius_m(member: &Member, hold: BodyHold, normal_module_m: f64) -> f
     radius.max(SMALLEST_HOLD * root)
 }
 
-/// Degree of the Legendre functions along the face, by the face width in normal modules: about five per three wavelengths of
-/// the shortest wave that teeth and ring follow, 3.5 modules.
+/// Degree of the Legendre functions along the face, by the face width in normal modules: about six per wavelength of
+/// the shortest wave that teeth and ring follow, four modules.
 fn width_order(width_modules: f64) -> usize {
-    (4.0 + 0.63 * width_modules).ceil().clamp(5.0, 26.0) as usize
+    (4.0 + 0.5 * width_modules).ceil().clamp(5.0, 26.0) as usize
 }
 
 /// Compliance of one member.

@@ -85,8 +85,9 @@ pub fn cholesky(a: &mut [f64], n: usize) -> bool {
     )
 }
 
+/// [`cholesky`] to be inlined into something vectorised.
 #[inline(always)]
-fn cholesky_inlined(a: &mut [f64], n: usize) -> bool {
+pub fn cholesky_inlined(a: &mut [f64], n: usize) -> bool {
     for i in 0..n {
         let (above, row) = a.split_at_mut(i * n);
         for j in 0..i {
@@ -118,6 +119,33 @@ pub fn cholesky_solve(l: &[f64], b: &mut [f64], n: usize) {
 pub fn forward_solve(l: &[f64], b: &mut [f64], n: usize) {
     for i in 0..n {
         b[i] = (b[i] - dot(&l[i * n..i * n + i], &b[..i])) / l[i * n + i];
+    }
+}
+
+/// Solves L X = B in place, all columns of the row-major `b` at once.
+#[inline(always)]
+pub fn forward_solve_columns(l: &[f64], b: &mut [f64], n: usize) {
+    let columns = b.len() / n;
+    for i in 0..n {
+        let (done, rest) = b.split_at_mut(i * columns);
+        let row = &mut rest[..columns];
+        for (factor, other) in l[i * n..i * n + i].iter().zip(done.chunks_exact(columns)) {
+            row.iter_mut().zip(other).for_each(|(x, y)| *x -= factor * y);
+        }
+        let scale = 1.0 / l[i * n + i];
+        row.iter_mut().for_each(|x| *x *= scale);
+    }
+}
+
+/// `out += factor aᵀ b` for row-major matrices with `rows` rows.
+#[inline(always)]
+pub fn add_product(out: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows: usize) {
+    let (m, n) = (a.len() / rows, b.len() / rows);
+    for (left, right) in a.chunks_exact(m).zip(b.chunks_exact(n)) {
+        for (value, target) in left.iter().zip(out.chunks_exact_mut(n)) {
+            let scale = factor * value;
+            target.iter_mut().zip(right).for_each(|(t, r)| *t += scale * r);
+        }
     }
 }
 

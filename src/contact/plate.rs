@@ -9,7 +9,7 @@
 //! which goes into the normal force because the root turns with the slope of its own displacement along the trace.
 
 use super::body::WidthBasis;
-use super::linalg::{cholesky, dot, forward_solve};
+use super::linalg::{add_product, cholesky_inlined, forward_solve_columns, vectorised};
 
 /// Functions over the height: 1 (the root) and η L_{j-1}(2η - 1), j = 1..=ORDER.
 const ORDER: usize = 5;
@@ -179,33 +179,44 @@ impl Plate<'_> {
                 k[row * n + column] = self.stiffness(sections, basis, x, y);
             }
         }
-        cholesky(&mut k, n);
-        let column = |entries: &mut dyn FnMut(usize) -> f64| {
-            let mut c: Vec<f64> = (0..n).map(entries).collect();
-            forward_solve(&k, &mut c, n);
-            c
-        };
-        let at_root: Vec<Vec<f64>> =
-            roots.iter().map(|&r| column(&mut |i| self.stiffness(sections, basis, free[i], r))).collect();
         let loads: Vec<(usize, (usize, usize))> =
             free.iter().enumerate().filter(|(_, x)| x.0 == 0).map(|(i, x)| (i, (x.1, x.2))).collect();
-        let answers: Vec<Vec<f64>> = loads.iter().map(|&(i, _)| column(&mut |r| f64::from(u8::from(r == i)))).collect();
+        // Columns: unit loads, then the stiffness towards the root.
+        let columns = loads.len() + roots.len();
+        let mut sides = vec![0.0; n * columns];
+        for (column, &(row, _)) in loads.iter().enumerate() {
+            sides[row * columns + column] = 1.0;
+        }
+        for (row, &x) in free.iter().enumerate() {
+            for (column, &r) in roots.iter().enumerate() {
+                sides[row * columns + loads.len() + column] = self.stiffness(sections, basis, x, r);
+            }
+        }
+        let mut products = vec![0.0; columns * columns];
+        vectorised(
+            #[inline(always)]
+            || {
+                cholesky_inlined(&mut k, n);
+                forward_solve_columns(&k, &mut sides, n);
+                add_product(&mut products, 1.0, &sides, &sides, n);
+            },
+        );
         let size = out.size;
         let width = ORDER * size;
-        for (x, &(_, (j, q))) in answers.iter().zip(&loads) {
-            let col = (j - 1) * size + q;
-            for (y, &(_, (i, p))) in answers.iter().zip(&loads) {
-                out.deflection[((i - 1) * size + p) * width + col] = dot(x, y);
+        for (x, &(_, (j, q))) in loads.iter().enumerate() {
+            let column = (j - 1) * size + q;
+            for (y, &(_, (i, p))) in loads.iter().enumerate() {
+                out.deflection[((i - 1) * size + p) * width + column] = products[y * columns + x];
             }
-            for (r, &(field, _, p)) in at_root.iter().zip(&roots) {
-                let reaction = -dot(r, x);
+            for (r, &(field, _, p)) in roots.iter().enumerate() {
+                let reaction = -products[(loads.len() + r) * columns + x];
                 match field {
-                    0 => out.root[0][p * width + col] += reaction,
-                    1 => out.root[1][p * width + col] += reaction,
+                    0 => out.root[0][p * width + column] += reaction,
+                    1 => out.root[1][p * width + column] += reaction,
                     // θ_t of the root is the slope of its w along the trace.
                     _ => {
                         for degree in degrees(0) {
-                            out.root[0][degree * width + col] += self.cos_trace * basis.mixed(p, degree) * reaction;
+                            out.root[0][degree * width + column] += self.cos_trace * basis.mixed(p, degree) * reaction;
                         }
                     }
                 }

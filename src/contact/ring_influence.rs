@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use super::annulus::arc_shapes;
 use super::body::{Ring, RingSolver, WidthBasis};
-use super::linalg::dot;
+use super::linalg::{add_product, dot, vectorised};
 
 /// Waves across the tooth longer than the first (in multiples of the normal module per radian) belong wholly to the
 /// ring, shorter than the second wholly to the tooth's own root; between them they share. A tooth pitch is π m_n, so
@@ -52,15 +52,15 @@ struct Harmonics {
     between: [Vec<f64>; 2],
 }
 
-/// Harmonics up to this one are all computed, the steps beyond grow by a quarter of the order.
-const EVERY_HARMONIC: f64 = 5.0;
+/// Harmonics up to this one are all computed, the steps beyond grow by a third of the order.
+const EVERY_HARMONIC: f64 = 4.0;
 
 impl Harmonics {
     fn new(solver: &RingSolver, highest: u32) -> Harmonics {
         let mut orders = vec![0.0];
         let mut n = 0.0;
         while n < f64::from(highest) {
-            n += if n < EVERY_HARMONIC { 1.0 } else { (n / 4.0).ceil() };
+            n += if n < EVERY_HARMONIC { 1.0 } else { (n / 3.0).ceil() };
             orders.push(n);
         }
         let computed: Vec<_> = orders.iter().map(|&n| solver.flexibility(n)).collect();
@@ -68,27 +68,29 @@ impl Harmonics {
         Harmonics { orders, computed, between }
     }
 
-    fn at(&mut self, n: u32) -> &[Vec<f64>; 2] {
+    /// Sets `between` to harmonic `n`.
+    #[inline(always)]
+    fn set(&mut self, n: u32) {
         let n = f64::from(n);
         let above = self.orders.partition_point(|&o| o < n);
         if self.orders[above] == n {
-            return &self.computed[above];
+            self.between.clone_from(&self.computed[above]);
+            return;
         }
         let first = above.saturating_sub(2).min(self.orders.len() - 4);
         let near = &self.orders[first..first + 4];
-        let weights: [f64; 4] = std::array::from_fn(|a| {
-            let others = (0..4).filter(|&b| b != a).map(|b| (n - near[b]) / (near[a] - near[b]));
-            others.product::<f64>() * near[a] / n
-        });
-        for (parity, block) in self.between.iter_mut().enumerate() {
+        for block in &mut self.between {
             block.fill(0.0);
-            for (a, w) in weights.iter().enumerate() {
-                for (value, x) in block.iter_mut().zip(&self.computed[first + a][parity]) {
-                    *value += w * x;
-                }
+        }
+        for a in 0..4 {
+            let mut weight = near[a] / n;
+            for b in (0..4).filter(|&b| b != a) {
+                weight *= (n - near[b]) / (near[a] - near[b]);
+            }
+            for (block, source) in self.between.iter_mut().zip(&self.computed[first + a]) {
+                block.iter_mut().zip(source).for_each(|(value, x)| *value += weight * x);
             }
         }
-        &self.between
     }
 }
 
@@ -125,8 +127,10 @@ impl Twist {
         Twist { points, angles, products }
     }
 
-    /// Fills `out[p * size + q]`: the integral with the cosine where p + q is even, with the sine where it is odd.
-    fn at(&self, n: f64, size: usize, waves: &mut [Vec<f64>; 2], out: &mut [f64]) {
+    /// Fills `out`: for even and odd degrees p of the ring, rows over the sorted degrees q of the tooth; the integral with the
+    /// cosine where p + q is even, with the sine where it is odd.
+    #[inline(always)]
+    fn at(&self, n: f64, sorted: Sorted, waves: &mut [Vec<f64>; 2], out: &mut [Vec<f64>; 2]) {
         for wave in waves.iter_mut() {
             wave.resize(self.points, 0.0);
         }
@@ -135,14 +139,37 @@ impl Twist {
             waves[0][i] = c;
             waves[1][i] = s;
         }
+        let size = sorted.size;
         let mut rows = self.products.chunks_exact(self.points);
         for p in 0..size {
             for q in 0..=p {
                 let value = rows.next().map_or(0.0, |row| dot(row, &waves[(p + q) % 2]));
-                out[p * size + q] = value;
-                out[q * size + p] = value;
+                out[p % 2][p / 2 * size + sorted.place(q)] = value;
+                out[q % 2][q / 2 * size + sorted.place(p)] = value;
             }
         }
+    }
+}
+
+/// Degrees 0..size with the even ones first; matrices over them in four blocks (even and odd rows by even and odd columns).
+#[derive(Debug, Clone, Copy)]
+struct Sorted {
+    size: usize,
+}
+
+impl Sorted {
+    fn count(self, parity: usize) -> usize {
+        (self.size + 1 - parity) / 2
+    }
+
+    fn place(self, degree: usize) -> usize {
+        degree / 2 + if degree % 2 == 1 { self.count(0) } else { 0 }
+    }
+
+    /// Where the block of rows and columns of these parities stands.
+    fn block(self, rows: usize, columns: usize) -> std::ops::Range<usize> {
+        let start = rows * self.count(0) * self.size + columns * self.count(rows) * self.count(0);
+        start..start + self.count(rows) * self.count(columns)
     }
 }
 
@@ -178,50 +205,40 @@ impl RingFlexibility {
         let highest = (RING_WAVES_PER_MODULE.1 / layout.normal_module_m * reach).ceil().max(3.0) as u32;
         let solver = RingSolver::new(ring, basis);
         let mut harmonics = Harmonics::new(&solver, highest);
-        let twist = Twist::new(basis, ring.face_width_m, layout.twist_per_m, highest);
-        let size = basis.order + 1;
-        let width = KINDS * size;
-        // A load of unit phase e^{inψ} is i^τ times a real column: tangential displacements and the moment carry one i, the
-        // sine of the twist carries -i. Their product takes the cosine or the sine of the angle between the teeth.
-        let mut even = vec![vec![0.0; width * width]; offsets + 1];
-        let mut work = Columns::new(size);
-        let mut waves = [Vec::new(), Vec::new()];
-        let mut twisted = vec![0.0; size * size];
-        let pitch = 2.0 * PI / f64::from(layout.teeth);
-        for n in 0..=highest {
-            let weight = ring_weight(f64::from(n) / reach, layout.normal_module_m);
-            if weight <= 0.0 {
-                continue;
-            }
-            twist.at(f64::from(n), size, &mut waves, &mut twisted);
-            work.multiply(&solver.rows, harmonics.at(n), &twisted, layout.side);
-            let factor = weight * if n == 0 { 0.5 } else { 1.0 } / PI;
-            let (uniform, linear) = arc_shapes(f64::from(n), layout.root_half_angle_rad);
-            // (component, shape, τ) of the kinds.
-            let kinds = [(1, uniform, 1i32), (0, -linear, 1), (0, uniform, 0), (2, uniform, 0)];
-            for (k, target) in even.iter_mut().enumerate() {
-                let (sin, cos) = (f64::from(n) * layout.side * k as f64 * pitch).sin_cos();
-                for (a, &(ca, fa, ta)) in kinds.iter().enumerate() {
-                    for (b, &(cb, fb, tb)) in kinds.iter().enumerate() {
-                        let scale = factor * fa * fb;
-                        for p in 0..size {
-                            let source = &work.product[((ca * size + p) * 3 + cb) * size..][..size];
-                            let row = &mut target[(a * size + p) * width + b * size..][..size];
-                            let xa = sine(ca, p);
-                            // i^d of even and of odd degrees.
-                            let by = [0, 1].map(|q| scale * real_part(ta - tb + sine(cb, q) - xa, sin, cos));
-                            for (pair, from) in row.chunks_mut(2).zip(source.chunks(2)) {
-                                for ((r, s), f) in pair.iter_mut().zip(from).zip(by) {
-                                    *r += f * s;
-                                }
-                            }
-                        }
+        let mut sum = Sum::new(basis, Twist::new(basis, ring.face_width_m, layout.twist_per_m, highest));
+        let sorted = Sorted { size: basis.order + 1 };
+        let mut offsets = vec![vec![0.0; (KINDS * sorted.size).pow(2)]; offsets + 1];
+        vectorised(
+            #[inline(always)]
+            || {
+                for n in 0..=highest {
+                    let weight = ring_weight(f64::from(n) / reach, layout.normal_module_m);
+                    if weight > 0.0 {
+                        harmonics.set(n);
+                        sum.add(n, weight, &harmonics.between, &solver.rows, layout, &mut offsets);
                     }
                 }
+            },
+        );
+        RingFlexibility { size: sorted.size, offsets: offsets.iter().map(|o| natural(o, sorted)).collect() }
+    }
+}
+
+/// From blocks by kind and parity to one matrix over (kind, degree).
+fn natural(blocks: &[f64], sorted: Sorted) -> Vec<f64> {
+    let size = sorted.size;
+    let width = KINDS * size;
+    let mut out = vec![0.0; width * width];
+    for (ab, matrix) in blocks.chunks_exact(size * size).enumerate() {
+        for p in 0..size {
+            for q in 0..size {
+                let block = &matrix[sorted.block(p % 2, q % 2)];
+                out[(ab / KINDS * size + p) * width + ab % KINDS * size + q] =
+                    block[p / 2 * sorted.count(q % 2) + q / 2];
             }
         }
-        RingFlexibility { size, offsets: even }
     }
+    out
 }
 
 /// Whether degree `q` of component `c` takes the sine of the twist in the first block of the ring (in the second block it is
@@ -240,72 +257,119 @@ fn real_part(d: i32, sin: f64, cos: f64) -> f64 {
     }
 }
 
-/// Ring flexibility of one harmonic between the functions of two teeth, without the angle between them.
-struct Columns {
-    size: usize,
-    /// (component, degree; component, degree).
-    product: Vec<f64>,
+/// Adds up the harmonics in the functions of the teeth.
+///
+/// A load of unit phase e^{inψ} is i^τ times a real column: tangential displacements and the moment carry one i, the sine of the
+/// twist carries -i. The product of two columns takes the cosine or the sine of the angle between the teeth.
+struct Sum {
+    sorted: Sorted,
+    twist: Twist,
+    waves: [Vec<f64>; 2],
+    twisted: [Vec<f64>; 2],
     half: Vec<f64>,
+    /// Per block of the ring: flexibility between the sorted functions of two teeth.
+    products: [Vec<f64>; 2],
+    /// (component, component), in blocks by parity, without the angle between the teeth.
+    components: Vec<f64>,
 }
 
-impl Columns {
-    fn new(size: usize) -> Columns {
-        Columns { size, product: vec![0.0; 9 * size * size], half: vec![0.0; size * size] }
+impl Sum {
+    fn new(basis: &WidthBasis, twist: Twist) -> Sum {
+        let sorted = Sorted { size: basis.order + 1 };
+        let size = sorted.size;
+        Sum {
+            sorted,
+            twist,
+            waves: [Vec::new(), Vec::new()],
+            twisted: [0, 1].map(|parity| vec![0.0; sorted.count(parity) * size]),
+            half: Vec::new(),
+            products: [vec![0.0; size * size], vec![0.0; size * size]],
+            components: vec![0.0; 9 * size * size],
+        }
     }
 
-    /// Twists the flexibility `blocks` over `rows` from the ring's functions to the tooth's.
-    fn multiply(&mut self, rows: &[Vec<(usize, usize)>; 2], blocks: &[Vec<f64>; 2], twisted: &[f64], side: f64) {
-        let size = self.size;
-        self.product.fill(0.0);
-        for (parity, (rows, block)) in rows.iter().zip(blocks).enumerate() {
-            let of = |c: usize| {
-                let first = rows.partition_point(|r| r.0 < c);
-                first..rows.partition_point(|r| r.0 <= c)
-            };
-            for ca in 0..3 {
-                for cb in ca..3 {
-                    for r in of(ca) {
-                        // F times the twisted functions of the second tooth.
-                        self.half[..size].fill(0.0);
-                        for s in of(cb) {
-                            let f = block[r * rows.len() + s];
-                            let t = &twisted[rows[s].1 * size..][..size];
-                            for (h, t) in self.half[..size].iter_mut().zip(t) {
-                                *h += f * t;
-                            }
-                        }
-                        let degree = rows[r].1;
-                        for p in 0..size {
-                            let xa = sine(ca, p);
-                            let left = twisted[degree * size + p];
-                            // The sine changes sign with the side, and between the blocks where only one column has it.
-                            let by = [0, 1].map(|q| {
-                                let xb = sine(cb, q);
-                                if xa == xb {
-                                    left
-                                } else if parity == 0 {
-                                    left * side
-                                } else {
-                                    -left * side
-                                }
-                            });
-                            let target = &mut self.product[((ca * size + p) * 3 + cb) * size..][..size];
-                            for (pair, from) in target.chunks_mut(2).zip(self.half.chunks(2)) {
-                                for ((t, h), f) in pair.iter_mut().zip(from).zip(by) {
-                                    *t += f * h;
-                                }
+    #[inline(always)]
+    fn add(
+        &mut self,
+        n: u32,
+        weight: f64,
+        flexibility: &[Vec<f64>; 2],
+        rows: &[Vec<(usize, usize)>; 2],
+        layout: &ToothLayout,
+        offsets: &mut [Vec<f64>],
+    ) {
+        let n = f64::from(n);
+        self.twist.at(n, self.sorted, &mut self.waves, &mut self.twisted);
+        self.multiply(flexibility, rows, layout.side);
+        let area = self.sorted.size.pow(2);
+        let factor = weight * if n == 0.0 { 0.5 } else { 1.0 } / PI;
+        let (uniform, linear) = arc_shapes(n, layout.root_half_angle_rad);
+        // (component, shape, τ) of the kinds.
+        let kinds = [(1, uniform, 1i32), (0, -linear, 1), (0, uniform, 0), (2, uniform, 0)];
+        let pitch = 2.0 * PI / f64::from(layout.teeth);
+        for (k, target) in offsets.iter_mut().enumerate() {
+            let (sin, cos) = (n * layout.side * k as f64 * pitch).sin_cos();
+            for (a, &(ca, fa, ta)) in kinds.iter().enumerate() {
+                for (b, &(cb, fb, tb)) in kinds.iter().enumerate() {
+                    let source = &self.components[(ca * 3 + cb) * area..][..area];
+                    let target = &mut target[(a * KINDS + b) * area..][..area];
+                    for p in 0..2 {
+                        for q in 0..2 {
+                            let d = ta - tb + sine(cb, q) - sine(ca, p);
+                            let scale = factor * fa * fb * real_part(d, sin, cos);
+                            let block = self.sorted.block(p, q);
+                            for (t, s) in target[block.clone()].iter_mut().zip(&source[block]) {
+                                *t += scale * s;
                             }
                         }
                     }
                 }
             }
         }
-        for ca in 1..3 {
-            for cb in 0..ca {
-                for p in 0..size {
-                    for q in 0..size {
-                        self.product[((ca * size + p) * 3 + cb) * size + q] =
-                            self.product[((cb * size + q) * 3 + ca) * size + p];
+    }
+
+    /// Twists the flexibility over `rows` from the ring's functions to the teeth's.
+    #[inline(always)]
+    fn multiply(&mut self, flexibility: &[Vec<f64>; 2], rows: &[Vec<(usize, usize)>; 2], side: f64) {
+        let sorted = self.sorted;
+        let size = sorted.size;
+        for ca in 0..3 {
+            for cb in ca..3 {
+                for parity in 0..2 {
+                    // Rows of a component in this block of the ring: every other degree.
+                    let [pa, pb] = [ca, cb].map(|c| (parity + usize::from(c == 2)) % 2);
+                    let [first_a, first_b] = [ca, cb].map(|c| rows[parity].partition_point(|r| r.0 < c));
+                    let width = rows[parity].len();
+                    let (na, nb) = (sorted.count(pa), sorted.count(pb));
+                    self.half.clear();
+                    self.half.resize(na * size, 0.0);
+                    for (r, half) in self.half.chunks_exact_mut(size).enumerate() {
+                        let source = &flexibility[parity][(first_a + r) * width + first_b..][..nb];
+                        for (f, t) in source.iter().zip(self.twisted[pb].chunks_exact(size)) {
+                            half.iter_mut().zip(t).for_each(|(h, t)| *h += f * t);
+                        }
+                    }
+                    self.products[parity].fill(0.0);
+                    if na > 0 {
+                        add_product(&mut self.products[parity], 1.0, &self.twisted[pa], &self.half, na);
+                    }
+                }
+                let ahead = (ca * 3 + cb) * size * size;
+                let mirrored = (cb * 3 + ca) * size * size;
+                for p in 0..2 {
+                    for q in 0..2 {
+                        // The sine changes sign with the side, and between the blocks where only one column has it.
+                        let sign = if sine(ca, p) == sine(cb, q) { [1.0, 1.0] } else { [side, -side] };
+                        let (block, turned) = (sorted.block(p, q).start, sorted.block(q, p).start);
+                        let (np, nq) = (sorted.count(p), sorted.count(q));
+                        for i in 0..np {
+                            let from = (p * sorted.count(0) + i) * size + q * sorted.count(0);
+                            for j in 0..nq {
+                                let value = sign[0] * self.products[0][from + j] + sign[1] * self.products[1][from + j];
+                                self.components[ahead + block + i * nq + j] = value;
+                                self.components[mirrored + turned + j * np + i] = value;
+                            }
+                        }
                     }
                 }
             }
