@@ -42,6 +42,8 @@ pub struct PlateModes {
     deflection: Vec<f64>,
     /// Force and moment of the root per load coefficients, (q, (j, q')): what the clamped root adds to the load itself.
     root: [Vec<f64>; 2],
+    /// What the plate resists to displacements of its root: force and moment per displacement and rotation, ((0 or 1, q), same).
+    pub resistance: Vec<f64>,
 }
 
 /// Values of the height functions at η, the root's constant first.
@@ -124,6 +126,7 @@ impl Plate<'_> {
             size,
             deflection: vec![0.0; (ORDER * size).pow(2)],
             root: std::array::from_fn(|_| vec![0.0; size * ORDER * size]),
+            resistance: vec![0.0; 4 * size * size],
         };
         for parity in 0..2 {
             self.half(&sections, basis, parity, &mut modes);
@@ -203,22 +206,34 @@ impl Plate<'_> {
         );
         let size = out.size;
         let width = ORDER * size;
+        // Root unknowns w and θ_y behind every root function: itself, or the slope of w along the trace.
+        let behind = |(field, _, p): (usize, usize, usize)| -> Vec<(usize, f64)> {
+            match field {
+                0 => vec![(p, 1.0)],
+                1 => vec![(size + p, 1.0)],
+                _ => degrees(0).map(|q| (q, self.cos_trace * basis.mixed(p, q))).filter(|f| f.1 != 0.0).collect(),
+            }
+        };
+        for (i, &r) in roots.iter().enumerate() {
+            for (j, &s) in roots.iter().enumerate() {
+                let product = products[(loads.len() + i) * columns + loads.len() + j];
+                let value = self.stiffness(sections, basis, r, s) - product;
+                for (p, left) in behind(r) {
+                    for (q, right) in behind(s) {
+                        out.resistance[p * 2 * size + q] += left * value * right;
+                    }
+                }
+            }
+        }
         for (x, &(_, (j, q))) in loads.iter().enumerate() {
             let column = (j - 1) * size + q;
             for (y, &(_, (i, p))) in loads.iter().enumerate() {
                 out.deflection[((i - 1) * size + p) * width + column] = products[y * columns + x];
             }
-            for (r, &(field, _, p)) in roots.iter().enumerate() {
+            for (r, &root) in roots.iter().enumerate() {
                 let reaction = -products[(loads.len() + r) * columns + x];
-                match field {
-                    0 => out.root[0][p * width + column] += reaction,
-                    1 => out.root[1][p * width + column] += reaction,
-                    // θ_t of the root is the slope of its w along the trace.
-                    _ => {
-                        for degree in degrees(0) {
-                            out.root[0][degree * width + column] += self.cos_trace * basis.mixed(p, degree) * reaction;
-                        }
-                    }
+                for (p, factor) in behind(root) {
+                    out.root[p / size][p % size * width + column] += factor * reaction;
                 }
             }
         }
@@ -293,6 +308,10 @@ mod tests {
             errors.push(force[size + q] - first(q));
         }
         check_worst(TOPIC, "force and moments at the root of a plate, any load", errors, 1e-9);
+        // Rigid motions of the root: shift, rotation about the trace, rotation about the height.
+        let most = modes.resistance.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        let free = (0..2 * size).flat_map(|row| [0, 1, size].map(|c| modes.resistance[row * 2 * size + c] / most));
+        check_worst(TOPIC, "resistance of a plate to rigid motions of its root", free, 1e-9);
     }
 
     #[test]
