@@ -7,7 +7,7 @@
 //! job document ─▶ gear ─▶ contact ─▶ impact ─▶ dynamics ─▶ response ─▶ result ─▶ store ─▶ api / web
 //! ```
 //!
-//! [`gear`], [`contact`], [`impact`], [`dynamics`] and [`response`] are the physics: pure functions in SI units.
+//! [`gear`], [`contact`], [`fe`], [`impact`], [`dynamics`] and [`response`] are the physics: pure functions in SI units.
 //! [`job`] is the document that goes in and the result that comes out, [`study`] decides which stages a job needs.
 //! With the feature `server` (default) come the store, the work queue, the HTTP interface and the pages.
 //! docs/ARCHITECTURE.md has the map and the invariants.

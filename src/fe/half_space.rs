@@ -256,3 +256,40 @@ impl Strip {
         out
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fe::spline::graded_cells;
+    use crate::oracle::{Tolerance, check};
+
+    /// A flank so large that it is flat: uniform pressure on a rectangle, mean displacement in closed form (the mean inverse
+    /// distance of two points of a rectangle).
+    #[test]
+    fn uniform_pressure_on_a_rectangle() {
+        let (length, width) = (8e-3_f64, 20e-3_f64);
+        let involute = Involute { base_radius_m: 1e3, base_half_angle_rad: 0.1, form_roll_m: 1e3, length_m: length };
+        let grid = Grid {
+            profile_m: (0..=5).map(|i| length * f64::from(i) / 5.0).collect(),
+            stations_m: graded_cells(width, 7),
+        };
+        let (youngs, nu) = (2.1e11, 0.3);
+        let matrix = half_space(&involute, &grid, 0.0, (youngs, nu), Watch::none(), (0.0, 0.0)).unwrap_or_default();
+        let (lengths, widths) = (hat_lengths(&grid.profile_m), hat_lengths(&grid.stations_m));
+        let n = grid.len();
+        let weight = |k: usize| lengths[k / widths.len()] * widths[k % widths.len()] / (length * width);
+        let mut mean = 0.0;
+        for a in 0..n {
+            for b in 0..n {
+                mean += weight(a) * weight(b) * matrix[a * n + b];
+            }
+        }
+        let (l, w) = (length, width);
+        let integral = 2.0
+            * (l * l * w * (w / l).asinh()
+                + l * w * w * (l / w).asinh()
+                + (l.powi(3) + w.powi(3) - l.hypot(w).powi(3)) / 3.0);
+        let expected = (1.0 - nu * nu) / (std::f64::consts::PI * youngs) * integral / (l * w).powi(2);
+        check("half-space", "mean under a rectangle, m/N", mean, expected, Tolerance::Relative(3e-4));
+    }
+}
