@@ -1,7 +1,9 @@
 //! Cost and error of the finite elements at every resolution, against the stored reference of a z 29/67 pair.
 //!
-//! `cargo run --release --no-default-features --example fe_validation`
+//! `cargo run --release --no-default-features --example fe_validation [coarse] [medium] [standard] [fine]`;
+//! `RAYON_NUM_THREADS=1` for the time on one core.
 
+use std::sync::Mutex;
 use std::time::Instant;
 
 use herringbone::fe::{FlankFlexibility, FlankInput, Resolution, Side};
@@ -116,12 +118,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for (member, side, hold) in [("pinion", Side::Pinion, 25e-3), ("gear", Side::Gear, 60e-3)] {
             let input = FlankInput::new(&pair, side, hold, 4, resolution);
             let start = Instant::now();
-            let flank = FlankFlexibility::new(&input, Watch::none())?;
+            let last = Mutex::new((start, 0.0_f64));
+            let progress = |_: f64| {
+                if let Ok(mut last) = last.lock() {
+                    last.1 = last.1.max(last.0.elapsed().as_secs_f64());
+                    last.0 = Instant::now();
+                }
+            };
+            let flank = FlankFlexibility::new(&input, Watch::new(&progress, &|| false))?;
+            let pause = last.lock().map(|last| last.1).unwrap_or(f64::NAN);
             println!(
-                "{name} {member}: {:.2} s, {} x {} nodes",
+                "{name} {member}: {:.2} s, {} x {} nodes, at most {:.0} ms between checkpoints",
                 start.elapsed().as_secs_f64(),
                 flank.rolls_m().len(),
-                flank.stations_m().len()
+                flank.stations_m().len(),
+                1e3 * pause
             );
             report(&flank, &reference[member], side);
         }

@@ -284,7 +284,7 @@ impl Plan<'_> {
         let (diagonal, below) = front.as_ref().split_at_row(inner);
         if let Some(compliance) = &mut compliance {
             let (mut top, mut bottom) = forces.as_mut().split_at_row_mut(inner);
-            solve_lower_triangular_in_place(diagonal, top.as_mut(), Par::Seq);
+            solve_lower(diagonal, top.as_mut(), &mut checkpoint)?;
             matmul(bottom.as_mut(), Accum::Add, below, top.as_ref(), -1.0, Par::Seq);
             triangular_matmul(
                 compliance.as_mut(),
@@ -347,6 +347,22 @@ pub(super) fn factor_partly<T: ComplexField>(
         matmul(rectangle, Accum::Add, far, near.adjoint(), minus, Par::Seq);
         subtract_square(right.as_mut(), far);
         start = end;
+    }
+    Ok(())
+}
+
+/// Solves with a lower triangle, some columns at a time.
+pub(super) fn solve_lower<T: ComplexField>(
+    lower: MatRef<'_, T>,
+    mut columns: MatMut<'_, T>,
+    checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
+) -> Result<(), FeError> {
+    let (size, count) = (columns.nrows(), columns.ncols());
+    let width = (PANEL_WORK / (size * size).max(1)).max(48);
+    for start in (0..count).step_by(width) {
+        checkpoint()?;
+        let some = columns.as_mut().subcols_mut(start, width.min(count - start));
+        solve_lower_triangular_in_place(lower, some, Par::Seq);
     }
     Ok(())
 }

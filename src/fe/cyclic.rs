@@ -2,11 +2,10 @@
 //! phases θ_n = 2πn/N (Thomas, Int. J. Numer. Methods Eng. 14 (1979) 81).
 
 use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 use faer::{Accum, Mat, Par, c64};
 use rayon::prelude::*;
 
-use super::condense::{Condensed, factor_partly};
+use super::condense::{Condensed, factor_partly, solve_lower};
 use super::input::FeError;
 use crate::watch::Watch;
 
@@ -33,7 +32,7 @@ impl Faces<'_> {
         let mut y =
             Mat::<c64>::from_fn(n, f.ncols(), |i, j| c64::new(f[(i, j)] + cos * f[(n + i, j)], -sin * f[(n + i, j)]));
         factor_partly(h.as_mut(), Mat::zeros(0, 0).as_mut(), "cut faces", checkpoint)?;
-        solve_lower_triangular_in_place(h.as_ref(), y.as_mut(), Par::Seq);
+        solve_lower(h.as_ref(), y.as_mut(), checkpoint)?;
         let real = Mat::<f64>::from_fn(n, f.ncols(), |i, j| y[(i, j)].re);
         let imaginary = Mat::<f64>::from_fn(n, f.ncols(), |i, j| y[(i, j)].im);
         let mut even = self.sector.compliance.clone();
