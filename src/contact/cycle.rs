@@ -97,6 +97,8 @@ pub struct HalfCycle {
     pub load_begins_and_ends: [f64; 2],
     /// Largest normal force per length of contact line, slivers below half a slice left out.
     pub max_line_load_n_per_m: f64,
+    /// The same without the ends of the theoretical lines of contact, three quarters of a normal module long each.
+    pub max_line_load_interior_n_per_m: f64,
     /// Hertzian pressure at that kind of point, largest over the period.
     pub max_hertz_pressure_pa: f64,
     pub flank_map: FlankMap,
@@ -110,6 +112,10 @@ pub struct HalfCycle {
     pub positions: usize,
     /// Change of the curves' Fourier coefficients by the last refinement, as a part of the means; `None` for given positions.
     pub position_error: Option<f64>,
+    /// Slices of the contact lines over the face width.
+    pub slices: usize,
+    /// Change of stiffness and transmission error, as a part of their means, when only half as many slices are used.
+    pub slice_error: f64,
     /// Newton iterations over the whole period.
     pub iterations: u64,
 }
@@ -118,6 +124,10 @@ pub struct HalfCycle {
 pub const MESH_IN_PHASE: f64 = 0.05;
 /// Rows and columns of the flank map.
 const MAP_ROWS: usize = 24;
+/// Ends of the lines of contact that the interior line load leaves out, in normal modules along the line: edge effects reach that far.
+const LINE_END_MODULES: f64 = 0.75;
+/// Positions at which fewer slices are tried.
+const SLICE_CHECKS: usize = 5;
 /// Harmonics that are reported.
 const HARMONICS: usize = 8;
 /// Points of the entry table.
@@ -186,7 +196,7 @@ impl<'a> CycleBuilder<'a> {
         let (load_share_phase, load_share) = self.path();
         let mesh_in = contact.at(MESH_IN_PHASE, force_at(MESH_IN_PHASE))?;
         let load_begins_and_ends = self.carrying_range(contact, force_at, &load_share_phase, &load_share)?;
-        let (max_line_load, max_pressure) = self.extremes();
+        let [max_line_load, max_interior, max_pressure] = self.extremes();
         let entry = self.entry(contact, force_at)?;
         Ok(HalfCycle {
             phase,
@@ -205,10 +215,13 @@ impl<'a> CycleBuilder<'a> {
             loaded_contact_ratio: load_begins_and_ends[1] - load_begins_and_ends[0],
             load_begins_and_ends,
             max_line_load_n_per_m: max_line_load,
+            max_line_load_interior_n_per_m: max_interior,
             max_hertz_pressure_pa: max_pressure,
             flank_map: self.map(),
             entry,
             positions: states.len(),
+            slices: self.slices,
+            slice_error: self.slice_error(contact)?,
             position_error: self.resampled.map(|(_, error)| error),
             iterations: states.iter().map(|s| u64::from(s.2.iterations)).sum(),
         })
@@ -255,25 +268,58 @@ impl<'a> CycleBuilder<'a> {
         Ok(out)
     }
 
-    fn extremes(&self) -> (f64, f64) {
+    /// Largest line load, largest away from the ends of the lines, largest pressure.
+    fn extremes(&self) -> [f64; 3] {
         let material = self.pair.material();
         let cos = self.pair.base_helix_angle_rad.cos();
         let sliver = 0.5 * self.pair.spec.face_width_m / self.slices as f64;
-        let (mut load, mut pressure) = (0.0f64, 0.0f64);
+        let end = LINE_END_MODULES * self.pair.spec.normal_module_m * cos;
+        let mut largest = [0.0f64; 3];
         for (_, _, state) in &self.states {
-            for (p, &f) in state.points.iter().zip(&state.forces_n) {
-                if p.width_m < sliver || f <= 0.0 || p.zone != 1 {
-                    continue;
+            let mut forces = state.forces_n.as_slice();
+            for line in state.points.chunk_by(|a, b| a.pair == b.pair) {
+                let (own, others) = forces.split_at(line.len());
+                forces = others;
+                let on_path = || line.iter().filter(|p| p.zone == 1);
+                let low = on_path().map(|p| p.entry_m - 0.5 * p.width_m).fold(f64::INFINITY, f64::min);
+                let high = on_path().map(|p| p.entry_m + 0.5 * p.width_m).fold(f64::NEG_INFINITY, f64::max);
+                for (p, &f) in line.iter().zip(own) {
+                    if p.width_m < sliver || f <= 0.0 || p.zone != 1 {
+                        continue;
+                    }
+                    let w = f * cos / p.width_m;
+                    let contact = LineContact::new(
+                        material.youngs_modulus_pa,
+                        material.poissons_ratio,
+                        relative_radius_m(self.pair, p.x_m),
+                        [0.0; 2],
+                    );
+                    let interior = p.entry_m > low + end && p.entry_m < high - end;
+                    let values = [w, if interior { w } else { 0.0 }, contact.pressure_pa(w)];
+                    largest.iter_mut().zip(values).for_each(|(l, v)| *l = l.max(v));
                 }
-                let w = f * cos / p.width_m;
-                let radius = relative_radius_m(self.pair, p.x_m);
-                load = load.max(w);
-                let contact =
-                    LineContact::new(material.youngs_modulus_pa, material.poissons_ratio, radius, [radius; 2]);
-                pressure = pressure.max(contact.pressure_pa(w));
             }
         }
-        (load, pressure)
+        largest
+    }
+
+    /// Change of stiffness and transmission error with half as many slices, at a few of the positions.
+    fn slice_error(&self, contact: &mut HalfContact<'_>) -> Result<f64, ContactError> {
+        let step = (self.states.len() / SLICE_CHECKS).max(1);
+        contact.cut_into(self.slices / 2);
+        let mut sums = [[0.0; 2]; 2];
+        for (phase, force, state) in self.states.iter().step_by(step) {
+            let coarse = contact.at(*phase, *force)?;
+            for (sum, (fine, coarse)) in sums
+                .iter_mut()
+                .zip([(state.stiffness_n_per_m, coarse.stiffness_n_per_m), (state.approach_m, coarse.approach_m)])
+            {
+                sum[0] += (fine - coarse).abs();
+                sum[1] += fine.abs();
+            }
+        }
+        contact.cut_into(self.slices);
+        Ok(sums.map(|[change, whole]| change / whole.max(f64::MIN_POSITIVE)).into_iter().fold(0.0, f64::max))
     }
 
     fn map(&self) -> FlankMap {

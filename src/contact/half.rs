@@ -35,6 +35,11 @@ impl<'a> HalfContact<'a> {
         self.at(phase, force_bt_n)
     }
 
+    /// Cuts the contact lines into `slices` from here on.
+    pub fn cut_into(&mut self, slices: usize) {
+        self.solver.cut_into(slices);
+    }
+
     /// The state of the pairs already in mesh when the entering pair stands `overrun_m` of roll before its theoretical start
     /// of contact and carries nothing.
     pub fn before_entry(&mut self, overrun_m: f64, force_bt_n: f64) -> Result<Loaded, ContactError> {

@@ -42,6 +42,7 @@ pub struct Solver<'a> {
     pair: &'a Pair,
     half: Half,
     compliance: &'a Compliance,
+    slices: usize,
     corner_contact: bool,
     points: Vec<Point>,
     /// Place of a point and its force per face width at the position before, ascending.
@@ -71,6 +72,7 @@ impl<'a> Solver<'a> {
             pair,
             half,
             compliance,
+            slices: compliance.slices(),
             corner_contact,
             points: Vec::new(),
             previous: Vec::new(),
@@ -89,6 +91,12 @@ impl<'a> Solver<'a> {
         }
     }
 
+    /// Cuts the contact lines into `slices` from here on.
+    pub fn cut_into(&mut self, slices: usize) {
+        self.slices = slices.max(2);
+        self.previous.clear();
+    }
+
     /// Takes `state` as the neighbour to start from.
     pub fn start_from(&mut self, state: &Loaded) {
         self.previous.clear();
@@ -103,7 +111,7 @@ impl<'a> Solver<'a> {
         for _ in 0..8 {
             let corner_gap_m = if self.corner_contact { self.corner_gap_m } else { 0.0 };
             let reach = Reach { lowest_pair, corner_gap_m, least_part_m };
-            collect(self.pair, self.half, phase, self.compliance.slices().min(most), &reach, &mut self.points);
+            collect(self.pair, self.half, phase, self.slices.min(most), &reach, &mut self.points);
             if self.points.is_empty() {
                 return Err(Trouble::NoContact);
             }

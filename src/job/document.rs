@@ -192,9 +192,13 @@ pub enum MeshStiffness {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ltca {
     pub fidelity: Fidelity,
+    /// How fine the finite elements of fidelity `fe` are.
+    pub elements: Elements,
     pub body: Body,
     pub corner_contact: bool,
     pub law: StiffnessLaw,
+    /// Agreement of stiffness and transmission error between chosen positions, as a part of their means.
+    pub accuracy: f64,
     /// Positions over one mesh period; chosen from the accuracy when null.
     pub positions: Option<u32>,
     /// Slices over the face width of one half; chosen from the geometry when null.
@@ -219,6 +223,15 @@ pub enum StiffnessLaw {
 pub enum Fidelity {
     Analytic,
     Fe,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Elements {
+    Coarse,
+    Medium,
+    Standard,
+    Fine,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

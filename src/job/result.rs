@@ -82,6 +82,9 @@ pub struct Mesh {
     /// Amplitudes of the first harmonics of the transmission error.
     pub transmission_error_harmonics_um: Vec<f64>,
     pub max_line_load_n_per_mm: Option<f64>,
+    /// The same without the ends of the lines of contact (three quarters of a normal module each), where edge effects rule.
+    #[serde(default)]
+    pub max_line_load_interior_n_per_mm: Option<f64>,
     pub max_contact_pressure_mpa: Option<f64>,
     pub pairs_in_contact_min: Option<u32>,
     pub pairs_in_contact_max: Option<u32>,
@@ -90,12 +93,42 @@ pub struct Mesh {
     pub axial_force_n: PerHalf,
     /// Axial position that the floating pinion takes, mean over the mesh period.
     pub pinion_axial_shift_um: f64,
+    /// What an axial shift of the pinion against the gear (an apex error) does where the pinion cannot float.
+    #[serde(default)]
+    pub apex_sensitivity: Option<ApexSensitivity>,
+    /// How far the numbers above are from those of finer positions and slices.
+    #[serde(default)]
+    pub convergence: Option<Convergence>,
     /// Where the stiffness came from: `ltca`, `iso6336` or `given`.
     pub source: String,
     pub curve: MeshCurve,
     /// Curves of the right half where the halves differ.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub right_curve: Option<MeshCurve>,
+}
+
+/// Change per micrometre of axial shift with the pinion held axially; means over the mesh period.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct ApexSensitivity {
+    /// Part of the torque that moves from one half to the other.
+    pub load_split_percent_per_um: f64,
+    /// Change of the transmission error; zero for equal halves.
+    pub transmission_error_um_per_um: f64,
+}
+
+/// Discretisation of the contact analysis and what it costs in accuracy.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Convergence {
+    /// Positions solved over one mesh period of a half.
+    pub positions: u32,
+    /// Change of mean and harmonics of stiffness and transmission error, in per cent of the means, by the positions that confirmed the others;
+    /// null for a given number of positions.
+    pub position_error_percent: Option<f64>,
+    pub slices: u32,
+    /// Change of stiffness and transmission error, in per cent of the means, with half as many slices.
+    pub slice_error_percent: f64,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use super::hash::{compliance_hash, flank_hash};
 use super::mesh::ContactCase;
 use super::{SolveError, Stage, Surroundings};
 use crate::contact::Compliance;
-use crate::fe::{FeError, FlankFlexibility, FlankInput, Resolution};
+use crate::fe::{FeError, FlankFlexibility, FlankInput};
 use crate::gear::{FlankModification, Pair};
 use crate::job::document::Fidelity;
 use crate::watch::Watch;
@@ -45,7 +45,7 @@ pub fn find(
     let (compliance, elements_reused, done) = match case.fidelity {
         Fidelity::Analytic => (Compliance::analytic(pair, &case.settings), false, 0.0),
         Fidelity::Fe => {
-            let inputs = Compliance::finite_element_inputs(pair, &case.settings, Resolution::Standard);
+            let inputs = Compliance::finite_element_inputs(pair, &case.settings, case.resolution);
             let (pinion, pinion_reused) = flank(&inputs[0], surroundings, (0.0, 0.4 * ELEMENTS_PART))?;
             let (gear, gear_reused) = flank(&inputs[1], surroundings, (0.4 * ELEMENTS_PART, ELEMENTS_PART))?;
             let reused = pinion_reused && gear_reused;

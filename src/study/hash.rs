@@ -22,7 +22,7 @@ pub fn mesh_hash(case: &ContactCase) -> String {
 
 /// Hash of the teeth's compliance: what [`mesh_hash`] depends on without load, modifications and misalignments.
 pub fn compliance_hash(case: &ContactCase) -> String {
-    hash("compliance", &(bare(case), &case.settings, case.fidelity))
+    hash("compliance", &(bare(case), &case.settings, case.fidelity, case.resolution))
 }
 
 /// Hash of the finite elements of one gear.

@@ -8,9 +8,10 @@ use super::{SolveError, Stage, Surroundings};
 use crate::contact::iso6336::{Blank, MethodB};
 use crate::contact::{self, BodyHold, ContactError, HalfCycle, LoadedContact, MESH_IN_PHASE, Settings};
 use crate::dynamics::Stiffness;
+use crate::fe::Resolution;
 use crate::gear::{Pair, PairSpec};
-use crate::job::document::{Body, Fidelity, JobDocument, Ltca, MeshStiffness, StiffnessLaw};
-use crate::job::result::{FlankLoad, Mesh, MeshCurve, PerHalf};
+use crate::job::document::{Body, Elements, Fidelity, JobDocument, Ltca, MeshStiffness, StiffnessLaw};
+use crate::job::result::{ApexSensitivity, Convergence, FlankLoad, Mesh, MeshCurve, PerHalf};
 use crate::watch::Watch;
 use serde::Serialize;
 use std::collections::HashMap;
@@ -62,20 +63,26 @@ pub struct ContactCase<'a> {
     torque_nm: f64,
     half_stagger: f64,
     pub fidelity: Fidelity,
+    pub resolution: Resolution,
     pub settings: Settings,
 }
 
 impl<'a> ContactCase<'a> {
     pub fn new(document: &JobDocument, ltca: &Ltca, prepared: &'a Prepared) -> Self {
-        let default = Settings::default();
         Self {
             spec: &prepared.pair.spec,
             torque_nm: document.operation.pinion_torque_nm,
             half_stagger: document.design.half_stagger,
             fidelity: ltca.fidelity,
+            resolution: match ltca.elements {
+                Elements::Coarse => Resolution::Coarse,
+                Elements::Medium => Resolution::Medium,
+                Elements::Standard => Resolution::Standard,
+                Elements::Fine => Resolution::Fine,
+            },
             settings: Settings {
                 positions: ltca.positions.map(|positions| positions as usize),
-                accuracy: default.accuracy,
+                accuracy: ltca.accuracy,
                 slices: ltca.slices.map(|slices| slices as usize),
                 body: match ltca.body {
                     Body::Rim => BodyHold::Rim,
@@ -215,12 +222,23 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
             .map(|a| a * 1e6)
             .collect(),
         max_line_load_n_per_mm: Some(most(&|half| half.max_line_load_n_per_m) * 1e-3),
+        max_line_load_interior_n_per_mm: Some(most(&|half| half.max_line_load_interior_n_per_m) * 1e-3),
         max_contact_pressure_mpa: Some(most(&|half| half.max_hertz_pressure_pa) * 1e-6),
         pairs_in_contact_min: pairs().min(),
         pairs_in_contact_max: pairs().max(),
         force_n: prepared.half_force_n,
         axial_force_n: PerHalf { left: contact.axial_force_n[0], right: contact.axial_force_n[1] },
         pinion_axial_shift_um: contact.axial_shift_m.iter().sum::<f64>() / contact.axial_shift_m.len() as f64 * 1e6,
+        apex_sensitivity: Some(apex_sensitivity(contact, prepared)),
+        convergence: Some(Convergence {
+            positions: left.positions.max(right.positions) as u32,
+            position_error_percent: left
+                .position_error
+                .zip(right.position_error)
+                .map(|(left, right)| 100.0 * left.max(right)),
+            slices: left.slices as u32,
+            slice_error_percent: 100.0 * most(&|half| half.slice_error),
+        }),
         source: "ltca".to_owned(),
         curve: curve(left, &|i| left.transmission_error_m[i]),
         right_curve: (!contact.equal_halves).then(|| curve(right, &|i| right.transmission_error_m[i])),
@@ -246,6 +264,23 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
         stiffness: [stiffness(left), stiffness(right)],
         stagger_included: true,
         entry: [entry(left), entry(right)],
+    }
+}
+
+/// Both halves at one rotation, the axial shift u opening one by u tanβ_b and closing the other: k_L and k_R in series move the load,
+/// their difference moves the common displacement.
+fn apex_sensitivity(contact: &LoadedContact, prepared: &Prepared) -> ApexSensitivity {
+    let [left, right] = &contact.halves;
+    let tan = prepared.pair.base_helix_angle_rad.tan();
+    let n = left.stiffness_n_per_m.len() as f64;
+    let (mut moved, mut shifted) = (0.0, 0.0);
+    for (kl, kr) in left.stiffness_n_per_m.iter().zip(&right.stiffness_n_per_m) {
+        moved += 2.0 * kl * kr / (kl + kr) * tan / n;
+        shifted += (kl - kr) / (kl + kr) * tan / n;
+    }
+    ApexSensitivity {
+        load_split_percent_per_um: 100.0 * moved * 1e-6 / (2.0 * prepared.half_force_n),
+        transmission_error_um_per_um: shifted,
     }
 }
 

@@ -41,7 +41,19 @@ fn mesh_stiffness(object: Object) -> MeshStiffness {
         &[("analytic", Fidelity::Analytic), ("fe", Fidelity::Fe)],
         Fidelity::Analytic,
         "analytic",
-        "ltca: how the tooth and body compliance is found.",
+        "ltca: how the tooth and body compliance is found: analytic (milliseconds) or fe (finite elements of both gears, seconds; kept for the next job).",
+    );
+    let elements = object.choice(
+        "elements",
+        &[
+            ("coarse", Elements::Coarse),
+            ("medium", Elements::Medium),
+            ("standard", Elements::Standard),
+            ("fine", Elements::Fine),
+        ],
+        Elements::Standard,
+        "standard",
+        "ltca, fe: how fine the finite elements are.",
     );
     let body = object.choice(
         "body",
@@ -64,14 +76,30 @@ fn mesh_stiffness(object: Object) -> MeshStiffness {
         "ltca: stiffness curve of the equations of motion: mean of the tangent stiffness with the fluctuation of the loaded \
          transmission error, secant F/delta, or tangent dF/ddelta.",
     );
-    let positions =
-        object.optional_integer("positions", 8, 1024, "ltca: positions over one mesh period.").map(|n| n as u32);
-    let slices =
-        object.optional_integer("slices", 5, 200, "ltca: slices over the face width of one half.").map(|n| n as u32);
+    let accuracy = object.number(
+        "accuracy",
+        number(1e-5, 0.1, "1", Some(2e-3), "ltca: positions are added until stiffness and transmission error between them agree with their interpolation to this part of their means."),
+    );
+    let positions = object
+        .optional_integer(
+            "positions",
+            8,
+            1024,
+            "ltca: positions over one mesh period; as many as the accuracy needs when null.",
+        )
+        .map(|n| n as u32);
+    let slices = object
+        .optional_integer(
+            "slices",
+            5,
+            200,
+            "ltca: slices of the contact lines over the face width of one half; by face width and overlap when null.",
+        )
+        .map(|n| n as u32);
     let given = given_stiffness(&object, source == 2);
     object.finish();
     match source {
-        0 => MeshStiffness::Ltca(Ltca { fidelity, body, corner_contact, law, positions, slices }),
+        0 => MeshStiffness::Ltca(Ltca { fidelity, elements, body, corner_contact, law, accuracy, positions, slices }),
         1 => MeshStiffness::Iso6336,
         _ => MeshStiffness::Given(given),
     }

@@ -182,6 +182,8 @@ pub const CONDITIONS: &[Condition] = &[
     Condition { pointer: "/axes", on: "/kind", values: "sweep" },
     Condition { pointer: "/continuation", on: "/kind", values: "sweep" },
     Condition { pointer: "/model/mesh_stiffness/fidelity", on: "/model/mesh_stiffness/source", values: "ltca" },
+    Condition { pointer: "/model/mesh_stiffness/elements", on: "/model/mesh_stiffness/fidelity", values: "fe" },
+    Condition { pointer: "/model/mesh_stiffness/accuracy", on: "/model/mesh_stiffness/source", values: "ltca" },
     Condition { pointer: "/model/mesh_stiffness/body", on: "/model/mesh_stiffness/source", values: "ltca" },
     Condition { pointer: "/model/mesh_stiffness/corner_contact", on: "/model/mesh_stiffness/source", values: "ltca" },
     Condition { pointer: "/model/mesh_stiffness/positions", on: "/model/mesh_stiffness/source", values: "ltca" },
