@@ -71,6 +71,10 @@ pub struct Workspace {
     station_force: Vec<f64>,
     station_shift: Vec<f64>,
     unit: Vec<f64>,
+    /// How often a point has come in.
+    entries: Vec<u8>,
+    /// Opening and index of points that come in.
+    entering: Vec<(f64, usize)>,
 }
 
 /// Diagonals of W.
@@ -95,6 +99,8 @@ pub fn distribute<L: Local>(
     } else {
         forces.fill(total / n as f64);
     }
+    work.entries.clear();
+    work.entries.resize(n, 0);
     let mut member = forces.iter().map(|&f| f > 0.0).collect::<Vec<_>>();
     // Approach and gaps count from the least gap: gaps far above the deflections would drown them in rounding.
     let datum = system.gaps.iter().copied().fold(f64::INFINITY, f64::min);
@@ -136,12 +142,12 @@ pub fn distribute<L: Local>(
             forces[least] = total;
             continue;
         }
-        if step < 1.0 || (careful && change > 1e-9) {
+        if step < 1.0 || (careful && change > TOLERANCE) {
             continue;
         }
         // Points outside that would penetrate come in.
         let slack = 1e-10 * approach.abs().max(1e-30);
-        let mut worst = (0.0, usize::MAX);
+        work.entering.clear();
         system.station_shifts(&forces, work);
         for (line, range) in system.lines.iter().enumerate() {
             for j in range.clone() {
@@ -154,17 +160,24 @@ pub fn distribute<L: Local>(
                         member[j] = true;
                         same = false;
                         // The force that takes the penetration up locally: where to linearise, not a part of the balance.
+                        // One that has come in before and was let go again carries less than that.
                         let (_, slope) = system.local.approach(j, total / n as f64);
-                        forces[j] = (-opening / slope).min(total / n as f64);
-                    } else if opening < worst.0 {
-                        worst = (opening, j);
+                        let less = 0.1f64.powi(i32::from(work.entries[j]));
+                        forces[j] = less * (-opening / slope).min(total / n as f64);
+                        work.entries[j] = work.entries[j].saturating_add(1);
+                    } else {
+                        work.entering.push((opening, j));
                     }
                 }
             }
         }
-        if worst.1 != usize::MAX {
-            member[worst.1] = true;
-            same = false;
+        // Carefully: those that penetrate about as deep as the deepest.
+        let deepest = work.entering.iter().fold(0.0f64, |deepest, e| deepest.min(e.0));
+        for &(opening, j) in &work.entering {
+            if opening <= 0.5 * deepest {
+                member[j] = true;
+                same = false;
+            }
         }
         let rounding = 16.0 * f64::EPSILON * stiffness * approach.abs() / total;
         if same && change < TOLERANCE + rounding {

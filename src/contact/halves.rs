@@ -33,6 +33,10 @@ pub struct LoadedContact {
     pub slices: usize,
 }
 
+/// Part of the force that the less loaded of two spur halves keeps at least, so that its stiffness stays defined when the other one could
+/// carry everything.
+const LEAST_PART: f64 = 1e-6;
+
 /// Helix angles below this leave no axial coupling.
 const SPUR: f64 = 1e-4;
 
@@ -172,7 +176,8 @@ fn shared(
         let position = i as f64 / count as f64;
         watch.checkpoint(position)?;
         let phases = [position, (position + stagger).fract()];
-        let (mut low, mut high) = (0.0, 1.0);
+        let (mut low, mut high) = (LEAST_PART, 1.0 - LEAST_PART);
+        left_part = left_part.clamp(low, high);
         let mut difference = f64::INFINITY;
         for _ in 0..60 {
             let left = contacts[0].at(phases[0], left_part * total)?;
