@@ -44,17 +44,24 @@ impl LineContact {
 
     /// Approach of both half-spaces in the middle of a segment of length `length_m`, by its own load, and its derivative with
     /// respect to the line load, at `w > 0`.
+    ///
+    /// The band is kept from growing wider than the segment is long (b² = b_H² / √(1 + (2 b_H / l)⁴)): beyond that a segment would see its
+    /// neighbours' load better than its own and the system would lose its definiteness.
     pub fn half_space_approach(&self, w: f64, length_m: f64) -> (f64, f64) {
-        let r = 0.5 * length_m / self.half_width_m(w);
+        let widest2 = 0.25 * length_m * length_m;
+        let ratio = self.band2_per_load * w / widest2;
+        let bound = 1.0 + ratio * ratio;
+        let r = 0.5 * length_m / (self.band2_per_load * w / bound.sqrt()).sqrt();
         let (value, slope) = half_space::own(r);
-        // dr/dw = -r / (2 w).
-        (2.0 * self.factor * w * value, 2.0 * self.factor * (value - 0.5 * r * slope))
+        // dr/dw = -r / (2 w (1 + ratio²)).
+        (2.0 * self.factor * w * value, 2.0 * self.factor * (value - 0.5 * r * slope / bound))
     }
 
     /// Approach of both half-spaces per force at a point of the line at `at_m`, by a segment elsewhere on the line whose band is that
-    /// of the line load `w`.
-    pub fn half_space_beside(&self, at_m: f64, segment_m: (f64, f64), w: f64) -> f64 {
-        self.factor * half_space::beside(at_m, segment_m, self.half_width_m(w)) / (segment_m.1 - segment_m.0)
+    /// of the line load `w`, but no wider than `widest_m`.
+    pub fn half_space_beside(&self, at_m: f64, segment_m: (f64, f64), w: f64, widest_m: f64) -> f64 {
+        let half_width = self.half_width_m(w).min(0.5 * widest_m);
+        self.factor * half_space::beside(at_m, segment_m, half_width) / (segment_m.1 - segment_m.0)
     }
 
     /// Approach of both bodies and its derivative with respect to the line load, at `w > 0`.

@@ -121,8 +121,9 @@ fn half_space_coupling(contacts: &[Contact], points: &[Point], cos: f64, mean: f
     for i in 0..n {
         for j in 0..i {
             // Unequal segments see each other's middles at slightly different distances: the mean keeps the symmetry.
-            let one = contacts[j].line.half_space_beside(middle(i), ends(j), mean);
-            let other = contacts[i].line.half_space_beside(middle(j), ends(i), mean);
+            let shorter = points[i].width_m.min(points[j].width_m) / cos;
+            let one = contacts[j].line.half_space_beside(middle(i), ends(j), mean, shorter);
+            let other = contacts[i].line.half_space_beside(middle(j), ends(i), mean, shorter);
             let value = 0.5 * (one + other);
             matrix[i * n + j] = value;
             matrix[j * n + i] = value;
