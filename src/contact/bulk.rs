@@ -7,7 +7,7 @@
 //! then brought to the slices, where each place has its own way along the face between contact and middle surface.
 
 use super::body::WidthBasis;
-use super::edge::AcuteEnd;
+use super::edge::EndFaces;
 use super::linalg::{add_product, cholesky, cholesky_solve, lu_solve, vectorised};
 use super::plate::PlateModes;
 use super::ring_influence::{KINDS, RingFlexibility};
@@ -30,7 +30,7 @@ pub struct Parts<'a> {
     pub plate: &'a PlateModes,
     pub root: &'a RootRemainder,
     pub ring: &'a RingFlexibility,
-    pub end: AcuteEnd,
+    pub ends: EndFaces,
     pub places: &'a [Place; NODES],
     /// Compression of the tooth below each place, times Young's modulus.
     pub compression_m: [f64; NODES],
@@ -89,7 +89,7 @@ impl BulkCompliance {
                     add_product(target, 1.0, &shapes[a], &slices, size);
                     if k == 0 {
                         let depth_m = parts.places[a].depth_m.min(parts.places[b].depth_m);
-                        parts.end.add(target, depth_m);
+                        parts.ends.add(target, depth_m);
                     }
                 }
             }

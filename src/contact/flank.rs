@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::body::{Ring, WidthBasis};
 use super::bulk::{BulkCompliance, NODES, Parts};
-use super::edge::AcuteEnd;
+use super::edge::EndFaces;
 use super::ring_influence::{RingFlexibility, ToothLayout, ring_weight};
 use super::tooth::{Place, RootRemainder, Tooth, ToothForm, compression, plate};
 use crate::gear::{Member, Pair};
@@ -104,7 +104,7 @@ impl Flank {
             plate: &plate(&form, nu, &basis),
             root: &RootRemainder::new(&form, nu, &|wave| 1.0 - ring_weight(wave, module)),
             ring: &RingFlexibility::new(&ring, &basis, &layout, offsets),
-            end: AcuteEnd::new(pair.base_helix_angle_rad, side, pair.spec.face_width_m, slices, e, nu),
+            ends: EndFaces::new(pair.base_helix_angle_rad, side, pair.spec.face_width_m, slices, e, nu),
             basis: &basis,
             places: &places,
             compression_m: places.map(|p| compression(&form, nu, p.lever_m)),

@@ -3,8 +3,8 @@
 //!
 //! The model (fidelity `analytic`), per member: the tooth (`tooth`) is a clamped plate of its true profile with free end
 //! faces (`plate`); the reactions of its root load a three-dimensional elastic ring with free end faces, held at rim or
-//! bore (`body`, `ring_influence`); short waves at the root come from a plane-strain annulus (`annulus`); the acute corner of a
-//! helical end face gives as an elastic wedge does (`edge`). `bulk` puts these together over Legendre functions of the
+//! bore (`body`, `ring_influence`); short waves at the root come from a plane-strain annulus (`annulus`); the corners of the
+//! end faces give as elastic wedges do (`edge`). `bulk` puts these together over Legendre functions of the
 //! face; the contact itself is Hertzian (`hertz`). `lines` and `position` put the contact lines of one position together,
 //! `distribution` shares the force out, `cycle` and `halves` run over the mesh period.
 //!
