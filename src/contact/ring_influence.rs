@@ -105,8 +105,7 @@ struct Twist {
 
 impl Twist {
     fn new(basis: &WidthBasis, width_m: f64, twist_per_m: f64, highest: u32) -> Twist {
-        // The trapezoidal rule in the angle of a circle (Clenshaw-Curtis without its end corrections) would do as well; Gauss
-        // points by Newton are exact for the products and resolve the highest wave.
+        // Enough points for the products of the functions and for the highest wave.
         let half_turn = 0.5 * width_m * twist_per_m * f64::from(highest);
         let points = basis.order + 6 + (0.6 * half_turn).ceil() as usize;
         let size = basis.order + 1;

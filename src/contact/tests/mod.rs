@@ -1,5 +1,6 @@
 //! Tests of the whole room on real pairs.
 
+mod fidelities;
 mod invariants;
 mod reference_pair;
 mod robustness;
