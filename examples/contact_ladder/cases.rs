@@ -1,0 +1,234 @@
+//! Gear pairs, loads and modifications that the ladder is measured on, with their references.
+
+use herringbone::contact::BodyHold;
+use herringbone::gear::{
+    Assembly, FlankModification, GearSpec, Material, Pair, PairSpec, ReliefShape, Rotation, TipRelief,
+};
+use serde_json::Value;
+
+/// What an answer is compared with.
+#[derive(Debug, Clone)]
+pub struct Reference {
+    pub tangent_n_per_m: f64,
+    pub secant_n_per_m: f64,
+    pub first_harmonic_m: f64,
+    /// Path of a pair in base pitches and its part of the force.
+    pub shares: Vec<(f64, f64)>,
+}
+
+/// One pair under one load.
+pub struct Case {
+    /// The teeth: cases of the same name and hold share their finite elements.
+    pub teeth: &'static str,
+    pub variant: &'static str,
+    pub pair: Pair,
+    pub hold: BodyHold,
+    pub corner_contact: bool,
+    /// Torque of the pinion on one half.
+    pub torque_nm: f64,
+    /// Stored finite elements of another program; where there are none, `Resolution::Fine` is the reference.
+    pub published: Option<Reference>,
+}
+
+struct Teeth {
+    name: &'static str,
+    module_m: f64,
+    pressure_angle_deg: f64,
+    helix_angle_deg: f64,
+    face_width_m: f64,
+    teeth: [u32; 2],
+    addendum: f64,
+    dedendum: f64,
+    fillet_radius: f64,
+    bore_radius_m: [f64; 2],
+}
+
+/// Modifications of the pinion's loaded flank (and of the gear's tip).
+#[derive(Clone, Copy, PartialEq)]
+enum Variant {
+    Unmodified,
+    /// Linear gap over the face width, zero at the end that enters first.
+    Slope(f64),
+    /// Both tips relieved parabolically from two thirds of the way from pitch point to tip.
+    TipRelief(f64),
+}
+
+const REFERENCE: Teeth = Teeth {
+    name: "helical 29/67, β 30°, b 11 m",
+    module_m: 4e-3,
+    pressure_angle_deg: 20.0,
+    helix_angle_deg: 30.0,
+    face_width_m: 45e-3,
+    teeth: [29, 67],
+    addendum: 1.0,
+    dedendum: 1.25,
+    fillet_radius: 0.38,
+    bore_radius_m: [25e-3, 60e-3],
+};
+
+/// The source paper's pair: 20° in the transverse section are 18.334° in the normal one.
+const SOURCE: Teeth = Teeth {
+    name: "source 17/44, β 24°, b 13 m",
+    module_m: 6e-3,
+    pressure_angle_deg: 18.334_317,
+    helix_angle_deg: 24.43,
+    face_width_m: 75e-3,
+    teeth: [17, 44],
+    addendum: 1.0,
+    dedendum: 1.25,
+    fillet_radius: 0.38,
+    bore_radius_m: [25e-3, 60e-3],
+};
+
+const SPUR: Teeth = Teeth {
+    name: "spur 25/75, b 10 m",
+    module_m: 3e-3,
+    pressure_angle_deg: 20.0,
+    helix_angle_deg: 0.0,
+    face_width_m: 30e-3,
+    teeth: [25, 75],
+    addendum: 1.0,
+    dedendum: 1.25,
+    fillet_radius: 0.38,
+    bore_radius_m: [14e-3, 50e-3],
+};
+
+const STUB: Teeth = Teeth {
+    name: "stub 21/33, α 25°, β 15°, b 3 m",
+    module_m: 5e-3,
+    pressure_angle_deg: 25.0,
+    helix_angle_deg: 15.0,
+    face_width_m: 15e-3,
+    teeth: [21, 33],
+    addendum: 0.8,
+    dedendum: 1.05,
+    fillet_radius: 0.3,
+    bore_radius_m: [20e-3, 30e-3],
+};
+
+/// The gear's rim is one and a half normal modules thick below the root circle.
+const THIN_RIM: Teeth = Teeth {
+    name: "thin rim 24/90, β 25°, b 12 m",
+    module_m: 3e-3,
+    pressure_angle_deg: 20.0,
+    helix_angle_deg: 25.0,
+    face_width_m: 36e-3,
+    teeth: [24, 90],
+    addendum: 1.0,
+    dedendum: 1.25,
+    fillet_radius: 0.38,
+    bore_radius_m: [15e-3, 140.7e-3],
+};
+
+/// All cases.
+pub fn cases() -> Vec<Case> {
+    use BodyHold::{Bore, Rim};
+    let published = [
+        ("unmodified, path only", "nominal_rim_clamped", Rim, Variant::Unmodified),
+        ("unmodified", "nominal_ext", Bore, Variant::Unmodified),
+        ("tip relief 15 µm, path only", "tip_relief", Bore, Variant::TipRelief(15e-6)),
+        ("misaligned 8 µm, path only", "lead_zero_at_mesh_in_end", Bore, Variant::Slope(8e-6)),
+    ]
+    .map(|(name, stored, hold, variant)| Case {
+        teeth: REFERENCE.name,
+        variant: name,
+        pair: pair(&REFERENCE, variant),
+        hold,
+        corner_contact: stored == "nominal_ext",
+        torque_nm: 250.0,
+        published: Some(stored_reference(stored, 250.0)),
+    });
+    let own = [
+        (&SOURCE, 400.0, "misaligned 20 µm", Variant::Slope(20e-6)),
+        (&SPUR, 150.0, "tip relief 20 µm", Variant::TipRelief(20e-6)),
+        (&STUB, 120.0, "misaligned 10 µm", Variant::Slope(10e-6)),
+        (&THIN_RIM, 250.0, "tip relief 15 µm", Variant::TipRelief(15e-6)),
+    ]
+    .into_iter()
+    .flat_map(|(teeth, torque_nm, name, variant)| {
+        [("unmodified", Rim, Variant::Unmodified), (name, Rim, variant), ("unmodified", Bore, Variant::Unmodified)].map(
+            |(name, hold, variant)| Case {
+                teeth: teeth.name,
+                variant: name,
+                pair: pair(teeth, variant),
+                hold,
+                corner_contact: true,
+                torque_nm,
+                published: None,
+            },
+        )
+    });
+    published.into_iter().chain(own).collect()
+}
+
+fn pair(teeth: &Teeth, variant: Variant) -> Pair {
+    let member = |side: usize| GearSpec {
+        teeth: teeth.teeth[side],
+        profile_shift: 0.0,
+        addendum: teeth.addendum,
+        dedendum: teeth.dedendum,
+        fillet_radius: teeth.fillet_radius,
+        tip_alteration: 0.0,
+        bore_radius_m: teeth.bore_radius_m[side],
+        flanks: [FlankModification::NONE; 2],
+    };
+    let mut spec = PairSpec {
+        normal_module_m: teeth.module_m,
+        normal_pressure_angle_rad: teeth.pressure_angle_deg.to_radians(),
+        helix_angle_rad: teeth.helix_angle_deg.to_radians(),
+        face_width_m: teeth.face_width_m,
+        gap_width_m: 20e-3,
+        center_distance_m: None,
+        material: Material { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 },
+        rotation: Rotation::ApexLeading,
+        pinion: member(0),
+        gear: member(1),
+        assembly: Assembly {
+            center_distance_error_m: 0.0,
+            in_plane_misalignment_m: 0.0,
+            out_of_plane_misalignment_m: 0.0,
+            apex_offset_m: 0.0,
+        },
+    };
+    let plain = feasible(&spec);
+    match variant {
+        Variant::Unmodified => return plain,
+        Variant::Slope(amount_m) => spec.pinion.flanks[0].helix_slope_m = amount_m,
+        Variant::TipRelief(amount_m) => {
+            let relief = |length_m| TipRelief { amount_m, length_m, shape: ReliefShape::Parabolic };
+            let pitch = plain.pitch_point_m();
+            spec.pinion.flanks[0].tip_relief = relief((plain.pinion.tip_roll_m() - pitch) / 3.0);
+            spec.gear.flanks[0].tip_relief = relief((plain.gear.tip_roll_m() - (plain.line_of_action_m - pitch)) / 3.0);
+        }
+    }
+    feasible(&spec)
+}
+
+fn feasible(spec: &PairSpec) -> Pair {
+    match Pair::new(spec) {
+        Ok((pair, _)) => pair,
+        Err(reasons) => panic!("the pair cannot run: {reasons:?}"),
+    }
+}
+
+fn stored_reference(variant: &str, torque_nm: f64) -> Reference {
+    let text = include_str!("../../tests/data/fe_pair_29_67.json");
+    let stored: Value = serde_json::from_str(text).expect("the reference file is JSON");
+    let all = stored["cases"].as_array().expect("cases");
+    let case = all
+        .iter()
+        .find(|case| case["variant"] == variant && case["torque_nm"].as_f64() == Some(torque_nm))
+        .expect("the stored case");
+    let number = |value: &Value| value.as_f64().expect("a number");
+    Reference {
+        tangent_n_per_m: number(&case["tangent_n_per_m"]),
+        secant_n_per_m: number(&case["secant_n_per_m"]),
+        first_harmonic_m: number(&case["te_harmonic_1_um"]) * 1e-6,
+        shares: case["share"]
+            .as_array()
+            .expect("shares")
+            .iter()
+            .map(|entry| (number(&entry[0]), number(&entry[1])))
+            .collect(),
+    }
+}
