@@ -32,15 +32,19 @@ fn documents(criterion: &mut Criterion) {
 fn stages(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("job");
     group.sample_size(20);
-    for (positions, slices) in [(16, 24), (64, 24), (64, 48), (256, 48)] {
-        let document = example(|value| {
+    let mesh = |change: fn(&mut Value)| {
+        example(|value| {
             value["kind"] = json!("mesh");
-            value["model"]["mesh_stiffness"]["positions"] = json!(positions);
-            value["model"]["mesh_stiffness"]["slices"] = json!(slices);
-        });
-        group.bench_function(BenchmarkId::new("mesh, cold", format!("{positions} positions, {slices} slices")), |b| {
-            b.iter(|| solve(black_box(&document)))
-        });
+            change(&mut value["model"]["mesh_stiffness"]);
+        })
+    };
+    let meshes = [
+        ("positions by accuracy (default)", mesh(|_| {})),
+        ("64 positions", mesh(|stiffness| stiffness["positions"] = json!(64))),
+        ("256 positions", mesh(|stiffness| stiffness["positions"] = json!(256))),
+    ];
+    for (name, document) in meshes {
+        group.bench_function(BenchmarkId::new("mesh, cold", name), |b| b.iter(|| solve(black_box(&document))));
     }
     let closed_form = example(|value| value["model"]["mesh_stiffness"] = json!({"source": "iso6336"}));
     group.bench_function("response, ISO 6336 stiffness", |b| b.iter(|| solve(black_box(&closed_form))));

@@ -1,5 +1,5 @@
 //! Compares the loaded tooth contact with the finite-element reference of a z 29/67 helical pair and prints the errors:
-//! `cargo run --release --no-default-features --example contact_validation [analytic|coarse|standard|fine [SLICES [POSITIONS]]]`.
+//! `cargo run --release --no-default-features --example contact_validation [analytic|coarse|medium|standard|fine [SLICES [POSITIONS]]]`.
 
 use std::time::Instant;
 
@@ -73,6 +73,7 @@ fn main() {
     let resolution = match std::env::args().nth(1).as_deref() {
         None | Some("analytic") => None,
         Some("coarse") => Some(Resolution::Coarse),
+        Some("medium") => Some(Resolution::Medium),
         Some("standard") => Some(Resolution::Standard),
         Some("fine") => Some(Resolution::Fine),
         Some(other) => panic!("{other} is no resolution"),
@@ -141,7 +142,7 @@ fn main() {
             percent((te.max - te.min) * 1e6, number("te_pp_um")),
             cycle.transmission_error_harmonics_m[0] * 1e6,
             percent(cycle.transmission_error_harmonics_m[0] * 1e6, number("te_harmonic_1_um")),
-            percent(cycle.max_line_load_n_per_m * 1e-3, number("line_load_n_per_mm")),
+            percent(cycle.max_line_load_interior_n_per_m * 1e-3, number("line_load_n_per_mm")),
             shares.join(" "),
             elapsed,
         );

@@ -1,0 +1,118 @@
+//! The loaded contact of one half of the source paper's example pair, part by part, on one core.
+//!
+//! `RAYON_NUM_THREADS=1 cargo bench --no-default-features --bench contact`; what came out stands in docs/BENCHMARKS.md.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use herringbone::contact::{Compliance, HalfContact, HalfCycle, Settings, solve_half};
+use herringbone::fe::{FlankFlexibility, Resolution};
+use herringbone::gear::{Assembly, FlankModification, GearSpec, Half, Material, Pair, PairSpec, Rotation};
+use herringbone::watch::Watch;
+
+/// Half of the example's pinion torque.
+const TORQUE_NM: f64 = 400.0;
+
+/// The teeth of examples/table1.json.
+fn example() -> Pair {
+    let helix_angle_rad = 24.43_f64.to_radians();
+    let member = |teeth, bore_radius_m| GearSpec {
+        teeth,
+        profile_shift: 0.0,
+        addendum: 1.0,
+        dedendum: 1.25,
+        fillet_radius: 0.38,
+        tip_alteration: 0.0,
+        bore_radius_m,
+        flanks: [FlankModification::NONE; 2],
+    };
+    let spec = PairSpec {
+        normal_module_m: 6e-3,
+        // 20° in the transverse section.
+        normal_pressure_angle_rad: (20_f64.to_radians().tan() * helix_angle_rad.cos()).atan(),
+        helix_angle_rad,
+        face_width_m: 75e-3,
+        gap_width_m: 30e-3,
+        center_distance_m: None,
+        material: Material { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 },
+        rotation: Rotation::ApexLeading,
+        pinion: member(17, 25e-3),
+        gear: member(44, 60e-3),
+        assembly: Assembly {
+            center_distance_error_m: 0.0,
+            in_plane_misalignment_m: 0.0,
+            out_of_plane_misalignment_m: 0.0,
+            apex_offset_m: 0.0,
+        },
+    };
+    Pair::new(&spec).expect("the example is feasible").0
+}
+
+fn solve(pair: &Pair, compliance: &Compliance, settings: &Settings) -> HalfCycle {
+    let force_n = TORQUE_NM / pair.pinion.base_radius_m;
+    solve_half(pair, Half::Left, force_n, compliance, settings, Watch::none()).expect("the example solves")
+}
+
+fn elements(pair: &Pair, settings: &Settings, resolution: Resolution) -> [FlankFlexibility; 2] {
+    Compliance::finite_element_inputs(pair, settings, resolution)
+        .map(|input| FlankFlexibility::new(&input, Watch::none()).expect("the example has a mesh"))
+}
+
+fn analytic(criterion: &mut Criterion) {
+    let pair = example();
+    let adaptive = Settings::default();
+    let equal = Settings { positions: Some(64), ..adaptive };
+    let mut group = criterion.benchmark_group("analytic");
+    group.bench_function("cold, 64 positions", |b| {
+        b.iter(|| solve(&pair, &Compliance::analytic(black_box(&pair), &equal), &equal))
+    });
+    group.bench_function("cold, positions by accuracy", |b| {
+        b.iter(|| solve(&pair, &Compliance::analytic(black_box(&pair), &adaptive), &adaptive))
+    });
+    group.bench_function("compliance alone", |b| b.iter(|| Compliance::analytic(black_box(&pair), &adaptive)));
+    let compliance = Compliance::analytic(&pair, &adaptive);
+    group.bench_function("contact alone, 64 positions", |b| b.iter(|| solve(black_box(&pair), &compliance, &equal)));
+    group.bench_function("contact alone, positions by accuracy", |b| {
+        b.iter(|| solve(black_box(&pair), &compliance, &adaptive))
+    });
+    let force_n = TORQUE_NM / pair.pinion.base_radius_m;
+    group.bench_function("one position alone", |b| {
+        b.iter(|| {
+            let mut contact = HalfContact::new(black_box(&pair), Half::Left, &compliance, &adaptive);
+            contact.at(0.3, force_n).expect("the example solves")
+        })
+    });
+    group.finish();
+}
+
+fn finite_elements(criterion: &mut Criterion) {
+    let pair = example();
+    let settings = Settings::default();
+    let mut group = criterion.benchmark_group("fe");
+    group.sample_size(10);
+    let flanks = elements(&pair, &settings, Resolution::Medium);
+    group.bench_function("medium, from stored flanks, positions by accuracy", |b| {
+        b.iter(|| {
+            let compliance = Compliance::finite_elements(black_box(&pair), &settings, flanks.each_ref());
+            solve(&pair, &compliance, &settings)
+        })
+    });
+    group.bench_function("coarse, elements of both gears", |b| {
+        b.iter(|| elements(black_box(&pair), &settings, Resolution::Coarse))
+    });
+    group.finish();
+}
+
+/// Everything on one thread, as the figures are meant.
+fn on_one_thread(criterion: &mut Criterion) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    let criterion = std::sync::Mutex::new(criterion);
+    pool.install(|| {
+        let mut criterion = criterion.lock().expect("one thread");
+        analytic(&mut criterion);
+        finite_elements(&mut criterion);
+    });
+}
+
+criterion_group!(benches, on_one_thread);
+criterion_main!(benches);
