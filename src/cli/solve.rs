@@ -1,11 +1,12 @@
 //! `herringbone solve`: one document solved in place, without service or database.
 
+use super::cache::DirectoryStages;
 use super::input::{invalid, read_document};
 use super::{problem, table};
 use clap::Args;
 use herringbone::api::Problem;
 use herringbone::job::document::JobDocument;
-use herringbone::study::{self, Channel, NoStageStore, SolveError, Stage, Surroundings};
+use herringbone::study::{self, Channel, NoStageStore, SolveError, Stage, StageStore, Surroundings};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -19,6 +20,9 @@ pub struct Solve {
     /// Write a recorded channel, full resolution, as CSV (`t_s,value`); may be given several times.
     #[arg(long, value_name = "CHANNEL=FILE.csv", value_parser = series_target)]
     series: Vec<(String, PathBuf)>,
+    /// Keep finished stages (finite elements of a gear, contact analyses) in this directory and reuse them.
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
     /// Print the headline numbers for people instead of the result JSON.
     #[arg(long)]
     table: bool,
@@ -37,7 +41,17 @@ pub fn run(arguments: Solve) -> ExitCode {
         Err(code) => return code,
     };
     record(&mut document, &arguments.series);
-    let outcome = match solve(&document) {
+    let stages: Box<dyn StageStore> = match arguments.cache {
+        None => Box::new(NoStageStore),
+        Some(directory) => match DirectoryStages::open(directory.clone()) {
+            Ok(stages) => Box::new(stages),
+            Err(error) => {
+                eprintln!("--cache {}: {error}", directory.display());
+                return ExitCode::from(2);
+            }
+        },
+    };
+    let outcome = match solve(&document, &*stages) {
         Ok(outcome) => outcome,
         Err(SolveError::Document(error)) => return invalid(error),
         Err(error) => {
@@ -81,7 +95,7 @@ fn record(document: &mut JobDocument, series: &[(String, PathBuf)]) {
     }
 }
 
-fn solve(document: &JobDocument) -> Result<study::Outcome, SolveError> {
+fn solve(document: &JobDocument, stages: &dyn StageStore) -> Result<study::Outcome, SolveError> {
     let started = Instant::now();
     let bar = bar();
     let progress = |stage: Stage, fraction: f64| {
@@ -91,7 +105,7 @@ fn solve(document: &JobDocument) -> Result<study::Outcome, SolveError> {
     let outcome = study::solve(
         document,
         &Surroundings {
-            stages: &NoStageStore,
+            stages,
             progress: &progress,
             canceled: &|| false,
             clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,

@@ -3,7 +3,6 @@
 use super::equations::MotionPlane;
 use super::mesh::MeshStage;
 use super::prepare::Prepared;
-use super::{SolveError, Stage};
 use crate::dynamics;
 use crate::gear::{Half, Warning};
 use crate::impact::{self, Entry, Inertia};
@@ -16,21 +15,18 @@ pub struct ImpactStage {
     pub pulses: [Option<dynamics::Impact>; 2],
 }
 
-/// Runs the impact stage.
-///
-/// # Errors
-/// [`SolveError::Failed`] where no corner contact can be found.
+/// Runs the impact stage. Where no corner contact can be found there is none, and a warning says why.
 pub fn run(
     document: &JobDocument,
     prepared: &Prepared,
     plane: &MotionPlane,
     mesh: &MeshStage,
     warnings: &mut Vec<Warning>,
-) -> Result<ImpactStage, SolveError> {
+) -> ImpactStage {
     // The right half is staggered by the shift of the equations, unless its stiffness already is: then here.
     let shift = if mesh.stagger_included { -document.design.half_stagger } else { 0.0 };
     match &document.model.impact {
-        Impact::None => Ok(ImpactStage { summary: None, pulses: [None, None] }),
+        Impact::None => ImpactStage { summary: None, pulses: [None, None] },
         Impact::Given(given) => {
             let pulse = |shift: f64| dynamics::Impact::HalfSine {
                 force_n: given.force_n,
@@ -44,7 +40,7 @@ pub fn run(
                 source: "given".to_owned(),
                 ..result::Impact::default()
             };
-            Ok(ImpactStage { summary: Some(summary), pulses: [Some(pulse(0.0)), Some(pulse(shift))] })
+            ImpactStage { summary: Some(summary), pulses: [Some(pulse(0.0)), Some(pulse(shift))] }
         }
         Impact::CornerContact(corner) => calculated(prepared, plane, mesh, corner, true, shift, warnings),
         Impact::Zhou2008(corner) => calculated(prepared, plane, mesh, corner, false, shift, warnings),
@@ -59,7 +55,7 @@ fn calculated(
     buffered: bool,
     shift: f64,
     warnings: &mut Vec<Warning>,
-) -> Result<ImpactStage, SolveError> {
+) -> ImpactStage {
     let [pinion_kg_m2, gear_kg_m2] = prepared.inertia_kg_m2.map(|inertia| inertia / 2.0);
     let solve = |half: Half| {
         let state = &mesh.entry[half.index()];
@@ -72,9 +68,19 @@ fn calculated(
             base_pitch_error_m: corner.base_pitch_error_um * 1e-6,
         };
         impact::mesh_in(&prepared.pair, &entry, |overrun_m| state.deflection_m(overrun_m))
-            .map_err(|error| SolveError::failed(Stage::Impact, "impact-failed", &error))
     };
-    let [left, right] = [solve(Half::Left)?, solve(Half::Right)?];
+    let (left, right) = match (solve(Half::Left), solve(Half::Right)) {
+        (Ok(left), Ok(right)) => (left, right),
+        (Err(error), _) | (_, Err(error)) => {
+            // The contact itself is solved: it is not thrown away for an impact that its model does not cover.
+            warnings.push(Warning {
+                code: "impact-not-calculated".to_owned(),
+                pointer: "/model/impact".to_owned(),
+                detail: format!("{error}; mesh and response are without a mesh-in impact"),
+            });
+            return ImpactStage { summary: None, pulses: [None, None] };
+        }
+    };
     if let Some(none) = &left.none_because {
         warnings.push(Warning {
             code: "no-impact".to_owned(),
@@ -123,5 +129,5 @@ fn calculated(
         start_mesh_periods,
         source: if buffered { "corner_contact" } else { "zhou2008" }.to_owned(),
     };
-    Ok(ImpactStage { summary: Some(summary), pulses: [pulse(&left, 0.0), pulse(&right, shift)] })
+    ImpactStage { summary: Some(summary), pulses: [pulse(&left, 0.0), pulse(&right, shift)] }
 }

@@ -39,7 +39,7 @@ pub fn solve(
     numerics.reused.extend(reused.into_iter().map(str::to_owned));
     numerics.wall_ms.mesh = clock.lap_ms();
 
-    let impact = impact::run(document, &prepared, &plane, &mesh, &mut warnings)?;
+    let impact = impact::run(document, &prepared, &plane, &mesh, &mut warnings);
     numerics.wall_ms.impact = clock.lap_ms();
     (surroundings.progress)(Stage::Impact, 1.0);
 

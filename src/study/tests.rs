@@ -6,6 +6,8 @@ use crate::job::result::SweepPoint;
 use crate::oracle::Tolerance::{Absolute, Relative};
 use crate::oracle::{check as check_value, check_worst};
 use serde_json::{Value, json};
+use std::collections::HashMap;
+use std::sync::Mutex;
 
 fn example(name: &str) -> Value {
     let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
@@ -190,22 +192,19 @@ fn a_canceled_job_stops() {
     assert!(matches!(outcome, Err(SolveError::Canceled(_))));
 }
 
+#[derive(Default)]
+struct Memory(Mutex<HashMap<String, Vec<u8>>>);
+impl StageStore for Memory {
+    fn load(&self, key: &str) -> Option<Vec<u8>> {
+        self.0.lock().expect("unpoisoned").get(key).cloned()
+    }
+    fn save(&self, key: &str, _stage: Stage, bytes: &[u8]) {
+        self.0.lock().expect("unpoisoned").insert(key.to_owned(), bytes.to_vec());
+    }
+}
+
 #[test]
 fn the_contact_analysis_is_kept_and_taken_again() {
-    use std::collections::HashMap;
-    use std::sync::Mutex;
-
-    #[derive(Default)]
-    struct Memory(Mutex<HashMap<String, Vec<u8>>>);
-    impl StageStore for Memory {
-        fn load(&self, key: &str) -> Option<Vec<u8>> {
-            self.0.lock().expect("unpoisoned").get(key).cloned()
-        }
-        fn save(&self, key: &str, _stage: Stage, bytes: &[u8]) {
-            self.0.lock().expect("unpoisoned").insert(key.to_owned(), bytes.to_vec());
-        }
-    }
-
     let memory = Memory::default();
     let surroundings = Surroundings { stages: &memory, progress: &|_, _| {}, canceled: &|| false, clock_ms: &|| 0.0 };
     let first = solve(&document(&example("table1")), &surroundings).expect("solved").result;
@@ -214,6 +213,27 @@ fn the_contact_analysis_is_kept_and_taken_again() {
     let second = solve(&document(&faster), &surroundings).expect("solved").result;
     assert_eq!((first.numerics.reused.len(), second.numerics.reused), (0, vec!["mesh".to_owned()]));
     assert_eq!(first.mesh, second.mesh);
+}
+
+#[test]
+fn finite_elements_are_solved_once_per_gear() {
+    let memory = Memory::default();
+    let surroundings = Surroundings { stages: &memory, progress: &|_, _| {}, canceled: &|| false, clock_ms: &|| 0.0 };
+    let mut value = example("table1");
+    value["kind"] = json!("mesh");
+    value["design"]["face_width_mm"] = json!(30.0);
+    value["model"]["mesh_stiffness"] = json!({"source": "ltca", "fidelity": "fe", "elements": "coarse"});
+    let mut solve_at = |torque_nm: f64| {
+        value["operation"]["pinion_torque_nm"] = json!(torque_nm);
+        solve(&document(&value), &surroundings).expect("solved").result
+    };
+    let (first, second) = (solve_at(800.0), solve_at(400.0));
+    assert_eq!((first.numerics.reused.len(), &second.numerics.reused), (0, &vec!["finite_elements".to_owned()]));
+    value["model"]["mesh_stiffness"] = json!({"source": "ltca"});
+    let analytic = solve(&document(&value), &surroundings).expect("solved").result;
+    let mean = |result: &crate::job::result::JobResult| result.mesh.as_ref().map_or(0.0, |m| m.stiffness_mean_n_per_um);
+    let ratio = mean(&analytic) / mean(&second);
+    check_value("Job: fidelities", "narrow source pair, mean stiffness, analytic over fe", ratio, 1.0, Absolute(0.05));
 }
 
 #[test]

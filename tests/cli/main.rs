@@ -158,6 +158,26 @@ fn an_unknown_channel_is_refused_with_the_list() {
 }
 
 #[test]
+fn a_cache_keeps_the_contact_analysis() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let cache = directory.path().join("stages");
+    let solve = || {
+        let output = herringbone(&[
+            "solve",
+            example("table1.json").to_str().expect("UTF-8"),
+            "--cache",
+            cache.to_str().expect("UTF-8"),
+        ]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        json(&output.stdout)
+    };
+    let (first, second) = (solve(), solve());
+    assert_eq!(first["numerics"]["reused"], serde_json::json!([]));
+    assert_eq!(second["numerics"]["reused"], serde_json::json!(["mesh"]));
+    assert_eq!(first["mesh"], second["mesh"]);
+}
+
+#[test]
 fn the_table_is_for_people() {
     let output = herringbone(&["solve", example("table1.json").to_str().expect("UTF-8"), "--table"]);
     let text = String::from_utf8(output.stdout).expect("UTF-8");
