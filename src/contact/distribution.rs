@@ -77,6 +77,8 @@ pub struct Workspace {
     entering: Vec<(f64, usize)>,
 }
 
+/// Least force that is told from none, as a part of the mean force of the points.
+const LEAST_FORCE: f64 = 1e-9;
 /// Diagonals of W.
 const BAND: usize = 2 * STENCIL - 1;
 const QUICK_ITERATIONS: u32 = 30;
@@ -155,15 +157,16 @@ pub fn distribute<L: Local>(
                     continue;
                 }
                 let opening = system.deflection(line, j, &forces, work) + (system.gaps[j] - datum) - approach;
-                if opening < -slack {
+                // What the least force that is told from none already takes up.
+                let least = system.local.approach(j, LEAST_FORCE * total / n as f64).0;
+                if opening < -slack.max(least) {
                     if !careful {
                         member[j] = true;
                         same = false;
                         // The force that takes the penetration up locally: where to linearise, not a part of the balance.
                         // One that has come in before and was let go again carries less than that.
-                        let (_, slope) = system.local.approach(j, total / n as f64);
                         let less = 0.1f64.powi(i32::from(work.entries[j]));
-                        forces[j] = less * (-opening / slope).min(total / n as f64);
+                        forces[j] = less * force_for(system.local, j, -opening, total / n as f64);
                         work.entries[j] = work.entries[j].saturating_add(1);
                     } else {
                         work.entering.push((opening, j));
@@ -198,7 +201,7 @@ impl<L: Local> System<'_, L> {
         work: &mut Workspace,
     ) -> Option<(f64, f64)> {
         let (n, r) = (self.gaps.len(), self.stations);
-        let floor = 1e-9 * total / n as f64;
+        let floor = LEAST_FORCE * total / n as f64;
         work.slope.resize(n, 1.0);
         work.target.resize(n, 0.0);
         for i in 0..n {
@@ -450,6 +453,18 @@ impl<L: Local> System<'_, L> {
         }
         sum
     }
+}
+
+/// Force up to `most` under which point `i` approaches by `approach`, to a factor of two.
+fn force_for(local: &impl Local, i: usize, approach: f64, most: f64) -> f64 {
+    let mut force = most;
+    for _ in 0..30 {
+        if local.approach(i, force).0 <= approach {
+            break;
+        }
+        force *= 0.5;
+    }
+    force
 }
 
 impl Stencil {

@@ -17,8 +17,10 @@ pub struct Point {
     pub entry_m: f64,
     /// Axial length of the part.
     pub width_m: f64,
-    /// Gap in the transverse plane along the base tangent.
+    /// Mean gap of the part, in the transverse plane along the base tangent.
     pub gap_m: f64,
+    /// Twice what the mean gap is more than the least one: the difference between both ends of a linear gap.
+    pub gap_spread_m: f64,
 }
 
 /// Corner contact is looked for this far beyond the path, in base pitches: gaps there are beyond any deflection that a
@@ -83,17 +85,30 @@ pub fn collect(pair: &Pair, half: Half, phase: f64, slices: usize, reach: &Reach
                     1
                 };
                 for part in 0..parts {
-                    let x = low + (high - low) * (f64::from(part) + 0.5) / f64::from(parts);
-                    let entry = if slope > 0.0 { (x - base) / slope } else { 0.5 * (e0 + e1) };
-                    let corner = match zone {
-                        0 => corner_gap(pair, start - x, over, Pair::mesh_in_corner_gap_m),
-                        2 => corner_gap(pair, x - end, over, Pair::mesh_out_corner_gap_m),
-                        _ => Some(0.0),
+                    let at = |place: f64| {
+                        let x = low + (high - low) * (f64::from(part) + place) / f64::from(parts);
+                        let entry = if slope > 0.0 { (x - base) / slope } else { e0 + (e1 - e0) * place };
+                        (x, entry)
                     };
-                    let Some(corner) = corner.filter(|&gap| gap <= reach.corner_gap_m) else { continue };
-                    // entry_m is its own inverse.
-                    let y = pair.entry_m(entry);
-                    let gap = corner.max(0.0) + pair.initial_gap_m(half, x.clamp(start, end), y);
+                    let gap_at = |(x, entry): (f64, f64)| {
+                        let corner = match zone {
+                            0 => corner_gap(pair, start - x, over, Pair::mesh_in_corner_gap_m)?,
+                            2 => corner_gap(pair, x - end, over, Pair::mesh_out_corner_gap_m)?,
+                            _ => 0.0,
+                        };
+                        // entry_m is its own inverse.
+                        let modified = pair.initial_gap_m(half, x.clamp(start, end), pair.entry_m(entry));
+                        Some((corner, corner.max(0.0) + modified))
+                    };
+                    let (x, entry) = at(0.5);
+                    let Some((corner, gap)) = gap_at((x, entry)) else { continue };
+                    if corner > reach.corner_gap_m {
+                        continue;
+                    }
+                    // Mean over the part (Simpson) and least of three.
+                    let ends = gap_at(at(0.0)).zip(gap_at(at(1.0))).map_or([gap; 2], |(a, b)| [a.1, b.1]);
+                    let mean = (ends[0] + 4.0 * gap + ends[1]) / 6.0;
+                    let least = gap.min(ends[0]).min(ends[1]);
                     out.push(Point {
                         pair: k,
                         slice,
@@ -102,7 +117,8 @@ pub fn collect(pair: &Pair, half: Half, phase: f64, slices: usize, reach: &Reach
                         x_m: x,
                         entry_m: entry,
                         width_m: share * step / f64::from(parts),
-                        gap_m: gap,
+                        gap_m: mean,
+                        gap_spread_m: 2.0 * (mean - least).max(0.0),
                     });
                 }
             }

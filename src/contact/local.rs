@@ -28,6 +28,9 @@ struct Contact {
     per_force: f64,
     /// Length of the segment on a half-space; `None` for plane strain.
     length_m: Option<f64>,
+    /// Difference of the normal gaps at the ends of the point's part of the line, and the force per approach at which it closes.
+    spread_m: f64,
+    closing_n_per_m: f64,
 }
 
 /// Segments on a half-space are kept this many times as long as the band of a line under twice the mean load is wide: shorter ones would
@@ -69,6 +72,8 @@ impl LocalContacts {
         let (e, nu) = (material.youngs_modulus_pa, material.poissons_ratio);
         let cos = pair.base_helix_angle_rad.cos();
         let (start, end) = (pair.path_start_m, pair.path_end_m);
+        let length = points.iter().filter(|p| p.zone == 1).map(|p| p.width_m).sum::<f64>() / cos;
+        let mean = force_n / length.max(1e-3 * pair.spec.face_width_m);
         self.contacts.clear();
         for p in points {
             let x = p.x_m.clamp(start, end);
@@ -78,13 +83,19 @@ impl LocalContacts {
             };
             let line = LineContact::new(e, nu, relative_radius_m(pair, x), depths_m);
             let length_m = (*model == LocalModel::HalfSpace).then_some(p.width_m / cos);
-            self.contacts.push(Contact { line, per_force: cos / p.width_m, length_m });
+            let mut contact = Contact {
+                line,
+                per_force: cos / p.width_m,
+                length_m,
+                spread_m: p.gap_spread_m * cos,
+                closing_n_per_m: 1.0,
+            };
+            contact.closing_n_per_m = 1.0 / contact.full(mean / contact.per_force).1;
+            self.contacts.push(contact);
         }
         coupling.clear();
         if *model == LocalModel::HalfSpace {
             // Neighbours see a band of the mean load: its width matters only where segments are as short as it is wide.
-            let length = points.iter().filter(|p| p.zone == 1).map(|p| p.width_m).sum::<f64>() / cos;
-            let mean = force_n / length.max(1e-3 * pair.spec.face_width_m);
             coupling.extend(
                 lines
                     .iter()
@@ -132,14 +143,30 @@ fn half_space_coupling(contacts: &[Contact], points: &[Point], cos: f64, mean: f
     matrix
 }
 
+impl Contact {
+    /// Approach of a point that touches over its whole width, and its derivative.
+    fn full(&self, force: f64) -> (f64, f64) {
+        let w = force * self.per_force;
+        let (value, slope) = match self.length_m {
+            None => self.line.approach(w),
+            Some(length_m) => self.line.half_space_approach(w, length_m),
+        };
+        (value, slope * self.per_force)
+    }
+}
+
 impl Local for LocalContacts {
+    /// Counted from where the nearer end of the part of the line touches. As long as it touches over a part of its width only, a linear gap a
+    /// over the width closes like a wedge pressed into an elastic layer: f = c p²/(2a), that is p = √(2 a f / c) up to f = c a / 2; what this is more than
+    /// f/c comes on top of the full contact. So no point comes into contact with a jump of its stiffness.
     fn approach(&self, i: usize, force: f64) -> (f64, f64) {
         let contact = &self.contacts[i];
-        let w = force * contact.per_force;
-        let (value, slope) = match contact.length_m {
-            None => contact.line.approach(w),
-            Some(length_m) => contact.line.half_space_approach(w, length_m),
-        };
-        (value, slope * contact.per_force)
+        let (value, slope) = contact.full(force);
+        let (a, c) = (contact.spread_m, contact.closing_n_per_m);
+        if force >= 0.5 * c * a {
+            return (value + 0.5 * a, slope);
+        }
+        let wedge = (2.0 * a * force / c).sqrt();
+        (value + wedge - force / c, slope + 0.5 * wedge / force - 1.0 / c)
     }
 }

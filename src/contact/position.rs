@@ -205,7 +205,8 @@ impl<'a> Solver<'a> {
         let slope = pair.base_helix_angle_rad.tan();
         let x0 = reference_roll_m(pair, phase);
         self.gaps.clear();
-        self.gaps.extend(self.points.iter().map(|p| p.gap_m * cos));
+        // From where the nearer end of a point's part touches.
+        self.gaps.extend(self.points.iter().map(|p| (p.gap_m - 0.5 * p.gap_spread_m) * cos));
         self.lines.clear();
         self.stencils.clear();
         let (mut from, mut stations) = (0, 0);
