@@ -47,7 +47,15 @@ pub fn reference_roll_m(pair: &Pair, phase: f64) -> f64 {
 }
 
 /// Collects the points of `half` into `out`.
-pub fn collect(pair: &Pair, half: Half, phase: f64, slices: usize, reach: &Reach, out: &mut Vec<Point>) {
+pub fn collect(
+    pair: &Pair,
+    corners: &CornerGaps,
+    half: Half,
+    phase: f64,
+    slices: usize,
+    reach: &Reach,
+    out: &mut Vec<Point>,
+) {
     out.clear();
     let b = pair.spec.face_width_m;
     let step = b / slices as f64;
@@ -92,8 +100,8 @@ pub fn collect(pair: &Pair, half: Half, phase: f64, slices: usize, reach: &Reach
                     };
                     let gap_at = |(x, entry): (f64, f64)| {
                         let corner = match zone {
-                            0 => corner_gap(pair, start - x, over, Pair::mesh_in_corner_gap_m)?,
-                            2 => corner_gap(pair, x - end, over, Pair::mesh_out_corner_gap_m)?,
+                            0 => corners.mesh_in.at(start - x)?,
+                            2 => corners.mesh_out.at(x - end)?,
                             _ => 0.0,
                         };
                         // entry_m is its own inverse.
@@ -126,6 +134,45 @@ pub fn collect(pair: &Pair, half: Half, phase: f64, slices: usize, reach: &Reach
     }
 }
 
-fn corner_gap(pair: &Pair, overrun: f64, limit: f64, gap: impl Fn(&Pair, f64) -> Option<f64>) -> Option<f64> {
-    if overrun > limit { None } else { gap(pair, overrun) }
+/// Kinematic gaps of both corners over the overrun, tabulated once: their exact formulas take a good part of a position's time.
+#[derive(Debug, Clone, Default)]
+pub struct CornerGaps {
+    pub mesh_in: CornerGap,
+    pub mesh_out: CornerGap,
+}
+
+/// Gap of one corner: linear interpolation of what multiplies the square of the overrun.
+#[derive(Debug, Clone, Default)]
+pub struct CornerGap {
+    step_m: f64,
+    per_square: Vec<f64>,
+}
+
+/// Intervals of the table over [`CORNER_REACH`].
+const CORNER_TABLE: usize = 128;
+
+impl CornerGaps {
+    /// Tables up to [`CORNER_REACH`].
+    pub fn new(pair: &Pair) -> CornerGaps {
+        let step_m = CORNER_REACH * pair.base_pitch_m / CORNER_TABLE as f64;
+        let table = |gap: fn(&Pair, f64) -> Option<f64>| {
+            let at = |i: usize| gap(pair, i as f64 * step_m).map(|gap| gap / (i as f64 * step_m).powi(2));
+            let mut per_square: Vec<f64> = (1..=CORNER_TABLE).map_while(at).collect();
+            if let [first, second, ..] = per_square[..] {
+                per_square.insert(0, (2.0 * first - second).max(0.0));
+            }
+            CornerGap { step_m, per_square }
+        };
+        CornerGaps { mesh_in: table(Pair::mesh_in_corner_gap_m), mesh_out: table(Pair::mesh_out_corner_gap_m) }
+    }
+}
+
+impl CornerGap {
+    /// Gap at an overrun; `None` where the corner has no flank to meet.
+    pub fn at(&self, overrun_m: f64) -> Option<f64> {
+        let position = (overrun_m / self.step_m).max(0.0);
+        let i = position as usize;
+        let (low, high) = (*self.per_square.get(i)?, *self.per_square.get(i + 1)?);
+        Some((low + (high - low) * (position - i as f64)) * overrun_m * overrun_m)
+    }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::compliance::Compliance;
 use super::distribution::{Distribution, Stalled, System, Workspace, distribute};
 use super::influence::{LineWeights, Stencil};
-use super::lines::{CORNER_REACH, Point, Reach, collect, reference_roll_m};
+use super::lines::{CORNER_REACH, CornerGaps, Point, Reach, collect, reference_roll_m};
 use super::local::LocalContacts;
 use crate::gear::{Half, Pair};
 
@@ -44,6 +44,7 @@ pub struct Solver<'a> {
     compliance: &'a Compliance,
     slices: usize,
     corner_contact: bool,
+    corners: CornerGaps,
     points: Vec<Point>,
     /// Place of a point and its force per face width at the position before, ascending.
     previous: Vec<(Place, f64)>,
@@ -82,6 +83,7 @@ impl<'a> Solver<'a> {
             compliance,
             slices: compliance.slices(),
             corner_contact,
+            corners: if corner_contact { CornerGaps::new(pair) } else { CornerGaps::default() },
             points: Vec::new(),
             previous: Vec::new(),
             start: Vec::new(),
@@ -113,7 +115,7 @@ impl<'a> Solver<'a> {
         let (mut low, mut high) = (0.0, CORNER_REACH * self.pair.base_pitch_m);
         for _ in 0..12 {
             let middle = 0.5 * (low + high);
-            let inside = self.pair.mesh_in_corner_gap_m(middle).is_some_and(|gap| gap < gap_m);
+            let inside = self.corners.mesh_in.at(middle).is_some_and(|gap| gap < gap_m);
             if inside { low = middle } else { high = middle }
         }
         let width_m = high / self.pair.base_helix_angle_rad.tan().max(1e-6);
@@ -142,7 +144,7 @@ impl<'a> Solver<'a> {
         for _ in 0..8 {
             let corner_gap_m = if self.corner_contact { self.corner_gap_m } else { 0.0 };
             let reach = Reach { lowest_pair, corner_gap_m, least_part_m };
-            collect(self.pair, self.half, phase, self.slices.min(most), &reach, &mut self.points);
+            collect(self.pair, &self.corners, self.half, phase, self.slices.min(most), &reach, &mut self.points);
             if self.points.is_empty() {
                 return Err(Trouble::NoContact);
             }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{pair, spec};
-use crate::contact::lines::{Reach, collect};
+use crate::contact::lines::{CornerGaps, Reach, collect};
 use crate::contact::{BodyHold, Compliance, HalfContact, Settings, solve_half, solve_pair_of_halves};
 use crate::gear::Half;
 use crate::oracle::Tolerance::Relative;
@@ -137,7 +137,7 @@ fn contact_lines_follow_the_uniform_series() {
         let (mut points, mut errors) = (Vec::new(), Vec::new());
         for i in 0..16 {
             let phase = (f64::from(i) + 0.5) / 16.0;
-            collect(&pair, Half::Left, phase, 24, &reach, &mut points);
+            collect(&pair, &CornerGaps::default(), Half::Left, phase, 24, &reach, &mut points);
             let length: f64 = points.iter().map(|p| p.width_m).sum::<f64>() / (ea * width);
             let series: f64 = 1.0
                 + 2.0
