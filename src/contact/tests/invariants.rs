@@ -3,9 +3,11 @@
 use std::f64::consts::PI;
 
 use super::{pair, spec};
-use crate::contact::lines::{CornerGaps, Reach, collect};
+use crate::contact::distribution::{Local, System, Workspace, distribute};
+use crate::contact::influence::Stencil;
+use crate::contact::lines::{CornerGaps, Reach, collect, reference_roll_m};
 use crate::contact::{BodyHold, Compliance, HalfContact, Settings, solve_half, solve_pair_of_halves};
-use crate::gear::Half;
+use crate::gear::{Half, ReliefShape, TipRelief};
 use crate::oracle::Tolerance::Relative;
 use crate::oracle::{check, check_worst};
 use crate::watch::Watch;
@@ -151,4 +153,80 @@ fn contact_lines_follow_the_uniform_series() {
             format!("length of the contact lines over its mean, z {}/{}, helix {helix}°", teeth[0], teeth[1]);
         check_worst("Contact: uniform series of Gu, Velex and others", &quantity, errors, 1e-4);
     }
+}
+
+/// A foundation of constant stiffness per width instead of tooth, body and Hertzian contact: the force is the integral of what the
+/// approach exceeds the gap by, c ∫ (δ - g)₊ dy over all lines. Unmodified flanks make that c δ times the length of the lines, whose course
+/// is the series above; relief on both tips unloads the ends of the path.
+#[test]
+fn a_constant_foundation_gives_the_length_of_the_lines_and_relief_unloads_it() {
+    struct Foundation(Vec<f64>);
+    impl Local for Foundation {
+        fn approach(&self, i: usize, force: f64) -> (f64, f64) {
+            (force / self.0[i], 1.0 / self.0[i])
+        }
+    }
+    const STIFFNESS: f64 = 15e9;
+    let mut spec = spec([29, 67], 30.0, 45e-3);
+    let (mut lengths, mut forces) = (Vec::new(), Vec::new());
+    for relief_m in [0.0, 15e-6] {
+        let relief = TipRelief { amount_m: relief_m, length_m: 6e-3, shape: ReliefShape::Parabolic };
+        spec.pinion.flanks[0].tip_relief = relief;
+        spec.gear.flanks[0].tip_relief = relief;
+        let pair = pair(&spec);
+        let cos = pair.base_helix_angle_rad.cos();
+        let reach = Reach { lowest_pair: i32::MIN, corner_gap_m: 0.0, least_part_m: 0.0 };
+        let mut points = Vec::new();
+        for i in 0..16 {
+            let phase = (f64::from(i) + 0.5) / 16.0;
+            collect(&pair, &CornerGaps::default(), Half::Left, phase, 90, &reach, &mut points);
+            let gaps: Vec<f64> = points.iter().map(|p| p.gap_m * cos).collect();
+            let local = Foundation(points.iter().map(|p| STIFFNESS * p.width_m).collect());
+            let stencils = vec![Stencil { first: 0, weights: [0.25; 4] }; points.len()];
+            let lines: Vec<_> = std::iter::once(0..points.len()).collect();
+            let system = System {
+                gaps: &gaps,
+                stencils: &stencils,
+                stations: 4,
+                bulk: &[0.0; 16],
+                lines: &lines,
+                coupling: &[],
+                local: &local,
+            };
+            let total = 4e3;
+            let found = distribute(&system, total, &[], &mut Workspace::default()).unwrap();
+            if relief_m == 0.0 {
+                let length: f64 = pair.contact_lines(reference_roll_m(&pair, phase)).iter().map(|l| l.width_m()).sum();
+                lengths.push(found.stiffness / (STIFFNESS * length) - 1.0);
+                lengths.push(found.approach * STIFFNESS * length / total - 1.0);
+            } else {
+                // The integral on a grid of its own, from the lines and the modification.
+                const STEPS: usize = 4000;
+                let sum: f64 = pair
+                    .contact_lines(reference_roll_m(&pair, phase))
+                    .iter()
+                    .map(|line| {
+                        let step = line.width_m() / STEPS as f64;
+                        let exceeds = |k: usize| {
+                            let part = (k as f64 + 0.5) / STEPS as f64;
+                            let at = |[a, b]: [f64; 2]| a + (b - a) * part;
+                            let gap = pair.initial_gap_m(Half::Left, at(line.x_m), pair.entry_m(at(line.entry_m)));
+                            (found.approach - gap * cos).max(0.0)
+                        };
+                        (0..STEPS).map(exceeds).sum::<f64>() * step
+                    })
+                    .sum();
+                forces.push(STIFFNESS * sum / total - 1.0);
+                assert!(found.forces.iter().any(|&f| f == 0.0), "the tips are free");
+            }
+        }
+    }
+    let topic = "Contact: uniform series of Gu, Velex and others";
+    check_worst(
+        topic,
+        "stiffness and approach of a constant foundation against the length of the lines",
+        lengths,
+        1e-9,
+    );
+    check_worst(TOPIC, "constant foundation under tip relief: force at the approach found", forces, 2e-3);
 }
