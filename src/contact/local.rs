@@ -1,8 +1,8 @@
 //! What a point of contact adds to the bulk flexibility by its own indentation.
 
-use super::distribution::Local;
 use super::hertz::LineContact;
 use super::lines::Point;
+use super::system::Local;
 use crate::gear::Pair;
 
 /// How the local part is told from the bulk.

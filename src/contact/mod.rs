@@ -5,8 +5,12 @@
 //! faces (`plate`); the reactions of its root load a three-dimensional elastic ring with free end faces, held at rim or
 //! bore (`body`, `ring_influence`); short waves at the root come from a plane-strain annulus (`annulus`); the corners of the
 //! end faces give as elastic wedges do (`edge`). `bulk` puts these together over Legendre functions of the
-//! face; the contact itself is Hertzian (`hertz`). `lines` and `position` put the contact lines of one position together,
-//! `distribution` shares the force out, `cycle` and `halves` run over the mesh period.
+//! face; the contact itself is Hertzian (`hertz`). Fidelity `fe` takes the flexibilities of [`crate::fe`] instead, with the indentation
+//! of half-spaces (`half_space`).
+//!
+//! Either way there is a `compliance`: a table of bulk flexibility (`influence`) and a law of local indentation (`local`). `lines` and `position` put
+//! the contact lines of one position together, `distribution` shares the force out by Newton steps of the `system`, `refine` chooses the positions,
+//! `cycle` and `halves` run over the mesh period.
 //!
 //! Everything is SI and along the transverse base tangent unless a name says otherwise; coordinates are those of
 //! [`crate::gear`].
@@ -35,6 +39,7 @@ mod position;
 mod refine;
 mod ring_influence;
 mod settings;
+mod system;
 mod tooth;
 
 pub use compliance::Compliance;

@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use super::compliance::Compliance;
-use super::distribution::{Distribution, Stalled, System, Workspace, distribute};
+use super::distribution::{Distribution, Stalled, distribute};
 use super::influence::{LineWeights, Stencil};
 use super::lines::{CORNER_REACH, CornerGaps, Point, Reach, collect, reference_roll_m};
 use super::local::LocalContacts;
+use super::system::{System, Workspace};
 use crate::gear::{Half, Pair};
 
 /// The loaded points of one position.

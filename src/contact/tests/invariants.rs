@@ -3,9 +3,10 @@
 use std::f64::consts::PI;
 
 use super::{pair, spec};
-use crate::contact::distribution::{Local, System, Workspace, distribute};
+use crate::contact::distribution::distribute;
 use crate::contact::influence::Stencil;
 use crate::contact::lines::{CornerGaps, Reach, collect, reference_roll_m};
+use crate::contact::system::{Local, System, Workspace};
 use crate::contact::{BodyHold, Compliance, HalfContact, Settings, solve_half, solve_pair_of_halves};
 use crate::gear::{Half, ReliefShape, TipRelief};
 use crate::oracle::Tolerance::Relative;
@@ -217,7 +218,7 @@ fn a_constant_foundation_gives_the_length_of_the_lines_and_relief_unloads_it() {
                     })
                     .sum();
                 forces.push(STIFFNESS * sum / total - 1.0);
-                assert!(found.forces.iter().any(|&f| f == 0.0), "the tips are free");
+                assert!(found.forces.contains(&0.0), "the tips are free");
             }
         }
     }

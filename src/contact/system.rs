@@ -1,0 +1,335 @@
+//! The linearised load distribution of one position: one Newton step on the points in contact.
+//!
+//! With D the derivative of K f + h(f) on the active points and W = Pᵀ D⁻¹ P, every Newton step solves (I + B W) a = B Pᵀ D⁻¹ c between the
+//! stations of the contact lines only: its cost grows linearly with the points.
+
+use std::ops::Range;
+
+use super::influence::{STENCIL, Stencil};
+use super::linalg::{cholesky, cholesky_solve, dot, forward_solve, lu_solve, vectorised};
+
+/// Approach of one point under its own force.
+pub trait Local {
+    /// Local approach of point `i` under a positive force, and its derivative.
+    fn approach(&self, i: usize, force: f64) -> (f64, f64);
+}
+
+/// The points and what couples them. All quantities along the flank normal.
+pub struct System<'a, L: Local> {
+    pub gaps: &'a [f64],
+    /// Where every point stands among the stations of all lines.
+    pub stencils: &'a [Stencil],
+    /// Number of stations of all lines.
+    pub stations: usize,
+    /// Flexibility between the stations, row-major, symmetric.
+    pub bulk: &'a [f64],
+    /// Points of every line.
+    pub lines: &'a [Range<usize>],
+    /// Coupling of the points of a line beyond the bulk, row-major and line by line; empty when there is none.
+    pub coupling: &'a [Vec<f64>],
+    pub local: &'a L,
+}
+
+/// Reused memory of the solver.
+#[derive(Debug, Clone, Default)]
+pub struct Workspace {
+    slope: Vec<f64>,
+    target: Vec<f64>,
+    pub fresh: Vec<f64>,
+    weight: Vec<f64>,
+    matrix: Vec<f64>,
+    sides: Vec<f64>,
+    block: Vec<f64>,
+    columns: Vec<f64>,
+    active: Vec<usize>,
+    station_force: Vec<f64>,
+    station_shift: Vec<f64>,
+    unit: Vec<f64>,
+    /// How often a point has come in.
+    pub entries: Vec<u8>,
+    /// Opening and index of points that come in.
+    pub entering: Vec<(f64, usize)>,
+}
+
+/// Least force that is told from none, as a part of the mean force of the points.
+pub const LEAST_FORCE: f64 = 1e-9;
+/// Diagonals of W.
+const BAND: usize = 2 * STENCIL - 1;
+impl<L: Local> System<'_, L> {
+    /// One Newton step on the active points: their new forces into `work.fresh`; returns approach and stiffness.
+    pub fn newton(
+        &self,
+        total: f64,
+        datum: f64,
+        forces: &[f64],
+        member: &[bool],
+        work: &mut Workspace,
+    ) -> Option<(f64, f64)> {
+        let (n, r) = (self.gaps.len(), self.stations);
+        let floor = LEAST_FORCE * total / n as f64;
+        work.slope.resize(n, 1.0);
+        work.target.resize(n, 0.0);
+        for i in 0..n {
+            if member[i] {
+                let at = forces[i].max(floor);
+                let (value, slope) = self.local.approach(i, at);
+                work.slope[i] = slope;
+                work.target[i] = slope * at - value - (self.gaps[i] - datum);
+            }
+        }
+        // Right-hand sides Pᵀ D⁻¹ 1 and Pᵀ D⁻¹ c.
+        work.sides.clear();
+        work.sides.resize(2 * r, 0.0);
+        if self.coupling.is_empty() {
+            self.add_points(member, work);
+        } else {
+            self.add_lines(member, work)?;
+        }
+        let (unit, target) = work.sides.split_at_mut(r);
+        for side in [unit, target] {
+            work.station_force.clear();
+            work.station_force.extend_from_slice(side);
+            multiply(self.bulk, &work.station_force, side);
+        }
+        if !lu_solve(&mut work.matrix, &mut work.sides, r) {
+            return None;
+        }
+        work.fresh.clear();
+        work.fresh.resize(n, 0.0);
+        work.unit.clear();
+        work.unit.resize(n, 0.0);
+        let (stiffness, rest) = if self.coupling.is_empty() {
+            self.forces_of_points(member, work)
+        } else {
+            self.forces_of_lines(member, work)
+        };
+        let approach = (total - rest) / stiffness;
+        if !approach.is_finite() {
+            return None;
+        }
+        for (f, u) in work.fresh.iter_mut().zip(&work.unit) {
+            *f += approach * u;
+        }
+        Some((approach, stiffness))
+    }
+
+    /// I + B W and the right-hand sides when D is diagonal: W is banded.
+    fn add_points(&self, member: &[bool], work: &mut Workspace) {
+        let r = self.stations;
+        work.weight.clear();
+        work.weight.resize(BAND * r, 0.0);
+        for (i, stencil) in self.stencils.iter().enumerate() {
+            if !member[i] {
+                continue;
+            }
+            let inverse = 1.0 / work.slope[i];
+            for (a, wa) in stencil.weights.iter().enumerate() {
+                let row = stencil.first + a;
+                let scaled = wa * inverse;
+                work.sides[row] += scaled;
+                work.sides[r + row] += scaled * work.target[i];
+                for (b, wb) in stencil.weights.iter().enumerate() {
+                    // Diagonal by diagonal: W[row][column] stands at [row - column + 3][column].
+                    work.weight[(STENCIL - 1 + a - b) * r + stencil.first + b] += scaled * wb;
+                }
+            }
+        }
+        work.matrix.clear();
+        work.matrix.resize(r * r, 0.0);
+        vectorised(
+            #[inline(always)]
+            || self.identity_and_product(&work.weight, &mut work.matrix),
+        );
+    }
+
+    /// Adds I + B W to `matrix`, W by its diagonals.
+    #[inline(always)]
+    fn identity_and_product(&self, diagonals: &[f64], matrix: &mut [f64]) {
+        let r = self.stations;
+        for i in 0..r {
+            let source = &self.bulk[i * r..(i + 1) * r];
+            let target = &mut matrix[i * r..(i + 1) * r];
+            for d in 0..BAND {
+                let weights = &diagonals[d * r..(d + 1) * r];
+                // Column k meets row k + d - 3 of W.
+                let from = (STENCIL - 1).saturating_sub(d);
+                let to = r.min(r + STENCIL - 1 - d);
+                let shifted = &source[from + d + 1 - STENCIL..to + d + 1 - STENCIL];
+                for ((t, w), b) in target[from..to].iter_mut().zip(&weights[from..to]).zip(shifted) {
+                    *t += w * b;
+                }
+            }
+            target[i] += 1.0;
+        }
+    }
+
+    fn forces_of_points(&self, member: &[bool], work: &mut Workspace) -> (f64, f64) {
+        let r = self.stations;
+        let (mut stiffness, mut rest) = (0.0, 0.0);
+        for (i, stencil) in self.stencils.iter().enumerate() {
+            if !member[i] {
+                continue;
+            }
+            let unit = (1.0 - stencil.at(&work.sides[..r])) / work.slope[i];
+            let fresh = (work.target[i] - stencil.at(&work.sides[r..])) / work.slope[i];
+            work.unit[i] = unit;
+            work.fresh[i] = fresh;
+            stiffness += unit;
+            rest += fresh;
+        }
+        (stiffness, rest)
+    }
+
+    /// The same when the points of a line are coupled: D is a full block per line, factored in `work.block`; `work.columns` keeps
+    /// L⁻¹ [1, c, P].
+    fn add_lines(&self, member: &[bool], work: &mut Workspace) -> Option<()> {
+        let r = self.stations;
+        work.matrix.clear();
+        work.matrix.resize(r * r, 0.0);
+        work.block.clear();
+        work.columns.clear();
+        work.weight.clear();
+        work.weight.resize(r * r, 0.0);
+        for (line, range) in self.lines.iter().enumerate() {
+            work.active.clear();
+            work.active.extend(range.clone().filter(|&i| member[i]));
+            let m = work.active.len();
+            if m == 0 {
+                continue;
+            }
+            let coupling = &self.coupling[line];
+            let size = range.len();
+            let start = work.block.len();
+            for &i in &work.active {
+                let row = &coupling[(i - range.start) * size..(i - range.start + 1) * size];
+                let from = work.block.len();
+                work.block.extend(work.active.iter().map(|&j| row[j - range.start]));
+                let own = from + work.active.iter().position(|&j| j == i).unwrap_or(0);
+                work.block[own] += work.slope[i];
+            }
+            let block = &mut work.block[start..];
+            if !cholesky(block, m) {
+                return None;
+            }
+            let stations = self.span(&work.active);
+            let width = stations.len();
+            // Columns 1, c, P, one after the other.
+            let first = work.columns.len();
+            work.columns.resize(first + (2 + width) * m, 0.0);
+            let columns = &mut work.columns[first..];
+            for (row, &i) in work.active.iter().enumerate() {
+                columns[row] = 1.0;
+                columns[m + row] = work.target[i];
+                for (k, w) in self.stencils[i].weights.iter().enumerate() {
+                    columns[(2 + self.stencils[i].first + k - stations.start) * m + row] = *w;
+                }
+            }
+            for column in columns.chunks_exact_mut(m) {
+                forward_solve(block, column, m);
+            }
+            let column = |k: usize| &columns[k * m..(k + 1) * m];
+            for a in 0..width {
+                let row = stations.start + a;
+                work.sides[row] += dot(column(2 + a), column(0));
+                work.sides[r + row] += dot(column(2 + a), column(1));
+                for b in 0..=a {
+                    let value = dot(column(2 + a), column(2 + b));
+                    work.weight[row * r + stations.start + b] += value;
+                    if b != a {
+                        work.weight[(stations.start + b) * r + row] += value;
+                    }
+                }
+            }
+            // I + B W, by the columns of this line.
+            for i in 0..r {
+                let target = &mut work.matrix[i * r + stations.start..i * r + stations.end];
+                for k in stations.clone() {
+                    let factor = self.bulk[i * r + k];
+                    let source = &work.weight[k * r + stations.start..k * r + stations.end];
+                    target.iter_mut().zip(source).for_each(|(t, w)| *t += factor * w);
+                }
+            }
+        }
+        for i in 0..r {
+            work.matrix[i * r + i] += 1.0;
+        }
+        Some(())
+    }
+
+    fn forces_of_lines(&self, member: &[bool], work: &mut Workspace) -> (f64, f64) {
+        let r = self.stations;
+        let (mut stiffness, mut rest) = (0.0, 0.0);
+        let mut block_start = 0;
+        for range in self.lines {
+            work.active.clear();
+            work.active.extend(range.clone().filter(|&i| member[i]));
+            let m = work.active.len();
+            if m == 0 {
+                continue;
+            }
+            let block = &work.block[block_start..block_start + m * m];
+            block_start += m * m;
+            for (side, out) in [(0, &mut work.unit), (r, &mut work.fresh)] {
+                work.columns.clear();
+                work.columns.extend(work.active.iter().map(|&i| {
+                    let whole = if side == 0 { 1.0 } else { work.target[i] };
+                    whole - self.stencils[i].at(&work.sides[side..side + r])
+                }));
+                cholesky_solve(block, &mut work.columns, m);
+                for (&i, value) in work.active.iter().zip(&work.columns) {
+                    out[i] = *value;
+                }
+            }
+            stiffness += work.active.iter().map(|&i| work.unit[i]).sum::<f64>();
+            rest += work.active.iter().map(|&i| work.fresh[i]).sum::<f64>();
+        }
+        (stiffness, rest)
+    }
+
+    /// Stations that the points `active` touch.
+    fn span(&self, active: &[usize]) -> Range<usize> {
+        let firsts = active.iter().map(|&i| self.stencils[i].first);
+        let (low, high) = firsts.fold((usize::MAX, 0), |(l, h), s| (l.min(s), h.max(s + STENCIL)));
+        low..high
+    }
+
+    /// Bulk displacement of the stations under `forces`, into `work.station_shift`.
+    pub fn station_shifts(&self, forces: &[f64], work: &mut Workspace) {
+        work.station_force.clear();
+        work.station_force.resize(self.stations, 0.0);
+        for (stencil, f) in self.stencils.iter().zip(forces) {
+            for (k, w) in stencil.weights.iter().enumerate() {
+                work.station_force[stencil.first + k] += w * f;
+            }
+        }
+        work.station_shift.clear();
+        work.station_shift.resize(self.stations, 0.0);
+        multiply(self.bulk, &work.station_force, &mut work.station_shift);
+    }
+
+    /// Displacement of point `j` of `line` by the forces of all other points.
+    pub fn deflection(&self, line: usize, j: usize, forces: &[f64], work: &Workspace) -> f64 {
+        let mut sum = self.stencils[j].at(&work.station_shift);
+        if let Some(coupling) = self.coupling.get(line) {
+            let range = &self.lines[line];
+            let size = range.len();
+            let row = &coupling[(j - range.start) * size..(j - range.start + 1) * size];
+            sum += dot(row, &forces[range.clone()]);
+        }
+        sum
+    }
+}
+
+impl Stencil {
+    /// Interpolates values of the stations.
+    fn at(&self, values: &[f64]) -> f64 {
+        self.weights.iter().zip(&values[self.first..]).map(|(w, v)| w * v).sum()
+    }
+}
+
+/// y = A x, A square and row-major.
+fn multiply(a: &[f64], x: &[f64], y: &mut [f64]) {
+    for (value, row) in y.iter_mut().zip(a.chunks_exact(x.len().max(1))) {
+        *value = dot(row, x);
+    }
+}
