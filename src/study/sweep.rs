@@ -32,15 +32,16 @@ pub fn run(document: &JobDocument, surroundings: &Surroundings, memo: &MeshMemo)
             Ok(row)
         };
     let rows: Vec<SweepPoint> = match document.continuation.unwrap_or(Continuation::None) {
-        Continuation::None => (0..lines * length)
-            .into_par_iter()
-            .map(|point| solve(point / length, point % length, None).map(|(row, _)| row))
-            .collect::<Result<_, _>>()?,
+        Continuation::None => independent(lines, length, |line, index| solve(line, index, None).map(|(row, _)| row))?,
         direction => {
-            let followed: Vec<Vec<SweepPoint>> = (0..lines)
-                .into_par_iter()
-                .map(|line| follow(first, direction, |index, start| solve(line, index, start)))
-                .collect::<Result<_, _>>()?;
+            // The first line leaves to the others what they share (compliance, contact).
+            let mut followed = vec![follow(first, direction, |index, start| solve(0, index, start))?];
+            followed.par_extend(
+                (1..lines)
+                    .into_par_iter()
+                    .map(|line| follow(first, direction, |index, start| solve(line, index, start)))
+                    .collect::<Result<Vec<_>, _>>()?,
+            );
             followed.into_iter().flatten().collect()
         }
     };
@@ -49,6 +50,27 @@ pub fn run(document: &JobDocument, surroundings: &Surroundings, memo: &MeshMemo)
         values: (0..axis.len()).map(|index| axis.value(index)).collect(),
     });
     Ok(Sweep { axes: axes.collect(), points: rows })
+}
+
+/// Solves all points in parallel, but the very first before all others and the first of every line before the rest of it: whatever the
+/// points share (compliance, contact) is then there and not computed by several at once.
+fn independent(
+    lines: usize,
+    length: usize,
+    solve: impl Fn(usize, usize) -> Result<SweepPoint, SolveError> + Sync,
+) -> Result<Vec<SweepPoint>, SolveError> {
+    let mut rows = vec![SweepPoint::default(); lines * length];
+    rows[0] = solve(0, 0)?;
+    let mut firsts: Vec<_> = rows.iter_mut().step_by(length).enumerate().skip(1).collect();
+    firsts.par_iter_mut().try_for_each(|(line, row)| {
+        **row = solve(*line, 0)?;
+        Ok::<_, SolveError>(())
+    })?;
+    rows.par_iter_mut().enumerate().filter(|(point, _)| point % length > 0).try_for_each(|(point, row)| {
+        *row = solve(point / length, point % length)?;
+        Ok::<_, SolveError>(())
+    })?;
+    Ok(rows)
 }
 
 /// Follows one line of points from its lowest value up or from its highest down; rows come back in the order of the axis.
