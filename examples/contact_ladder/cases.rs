@@ -17,6 +17,7 @@ pub struct Reference {
 }
 
 /// One pair under one load.
+#[derive(Clone)]
 pub struct Case {
     /// The teeth: cases of the same name and hold share their finite elements.
     pub teeth: &'static str,
@@ -119,6 +120,9 @@ const THIN_RIM: Teeth = Teeth {
     fillet_radius: 0.38,
     bore_radius_m: [15e-3, 140.7e-3],
 };
+
+/// Place of the source paper's unmodified pair, held at the rim, in [`cases`].
+pub const SOURCE_CASE: usize = 4;
 
 /// All cases.
 pub fn cases() -> Vec<Case> {

@@ -27,7 +27,7 @@ fn main() -> Result<(), Failure> {
         tables::summary(&answers);
         tables::analytic_by_case(&cases, &answers);
         tables::by_case(&cases, &answers);
-        growth::tables(&cases[0])?;
+        growth::tables(&cases[cases::SOURCE_CASE])?;
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/contact_ladder.svg");
         std::fs::write(path, plot::draw(&answers))?;
         Ok(())

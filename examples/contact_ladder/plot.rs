@@ -6,12 +6,12 @@ use crate::rungs::{Answer, Rung};
 use crate::tables::{middle, seconds, spread};
 use herringbone::fe::Resolution;
 
-const SIZE: [f64; 2] = [900.0, 540.0];
+const SIZE: [f64; 2] = [920.0, 540.0];
 /// Left, right, top, bottom edge of the field.
-const FIELD: [f64; 4] = [74.0, 660.0, 28.0, 480.0];
+const FIELD: [f64; 4] = [74.0, 664.0, 28.0, 480.0];
 /// Decades of s and of the relative error.
 const TIME: [i32; 2] = [-7, 2];
-const ERROR: [i32; 2] = [-5, 0];
+const ERROR: [i32; 2] = [-4, 0];
 
 #[derive(Clone, Copy)]
 enum Marker {
