@@ -290,6 +290,12 @@ mod tests {
                 + l * w * w * (l / w).asinh()
                 + (l.powi(3) + w.powi(3) - l.hypot(w).powi(3)) / 3.0);
         let expected = (1.0 - nu * nu) / (std::f64::consts::PI * youngs) * integral / (l * w).powi(2);
-        check("half-space", "mean under a rectangle, m/N", mean, expected, Tolerance::Relative(3e-4));
+        check(
+            "Elements: half-space under a rectangle",
+            "mean under a rectangle, m/N",
+            mean,
+            expected,
+            Tolerance::Relative(3e-4),
+        );
     }
 }

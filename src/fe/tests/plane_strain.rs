@@ -55,7 +55,7 @@ fn neighbour(teeth: u32, rim: f64, load_radius: f64, response_radius: f64) -> f6
 /// further out, as in a real mesh; `crossed`: further in.
 #[test]
 fn neighbour_of_a_spur_tooth() {
-    let topic = "finite elements, plane strain";
+    let topic = "Elements: plane strain, neighbouring teeth";
     let within = Tolerance::Relative(0.02);
     let cases = [
         (25, 1.4, 12.0751, 13.0786, 0.5 * (0.697 + 0.694), 0.5 * (0.653 + 0.660)),

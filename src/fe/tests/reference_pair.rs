@@ -38,7 +38,7 @@ fn member(name: &str, side: Side, hold_radius_m: f64) {
     let nodes = flank.nodes();
     let stations = flank.stations_m().len();
     assert_eq!((flank.rolls_m().len(), stations), (11, 21));
-    let topic = format!("finite elements, {name} of the 29/67 pair");
+    let topic = format!("Elements: flank flexibility, {name} of the 29/67 pair");
 
     let total = |offset: usize, a: usize, b: usize| 1e6 * flank.total(offset, a, b).unwrap();
     // The reference's next tooth lies on the side of the loaded flank: ahead on the pinion, behind on the gear.
