@@ -33,9 +33,9 @@ struct Contact {
     closing_n_per_m: f64,
 }
 
-/// Segments on a half-space are kept this many times as long as the band of a line under twice the mean load is wide: shorter ones would
-/// see their neighbours' middles better than their own.
-const LENGTH_PER_BAND: f64 = 1.0;
+/// Segments on a half-space are kept this many times as long as the band of a line under twice the mean load is wide: the neighbours' bands
+/// are held while the load varies, which makes the tangent stiffness of shorter ones too small (2 % at half this length).
+const LENGTH_PER_BAND: f64 = 2.0;
 
 impl LocalModel {
     /// Least axial width of a segment under the normal force `force_n` in all; 0 when there is none.

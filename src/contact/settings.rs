@@ -37,10 +37,10 @@ impl Settings {
         self.slices.unwrap_or(per_width.max(per_overlap).ceil().clamp(28.0, 140.0) as usize).clamp(4, 256)
     }
 
-    /// Stations of the bulk flexibility over the face width: two per normal module, 10 to 48. Its decay along the face is one and a half
+    /// Stations of the bulk flexibility over the face width: one and a half per normal module, 10 to 48; four for every wave of the analytic model's Legendre functions. Its decay along the face is one and a half
     /// normal modules.
     pub fn station_count(&self, pair: &Pair) -> usize {
-        (2.0 * pair.spec.face_width_m / pair.spec.normal_module_m).ceil().clamp(10.0, 48.0) as usize
+        (1.5 * pair.spec.face_width_m / pair.spec.normal_module_m).ceil().clamp(10.0, 48.0) as usize
     }
 }
 

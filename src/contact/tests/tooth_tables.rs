@@ -52,7 +52,7 @@ fn plane_teeth_are_within_nine_percent_of_finite_elements() {
             let mean = (0..n).map(|j| flank.bulk.between(0, middle, j, &w, &w)).sum::<f64>() / n as f64;
             let got = E * mean * pair.spec.face_width_m;
             let topic = "Contact: plane tooth against finite elements";
-            check(topic, &format!("C*, z {z}, h {h}, r {r} modules"), got, expected, Relative(0.09));
+            check(topic, &format!("C*, z {z}, h {h}, r {r} modules"), got, expected, Relative(0.05));
         }
     }
 }
@@ -100,7 +100,7 @@ fn waves_along_the_face_decay_as_in_finite_elements() {
             errors.push((got - expected) / table[0]);
         }
         let quantity = format!("eight waves along the face, r {r} modules, of the plane value");
-        check_worst("Contact: coupling along the face", &quantity, errors, 0.16);
+        check_worst("Contact: coupling along the face", &quantity, errors, 0.11);
     }
 }
 
