@@ -7,7 +7,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use herringbone::contact::{Compliance, HalfContact, HalfCycle, Settings, solve_half};
 use herringbone::fe::{FlankFlexibility, Resolution};
-use herringbone::gear::{Assembly, FlankModification, GearSpec, Half, Material, Pair, PairSpec, Rotation};
+use herringbone::gear::{GearSpec, Half, Pair, PairSpec};
 use herringbone::watch::Watch;
 
 /// Half of the example's pinion torque.
@@ -16,35 +16,11 @@ const TORQUE_NM: f64 = 400.0;
 /// The teeth of examples/table1.json.
 fn example() -> Pair {
     let helix_angle_rad = 24.43_f64.to_radians();
-    let member = |teeth, bore_radius_m| GearSpec {
-        teeth,
-        profile_shift: 0.0,
-        addendum: 1.0,
-        dedendum: 1.25,
-        fillet_radius: 0.38,
-        tip_alteration: 0.0,
-        bore_radius_m,
-        flanks: [FlankModification::NONE; 2],
-    };
-    let spec = PairSpec {
-        normal_module_m: 6e-3,
-        // 20° in the transverse section.
-        normal_pressure_angle_rad: (20_f64.to_radians().tan() * helix_angle_rad.cos()).atan(),
-        helix_angle_rad,
-        face_width_m: 75e-3,
-        gap_width_m: 30e-3,
-        center_distance_m: None,
-        material: Material { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 },
-        rotation: Rotation::ApexLeading,
-        pinion: member(17, 25e-3),
-        gear: member(44, 60e-3),
-        assembly: Assembly {
-            center_distance_error_m: 0.0,
-            in_plane_misalignment_m: 0.0,
-            out_of_plane_misalignment_m: 0.0,
-            apex_offset_m: 0.0,
-        },
-    };
+    let member = |teeth, bore_radius_m| GearSpec { bore_radius_m, ..GearSpec::plain(teeth) };
+    // 20° in the transverse section.
+    let normal_pressure_angle_rad = (20_f64.to_radians().tan() * helix_angle_rad.cos()).atan();
+    let angles = [normal_pressure_angle_rad, helix_angle_rad];
+    let spec = PairSpec::plain(6e-3, angles, 75e-3, [member(17, 25e-3), member(44, 60e-3)]);
     Pair::new(&spec).expect("the example is feasible").0
 }
 

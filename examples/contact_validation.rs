@@ -5,44 +5,14 @@ use std::time::Instant;
 
 use herringbone::contact::{BodyHold, Compliance, Settings, solve_half};
 use herringbone::fe::{FlankFlexibility, Resolution};
-use herringbone::gear::{
-    Assembly, FlankModification, GearSpec, Half, Material, Pair, PairSpec, ReliefShape, Rotation, TipRelief,
-};
+use herringbone::gear::{GearSpec, Half, Pair, PairSpec, ReliefShape, Rotation, TipRelief};
 use herringbone::watch::Watch;
-
-fn member(teeth: u32, bore_radius_m: f64) -> GearSpec {
-    GearSpec {
-        teeth,
-        profile_shift: 0.0,
-        addendum: 1.0,
-        dedendum: 1.25,
-        fillet_radius: 0.38,
-        tip_alteration: 0.0,
-        bore_radius_m,
-        flanks: [FlankModification::NONE; 2],
-    }
-}
 
 /// The reference pair in one of its variants, as this crate describes it.
 fn reference_pair(variant: &str) -> Pair {
-    let mut spec = PairSpec {
-        normal_module_m: 4e-3,
-        normal_pressure_angle_rad: 20f64.to_radians(),
-        helix_angle_rad: 30f64.to_radians(),
-        face_width_m: 45e-3,
-        gap_width_m: 20e-3,
-        center_distance_m: None,
-        material: Material { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 },
-        rotation: Rotation::ApexLeading,
-        pinion: member(29, 25e-3),
-        gear: member(67, 60e-3),
-        assembly: Assembly {
-            center_distance_error_m: 0.0,
-            in_plane_misalignment_m: 0.0,
-            out_of_plane_misalignment_m: 0.0,
-            apex_offset_m: 0.0,
-        },
-    };
+    let member = |teeth, bore_radius_m| GearSpec { bore_radius_m, ..GearSpec::plain(teeth) };
+    let angles = [20f64.to_radians(), 30f64.to_radians()];
+    let mut spec = PairSpec::plain(4e-3, angles, 45e-3, [member(29, 25e-3), member(67, 60e-3)]);
     let pair = Pair::new(&spec).expect("the reference pair is feasible").0;
     match variant {
         "lead_zero_at_mesh_in_end" => spec.pinion.flanks[0].helix_slope_m = 8e-6,

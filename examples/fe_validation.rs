@@ -7,39 +7,14 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use herringbone::fe::{FlankFlexibility, FlankInput, Resolution, Side};
-use herringbone::gear::{Assembly, FlankModification, GearSpec, Material, Pair, PairSpec, Rotation};
+use herringbone::gear::{GearSpec, Pair, PairSpec};
 use herringbone::watch::Watch;
 use serde_json::Value;
 
 fn reference_pair() -> Pair {
-    let gear = |teeth, bore_radius_m| GearSpec {
-        teeth,
-        profile_shift: 0.0,
-        addendum: 1.0,
-        dedendum: 1.25,
-        fillet_radius: 0.38,
-        tip_alteration: 0.0,
-        bore_radius_m,
-        flanks: [FlankModification::NONE; 2],
-    };
-    let spec = PairSpec {
-        normal_module_m: 4e-3,
-        normal_pressure_angle_rad: 20f64.to_radians(),
-        helix_angle_rad: 30f64.to_radians(),
-        face_width_m: 45e-3,
-        gap_width_m: 0.03,
-        center_distance_m: None,
-        material: Material { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 },
-        rotation: Rotation::ApexLeading,
-        pinion: gear(29, 25e-3),
-        gear: gear(67, 60e-3),
-        assembly: Assembly {
-            center_distance_error_m: 0.0,
-            in_plane_misalignment_m: 0.0,
-            out_of_plane_misalignment_m: 0.0,
-            apex_offset_m: 0.0,
-        },
-    };
+    let member = |teeth, bore_radius_m| GearSpec { bore_radius_m, ..GearSpec::plain(teeth) };
+    let angles = [20f64.to_radians(), 30f64.to_radians()];
+    let spec = PairSpec::plain(4e-3, angles, 45e-3, [member(29, 25e-3), member(67, 60e-3)]);
     match Pair::new(&spec) {
         Ok((pair, _)) => pair,
         Err(reasons) => panic!("the reference pair cannot run: {reasons:?}"),

@@ -1,9 +1,7 @@
 //! Gear pairs, loads and modifications that the ladder is measured on, with their references.
 
 use herringbone::contact::BodyHold;
-use herringbone::gear::{
-    Assembly, FlankModification, GearSpec, Material, Pair, PairSpec, ReliefShape, Rotation, TipRelief,
-};
+use herringbone::gear::{GearSpec, Pair, PairSpec, ReliefShape, TipRelief};
 use serde_json::Value;
 
 /// What an answer is compared with.
@@ -31,18 +29,21 @@ pub struct Case {
     pub published: Option<Reference>,
 }
 
+/// A pair before its modifications. Lengths in mm.
 struct Teeth {
     name: &'static str,
-    module_m: f64,
-    pressure_angle_deg: f64,
-    helix_angle_deg: f64,
-    face_width_m: f64,
-    teeth: [u32; 2],
-    addendum: f64,
-    dedendum: f64,
-    fillet_radius: f64,
-    bore_radius_m: [f64; 2],
+    module: f64,
+    /// Normal pressure angle and helix angle.
+    angles_deg: [f64; 2],
+    face_width: f64,
+    /// Teeth and bore radius of pinion and gear.
+    members: [(u32, f64); 2],
+    /// Addendum, dedendum and tip radius of the rack.
+    rack: [f64; 3],
 }
+
+/// Rack of all pairs but the stub one.
+const RACK: [f64; 3] = [1.0, 1.25, 0.38];
 
 /// Modifications of the pinion's loaded flank (and of the gear's tip).
 #[derive(Clone, Copy, PartialEq)]
@@ -56,69 +57,49 @@ enum Variant {
 
 const REFERENCE: Teeth = Teeth {
     name: "helical 29/67, β 30°, b 11 m",
-    module_m: 4e-3,
-    pressure_angle_deg: 20.0,
-    helix_angle_deg: 30.0,
-    face_width_m: 45e-3,
-    teeth: [29, 67],
-    addendum: 1.0,
-    dedendum: 1.25,
-    fillet_radius: 0.38,
-    bore_radius_m: [25e-3, 60e-3],
+    module: 4.0,
+    angles_deg: [20.0, 30.0],
+    face_width: 45.0,
+    members: [(29, 25.0), (67, 60.0)],
+    rack: RACK,
 };
 
 /// The source paper's pair: 20° in the transverse section are 18.334° in the normal one.
 const SOURCE: Teeth = Teeth {
     name: "source 17/44, β 24°, b 13 m",
-    module_m: 6e-3,
-    pressure_angle_deg: 18.334_317,
-    helix_angle_deg: 24.43,
-    face_width_m: 75e-3,
-    teeth: [17, 44],
-    addendum: 1.0,
-    dedendum: 1.25,
-    fillet_radius: 0.38,
-    bore_radius_m: [25e-3, 60e-3],
+    module: 6.0,
+    angles_deg: [18.334_317, 24.43],
+    face_width: 75.0,
+    members: [(17, 25.0), (44, 60.0)],
+    rack: RACK,
 };
 
 const SPUR: Teeth = Teeth {
     name: "spur 25/75, b 10 m",
-    module_m: 3e-3,
-    pressure_angle_deg: 20.0,
-    helix_angle_deg: 0.0,
-    face_width_m: 30e-3,
-    teeth: [25, 75],
-    addendum: 1.0,
-    dedendum: 1.25,
-    fillet_radius: 0.38,
-    bore_radius_m: [14e-3, 50e-3],
+    module: 3.0,
+    angles_deg: [20.0, 0.0],
+    face_width: 30.0,
+    members: [(25, 14.0), (75, 50.0)],
+    rack: RACK,
 };
 
 const STUB: Teeth = Teeth {
     name: "stub 21/33, α 25°, β 15°, b 3 m",
-    module_m: 5e-3,
-    pressure_angle_deg: 25.0,
-    helix_angle_deg: 15.0,
-    face_width_m: 15e-3,
-    teeth: [21, 33],
-    addendum: 0.8,
-    dedendum: 1.05,
-    fillet_radius: 0.3,
-    bore_radius_m: [20e-3, 30e-3],
+    module: 5.0,
+    angles_deg: [25.0, 15.0],
+    face_width: 15.0,
+    members: [(21, 20.0), (33, 30.0)],
+    rack: [0.8, 1.05, 0.3],
 };
 
 /// The gear's rim is one and a half normal modules thick below the root circle.
 const THIN_RIM: Teeth = Teeth {
     name: "thin rim 24/90, β 25°, b 12 m",
-    module_m: 3e-3,
-    pressure_angle_deg: 20.0,
-    helix_angle_deg: 25.0,
-    face_width_m: 36e-3,
-    teeth: [24, 90],
-    addendum: 1.0,
-    dedendum: 1.25,
-    fillet_radius: 0.38,
-    bore_radius_m: [15e-3, 140.7e-3],
+    module: 3.0,
+    angles_deg: [20.0, 25.0],
+    face_width: 36.0,
+    members: [(24, 15.0), (90, 140.7)],
+    rack: RACK,
 };
 
 /// Place of the source paper's unmodified pair, held at the rim, in [`cases`].
@@ -166,34 +147,13 @@ pub fn cases() -> Vec<Case> {
 }
 
 fn pair(teeth: &Teeth, variant: Variant) -> Pair {
-    let member = |side: usize| GearSpec {
-        teeth: teeth.teeth[side],
-        profile_shift: 0.0,
-        addendum: teeth.addendum,
-        dedendum: teeth.dedendum,
-        fillet_radius: teeth.fillet_radius,
-        tip_alteration: 0.0,
-        bore_radius_m: teeth.bore_radius_m[side],
-        flanks: [FlankModification::NONE; 2],
-    };
-    let mut spec = PairSpec {
-        normal_module_m: teeth.module_m,
-        normal_pressure_angle_rad: teeth.pressure_angle_deg.to_radians(),
-        helix_angle_rad: teeth.helix_angle_deg.to_radians(),
-        face_width_m: teeth.face_width_m,
-        gap_width_m: 20e-3,
-        center_distance_m: None,
-        material: Material { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 },
-        rotation: Rotation::ApexLeading,
-        pinion: member(0),
-        gear: member(1),
-        assembly: Assembly {
-            center_distance_error_m: 0.0,
-            in_plane_misalignment_m: 0.0,
-            out_of_plane_misalignment_m: 0.0,
-            apex_offset_m: 0.0,
-        },
-    };
+    let [addendum, dedendum, fillet_radius] = teeth.rack;
+    let members = teeth.members.map(|(z, bore_radius)| {
+        let bore_radius_m = bore_radius * 1e-3;
+        GearSpec { addendum, dedendum, fillet_radius, bore_radius_m, ..GearSpec::plain(z) }
+    });
+    let angles = teeth.angles_deg.map(f64::to_radians);
+    let mut spec = PairSpec::plain(teeth.module * 1e-3, angles, teeth.face_width * 1e-3, members);
     let plain = feasible(&spec);
     match variant {
         Variant::Unmodified => return plain,

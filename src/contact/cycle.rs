@@ -110,7 +110,8 @@ pub struct HalfCycle {
     pub transmission_error_harmonics_m: Vec<f64>,
     /// Positions solved.
     pub positions: usize,
-    /// Change of the curves' Fourier coefficients by the last refinement, as a part of the means; `None` for given positions.
+    /// Change of the curves' Fourier coefficients by the positions that confirmed the others, as a part of the means; `None` for given
+    /// positions.
     pub position_error: Option<f64>,
     /// Slices of the contact lines over the face width.
     pub slices: usize,

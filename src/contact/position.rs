@@ -132,8 +132,7 @@ impl<'a> Solver<'a> {
 
     /// Takes `state` as the neighbour to start from.
     pub fn start_from(&mut self, state: &Loaded) {
-        self.previous.clear();
-        self.previous.extend(state.points.iter().zip(&state.forces_n).map(|(p, &f)| (place(p), f / p.width_m)));
+        remember(&mut self.previous, &state.points, &state.forces_n);
     }
 
     /// Distributes `force_bt_n` at `phase`. Pairs below `lowest_pair` stay out.
@@ -152,7 +151,7 @@ impl<'a> Solver<'a> {
             self.assemble(phase, force_bt_n / cos);
             let solved = self.distribute(force_bt_n / cos).map_err(Trouble::Stalled)?;
             let approach_m = solved.approach / cos;
-            self.remember(&solved);
+            remember(&mut self.previous, &self.points, &solved.forces);
             if self.corner_contact && approach_m > self.corner_gap_m {
                 self.corner_gap_m = 1.25 * approach_m;
                 continue;
@@ -193,11 +192,6 @@ impl<'a> Solver<'a> {
             local: &self.local,
         };
         distribute(&system, total, &self.start, &mut self.work)
-    }
-
-    fn remember(&mut self, solved: &Distribution) {
-        self.previous.clear();
-        self.previous.extend(self.points.iter().zip(&solved.forces).map(|(p, &f)| (place(p), f / p.width_m)));
     }
 
     /// Lines, gaps, bulk flexibility and local contacts of the current points.
@@ -258,4 +252,10 @@ impl<'a> Solver<'a> {
 
 fn place(p: &Point) -> Place {
     (p.pair, p.slice, p.zone, p.part)
+}
+
+/// Keeps the force of every point per face width: parts of slices change their width from one position to the next.
+fn remember(previous: &mut Vec<(Place, f64)>, points: &[Point], forces_n: &[f64]) {
+    previous.clear();
+    previous.extend(points.iter().zip(forces_n).map(|(p, f)| (place(p), f / p.width_m)));
 }

@@ -1,25 +1,9 @@
 //! Pairs that several tests use.
 
-use crate::gear::{Assembly, FlankModification, GearSpec, Material, Pair, PairSpec, Rotation};
-
-pub const NO_ERROR: Assembly = Assembly {
-    center_distance_error_m: 0.0,
-    in_plane_misalignment_m: 0.0,
-    out_of_plane_misalignment_m: 0.0,
-    apex_offset_m: 0.0,
-};
+use crate::gear::{GearSpec, Pair, PairSpec};
 
 pub fn gear(teeth: u32, profile_shift: f64) -> GearSpec {
-    GearSpec {
-        teeth,
-        profile_shift,
-        addendum: 1.0,
-        dedendum: 1.25,
-        fillet_radius: 0.38,
-        tip_alteration: 0.0,
-        bore_radius_m: 0.0,
-        flanks: [FlankModification::NONE; 2],
-    }
+    GearSpec { profile_shift, ..GearSpec::plain(teeth) }
 }
 
 pub fn spec(
@@ -30,19 +14,8 @@ pub fn spec(
     pinion: GearSpec,
     gear: GearSpec,
 ) -> PairSpec {
-    PairSpec {
-        normal_module_m: module_mm * 1e-3,
-        normal_pressure_angle_rad: alpha_n_deg.to_radians(),
-        helix_angle_rad: beta_deg.to_radians(),
-        face_width_m: width_mm * 1e-3,
-        gap_width_m: 0.03,
-        center_distance_m: None,
-        material: Material { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 },
-        rotation: Rotation::ApexLeading,
-        pinion,
-        gear,
-        assembly: NO_ERROR,
-    }
+    let angles = [alpha_n_deg.to_radians(), beta_deg.to_radians()];
+    PairSpec { gap_width_m: 0.03, ..PairSpec::plain(module_mm * 1e-3, angles, width_mm * 1e-3, [pinion, gear]) }
 }
 
 /// Table 1 of the source paper: z 17/44, m_n 6 mm, transverse pressure angle 20 deg, helix 24.43 deg, b 75 mm per half.

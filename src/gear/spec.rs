@@ -40,6 +40,11 @@ pub struct Material {
     pub density_kg_m3: f64,
 }
 
+impl Material {
+    /// Steel: the defaults of the job document.
+    pub const STEEL: Material = Material { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 };
+}
+
 /// Course of a tip relief over its roll length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -104,6 +109,22 @@ pub struct GearSpec {
     pub flanks: [FlankModification; 2],
 }
 
+impl GearSpec {
+    /// An unmodified solid gear without profile shift, cut by the rack 1.0/1.25/0.38.
+    pub fn plain(teeth: u32) -> GearSpec {
+        GearSpec {
+            teeth,
+            profile_shift: 0.0,
+            addendum: 1.0,
+            dedendum: 1.25,
+            fillet_radius: 0.38,
+            tip_alteration: 0.0,
+            bore_radius_m: 0.0,
+            flanks: [FlankModification::NONE; 2],
+        }
+    }
+}
+
 /// Assembly errors of the pair; `Pair::initial_gap_m` states the sign conventions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Assembly {
@@ -111,6 +132,16 @@ pub struct Assembly {
     pub in_plane_misalignment_m: f64,
     pub out_of_plane_misalignment_m: f64,
     pub apex_offset_m: f64,
+}
+
+impl Assembly {
+    /// Mounted as designed.
+    pub const NONE: Assembly = Assembly {
+        center_distance_error_m: 0.0,
+        in_plane_misalignment_m: 0.0,
+        out_of_plane_misalignment_m: 0.0,
+        apex_offset_m: 0.0,
+    };
 }
 
 /// A double-helical pair as designed.
@@ -131,6 +162,30 @@ pub struct PairSpec {
     pub pinion: GearSpec,
     pub gear: GearSpec,
     pub assembly: Assembly,
+}
+
+impl PairSpec {
+    /// Steel gears, apex leading, without gap or assembly errors, at the centre distance of their profile shifts.
+    pub fn plain(
+        normal_module_m: f64,
+        [normal_pressure_angle_rad, helix_angle_rad]: [f64; 2],
+        face_width_m: f64,
+        [pinion, gear]: [GearSpec; 2],
+    ) -> PairSpec {
+        PairSpec {
+            normal_module_m,
+            normal_pressure_angle_rad,
+            helix_angle_rad,
+            face_width_m,
+            gap_width_m: 0.0,
+            center_distance_m: None,
+            material: Material::STEEL,
+            rotation: Rotation::ApexLeading,
+            pinion,
+            gear,
+            assembly: Assembly::NONE,
+        }
+    }
 }
 
 /// Why a design cannot be solved: the quantity, its value, its limit. `pointer` is the field of the job document.
