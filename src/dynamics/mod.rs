@@ -34,6 +34,7 @@ mod runge_kutta;
 mod segment;
 mod shooting;
 mod taylor;
+mod trajectory;
 mod variation;
 
 pub use error::DynamicsError;
@@ -42,12 +43,14 @@ pub use integrate::{Integrator, Numerics};
 pub use modal::NaturalModes;
 pub use model::Contact;
 pub use parameters::{Couplings, HalfParameters, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m};
+pub use trajectory::{Reached, advance};
 
 pub(crate) use excitation::MAX_ORDER;
 pub(crate) use integrate::Motion;
 pub(crate) use model::{Model, PER_HALF, State, U, W, YG, YP, ZG, ZP};
 pub(crate) use segment::{Observer, Segment, Unobserved};
 pub(crate) use shooting::{Limits, Shooting};
+pub(crate) use trajectory::is_mirrored;
 pub(crate) use variation::{Both, Deviation, Variation, difference};
 
 #[cfg(test)]

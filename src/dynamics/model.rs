@@ -332,6 +332,14 @@ impl<const D: usize> Model<D> {
         state
     }
 
+    /// The source's 12 displacements and 12 velocities of a state.
+    pub fn source_state(&self, state: &State<D>) -> [f64; 24] {
+        let mut out = [0.0; 24];
+        out[..12].copy_from_slice(&self.source_displacements(&state.x));
+        out[12..].copy_from_slice(&self.source_displacements(&state.v).map(|v| v * self.omega_ref));
+        out
+    }
+
     /// The source's 12 displacements (or velocities, accelerations when `row` holds those) of solver coordinates.
     pub fn source_displacements(&self, row: &[f64; D]) -> [f64; 12] {
         let mut out = [0.0; 12];

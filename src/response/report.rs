@@ -90,9 +90,7 @@ pub(super) fn report<const D: usize>(
             Some(Channel { name: id.name(), quantity, unit: quantity.unit().into(), t0_s: verdict.t0_s, dt_s, values })
         })
         .collect();
-    let mut final_state = [0.0; 24];
-    final_state[..12].copy_from_slice(&model.source_displacements(&last.x));
-    final_state[12..].copy_from_slice(&model.source_displacements(&last.v).map(|v| v * model.omega_ref));
+    let final_state = model.source_state(&last);
     let summary = Summary {
         rms: Rms { mesh_circumferential_acceleration_m_s2: mesh, pinion_axial_acceleration_m_s2: axial, channels },
         statistics,

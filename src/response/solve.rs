@@ -9,7 +9,7 @@ use super::statistics::Gathered;
 use super::steady::{Found, Search, moved};
 use crate::dynamics::{
     Deviation, DynamicsError, Integrator, Limits, Model, Motion, NaturalModes, Numerics, PER_HALF, Parameters,
-    Shooting, State, Unobserved, difference,
+    Shooting, State, Unobserved, difference, is_mirrored,
 };
 use crate::watch::Watch;
 
@@ -61,16 +61,6 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
             found.ok_or(DynamicsError::NotPeriodic { mesh_periods: 0, change: f64::NAN })
         }
     }
-}
-
-/// z of one half the opposite of the other's, the rest equal, displacements and velocities.
-fn is_mirrored(state: &[f64; 24]) -> bool {
-    [0, 12].iter().all(|&at| {
-        (0..6).all(|c| {
-            let (left, right) = (state[at + c], state[at + 6 + c]);
-            left == if c == 1 || c == 4 { -right } else { right }
-        })
-    })
 }
 
 struct Run<'a> {
