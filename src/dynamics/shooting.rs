@@ -126,12 +126,14 @@ impl<'m, const D: usize> Shooting<'m, D> {
         })
     }
 
-    /// Floquet multipliers, free motions left out (they count as 0), largest first.
+    /// Floquet multipliers, free motions left out, largest first.
     pub fn multipliers(&self, map: &DMatrix<f64>) -> Vec<Complex<f64>> {
         let held = self.held();
         let Some(schur) = Schur::try_new(&held * map * &held, f64::EPSILON, 10_000) else { return Vec::new() };
         let mut all: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
         all.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+        // What was projected out is the zeros at the end.
+        all.truncate((all.len() - 2 * self.free.len()).max(1));
         all
     }
 }

@@ -203,6 +203,61 @@ pub struct Response {
     pub poincare: Poincare,
     /// Amplitudes of the left half's circumferential acceleration by frequency.
     pub spectrum: Option<Spectrum>,
+    /// Mesh periods after which the motion repeats; null when it does not.
+    #[serde(default)]
+    pub period_mesh_periods: Option<u64>,
+    /// What small deviations are multiplied by over one period of the motion (`period_mesh_periods`), largest modulus first, motions that
+    /// nothing holds left out; null when the motion was not found by the periodic method.
+    #[serde(default)]
+    pub floquet_multipliers: Option<Vec<FloquetMultiplier>>,
+    /// Modulus of the largest multiplier, as growth per mesh period; below 1 the motion is stable.
+    #[serde(default)]
+    pub floquet_modulus_per_mesh_period: Option<f64>,
+    /// Largest Lyapunov exponent of a motion that does not repeat; above 0.01 it is called chaotic.
+    #[serde(default)]
+    pub lyapunov_per_mesh_period: Option<f64>,
+    /// Share of the recorded time in which each half's teeth touch, on either flank.
+    #[serde(default)]
+    pub contact_share: PerHalf,
+    /// Where the true RMS values lie with a probability of 95 %, for a motion that does not repeat (batch means over the record); null for
+    /// one that does, or when the record is too short against its correlation to say.
+    #[serde(default)]
+    pub confidence_interval_95: Option<RmsIntervals>,
+    /// Work-energy theorem over the recorded periods: what the work of all forces does not explain of the change of kinetic
+    /// energy, over the integral of the absolute power on each coordinate; null when nothing moves.
+    #[serde(default)]
+    pub energy_balance_residual: Option<f64>,
+}
+
+/// A Floquet multiplier in polar form.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct FloquetMultiplier {
+    pub modulus: f64,
+    /// -π to π: 0 towards a fold, ±π towards a period doubling.
+    pub angle_rad: f64,
+}
+
+/// Intervals of the RMS values.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct RmsIntervals {
+    pub mesh_circumferential_acceleration_m_s2: IntervalPerHalf,
+    pub pinion_axial_acceleration_m_s2: IntervalPerHalf,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct IntervalPerHalf {
+    pub left: Interval,
+    pub right: Interval,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Interval {
+    pub low: f64,
+    pub high: f64,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::channel::{Channel, ChannelId};
+use super::confidence::Interval;
 use super::statistics::Statistics;
 use crate::dynamics::{Integrator, Numerics};
 
@@ -39,6 +40,8 @@ pub struct Analysis {
     pub initial_state: Option<[f64; 24]>,
     /// Steps after which an integration gives up.
     pub max_steps: u64,
+    /// Whether to check the recorded motion by its energy balance.
+    pub energy_balance: bool,
 }
 
 impl Default for Analysis {
@@ -51,6 +54,7 @@ impl Default for Analysis {
             channels: Vec::new(),
             initial_state: None,
             max_steps: 100_000_000,
+            energy_balance: false,
         }
     }
 }
@@ -100,6 +104,21 @@ pub struct Rms {
     pub channels: BTreeMap<String, f64>,
 }
 
+/// Intervals of the two accelerations' RMS values.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RmsIntervals {
+    pub mesh_circumferential_acceleration_m_s2: Halves<Interval>,
+    pub pinion_axial_acceleration_m_s2: Halves<Interval>,
+}
+
+/// A Floquet multiplier: what a small deviation of its kind is multiplied by over one period of the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Multiplier {
+    pub modulus: f64,
+    /// −π … π; 0 grows or decays on one side, ±π changes sides every period (a period doubling where the modulus reaches 1).
+    pub angle_rad: f64,
+}
+
 /// The numbers of a response, without its series.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
@@ -124,8 +143,17 @@ pub struct Summary {
     pub method: String,
     /// Modulus of the largest Floquet multiplier over one mesh period, free motions apart; only from the periodic method.
     pub floquet_modulus: Option<f64>,
+    /// All Floquet multipliers over one period of the motion, free motions apart, largest modulus first; only from the periodic
+    /// method. With mirror-symmetric halves those against the symmetry are among them.
+    pub floquet_multipliers: Option<Vec<Multiplier>>,
     /// Largest Lyapunov exponent per mesh period, where the motion did not repeat.
     pub lyapunov_per_mesh_period: Option<f64>,
+    /// Where the true RMS values lie with a probability of 95 %, for a motion that does not repeat (see `confidence`); None for
+    /// one that does, or when the record is too short to say.
+    pub rms_interval_95: Option<RmsIntervals>,
+    /// What the work of the forces does not explain of the change of kinetic energy, as a part of the energy that changed hands;
+    /// None when not asked for or when nothing moves.
+    pub energy_balance_residual: Option<f64>,
     pub recorded_mesh_periods: u64,
     /// 6 when the halves mirror each other, else 12.
     pub degrees_of_freedom: u32,

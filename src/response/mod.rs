@@ -5,6 +5,8 @@
 
 mod analysis;
 mod channel;
+mod confidence;
+mod energy;
 mod recorder;
 mod regime;
 mod report;
@@ -13,8 +15,11 @@ mod spectrum;
 mod statistics;
 mod steady;
 
-pub use analysis::{Analysis, ContactState, Halves, Method, PoincarePoint, Regime, Response, Rms, Summary};
+pub use analysis::{
+    Analysis, ContactState, Halves, Method, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals, Summary,
+};
 pub use channel::{Channel, ChannelId, Quantity};
+pub use confidence::Interval;
 pub use solve::solve;
 pub use spectrum::Spectrum;
 pub use statistics::Statistics;

@@ -1,15 +1,17 @@
 //! One operating point: from parameters to a response.
 
-use super::analysis::{Analysis, Method, PoincarePoint, Regime, Response};
+use super::analysis::{Analysis, Method, Multiplier, PoincarePoint, Regime, Response};
 use super::channel::ChannelId;
+use super::confidence::MeanSquares;
+use super::energy::EnergyBalance;
 use super::recorder::Recorder;
 use super::regime::{CHAOS_PER_MESH_PERIOD, Section, lyapunov};
 use super::report::{Asked, Record, Verdict, report, solved_halves};
 use super::statistics::Gathered;
 use super::steady::{Found, Search, moved};
 use crate::dynamics::{
-    Deviation, DynamicsError, Integrator, Limits, Model, Motion, NaturalModes, Numerics, PER_HALF, Parameters,
-    Shooting, State, Unobserved, difference, is_mirrored,
+    Both, Deviation, DynamicsError, Integrator, Limits, Model, Motion, NaturalModes, Numerics, Observer, PER_HALF,
+    Parameters, Shooting, State, Unobserved, difference, is_mirrored,
 };
 use crate::watch::Watch;
 
@@ -120,7 +122,8 @@ impl Run<'_> {
         let mut numerics = found.numerics;
         let mut recorder = self.recorder(&model, found.record);
         let motion = self.motion(&model, found.start, Integrator::Taylor, found.tolerance);
-        let section = self.record(motion, found.record, &mut recorder)?;
+        let mut energy = self.energy(&model);
+        let section = self.record(motion, found.record, &mut recorder, &mut energy)?;
         numerics += section.numerics;
         let error_estimate = match &found.orbit {
             Some((n, map)) => self.orbit_error(&model, &found, *n, map, &recorder)?,
@@ -135,9 +138,13 @@ impl Run<'_> {
             },
             period: found.orbit.as_ref().map(|(n, _)| *n),
             floquet: found.floquet,
+            multipliers: found.orbit.as_ref().map(|_| {
+                found.multipliers.iter().map(|m| Multiplier { modulus: m.norm(), angle_rad: m.arg() }).collect()
+            }),
             lyapunov: found.lyapunov,
             method: if found.orbit.is_some() { "periodic" } else { "integrate" },
             error_estimate,
+            energy_residual: energy.and_then(|e| e.residual()),
             t0_s: if found.orbit.is_some() { 0.0 } else { found.start.period as f64 * self.p.mesh_period_s() },
             numerics,
         };
@@ -175,7 +182,8 @@ impl Run<'_> {
         let from = motion.state;
         let mut recorder = self.recorder(&model, record);
         let recorded = self.motion(&model, from, integrator, tolerance);
-        let section = self.record(recorded, record, &mut recorder)?;
+        let mut energy = self.energy(&model);
+        let section = self.record(recorded, record, &mut recorder, &mut energy)?;
         numerics += section.numerics;
         let period = section.recent.settled_period(REPEATS);
         let mut verdict = Verdict {
@@ -186,9 +194,11 @@ impl Run<'_> {
             },
             period: period.map(|n| n as u64),
             floquet: None,
+            multipliers: None,
             lyapunov: None,
             method: "integrate",
             error_estimate: 0.0,
+            energy_residual: energy.and_then(|e| e.residual()),
             t0_s: from.period as f64 * self.p.mesh_period_s(),
             numerics: Numerics::default(),
         };
@@ -213,19 +223,25 @@ impl Run<'_> {
             }
             numerics += compared.numerics;
             compared.numerics = Numerics::default();
-            numerics += self.record(compared, record, &mut other)?.numerics;
+            numerics += self.record(compared, record, &mut other, &mut Unobserved)?.numerics;
             SAFETY * rms_difference(&recorder, &other, smallest(&model)) + ROUNDING
         };
         verdict.numerics = numerics;
         Ok(report(&self.asked(), &model, recorder, section, verdict))
     }
 
-    /// Records `periods` mesh periods of a motion that has just begun.
+    /// The energy balance, where it is asked for.
+    fn energy<'m, const D: usize>(&self, model: &'m Model<D>) -> Option<EnergyBalance<'m, D>> {
+        self.analysis.energy_balance.then(|| EnergyBalance::new(model))
+    }
+
+    /// Records `periods` mesh periods of a motion that has just begun, `beside` looking on.
     fn record<const D: usize>(
         &self,
         mut motion: Motion<'_, D>,
         periods: u64,
         recorder: &mut Recorder<D>,
+        beside: &mut impl Observer<D>,
     ) -> Result<Record<D>, DynamicsError> {
         let model = motion.model;
         let mut recent = Section::new();
@@ -234,11 +250,13 @@ impl Run<'_> {
         let mut batches = Vec::new();
         let main = ChannelId::mesh_acceleration(0);
         let mut snapshot = Gathered::new(false);
+        let mut squares = MeanSquares::new::<D>(periods);
         for period in 0..periods {
             recent.push(motion.state);
             points.push(poincare(model, &motion.state));
-            motion.advance_period(recorder, self.watch, 0.9)?;
+            motion.advance_period(&mut Both(&mut *recorder, &mut *beside), self.watch, 0.9)?;
             self.watch.checkpoint(0.9 + 0.1 * period as f64 / periods as f64)?;
+            squares.push(recorder);
             if (period + 1) % batch == 0
                 && let Some(now) = recorder.gathered(main)
             {
@@ -253,6 +271,7 @@ impl Run<'_> {
             last: motion.state,
             numerics: motion.numerics,
             batch_error: standard_error(&batches),
+            mean_squares: squares.finish(),
         })
     }
 
@@ -269,13 +288,14 @@ impl Run<'_> {
         let tight = (1e-3 * found.tolerance).max(1e-15);
         let mut unused = self.recorder_of_rms(model);
         let start = State { period: 0, ..found.start };
-        let once = self.record(self.motion(model, start, Integrator::Taylor, tight), n, &mut unused)?;
+        let once =
+            self.record(self.motion(model, start, Integrator::Taylor, tight), n, &mut unused, &mut Unobserved)?;
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tight))?;
         let defect = difference(&once.last, &start);
         let Some(correction) = shooting.correction(&defect, map, n) else { return Ok(f64::INFINITY) };
         let mut better = self.recorder_of_rms(model);
         let corrected = moved(model, start, &correction);
-        self.record(self.motion(model, corrected, Integrator::Taylor, tight), n, &mut better)?;
+        self.record(self.motion(model, corrected, Integrator::Taylor, tight), n, &mut better, &mut Unobserved)?;
         Ok(SAFETY * rms_difference(recorder, &better, smallest(model)) + ROUNDING)
     }
 

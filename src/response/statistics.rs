@@ -133,6 +133,14 @@ impl Gathered {
         (second / length - (first / length).powi(2)).max(0.0)
     }
 
+    /// Mean square, the mean included, of what came after the snapshot `earlier`.
+    pub fn square_since(&self, earlier: &Gathered) -> f64 {
+        let (first, second) = (self.first - earlier.first, self.second - earlier.second);
+        let length = self.length - earlier.length;
+        let offset = self.offset.unwrap_or(0.0);
+        second / length + offset * (2.0 * first / length + offset)
+    }
+
     pub fn finish(&self) -> Statistics {
         let (mean, square) = self.mean_and_square();
         Statistics { mean, rms: square.sqrt(), min: self.min, max: self.max }

@@ -1,6 +1,6 @@
 //! Finds the motion to report: periodic without loss of contact, periodic with it, or a record of one that does not repeat.
 
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 use super::regime::{CHAOS_PER_MESH_PERIOD, Section, largest, lyapunov};
 use crate::dynamics::{
@@ -28,6 +28,8 @@ pub(super) struct Found<const D: usize> {
     pub orbit: Option<(u64, DMatrix<f64>)>,
     /// Largest modulus of the Floquet multipliers, per mesh period.
     pub floquet: Option<f64>,
+    /// All of them over the orbit, those against the mirror symmetry included, largest first.
+    pub multipliers: Vec<Complex<f64>>,
     /// Largest Lyapunov exponent per mesh period.
     pub lyapunov: Option<f64>,
     /// The halves do not keep their mirror symmetry: deviations against it grow.
@@ -81,7 +83,8 @@ impl<const D: usize> Search<'_, D> {
         if unbalanced_n > 1e-6 * load {
             return Err(DynamicsError::Unbalanced { force_n: unbalanced_n });
         }
-        let modulus = shooting.multipliers(&once.map).first().map(|m| m.norm());
+        let within = shooting.multipliers(&once.map);
+        let modulus = within.first().map(|m| m.norm());
         if !modulus.is_some_and(|m| m < 1.0) {
             return Ok(None);
         }
@@ -96,8 +99,9 @@ impl<const D: usize> Search<'_, D> {
         if motion.contact_changed {
             return Ok(None);
         }
-        let against = self.modulus_against_symmetry(orbit_start, 1)?;
+        let (against, multipliers) = self.with_those_against_symmetry(within, orbit_start, 1)?;
         Ok(Some(Found {
+            multipliers,
             start: orbit_start,
             record: 1,
             orbit: Some((1, once.map)),
@@ -159,6 +163,7 @@ impl<const D: usize> Search<'_, D> {
             record: LONG_RECORD_MESH_PERIODS,
             orbit: None,
             floquet: None,
+            multipliers: Vec::new(),
             lyapunov: Some(exponent),
             leaves_symmetry,
             tolerance: self.limits.tolerance,
@@ -183,12 +188,14 @@ impl<const D: usize> Search<'_, D> {
             let defect = difference(&round.end, &start);
             let change = largest(&defect) / size;
             if change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last) {
-                let modulus = shooting.multipliers(&round.map).first().map(|m| m.norm());
+                let within = shooting.multipliers(&round.map);
+                let modulus = within.first().map(|m| m.norm());
                 if !modulus.is_some_and(|m| m < 1.0) {
                     return Ok(None);
                 }
-                let against = self.modulus_against_symmetry(start, n)?;
+                let (against, multipliers) = self.with_those_against_symmetry(within, start, n)?;
                 return Ok(Some(Found {
+                    multipliers,
                     start,
                     record: n,
                     orbit: Some((n, round.map)),
@@ -209,16 +216,25 @@ impl<const D: usize> Search<'_, D> {
         Ok(None)
     }
 
-    /// Largest Floquet multiplier of deviations against the mirror symmetry over `n` periods (0 with twelve coordinates,
-    /// whose own map has them all).
-    fn modulus_against_symmetry(&self, start: State<D>, n: u64) -> Result<f64, DynamicsError> {
+    /// Largest modulus of the Floquet multipliers of deviations against the mirror symmetry over `n` periods (0 with twelve
+    /// coordinates, whose own map has them all), and these among the multipliers `within` the symmetry.
+    fn with_those_against_symmetry(
+        &self,
+        mut within: Vec<Complex<f64>>,
+        start: State<D>,
+        n: u64,
+    ) -> Result<(f64, Vec<Complex<f64>>), DynamicsError> {
         if D != PER_HALF {
-            return Ok(0.0);
+            return Ok((0.0, within));
         }
         let opposite = self.model.against_symmetry();
         let shooting = Shooting::new(&opposite, self.mean_stiffness_n_per_m, self.limits)?;
         let round = shooting.map(self.model, start, n)?;
-        Ok(shooting.multipliers(&round.map).first().map_or(f64::INFINITY, |m| m.norm()))
+        let against = shooting.multipliers(&round.map);
+        let largest = against.first().map_or(f64::INFINITY, |m| m.norm());
+        within.extend(against);
+        within.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+        Ok((largest, within))
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a job needs: which stages run, what can be reused, in which order; and the only place where documents
 //! meet physics.
 
+mod answer;
 mod axes;
 mod check;
 mod compliance;
@@ -20,6 +21,7 @@ use crate::job::result::{Geometry, JobResult};
 
 use crate::watch::Canceled;
 use mesh::MeshMemo;
+use point::Wanted;
 use serde::{Deserialize, Serialize};
 
 pub use check::check;
@@ -28,7 +30,7 @@ pub use hash::input_hash;
 pub use vibration::is_channel;
 
 /// Version of the calculation: results and stages stored under another version are not reused.
-pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-2");
+pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-3");
 
 /// Stages in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -144,7 +146,7 @@ pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outc
     let report = check(document)?;
     let memo = MeshMemo::default();
     if document.kind != Kind::Sweep {
-        let point = point::solve(document, surroundings, &memo, None)?;
+        let point = point::solve(document, surroundings, &memo, &Wanted::WHOLE)?;
         return Ok(Outcome { result: point.result, series: point.series });
     }
     let started_ms = (surroundings.clock_ms)();

@@ -15,7 +15,20 @@ pub struct Point {
     pub end_state: Option<Vec<f64>>,
 }
 
-/// Solves one point. `start`: a neighbour's end state to start from.
+/// How much of a point is wanted.
+pub struct Wanted<'a> {
+    /// A neighbour's end state to continue from.
+    pub start: Option<&'a [f64]>,
+    /// Everything a result has; a point of a sweep leaves out what its row does not hold.
+    pub whole: bool,
+}
+
+impl Wanted<'_> {
+    /// A job of its own.
+    pub const WHOLE: Self = Self { start: None, whole: true };
+}
+
+/// Solves one point.
 ///
 /// # Errors
 /// [`SolveError`].
@@ -23,7 +36,7 @@ pub fn solve(
     document: &JobDocument,
     surroundings: &Surroundings,
     memo: &MeshMemo,
-    start: Option<&[f64]>,
+    wanted: &Wanted,
 ) -> Result<Point, SolveError> {
     let progress = |stage, fraction| (surroundings.progress)(stage, of_whole(document.kind, stage, fraction));
     let surroundings = &Surroundings { progress: &progress, ..*surroundings };
@@ -54,7 +67,7 @@ pub fn solve(
     if document.kind != Kind::Mesh {
         let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
         let parameters = equations::parameters(document, &prepared, &plane, mesh.stiffness, impact.pulses, lead);
-        let vibration = vibration::run(document, &parameters, start, surroundings, &mut result.numerics)?;
+        let vibration = vibration::run(document, &parameters, wanted, surroundings, &mut result.numerics)?;
         result.response = Some(vibration.summary);
         result.warnings.extend(vibration.warnings);
         (series, end_state) = (vibration.series, vibration.end_state);

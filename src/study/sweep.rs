@@ -2,7 +2,7 @@
 
 use super::axes::{base, set};
 use super::mesh::MeshMemo;
-use super::point::{self, Point};
+use super::point::{self, Point, Wanted};
 use super::{SolveError, Stage, Surroundings};
 use crate::job::document::{Axis, Continuation, JobDocument};
 use crate::job::result::{Sweep, SweepAxis, SweepPoint};
@@ -107,7 +107,12 @@ fn solve_point(
         set(&mut value, &axis.pointer, *number);
     }
     let solved = parse_value(&value).map_err(SolveError::from).and_then(|document| {
-        point::solve(&document, &Surroundings { progress: &|_, _| {}, ..*surroundings }, memo, start)
+        point::solve(
+            &document,
+            &Surroundings { progress: &|_, _| {}, ..*surroundings },
+            memo,
+            &Wanted { start, whole: false },
+        )
     });
     match solved {
         Ok(point) => Ok((row(values, &point), point.end_state)),

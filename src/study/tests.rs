@@ -270,6 +270,42 @@ fn reference_case_c_repeats_every_second_period() {
     check_value(topic, "given_stiffness, RMS of x_left'', m/s²", rms, 95.765_147_564_743_66, Relative(1e-6));
 }
 
+#[test]
+fn a_response_says_how_it_repeats_and_how_well_it_is_balanced() {
+    let mut value = example("given_stiffness");
+    value["analysis"] = json!({"method": "periodic"});
+    let response = solved(&value).result.response.expect("a response");
+    assert_eq!((response.regime.as_str(), response.period_mesh_periods), ("period-2", Some(2)));
+    let multipliers = response.floquet_multipliers.expect("found by the periodic method");
+    // Ten coordinates without the free rotations, displacements and velocities, less the free screw motion's two.
+    assert_eq!(multipliers.len(), 18);
+    assert!(multipliers.windows(2).all(|two| two[0].modulus >= two[1].modulus) && multipliers[0].modulus < 1.0);
+    let per_mesh_period = response.floquet_modulus_per_mesh_period.expect("likewise");
+    assert!((multipliers[0].modulus.sqrt() / per_mesh_period - 1.0).abs() < 1e-12);
+    assert_eq!((response.lyapunov_per_mesh_period, response.confidence_interval_95), (None, None));
+    let share = response.contact_share;
+    assert!(
+        share.left == share.right && (0.5..1.0).contains(&share.left) && share.left == response.fraction_in_contact
+    );
+    check_worst("Job: balances", "energy of given_stiffness over its period", response.energy_balance_residual, 1e-8);
+}
+
+#[test]
+fn a_chaotic_response_has_an_interval_and_no_multipliers() {
+    let mut value = example("given_stiffness");
+    value["operation"]["pinion_torque_nm"] = json!(40.0);
+    value["analysis"] = json!({});
+    let response = solved(&value).result.response.expect("a response");
+    assert_eq!((response.regime.as_str(), response.period_mesh_periods), ("chaotic", None));
+    assert!(response.floquet_multipliers.is_none() && response.floquet_modulus_per_mesh_period.is_none());
+    assert!(response.lyapunov_per_mesh_period.is_some_and(|exponent| exponent > 0.2));
+    let interval = response.confidence_interval_95.expect("a long record").mesh_circumferential_acceleration_m_s2.left;
+    let rms = response.rms.mesh_circumferential_acceleration_m_s2.left;
+    assert!(interval.low < rms && rms < interval.high && interval.high / interval.low < 1.04, "{rms} {interval:?}");
+    // Balanced step by step, although no trajectory of chaos is followed for long.
+    assert!(response.energy_balance_residual.is_some_and(|residual| residual < 1e-8));
+}
+
 /// Event-exact references over the first twenty mesh periods from the static deflection, through the document: the mean of an
 /// acceleration over a transient counts.
 #[test]

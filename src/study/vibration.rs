@@ -1,12 +1,13 @@
 //! The response stage: the steady vibration of the pair and its statistics.
 
-use super::{Channel, SolveError, Stage, Surroundings};
+use super::point::Wanted;
+use super::{Channel, SolveError, Stage, Surroundings, answer};
 use crate::dynamics::{self, DynamicsError, Parameters};
 use crate::gear::Warning;
-use crate::job::document::{Integrator, JobDocument, Method, Plane};
-use crate::job::result::{self, Numerics, PerHalf, Poincare, Rms};
+use crate::job::document::{Integrator, JobDocument, Method};
+use crate::job::result::{self, Numerics};
 use crate::job::{DocumentError, Violation};
-use crate::response::{self, Analysis, ChannelId, Halves};
+use crate::response::{self, Analysis, ChannelId};
 use crate::watch::Watch;
 
 /// What the response stage leaves.
@@ -51,18 +52,18 @@ pub fn channels(document: &JobDocument) -> Result<Vec<ChannelId>, DocumentError>
     if violations.is_empty() { Ok(ids) } else { Err(DocumentError::Invalid(violations)) }
 }
 
-/// Runs the response stage. `start`: a neighbour's end state, where the sweep continues from it.
+/// Runs the response stage.
 ///
 /// # Errors
 /// [`SolveError`].
 pub fn run(
     document: &JobDocument,
     parameters: &Parameters,
-    start: Option<&[f64]>,
+    wanted: &Wanted,
     surroundings: &Surroundings,
     numerics: &mut Numerics,
 ) -> Result<Vibration, SolveError> {
-    let analysis = analysis(document, start)?;
+    let analysis = analysis(document, wanted)?;
     let progress = |fraction: f64| (surroundings.progress)(Stage::Response, fraction);
     let watch = Watch::new(&progress, surroundings.canceled);
     let response = response::solve(parameters, &analysis, &watch).map_err(failed)?;
@@ -73,7 +74,7 @@ pub fn run(
     numerics.degrees_of_freedom = summary.degrees_of_freedom;
     let channel = |channel: &response::Channel| Channel {
         name: channel.name.clone(),
-        quantity: word(&channel.quantity),
+        quantity: answer::word(&channel.quantity),
         unit: channel.unit.clone(),
         t0_s: channel.t0_s,
         dt_s: channel.dt_s,
@@ -81,18 +82,18 @@ pub fn run(
         values: channel.values.clone(),
     };
     Ok(Vibration {
-        summary: block(document, parameters, &response),
+        summary: answer::block(document, parameters, &response),
         series: response.channels.iter().map(channel).collect(),
         warnings: warnings(summary, document.analysis.accuracy),
         end_state: Some(response.final_state.to_vec()),
     })
 }
 
-fn analysis(document: &JobDocument, start: Option<&[f64]>) -> Result<Analysis, DocumentError> {
+fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, DocumentError> {
     let asked = &document.analysis;
-    let state = start.or(asked.initial_state.as_deref());
+    let state = wanted.start.or(asked.initial_state.as_deref());
     // Of several steady motions the one that follows from the neighbour's is wanted: only integration from there finds it.
-    let integrate = start.is_some() || asked.method == Method::Integrate;
+    let integrate = wanted.start.is_some() || asked.method == Method::Integrate;
     Ok(Analysis {
         method: match asked.method {
             _ if integrate => response::Method::Integrate {
@@ -110,6 +111,7 @@ fn analysis(document: &JobDocument, start: Option<&[f64]>) -> Result<Analysis, D
         samples_per_mesh_period: asked.samples_per_mesh_period as usize,
         channels: channels(document)?,
         initial_state: state.and_then(|state| <[f64; 24]>::try_from(state).ok()),
+        energy_balance: wanted.whole,
         ..Analysis::default()
     })
 }
@@ -129,71 +131,6 @@ fn failed(error: DynamicsError) -> SolveError {
         sim_time_s,
         step: None,
     }
-}
-
-fn per_half(halves: Halves<f64>) -> PerHalf {
-    PerHalf { left: halves.left, right: halves.right }
-}
-
-/// The word of a unit-only enum in its serialised form.
-fn word(value: &impl serde::Serialize) -> String {
-    match serde_json::to_value(value) {
-        Ok(serde_json::Value::String(word)) => word,
-        _ => String::new(),
-    }
-}
-
-fn block(document: &JobDocument, parameters: &Parameters, response: &response::Response) -> result::Response {
-    let summary = &response.summary;
-    let regime = match summary.period_mesh_periods {
-        Some(periods) => format!("period-{periods}"),
-        None => word(&summary.regime),
-    };
-    result::Response {
-        rms: Rms {
-            mesh_circumferential_acceleration_m_s2: per_half(summary.rms.mesh_circumferential_acceleration_m_s2),
-            pinion_axial_acceleration_m_s2: per_half(summary.rms.pinion_axial_acceleration_m_s2),
-            channels: summary.rms.channels.clone(),
-        },
-        dynamic_factor: summary.dynamic_factor,
-        regime,
-        contact: word(&summary.contact),
-        min_displacement_um: summary.min_displacement_m * 1e6,
-        natural_frequencies_hz: summary.natural_frequencies_hz.clone(),
-        error_estimate: summary.error_estimate,
-        method: summary.method.clone(),
-        fraction_in_contact: 0.5 * (summary.contact_share.left + summary.contact_share.right),
-        damping_in_gap: summary.damping_in_gap,
-        plane: if document.model.plane == Plane::Base { "base" } else { "pitch" }.to_owned(),
-        mesh_frequency_hz: parameters.mesh_frequency_hz,
-        averaged_mesh_periods: summary.recorded_mesh_periods,
-        poincare: Poincare {
-            x_left_m: response.poincare.iter().map(|point| point.x_left_m).collect(),
-            v_x_left_m_s: response.poincare.iter().map(|point| point.v_x_left_m_s).collect(),
-        },
-        spectrum: spectrum(response, parameters.mesh_frequency_hz),
-    }
-}
-
-/// Highest mesh order and largest number of lines of the spectrum in the result; the recorded series has the rest.
-const SPECTRUM_ORDERS: f64 = 20.0;
-const SPECTRUM_LINES: usize = 4000;
-
-/// Spectrum of the left half's circumferential acceleration, where it was recorded. Of more lines than the result holds,
-/// the largest of each group of neighbours stays.
-fn spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<result::Spectrum> {
-    let channel = response.channels.iter().find(|channel| channel.name == "a_x_left")?;
-    let full = response::Spectrum::of(channel, mesh_frequency_hz);
-    let lines = full.mesh_order.iter().filter(|order| **order <= SPECTRUM_ORDERS).count();
-    let group = lines.div_ceil(SPECTRUM_LINES).max(1);
-    let largest = |start: usize| {
-        (start..(start + group).min(lines)).max_by(|&a, &b| full.amplitude[a].total_cmp(&full.amplitude[b]))
-    };
-    let kept: Vec<usize> = (1..lines).step_by(group).filter_map(largest).collect();
-    Some(result::Spectrum {
-        frequency_hz: kept.iter().map(|&line| full.frequency_hz[line]).collect(),
-        amplitude_m_s2: kept.iter().map(|&line| full.amplitude[line]).collect(),
-    })
 }
 
 fn warnings(summary: &response::Summary, accuracy: f64) -> Vec<Warning> {

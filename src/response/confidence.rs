@@ -1,0 +1,210 @@
+//! How well a finite record of a motion that does not repeat tells its RMS values: batch means.
+//!
+//! The mean squares of whole mesh periods are a stationary, correlated sequence. Their mean over the record is averaged over batches that are
+//! long against the correlation; the batches' means are then nearly independent and nearly normal, and Student's t over
+//! their scatter gives the interval of the mean square, whose roots are those of the RMS (Law and Kelton, Simulation Modeling and
+//! Analysis: batch means; Geyer 1992: where to cut the sum of autocorrelations).
+
+use serde::{Deserialize, Serialize};
+
+use super::channel::ChannelId;
+use super::recorder::Recorder;
+use super::report::solved_halves;
+use super::statistics::Gathered;
+
+/// Gathers the mean squares of the accelerations of every response, mesh period by mesh period.
+pub(super) struct MeanSquares {
+    tracks: Vec<(ChannelId, Gathered, Vec<f64>)>,
+}
+
+impl MeanSquares {
+    pub fn new<const D: usize>(periods: u64) -> Self {
+        let ids = solved_halves::<D>()
+            .flat_map(|half| [ChannelId::mesh_acceleration(half), ChannelId::pinion_axial_acceleration(half)]);
+        let room = periods.min(1 << 16) as usize;
+        Self { tracks: ids.map(|id| (id, Gathered::new(true), Vec::with_capacity(room))).collect() }
+    }
+
+    /// To be called at the end of every mesh period.
+    pub fn push<const D: usize>(&mut self, recorder: &Recorder<D>) {
+        for (id, snapshot, squares) in &mut self.tracks {
+            if let Some(now) = recorder.gathered(*id) {
+                squares.push(now.square_since(snapshot));
+                *snapshot = *now;
+            }
+        }
+    }
+
+    pub fn finish(self) -> Vec<(ChannelId, Vec<f64>)> {
+        self.tracks.into_iter().map(|(id, _, squares)| (id, squares)).collect()
+    }
+}
+
+/// An interval that holds the true value with a stated probability.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Interval {
+    pub low: f64,
+    pub high: f64,
+}
+
+/// A batch is at least this many correlation times long: what neighbouring batches then share is about a tenth of
+/// their variance.
+const CORRELATIONS_PER_BATCH: f64 = 5.0;
+/// More batches narrow Student's t no further worth mentioning.
+const MOST_BATCHES: usize = 30;
+/// Fewer batches do not say how much they scatter.
+const FEWEST_BATCHES: usize = 4;
+
+/// 97.5 % points of Student's t for 3 … 29 degrees of freedom (any table of the distribution).
+const STUDENT_975: [f64; MOST_BATCHES - FEWEST_BATCHES + 1] = [
+    3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101,
+    2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045,
+];
+
+/// The interval that holds the RMS with a probability of 95 %, from the mean squares of the record's mesh periods. None when the record is
+/// too short against its own correlation to say.
+pub(super) fn rms_interval_95(mean_squares: &[f64]) -> Option<Interval> {
+    let n = mean_squares.len();
+    let correlation = correlation_time(mean_squares);
+    let length = n.div_ceil(MOST_BATCHES).max((CORRELATIONS_PER_BATCH * correlation).ceil() as usize);
+    let batches = n / length.max(1);
+    if batches < FEWEST_BATCHES {
+        return None;
+    }
+    let mean = mean_squares.iter().sum::<f64>() / n as f64;
+    let of_batches: Vec<f64> =
+        mean_squares.chunks_exact(length).map(|batch| batch.iter().sum::<f64>() / length as f64).collect();
+    let centre = of_batches.iter().sum::<f64>() / batches as f64;
+    let scatter = of_batches.iter().map(|m| (m - centre).powi(2)).sum::<f64>() / (batches - 1) as f64;
+    // The mean is that of the whole record, the part behind the last batch included.
+    let error = (scatter * length as f64 / n as f64).sqrt();
+    let reach = STUDENT_975[batches.min(MOST_BATCHES) - FEWEST_BATCHES] * error;
+    let interval = Interval { low: (mean - reach).max(0.0).sqrt(), high: (mean + reach).sqrt() };
+    interval.high.is_finite().then_some(interval)
+}
+
+/// Integrated autocorrelation time of a sequence, 1 + 2 Σ ρ_k: the sum of neighbouring pairs is cut where it is no longer
+/// positive. At least 1.
+fn correlation_time(values: &[f64]) -> f64 {
+    let n = values.len();
+    let mean = values.iter().sum::<f64>() / n.max(1) as f64;
+    let covariance =
+        |lag: usize| values[..n - lag].iter().zip(&values[lag..]).map(|(a, b)| (a - mean) * (b - mean)).sum::<f64>();
+    let variance = if n > 0 { covariance(0) } else { 0.0 };
+    if variance <= 0.0 {
+        return 1.0;
+    }
+    let mut sum = -variance;
+    for lag in (0..n / 2).step_by(2) {
+        let pair = covariance(lag) + covariance(lag + 1);
+        if pair <= 0.0 {
+            break;
+        }
+        sum += 2.0 * pair;
+    }
+    (sum / variance).max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::tests::reference::{parameters, reference};
+    use crate::dynamics::{Integrator, Model, Motion, Unobserved};
+    use crate::response::{Analysis, Method, Regime, solve};
+    use crate::watch::Watch;
+    use rayon::prelude::*;
+
+    /// A start of case B whose right half stands off the mirror image by a few per cent, another for every `number`.
+    fn start(number: usize) -> [f64; 24] {
+        let mut start: [f64; 24] = reference().cases["B"].initial_state.as_slice().try_into().unwrap();
+        for (c, value) in start[..12].iter_mut().enumerate() {
+            // Golden-ratio fractions: spread evenly, never repeating.
+            *value *= 1.0 + 0.05 * ((number * 12 + c + 1) as f64 * 0.618_033_988_749_895).fract();
+        }
+        start
+    }
+
+    /// Mean squares of x_left'' of 20 chaotic records from different starts, 3000 mesh periods each.
+    fn records() -> Vec<Vec<f64>> {
+        let model = Model::<12>::new(&parameters("B")).unwrap();
+        (0..20)
+            .into_par_iter()
+            .map(|number| {
+                let state = model.state_from(&start(number));
+                let mut motion = Motion::new(&model, state, Integrator::Taylor, 1e-8, u64::MAX);
+                for _ in 0..300 {
+                    motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
+                }
+                let ids = [(ChannelId::mesh_acceleration(0), false), (ChannelId::pinion_axial_acceleration(0), false)];
+                let mut recorder = Recorder::<12>::new(&model, &ids, &[], 0, 0);
+                let mut squares = MeanSquares::new::<12>(3000);
+                for _ in 0..3000 {
+                    motion.advance_period(&mut recorder, &Watch::none(), 0.0).unwrap();
+                    squares.push(&recorder);
+                }
+                squares.finish().swap_remove(0).1
+            })
+            .collect()
+    }
+
+    #[test]
+    fn intervals_hold_the_rms_at_the_stated_rate() {
+        let records = records();
+        let mean = |values: &mut dyn Iterator<Item = f64>| {
+            let (sum, count) = values.fold((0.0, 0usize), |(s, n), v| (s + v, n + 1));
+            sum / count as f64
+        };
+        let truth = mean(&mut records.iter().flatten().copied()).sqrt();
+        for (length, least) in [(3000, 0.85), (1000, 0.9), (300, 0.9), (100, 0.9)] {
+            let pieces: Vec<&[f64]> = records.iter().flat_map(|r| r.chunks_exact(length)).collect();
+            let intervals: Vec<Interval> = pieces.iter().filter_map(|piece| rms_interval_95(piece)).collect();
+            let held = intervals.iter().filter(|i| i.low <= truth && truth <= i.high).count();
+            let width = mean(&mut intervals.iter().map(|i| 0.5 * (i.high - i.low) / truth));
+            let rate = held as f64 / intervals.len() as f64;
+            println!(
+                "{length} periods: {held} of {} hold {truth:.2}, {} say nothing; half width {:.2} % on average",
+                intervals.len(),
+                pieces.len() - intervals.len(),
+                100.0 * width
+            );
+            assert!(rate >= least, "{length}: {rate}");
+        }
+    }
+
+    /// The interval of a response from each of 20 starts against an independent solution: 120.85 ± 0.15 over 20000 periods.
+    #[test]
+    fn responses_from_twenty_starts_hold_the_reference() {
+        let held = (0..20).into_par_iter().filter(|&number| {
+            let analysis = Analysis {
+                method: Method::Integrate { mesh_periods: 800, record_mesh_periods: 600 },
+                initial_state: Some(start(number)),
+                ..Analysis::default()
+            };
+            let summary = solve(&parameters("B"), &analysis, &Watch::none()).unwrap().summary;
+            assert_eq!(summary.regime, Regime::Chaotic);
+            let interval = summary.rms_interval_95.unwrap().mesh_circumferential_acceleration_m_s2.left;
+            let rms = summary.rms.mesh_circumferential_acceleration_m_s2.left;
+            assert!(interval.low < rms && rms < interval.high && interval.high - interval.low < 0.1 * rms);
+            interval.low <= 121.0 && 120.7 <= interval.high
+        });
+        let held = held.count();
+        println!("{held} of 20 hold the reference");
+        // At 95 % fewer than 17 come once in 60 such tests.
+        assert!(held >= 17, "{held}");
+    }
+
+    #[test]
+    fn a_correlated_sequence_gets_wider_intervals_and_a_short_one_none() {
+        // Moving averages of evenly spread numbers.
+        let white: Vec<f64> = (0..4000).map(|i| (f64::from(i * i) * 0.618_033_988_749_895).fract()).collect();
+        let slow: Vec<f64> = white.windows(40).map(|w| w.iter().sum::<f64>() / 40.0).collect();
+        assert!(correlation_time(&white) < 2.0);
+        let time = correlation_time(&slow);
+        assert!((25.0..60.0).contains(&time), "{time}");
+        let width = |v: &[f64]| rms_interval_95(v).map(|i| i.high - i.low);
+        let (a, b) = (width(&white).unwrap(), width(&slow).unwrap());
+        assert!((0.3..3.0).contains(&(b / a)), "the mean of both is known alike: {a} {b}");
+        assert_eq!(width(&slow[..300]), None);
+        assert_eq!(rms_interval_95(&[]), None);
+    }
+}
