@@ -21,6 +21,7 @@ pub mod job;
 #[cfg(test)]
 pub(crate) mod oracle;
 pub mod response;
+pub(crate) mod simd;
 pub mod study;
 pub mod watch;
 

@@ -8,7 +8,8 @@
 //! width separate (U, V even with W odd, and the reverse). A Galerkin flexibility is positive definite and never larger
 //! than the exact one.
 
-use super::linalg::{add_product, cholesky_inlined, forward_solve_columns, vectorised};
+use super::linalg::{add_product, cholesky_inlined, forward_solve_columns};
+use crate::simd::vectorised;
 
 /// The ring and its material.
 #[derive(Debug, Clone, Copy, PartialEq)]

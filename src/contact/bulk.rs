@@ -8,10 +8,11 @@
 
 use super::body::WidthBasis;
 use super::edge::EndFaces;
-use super::linalg::{add_product, cholesky, cholesky_solve, lu_solve, vectorised};
+use super::linalg::{add_product, cholesky, cholesky_solve, lu_solve};
 use super::plate::PlateModes;
 use super::ring_influence::{KINDS, RingFlexibility};
 use super::tooth::{Place, RootRemainder};
+use crate::simd::vectorised;
 
 /// Places of the profile between which the compliance is interpolated (Chebyshev nodes, a polynomial through all).
 pub const NODES: usize = 4;

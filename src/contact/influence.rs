@@ -4,7 +4,7 @@
 //! *stations* along the face. The bulk part is smooth, so that few stations carry it and the contact lines may be cut as finely
 //! as their ends and modifications need: the cost of a position grows linearly with its points.
 
-use super::linalg::vectorised;
+use crate::simd::vectorised;
 
 /// Normal approach of both members per normal force. It depends on neither load, modification nor assembly.
 #[derive(Debug, Clone, PartialEq)]

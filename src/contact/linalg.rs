@@ -1,10 +1,6 @@
 //! Small dense linear algebra on flat row-major slices: what the tooth contact needs, without allocation.
 
-/// Runs `work` compiled for the vector instructions this processor has. Everything hot in it has to be inlined into it.
-#[inline(always)]
-pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
-    pulp::Arch::new().dispatch(work)
-}
+use crate::simd::vectorised;
 
 /// Solves the n×n system by Gaussian elimination with partial pivoting; `a` is destroyed, `rhs` becomes the solution.
 pub fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {

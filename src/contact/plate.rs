@@ -9,7 +9,8 @@
 //! which goes into the normal force because the root turns with the slope of its own displacement along the trace.
 
 use super::body::WidthBasis;
-use super::linalg::{add_product, cholesky_inlined, forward_solve_columns, vectorised};
+use super::linalg::{add_product, cholesky_inlined, forward_solve_columns};
+use crate::simd::vectorised;
 
 /// Functions over the height: 1 (the root) and η L_{j-1}(2η - 1), j = 1..=ORDER.
 const ORDER: usize = 5;

@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 
 use super::annulus::arc_shapes;
 use super::body::{Ring, RingSolver, WidthBasis};
-use super::linalg::{add_product, dot, vectorised};
+use super::linalg::{add_product, dot};
+use crate::simd::vectorised;
 
 /// Waves across the tooth longer than the first (in multiples of the normal module per radian) belong wholly to the
 /// ring, shorter than the second wholly to the tooth's own root; between them they share. A tooth pitch is π m_n, so

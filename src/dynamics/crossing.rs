@@ -1,55 +1,71 @@
 //! The first zero of a polynomial that starts positive: where a tooth changes the side of its backlash.
 
-/// First τ in (0, h] at which the polynomial Σ c_n τ^n, not negative at 0, passes below zero.
+use super::lanes::Real;
+
+/// First τ in (0, h] at which the polynomial Σ c_n τ^n, not negative at 0, passes below zero; infinite where there is none or
+/// `wanted` is 0.
 ///
 /// The search advances by d with g + g' d − ½ A d² = 0, where A bounds |g''| on [0, h]: no zero can be passed over, minima
 /// that dip below zero between the ends of the step included, and towards a simple zero it converges as Newton's method
 /// does, from the near side. A dip shallower than rounding (1e-16 of A h²) is not seen.
-pub(super) fn first_crossing(c: &[f64], h: f64) -> Option<f64> {
-    let mut bound = 0.0;
-    let mut reach = 0.0;
-    let mut power = 1.0;
+#[inline(always)]
+pub(super) fn first_crossing<R: Real>(c: &[R], h: R, wanted: R) -> R {
+    let zero = R::splat(0.0);
+    let mut bound = zero;
+    let mut reach = zero;
+    let mut power = R::splat(1.0);
     for (n, &cn) in c.iter().enumerate().skip(1) {
-        let size = cn.abs() * power;
+        let size = cn.map(f64::abs) * power;
         reach += size * h;
         if n >= 2 {
-            bound += (n * (n - 1)) as f64 * size / h;
+            bound += size * R::splat((n * (n - 1)) as f64);
         }
-        power *= h;
+        power = power * h;
     }
-    if c[0] > reach {
-        return None;
+    let mut at = R::splat(f64::INFINITY);
+    // Lanes still searching: 1.
+    let mut open = R::from_fn(|l| if wanted.get(l) != 0.0 && c[0].get(l) <= reach.get(l) { 1.0 } else { 0.0 });
+    if !open.any(|o| o != 0.0) {
+        return at;
     }
-    let mut floor = 1e-9 * h;
-    let mut at = 0.0;
-    let mut previous = 0.0;
+    let bound = bound / h;
+    let mut floor = h * R::splat(1e-9);
+    let (mut here, mut previous) = (zero, zero);
     for iteration in 0.. {
-        let (g, dg) = evaluate(c, at);
-        let g = if at == 0.0 { g.max(0.0) } else { g };
-        if g < 0.0 {
-            return Some(bisected_newton(c, previous, at));
+        let (g, dg) = evaluate(c, here);
+        let g = g.zip(here, |g, here| if here == 0.0 { g.max(0.0) } else { g });
+        for l in 0..R::LANES {
+            if open.get(l) != 0.0 && g.get(l) < 0.0 {
+                at.set(l, bisected_newton(c, l, previous.get(l), here.get(l)));
+                open.set(l, 0.0);
+            }
         }
-        let root = (dg * dg + 2.0 * bound * g).sqrt();
-        let safe = if dg < 0.0 { 2.0 * g / (root - dg) } else { (dg + root) / bound };
-        // A bound of zero: a straight line, or a constant.
-        let advance = if safe.is_nan() { h } else { safe.max(floor) };
-        if at >= h {
-            return None;
+        let root = (dg * dg + R::splat(2.0) * bound * g).map(f64::sqrt);
+        let falling = g * R::splat(2.0) / (root - dg);
+        let rising = (dg + root) / bound;
+        let step = R::from_fn(|l| {
+            let safe = if dg.get(l) < 0.0 { falling.get(l) } else { rising.get(l) };
+            // A bound of zero: a straight line, or a constant.
+            if safe.is_nan() { h.get(l) } else { safe.max(floor.get(l)) }
+        });
+        open = R::from_fn(|l| if here.get(l) < h.get(l) { open.get(l) } else { 0.0 });
+        if !open.any(|o| o != 0.0) {
+            break;
         }
         if iteration > 60 {
             // Only a long stretch that nearly touches comes here; the resolution is lowered so that the search ends.
-            floor *= 1.5;
+            floor = floor * R::splat(1.5);
         }
-        previous = at;
-        at = (at + advance).min(h);
+        previous = here;
+        here = (here + step).zip(h, f64::min);
     }
-    None
+    at
 }
 
 /// Value and derivative.
 #[inline(always)]
-pub(super) fn evaluate(c: &[f64], t: f64) -> (f64, f64) {
-    let (mut g, mut dg) = (0.0, 0.0);
+fn evaluate<R: Real>(c: &[R], t: R) -> (R, R) {
+    let (mut g, mut dg) = (R::splat(0.0), R::splat(0.0));
     for &cn in c.iter().rev() {
         dg = dg * t + g;
         g = g * t + cn;
@@ -57,11 +73,19 @@ pub(super) fn evaluate(c: &[f64], t: f64) -> (f64, f64) {
     (g, dg)
 }
 
-/// The zero between `low` (not negative) and `high` (negative), to rounding.
-fn bisected_newton(c: &[f64], mut low: f64, mut high: f64) -> f64 {
+/// The zero of one lane's polynomial between `low` (not negative) and `high` (negative), to rounding.
+fn bisected_newton<R: Real>(c: &[R], lane: usize, mut low: f64, mut high: f64) -> f64 {
+    let value = |t: f64| {
+        let (mut g, mut dg) = (0.0, 0.0);
+        for cn in c.iter().rev() {
+            dg = dg * t + g;
+            g = g * t + cn.get(lane);
+        }
+        (g, dg)
+    };
     let mut at = low;
     for _ in 0..80 {
-        let (g, dg) = evaluate(c, at);
+        let (g, dg) = value(at);
         if g < 0.0 {
             high = at;
         } else {
@@ -83,7 +107,17 @@ fn bisected_newton(c: &[f64], mut low: f64, mut high: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::lanes::Lanes;
     use super::*;
+
+    fn first(c: &[f64], h: f64) -> Option<f64> {
+        let alone = first_crossing(c, h, 1.0);
+        // The same in one of several lanes, beside another polynomial.
+        let lanes: Vec<Lanes<2>> = c.iter().map(|c| Lanes::from_fn(|l| if l == 1 { *c } else { 1.0 - c })).collect();
+        let beside = first_crossing(&lanes, Lanes::splat(h), Lanes::splat(1.0)).get(1);
+        assert_eq!(alone.to_bits(), beside.to_bits());
+        alone.is_finite().then_some(alone)
+    }
 
     /// Coefficients of (τ − r)·(…) products.
     fn polynomial(roots: &[f64], lead: f64) -> Vec<f64> {
@@ -101,7 +135,7 @@ mod tests {
     fn finds_the_first_of_two_close_roots() {
         // Positive, dips below zero between 0.5 and 0.5 + 1e-6, comes back.
         let c = polynomial(&[0.5, 0.5 + 1e-6, -2.0], 1.0);
-        let root = first_crossing(&c, 1.0).unwrap();
+        let root = first(&c, 1.0).unwrap();
         assert!((root - 0.5).abs() < 1e-9, "{root}");
     }
 
@@ -109,24 +143,24 @@ mod tests {
     fn does_not_see_a_near_miss() {
         let mut c = polynomial(&[0.5, 0.5], 1.0);
         c[0] += 1e-12;
-        assert_eq!(first_crossing(&c, 1.0), None);
+        assert_eq!(first(&c, 1.0), None);
     }
 
     #[test]
     fn starts_at_zero_and_moves_away() {
-        assert_eq!(first_crossing(&[0.0, 1.0, -0.5], 1.0), None);
-        let root = first_crossing(&[0.0, 1.0, -2.0], 1.0).unwrap();
+        assert_eq!(first(&[0.0, 1.0, -0.5], 1.0), None);
+        let root = first(&[0.0, 1.0, -2.0], 1.0).unwrap();
         assert!((root - 0.5).abs() < 1e-15);
     }
 
     #[test]
     fn leaves_at_once_when_it_starts_downwards() {
-        assert!(first_crossing(&[0.0, -1.0, 0.1], 1.0).unwrap() < 1e-15);
+        assert!(first(&[0.0, -1.0, 0.1], 1.0).unwrap() < 1e-15);
     }
 
     #[test]
     fn handles_constants() {
-        assert_eq!(first_crossing(&[1.0, 0.0, 0.0], 1.0), None);
-        assert_eq!(first_crossing(&[0.0, 0.0, 0.0], 1.0), None);
+        assert_eq!(first(&[1.0, 0.0, 0.0], 1.0), None);
+        assert_eq!(first(&[0.0, 0.0, 0.0], 1.0), None);
     }
 }

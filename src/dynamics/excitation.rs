@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use serde::{Deserialize, Serialize};
 
 use super::error::DynamicsError;
+use super::lanes::Real;
 
 /// One harmonic of a Fourier series: `amplitude · cos(2π i φ + phase_rad)` for the i-th entry (i from 1).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -137,24 +138,24 @@ const PER_PARITY: usize = MAX_ORDER / 2 + 1;
 
 /// Truncated Fourier series with the tables that give its Taylor coefficients in scaled time.
 #[derive(Debug, Clone)]
-struct Series {
-    constant: f64,
-    terms: Vec<Term>,
+pub(crate) struct Series<R> {
+    constant: R,
+    terms: Vec<Term<R>>,
 }
 
 /// One harmonic a cos(iθ + φ).
 #[derive(Debug, Clone)]
-struct Term {
+struct Term<R> {
     /// a cosφ and a sinφ.
-    cos: f64,
-    sin: f64,
+    cos: R,
+    sin: R,
     /// (i ω/ω_ref)^n / n! with the signs of the derivatives of the cosine: n even, multiplying a cos(iθ + φ), and n odd, multiplying
     /// a sin(iθ + φ).
-    even: [f64; PER_PARITY],
-    odd: [f64; PER_PARITY],
+    even: [R; PER_PARITY],
+    odd: [R; PER_PARITY],
 }
 
-impl Series {
+impl Series<f64> {
     fn new(constant: f64, factor: f64, harmonics: &[Harmonic], shift: f64, period_tau: f64) -> Self {
         let term = |(i, h): (usize, &Harmonic)| {
             let order = (i + 1) as f64;
@@ -181,15 +182,58 @@ impl Series {
             sum + term.cos * cos - term.sin * sin
         })
     }
+}
+
+impl<R: Real> Series<R> {
+    pub fn zero() -> Self {
+        Self { constant: R::splat(0.0), terms: Vec::new() }
+    }
+
+    /// Puts one motion's series into a lane. Shorter series have zero terms.
+    pub fn put(&mut self, lane: usize, one: &Series<f64>) {
+        let zero = R::splat(0.0);
+        while self.terms.len() < one.terms.len() {
+            self.terms.push(Term { cos: zero, sin: zero, even: [zero; PER_PARITY], odd: [zero; PER_PARITY] });
+        }
+        self.constant.set(lane, one.constant);
+        for (i, to) in self.terms.iter_mut().enumerate() {
+            let from = one.terms.get(i);
+            to.cos.set(lane, from.map_or(0.0, |t| t.cos));
+            to.sin.set(lane, from.map_or(0.0, |t| t.sin));
+            for k in 0..PER_PARITY {
+                to.even[k].set(lane, from.map_or(0.0, |t| t.even[k]));
+                to.odd[k].set(lane, from.map_or(0.0, |t| t.odd[k]));
+            }
+        }
+    }
+
+    /// No lane has harmonics.
+    #[inline(always)]
+    pub fn is_constant(&self) -> bool {
+        self.terms.is_empty()
+    }
 
     /// Taylor coefficients in scaled time, orders 0 to `order`.
-    fn fill(&self, phase: f64, order: usize, out: &mut Coefficients) {
-        let (mut even, mut odd) = ([0.0; PER_PARITY], [0.0; PER_PARITY]);
-        let (sin1, cos1) = (TAU * phase).sin_cos();
+    #[inline(always)]
+    pub fn fill(&self, phase: R, order: usize, out: &mut [R; MAX_ORDER + 1]) {
+        let zero = R::splat(0.0);
+        if self.is_constant() {
+            out[..=order].fill(zero);
+            out[0] = self.constant;
+            return;
+        }
+        let (mut even, mut odd) = ([zero; PER_PARITY], [zero; PER_PARITY]);
+        let count = order / 2 + 1;
+        let (mut sin1, mut cos1) = (zero, zero);
+        for lane in 0..R::LANES {
+            let (sin, cos) = (TAU * phase.get(lane)).sin_cos();
+            sin1.set(lane, sin);
+            cos1.set(lane, cos);
+        }
         let (mut sin, mut cos) = (sin1, cos1);
         for term in &self.terms {
             let (c, s) = (term.cos * cos - term.sin * sin, term.cos * sin + term.sin * cos);
-            for k in 0..PER_PARITY {
+            for k in 0..count {
                 even[k] += term.even[k] * c;
                 odd[k] += term.odd[k] * s;
             }
@@ -218,17 +262,15 @@ pub(crate) struct StiffnessCourse {
 
 #[derive(Debug, Clone)]
 enum StiffnessKind {
-    Constant(f64),
-    Fourier(Series),
+    Fourier(Series<f64>),
     Pieces(Vec<[f64; 4]>),
 }
 
 impl StiffnessCourse {
     pub fn new(stiffness: &Stiffness, shift: f64, period_tau: f64) -> Self {
         let kind = match stiffness {
-            Stiffness::Constant { mean_n_per_m } => StiffnessKind::Constant(*mean_n_per_m),
-            Stiffness::Fourier { mean_n_per_m, harmonics } if harmonics.is_empty() => {
-                StiffnessKind::Constant(*mean_n_per_m)
+            Stiffness::Constant { mean_n_per_m } => {
+                StiffnessKind::Fourier(Series::new(*mean_n_per_m, 0.0, &[], shift, period_tau))
             }
             Stiffness::Fourier { mean_n_per_m, harmonics } => {
                 StiffnessKind::Fourier(Series::new(*mean_n_per_m, *mean_n_per_m, harmonics, shift, period_tau))
@@ -264,7 +306,6 @@ impl StiffnessCourse {
     /// Value at `phase`; `inside` is a phase in the interior of the smooth stretch that is meant.
     pub fn value(&self, phase: f64, inside: f64) -> f64 {
         match &self.kind {
-            StiffnessKind::Constant(k) => *k,
             StiffnessKind::Fourier(series) => series.value(phase),
             StiffnessKind::Pieces(pieces) => {
                 let (i, u) = self.piece(pieces.len(), phase, inside);
@@ -274,28 +315,27 @@ impl StiffnessCourse {
         }
     }
 
-    /// Fills the Taylor coefficients about `phase` up to `order`; returns the degree (those above are not written).
-    pub fn fill(&self, phase: f64, inside: f64, order: usize, out: &mut Coefficients) -> usize {
+    /// The series, where the course is one (a constant is a series without terms).
+    pub fn series(&self) -> Option<&Series<f64>> {
         match &self.kind {
-            StiffnessKind::Constant(k) => {
-                out[0] = *k;
-                0
-            }
-            StiffnessKind::Fourier(series) => {
-                series.fill(phase, order, out);
-                order
-            }
-            StiffnessKind::Pieces(pieces) => {
-                let (i, u) = self.piece(pieces.len(), phase, inside);
-                let c = &pieces[i];
-                let scale = pieces.len() as f64 / self.period_tau;
-                out[0] = c[0] + u * (c[1] + u * (c[2] + u * c[3]));
-                out[1] = (c[1] + u * (2.0 * c[2] + u * 3.0 * c[3])) * scale;
-                out[2] = (c[2] + 3.0 * u * c[3]) * scale * scale;
-                out[3] = c[3] * scale * scale * scale;
-                3
-            }
+            StiffnessKind::Fourier(series) => Some(series),
+            StiffnessKind::Pieces(_) => None,
         }
+    }
+
+    /// Taylor coefficients about `phase`, those above the third zero; None where the course is a series.
+    #[inline(always)]
+    pub fn cubic(&self, phase: f64, inside: f64) -> Option<[f64; 4]> {
+        let StiffnessKind::Pieces(pieces) = &self.kind else { return None };
+        let (i, u) = self.piece(pieces.len(), phase, inside);
+        let c = &pieces[i];
+        let scale = pieces.len() as f64 / self.period_tau;
+        Some([
+            c[0] + u * (c[1] + u * (c[2] + u * c[3])),
+            (c[1] + u * (2.0 * c[2] + u * 3.0 * c[3])) * scale,
+            (c[2] + 3.0 * u * c[3]) * scale * scale,
+            c[3] * scale * scale * scale,
+        ])
     }
 }
 
@@ -304,12 +344,8 @@ impl StiffnessCourse {
 pub(crate) enum ImpactCourse {
     None,
     HalfSine { force_n: f64, duration: f64, start: f64, power: Coefficients },
-    Harmonics(SeriesBox),
+    Harmonics(Series<f64>),
 }
-
-/// Keeps the tables of a series out of sight.
-#[derive(Debug, Clone)]
-pub(crate) struct SeriesBox(Series);
 
 impl ImpactCourse {
     pub fn new(impact: Option<&Impact>, shift: f64, period_tau: f64) -> Self {
@@ -325,7 +361,7 @@ impl ImpactCourse {
                 ImpactCourse::HalfSine { force_n: *force_n, duration: *duration, start, power }
             }
             Some(Impact::Harmonics { harmonics }) => {
-                ImpactCourse::Harmonics(SeriesBox(Series::new(0.0, 1.0, harmonics, shift, period_tau)))
+                ImpactCourse::Harmonics(Series::new(0.0, 1.0, harmonics, shift, period_tau))
             }
         }
     }
@@ -335,7 +371,7 @@ impl ImpactCourse {
         match self {
             ImpactCourse::None => 0.0,
             ImpactCourse::HalfSine { force_n, duration, .. } => force_n.abs() * duration.ceil(),
-            ImpactCourse::Harmonics(series) => series.0.terms.iter().map(|t| t.cos.hypot(t.sin)).sum(),
+            ImpactCourse::Harmonics(series) => series.terms.iter().map(|t| t.cos.hypot(t.sin)).sum(),
         }
     }
 
@@ -368,29 +404,30 @@ impl ImpactCourse {
             ImpactCourse::HalfSine { force_n, duration, start, .. } => {
                 force_n * Self::sine(phase, inside, *duration, *start).0
             }
-            ImpactCourse::Harmonics(series) => series.0.value(phase),
+            ImpactCourse::Harmonics(series) => series.value(phase),
         }
     }
 
-    /// Fills the Taylor coefficients about `phase` up to `order`; false when the force is zero over the whole stretch.
-    pub fn fill(&self, phase: f64, inside: f64, order: usize, out: &mut Coefficients) -> bool {
+    /// F sin and F cos of the pulses under way at `phase` (those that are under way at `inside`); None where the force is no pulse.
+    #[inline(always)]
+    pub fn pulse(&self, phase: f64, inside: f64) -> Option<(f64, f64)> {
+        let ImpactCourse::HalfSine { force_n, duration, start, .. } = self else { return None };
+        let (sin, cos) = Self::sine(phase, inside, *duration, *start);
+        Some((force_n * sin, force_n * cos))
+    }
+
+    /// (π/(duration · period))^n / n! of a half sine.
+    pub fn powers(&self) -> Option<&Coefficients> {
         match self {
-            ImpactCourse::None => false,
-            ImpactCourse::HalfSine { force_n, duration, start, power } => {
-                let (sin, cos) = Self::sine(phase, inside, *duration, *start);
-                if sin == 0.0 && cos == 0.0 {
-                    return false;
-                }
-                let signed = [force_n * sin, force_n * cos, -force_n * sin, -force_n * cos];
-                for (n, (value, p)) in out[..=order].iter_mut().zip(power).enumerate() {
-                    *value = p * signed[n & 3];
-                }
-                true
-            }
-            ImpactCourse::Harmonics(series) => {
-                series.0.fill(phase, order, out);
-                true
-            }
+            ImpactCourse::HalfSine { power, .. } => Some(power),
+            _ => None,
+        }
+    }
+
+    pub fn series(&self) -> Option<&Series<f64>> {
+        match self {
+            ImpactCourse::Harmonics(series) => Some(series),
+            _ => None,
         }
     }
 }

@@ -2,11 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::equations::{PER_HALF, W};
 use super::error::DynamicsError;
-use super::model::{Model, PER_HALF, State, W};
+use super::model::{Model, State};
 use super::runge_kutta::RungeKutta;
 use super::segment::Observer;
-use super::taylor::Taylor;
+use super::taylor::{Taylor, order_for};
 use crate::watch::Watch;
 
 /// How the equations are stepped through time.
@@ -64,7 +65,7 @@ impl<'a, const D: usize> Motion<'a, D> {
     /// `tolerance`: local error of a step relative to the size of the motion; `max_steps`: budget over the life of the motion.
     pub fn new(model: &'a Model<D>, state: State<D>, integrator: Integrator, tolerance: f64, max_steps: u64) -> Self {
         let stepper = match integrator {
-            Integrator::Taylor => Stepper::Taylor(Taylor::new(tolerance, Taylor::<D>::order_for(tolerance), None)),
+            Integrator::Taylor => Stepper::Taylor(Taylor::new(tolerance, order_for(tolerance), None)),
             Integrator::RungeKutta => Stepper::RungeKutta(RungeKutta::new(tolerance, None)),
         };
         Self {

@@ -23,9 +23,12 @@
 #![allow(clippy::needless_range_loop)]
 
 mod crossing;
+mod equations;
 mod error;
 mod excitation;
+mod expansion;
 mod integrate;
+mod lanes;
 mod modal;
 mod model;
 mod parameters;
@@ -45,9 +48,10 @@ pub use model::Contact;
 pub use parameters::{Couplings, HalfParameters, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m};
 pub use trajectory::{Reached, advance};
 
+pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP};
 pub(crate) use excitation::MAX_ORDER;
 pub(crate) use integrate::Motion;
-pub(crate) use model::{Model, PER_HALF, State, U, W, YG, YP, ZG, ZP};
+pub(crate) use model::{Model, State};
 pub(crate) use segment::{Observer, Segment, Unobserved};
 pub(crate) use shooting::{Limits, Shooting};
 pub(crate) use trajectory::is_mirrored;

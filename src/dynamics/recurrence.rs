@@ -1,111 +1,166 @@
 //! The recurrence that gives the Taylor coefficients of the motion between two events.
 
-use super::excitation::{Coefficients, MAX_ORDER};
-use super::model::{Contact, Model, PER_HALF};
-
-impl<const D: usize> Model<D> {
-    /// Taylor coefficients of the motion up to `order` in scaled time, from `rows[0]`, `rows[1]` (x and dx/dτ) and the
-    /// excitation in `work`. `loads` false gives the variation about a motion with the same contacts.
-    #[inline(always)]
-    pub fn taylor(&self, contact: [Contact; 2], order: usize, loads: bool, work: &mut TaylorWork<D>) {
-        let TaylorWork { rows, s, force, excitation } = work;
-        for j in 0..Self::HALVES {
-            s[j][0] = self.s(j, &rows[0]);
-            s[j][1] = self.s(j, &rows[1]);
-        }
-        for n in 0..order - 1 {
-            let n1 = (n + 1) as f64;
-            let x = rows[n];
-            let v = rows[n + 1].map(|c| c * n1);
-            let scale = 1.0 / (n1 * (n1 + 1.0));
-            for j in 0..Self::HALVES {
-                let h = &self.halves[j];
-                let mut f = if contact[j] != 0 || self.damping_in_gap { h.cm * n1 * s[j][n + 1] } else { 0.0 };
-                if contact[j] != 0 {
-                    let degree = excitation.degree[j].min(n);
-                    let k = &excitation.backwards[j][MAX_ORDER - degree..];
-                    f += dot(k, &s[j][n - degree..=n]);
-                    if loads && n <= excitation.degree[j] {
-                        f -= excitation.stiffness[j][n] * f64::from(contact[j]) * self.b;
-                    }
-                }
-                force[j][n] = f;
-                let mut along = 0.0;
-                if loads {
-                    if excitation.pushed[j] {
-                        along -= excitation.impact[j][n];
-                    }
-                    if n == 0 {
-                        along += h.load;
-                    }
-                }
-                let a = self.half_acceleration(j, &x, &v, f, along);
-                let i = j * PER_HALF;
-                for c in 0..PER_HALF {
-                    rows[n + 2][i + c] = a[c] * scale;
-                }
-            }
-            for j in 0..Self::HALVES {
-                s[j][n + 2] = self.s(j, &rows[n + 2]);
-            }
-        }
-    }
-}
-
-/// Σ a_i b_i with four partial sums, which the processor adds side by side.
-#[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(a, b)| a * b).sum();
-    for (a, b) in a4.zip(b4) {
-        for i in 0..4 {
-            sums[i] += a[i] * b[i];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
-}
-
-/// Taylor coefficients of the excitations over one step.
-struct TaylorExcitation {
-    stiffness: [Coefficients; 2],
-    /// The stiffness again, highest order first, so that a convolution is a dot product.
-    backwards: [Coefficients; 2],
-    degree: [usize; 2],
-    impact: [Coefficients; 2],
-    pushed: [bool; 2],
-}
+use super::equations::{Equations, PER_HALF, W};
+use super::excitation::MAX_ORDER;
+use super::expansion::ExcitationTerms;
+use super::lanes::Real;
 
 /// Working memory of a Taylor step: coefficients of every coordinate, of s and of F_n.
-pub(crate) struct TaylorWork<const D: usize> {
-    pub rows: [[f64; D]; MAX_ORDER + 1],
-    pub s: [Coefficients; 2],
-    pub force: [Coefficients; 2],
-    excitation: TaylorExcitation,
+#[repr(align(64))]
+pub(crate) struct TaylorWork<const D: usize, R> {
+    pub rows: [[R; D]; MAX_ORDER + 1],
+    pub s: [[R; MAX_ORDER + 1]; 2],
+    pub force: [[R; MAX_ORDER + 1]; 2],
+    pub excitation: ExcitationTerms<R>,
 }
 
-impl<const D: usize> TaylorWork<D> {
+impl<const D: usize, R: Real> TaylorWork<D, R> {
     pub fn new() -> Box<Self> {
-        const ZERO: Coefficients = [0.0; MAX_ORDER + 1];
-        let excitation = TaylorExcitation {
-            stiffness: [ZERO; 2],
-            backwards: [ZERO; 2],
-            degree: [0; 2],
-            impact: [ZERO; 2],
-            pushed: [false; 2],
-        };
-        Box::new(Self { rows: [[0.0; D]; MAX_ORDER + 1], s: [ZERO; 2], force: [ZERO; 2], excitation })
+        let zero = R::splat(0.0);
+        Box::new(Self {
+            rows: [[zero; D]; MAX_ORDER + 1],
+            s: [[zero; MAX_ORDER + 1]; 2],
+            force: [[zero; MAX_ORDER + 1]; 2],
+            excitation: ExcitationTerms::new(),
+        })
     }
+}
 
-    /// Sets the excitation about `phase`; `inside` is a phase in the interior of the smooth stretch.
-    pub fn excite(&mut self, model: &Model<D>, phase: f64, inside: f64, order: usize) {
-        let e = &mut self.excitation;
-        for (j, h) in model.halves.iter().enumerate() {
-            e.degree[j] = h.stiffness.fill(phase, inside, order, &mut e.stiffness[j]);
-            for n in 0..=e.degree[j] {
-                e.backwards[j][MAX_ORDER - n] = e.stiffness[j][n];
+/// When a series need not be carried to its full order: a stretch of `remaining` scaled time is all that is wanted of it, and
+/// its last two terms there are below `tolerance` times the size of the motion.
+#[derive(Clone, Copy)]
+pub(crate) struct Enough<R> {
+    pub remaining: R,
+    pub tolerance: R,
+    /// Size of the recent motion.
+    pub size: R,
+}
+
+/// The lowest order at which a series is looked at, and the longest stretch (in scaled time, about an angle of the fastest
+/// natural motion) for which it can end below the orders in use.
+const LOWEST_ORDER: usize = 6;
+const LONGEST_SHORT: f64 = 2.0;
+
+/// Taylor coefficients of the motion up to `order` in scaled time, from `rows[0]`, `rows[1]` (x and dx/dτ) and the
+/// excitation in `work`. `loads` 0 gives the variation about a motion with the same contacts, 1 the motion itself. With `enough`, lanes whose
+/// series are good enough stop early (their higher coefficients are 0). Returns which lanes have (1) and the highest order computed.
+#[inline(always)]
+pub(crate) fn taylor<const D: usize, R: Real>(
+    equations: &Equations<D, R>,
+    contact: [R; 2],
+    order: usize,
+    loads: R,
+    enough: Option<Enough<R>>,
+    work: &mut TaylorWork<D, R>,
+) -> (R, usize) {
+    let TaylorWork { rows, s, force, excitation } = work;
+    let halves = D / PER_HALF;
+    let (zero, one) = (R::splat(0.0), R::splat(1.0));
+    let mut damper = [zero; 2];
+    let mut closed = [zero; 2];
+    let mut seat = [zero; 2];
+    let mut any_closed = [false; 2];
+    for j in 0..halves {
+        let h = &equations.halves[j];
+        closed[j] = contact[j].map(|c| if c != 0.0 { 1.0 } else { 0.0 });
+        any_closed[j] = closed[j].any(|c| c != 0.0);
+        damper[j] = R::from_fn(|l| if closed[j].get(l) != 0.0 { h.cm.get(l) } else { h.cm_in_gap.get(l) });
+        seat[j] = loads * contact[j] * equations.b;
+        s[j][0] = equations.s(j, &rows[0]);
+        s[j][1] = equations.s(j, &rows[1]);
+    }
+    let short = |r: f64| r <= LONGEST_SHORT;
+    let enough = enough.filter(|e| e.remaining.any(short));
+    let mut alive = one;
+    let mut power = enough.map_or(zero, |e| e.remaining);
+    for n in 0..order - 1 {
+        let n1 = (n + 1) as f64;
+        let x = rows[n];
+        let v = rows[n + 1].map(|c| c * R::splat(n1));
+        let scale = R::splat(1.0 / (n1 * (n1 + 1.0))) * alive;
+        for j in 0..halves {
+            let h = &equations.halves[j];
+            let mut f = damper[j] * R::splat(n1) * s[j][n + 1];
+            let degree = excitation.degree[j].min(n);
+            if any_closed[j] {
+                let k = &excitation.backwards[j][MAX_ORDER - n..];
+                f += closed[j] * convolution(k, &s[j][..=n], n - degree);
+                if n <= excitation.degree[j] {
+                    f -= excitation.stiffness[j][n] * seat[j];
+                }
             }
-            e.pushed[j] = h.impact.fill(phase, inside, order, &mut e.impact[j]);
+            force[j][n] = f;
+            let mut along = zero;
+            if excitation.pushed[j] {
+                along -= loads * excitation.impact[j][n];
+            }
+            if n == 0 {
+                along += loads * h.load;
+            }
+            let a = equations.half_acceleration(j, &x, &v, f, along);
+            let i = j * PER_HALF;
+            for c in 0..PER_HALF {
+                rows[n + 2][i + c] = a[c] * scale;
+            }
+        }
+        for j in 0..halves {
+            s[j][n + 2] = equations.s(j, &rows[n + 2]);
+        }
+        if let Some(e) = &enough {
+            let before = power;
+            power = power * e.remaining;
+            if n + 2 >= LOWEST_ORDER && n % 2 == 0 {
+                let size = e.size.zip(larger(norm(&rows[1]), norm(&rows[2])), f64::max);
+                let allowed = e.tolerance * size;
+                let terms = larger(norm(&rows[n + 1]) * before, norm(&rows[n + 2]) * power);
+                alive = R::from_fn(|l| {
+                    let done = short(e.remaining.get(l)) && terms.get(l) <= allowed.get(l);
+                    if done { 0.0 } else { alive.get(l) }
+                });
+                if !alive.any(|a| a != 0.0) {
+                    return (one, n + 2);
+                }
+            }
         }
     }
+    (one - alive, order)
+}
+
+/// Σ a_i b_i from `from` on, in four partial sums, which the processor adds side by side. Which sum a product goes to depends on its
+/// distance from the end alone, so that leading zeros change nothing.
+#[inline(always)]
+fn convolution<R: Real>(a: &[R], b: &[R], from: usize) -> R {
+    let mut sums = [R::splat(0.0); 4];
+    let end = b.len();
+    let a = &a[..end];
+    let mut i = end;
+    while i >= from + 4 {
+        i -= 4;
+        for k in 0..4 {
+            sums[k] += a[i + 3 - k] * b[i + 3 - k];
+        }
+    }
+    for k in 0..i - from {
+        sums[k] += a[i - 1 - k] * b[i - 1 - k];
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+/// The larger of two sizes; NaN when one is.
+#[inline(always)]
+pub(super) fn larger<R: Real>(a: R, b: R) -> R {
+    a.zip(b, |a, b| if a <= b || b.is_nan() { b } else { a })
+}
+
+/// Largest coordinate, free rotation apart.
+#[inline(always)]
+pub(super) fn norm<const D: usize, R: Real>(row: &[R; D]) -> R {
+    let mut largest = R::splat(0.0);
+    for (c, value) in row.iter().enumerate() {
+        if c % PER_HALF != W {
+            // Keeps a NaN, which f64::max would drop.
+            largest = largest.zip(*value, |m, v| if v.abs() <= m { m } else { v.abs() });
+        }
+    }
+    largest
 }

@@ -3,10 +3,11 @@
 //! It runs blindly over changes of contact, as the source's did; only edges of pulses, knots of the stiffness and the ends of mesh periods
 //! are step ends. Tableau: E. Fehlberg, NASA TR R-315 (1969), table III.
 
+use super::equations::{PER_HALF, W};
 use super::error::DynamicsError;
 use super::excitation::{Coefficients, MAX_ORDER};
 use super::integrate::Numerics;
-use super::model::{Model, PER_HALF, State, W};
+use super::model::{Model, State};
 use super::segment::{Observer, Segment};
 
 const C: [f64; 6] = [0.0, 1.0 / 4.0, 3.0 / 8.0, 12.0 / 13.0, 1.0, 1.0 / 2.0];

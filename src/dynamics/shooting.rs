@@ -2,9 +2,10 @@
 
 use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
 
+use super::equations::PER_HALF;
 use super::error::DynamicsError;
 use super::integrate::{Integrator, Motion, Numerics};
-use super::model::{Model, PER_HALF, State};
+use super::model::{Model, State};
 use super::variation::{Deviation, Variation};
 use crate::watch::Watch;
 

@@ -6,41 +6,244 @@
 //! and Zou (Experimental Mathematics 14 (2005) 99), from the last two coefficients.
 
 use super::crossing::first_crossing;
+use super::equations::{Equations, PER_HALF};
 use super::error::DynamicsError;
 use super::excitation::MAX_ORDER;
+use super::expansion::Excite;
 use super::integrate::Numerics;
-use super::model::{Contact, Model, PER_HALF, State, W};
-use super::recurrence::TaylorWork;
+use super::lanes::{Real, rough_root};
+use super::model::{Contact, Model, State};
+use super::recurrence::{Enough, TaylorWork, larger, norm, taylor};
 use super::segment::{Observer, Segment};
+use crate::simd::vectorised;
 
 /// Changes of contact per mesh period beyond which they are no longer located but left to short steps.
 const MOST_CHANGES_PER_PERIOD: u32 = 20_000;
 
-/// Working memory of the Taylor method.
+/// The order that costs least at a tolerance (measured on the reference cases).
+pub(super) fn order_for(tolerance: f64) -> usize {
+    match tolerance {
+        t if t >= 1e-6 => 14,
+        t if t >= 1e-9 => 18,
+        t if t >= 1e-12 => 20,
+        _ => 24,
+    }
+}
+
+/// What a step sets out from and how far it may go.
+#[derive(Clone, Copy)]
+pub(super) struct Stretch<R> {
+    pub phase: R,
+    /// Phase at which the smooth stretch ends, and a phase inside it.
+    pub end: R,
+    pub inside: R,
+    /// One mesh period in scaled time.
+    pub period_tau: R,
+    /// Local error of a step relative to the size of the motion.
+    pub tolerance: R,
+    /// Step to take; not finite: chosen from the coefficients.
+    pub fixed: R,
+    /// 1 where contact may change, 0 where it is held.
+    pub switching: R,
+}
+
+/// What a step came to.
+#[derive(Clone, Copy)]
+pub(super) struct Stepped<R> {
+    /// Length in scaled time. NaN where the motion has diverged; not positive where no step is possible.
+    pub h: R,
+    /// 1 where the step ends the stretch.
+    pub to_end: R,
+    /// The half whose contact changed (0 or 1) and to what; −1: none.
+    pub changed: R,
+    pub contact: R,
+    /// Highest power of the polynomials.
+    pub degree: usize,
+}
+
+/// Computes the polynomials of a step from `work.rows[0]` and `[1]`, and how far they are followed. `size`: size of the recent
+/// motion, kept from step to step.
+#[inline(always)]
+pub(super) fn step<const D: usize, R: Real>(
+    equations: &Equations<D, R>,
+    excitations: &impl Excite<R>,
+    order: usize,
+    stretch: Stretch<R>,
+    contact: [R; 2],
+    size: &mut R,
+    work: &mut TaylorWork<D, R>,
+) -> Stepped<R> {
+    let Stretch { phase, end, inside, period_tau, tolerance, fixed, switching } = stretch;
+    excitations.excite(phase, inside, order, &mut work.excitation);
+    let remaining = (end - phase) * period_tau;
+    *size = *size * R::splat(0.98);
+    let enough = Enough { remaining, tolerance, size: *size };
+    let free = !fixed.any(f64::is_finite);
+    let (short, degree) = taylor(equations, contact, order, R::splat(1.0), free.then_some(enough), work);
+    let moving = larger(norm(&work.rows[1]), norm(&work.rows[2]));
+    *size = larger(moving, *size);
+    // Below the rounding of the positions no tolerance can be met.
+    let allowed = (tolerance * *size).zip(norm(&work.rows[0]), |a, x| a.max(1e-17 * x));
+    let reached = reach(&work.rows, degree, allowed);
+    let wanted = R::from_fn(|l| {
+        let reached = if short.get(l) != 0.0 { f64::INFINITY } else { reached.get(l) };
+        if fixed.get(l).is_finite() { fixed.get(l) } else { reached }
+    });
+    let mut to_end = R::from_fn(|l| if remaining.get(l) <= wanted.get(l) * (1.0 + 1e-9) { 1.0 } else { 0.0 });
+    let mut h = R::from_fn(|l| {
+        let (remaining, wanted) = (remaining.get(l), wanted.get(l));
+        // Two equal steps rather than a long one and a stub.
+        if to_end.get(l) != 0.0 { remaining } else { remaining / (remaining / wanted - 1e-9).ceil() }
+    });
+    let mut changed = R::splat(-1.0);
+    let mut to = R::splat(0.0);
+    if switching.any(|s| s != 0.0) {
+        for j in 0..D / PER_HALF {
+            let (at, side) = next_contact(&work.s[j][..=degree], equations.b, contact[j], h, switching);
+            for l in 0..R::LANES {
+                if at.get(l) < f64::INFINITY {
+                    h.set(l, at.get(l));
+                    changed.set(l, j as f64);
+                    to.set(l, side.get(l));
+                    to_end.set(l, 0.0);
+                }
+            }
+        }
+    }
+    Stepped { h, to_end, changed, contact: to, degree }
+}
+
+/// The first change of contact of a half within `h`: when (infinite: none), and to what.
+#[inline(always)]
+fn next_contact<R: Real>(s: &[R], b: R, contact: R, h: R, switching: R) -> (R, R) {
+    let mut g = [R::splat(0.0); MAX_ORDER + 1];
+    let g = &mut g[..s.len()];
+    // On a flank: side·s − b falls to 0. In the gap: b − s does, or s + b.
+    let first = contact.map(|c| if c == 0.0 { -1.0 } else { c });
+    for (g, s) in g.iter_mut().zip(s) {
+        *g = first * *s;
+    }
+    g[0] += R::from_fn(|l| if contact.get(l) == 0.0 { b.get(l) } else { -b.get(l) });
+    let mut at = first_crossing(g, h, switching);
+    let mut to = contact.map(|c| if c == 0.0 { 1.0 } else { 0.0 });
+    let in_gap = R::from_fn(|l| if contact.get(l) == 0.0 { switching.get(l) } else { 0.0 });
+    if in_gap.any(|g| g != 0.0) {
+        g.copy_from_slice(s);
+        g[0] += b;
+        let back = first_crossing(g, at.zip(h, f64::min), in_gap);
+        to = R::from_fn(|l| if back.get(l) < f64::INFINITY { -1.0 } else { to.get(l) });
+        at = at.zip(back, f64::min);
+    }
+    (at, to)
+}
+
+/// The step at which the last two terms are as large as `allowed`.
+#[inline(always)]
+fn reach<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, allowed: R) -> R {
+    let of = |k: usize| {
+        allowed.zip(norm(&rows[k]), |allowed, last| {
+            let root = rough_root(allowed / last, k as f64);
+            let root = if last == 0.0 { f64::INFINITY } else { root };
+            if last.is_nan() { f64::NAN } else { root }
+        })
+    };
+    of(order - 1).zip(of(order), |a, b| if a < b || a.is_nan() { a } else { b })
+}
+
+/// The step that keeps the local error at `tolerance` times the size of the polynomials' own motion.
+#[inline(always)]
+pub(super) fn step_reach<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, tolerance: f64) -> R {
+    let size = larger(norm(&rows[0]), larger(norm(&rows[1]), norm(&rows[2])));
+    reach(rows, order, size * R::splat(tolerance))
+}
+
+/// Values and derivatives of all coordinates at τ = t.
+#[inline(always)]
+pub(super) fn evaluate_rows<const D: usize, R: Real>(rows: &[[R; D]], t: R) -> ([R; D], [R; D]) {
+    let (mut x, mut v) = ([R::splat(0.0); D], [R::splat(0.0); D]);
+    for row in rows.iter().rev() {
+        for c in 0..D {
+            v[c] = v[c] * t + x[c];
+            x[c] = x[c] * t + row[c];
+        }
+    }
+    (x, v)
+}
+
+/// Counts the changes of contact of a motion, and goes on when there are too many.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Rattling {
+    period: u64,
+    changes: u32,
+}
+
+impl Rattling {
+    /// To be told of each change. Rattling faster than can be followed goes on by a short free step and takes the contact it
+    /// finds.
+    pub fn changed<const D: usize>(&mut self, model: &Model<D>, state: &mut State<D>, end: f64) {
+        if self.period != state.period {
+            *self = Self { period: state.period, changes: 0 };
+        }
+        self.changes += 1;
+        if self.changes <= MOST_CHANGES_PER_PERIOD {
+            return;
+        }
+        let step = (end - state.phase).min(1e-4);
+        let a = model.acceleration(state.phase, state.phase + 0.5 * step, &state.x, &state.v);
+        let h = step * model.period_tau;
+        for c in 0..D {
+            state.v[c] += h * a[c];
+            state.x[c] += h * state.v[c];
+        }
+        state.phase += step;
+        for j in 0..Model::<D>::HALVES {
+            state.contact[j] = model.contact_of(model.s(j, &state.x));
+        }
+    }
+}
+
+/// Why a step of length `h` cannot be taken, if it cannot.
+#[inline(always)]
+pub(super) fn refused<const D: usize>(
+    model: &Model<D>,
+    period: u64,
+    phase: f64,
+    h: f64,
+    advances: bool,
+) -> Option<DynamicsError> {
+    if h > 0.0 && h < f64::INFINITY && advances {
+        return None;
+    }
+    let time_s = (period as f64 + phase) * model.period_tau / model.omega_ref;
+    Some(if h.is_finite() {
+        DynamicsError::StepSizeTooSmall { time_s, step_s: h / model.omega_ref }
+    } else {
+        DynamicsError::Diverged { time_s }
+    })
+}
+
+/// The method for one motion.
 pub(super) struct Taylor<const D: usize> {
     order: usize,
     tolerance: f64,
-    /// None: step chosen from the coefficients; Some: fixed step in scaled time (for measuring the order).
-    fixed: Option<f64>,
-    work: Box<TaylorWork<D>>,
+    /// Not finite: step chosen from the coefficients; else fixed step in scaled time (for measuring the order).
+    fixed: f64,
+    work: Box<TaylorWork<D, f64>>,
     /// Size of the recent motion: scaled velocity and acceleration, as lengths.
     size: f64,
-    changes: (u64, u32),
+    rattling: Rattling,
 }
 
 impl<const D: usize> Taylor<D> {
     /// `tolerance`: local error of a step relative to the size of the motion.
     pub fn new(tolerance: f64, order: usize, fixed: Option<f64>) -> Self {
-        Self { order: order.clamp(4, MAX_ORDER), tolerance, fixed, work: TaylorWork::new(), size: 0.0, changes: (0, 0) }
-    }
-
-    /// The order that costs least at a tolerance (measured on the reference cases).
-    pub fn order_for(tolerance: f64) -> usize {
-        match tolerance {
-            t if t >= 1e-6 => 14,
-            t if t >= 1e-9 => 18,
-            t if t >= 1e-12 => 20,
-            _ => 24,
+        Self {
+            order: order.clamp(4, MAX_ORDER),
+            tolerance,
+            fixed: fixed.unwrap_or(f64::INFINITY),
+            work: TaylorWork::new(),
+            size: 0.0,
+            rattling: Rattling::default(),
         }
     }
 
@@ -54,152 +257,48 @@ impl<const D: usize> Taylor<D> {
         numerics: &mut Numerics,
         observer: &mut impl Observer<D>,
     ) -> Result<(), DynamicsError> {
-        let order = self.order;
-        self.work.excite(model, state.phase, inside, order);
         self.work.rows[0] = state.x;
         self.work.rows[1] = state.v;
-        model.taylor(state.contact, order, true, &mut self.work);
+        let stretch = Stretch {
+            phase: state.phase,
+            end,
+            inside,
+            period_tau: model.period_tau,
+            tolerance: self.tolerance,
+            fixed: self.fixed,
+            switching: if model.switches() { 1.0 } else { 0.0 },
+        };
+        let contact = state.contact.map(f64::from);
+        let Self { order, work, size, .. } = self;
+        let stepped = vectorised(
+            #[inline(always)]
+            || step(model, model, *order, stretch, contact, size, work),
+        );
         numerics.steps += 1;
-        numerics.force_evaluations += (order - 1) as u64;
-
-        let remaining = (end - state.phase) * model.period_tau;
-        let wanted = self.step_length(remaining);
-        let to_end = remaining <= wanted * (1.0 + 1e-9);
-        // Two equal steps rather than a long one and a stub.
-        let mut h = if to_end { remaining } else { remaining / (remaining / wanted - 1e-9).ceil() };
-        if h.is_nan() || h <= 0.0 || h.is_infinite() || (!to_end && state.phase + h / model.period_tau <= state.phase) {
-            let time_s = (state.period as f64 + state.phase) * model.period_tau / model.omega_ref;
-            return Err(if h.is_finite() {
-                DynamicsError::StepSizeTooSmall { time_s, step_s: h / model.omega_ref }
-            } else {
-                DynamicsError::Diverged { time_s }
-            });
-        }
-        let mut changed = None;
-        if model.b > 0.0 && !model.hold_contact {
-            for j in 0..Model::<D>::HALVES {
-                if let Some((at, contact)) = self.next_contact(model.b, j, state.contact[j], h) {
-                    h = at;
-                    changed = Some((j, contact));
-                }
-            }
+        numerics.force_evaluations += (stepped.degree - 1) as u64;
+        let h = stepped.h;
+        let phase = if stepped.to_end != 0.0 { end } else { (state.phase + h / model.period_tau).min(end) };
+        let advances = phase > state.phase || stepped.changed >= 0.0;
+        let h = if stepped.changed >= 0.0 { h.max(f64::MIN_POSITIVE) } else { h };
+        if let Some(error) = refused(model, state.period, state.phase, h, advances) {
+            return Err(error);
         }
         observer.segment(&Segment {
             model,
             period: state.period,
             phase: state.phase,
             h,
-            degree: order,
+            degree: stepped.degree,
             rows: &self.work.rows,
             force: &self.work.force,
             contact: state.contact,
         });
-        (state.x, state.v) = evaluate_rows(&self.work.rows[..=order], h);
-        match changed {
-            Some((j, contact)) => {
-                state.phase = (state.phase + h / model.period_tau).min(end);
-                state.contact[j] = contact;
-                if self.changes.0 != state.period {
-                    self.changes = (state.period, 0);
-                }
-                self.changes.1 += 1;
-                if self.changes.1 > MOST_CHANGES_PER_PERIOD {
-                    self.shuffle_on(model, state, end);
-                }
-            }
-            None if to_end => state.phase = end,
-            None => state.phase += h / model.period_tau,
+        (state.x, state.v) = evaluate_rows(&self.work.rows[..=stepped.degree], h);
+        state.phase = phase;
+        if stepped.changed >= 0.0 {
+            state.contact[stepped.changed as usize] = stepped.contact as Contact;
+            self.rattling.changed(model, state, end);
         }
         Ok(())
     }
-
-    /// Rattling faster than can be followed: goes on by a short free step and takes the contact it finds.
-    fn shuffle_on(&mut self, model: &Model<D>, state: &mut State<D>, end: f64) {
-        let step = (end - state.phase).min(1e-4);
-        let a = model.acceleration(state.phase, state.phase + 0.5 * step, &state.x, &state.v);
-        let h = step * model.period_tau;
-        for c in 0..D {
-            state.v[c] += h * a[c];
-            state.x[c] += h * state.v[c];
-        }
-        state.phase += step;
-        for j in 0..Model::<D>::HALVES {
-            state.contact[j] = model.contact_of(model.s(j, &state.x));
-        }
-    }
-
-    fn step_length(&mut self, remaining: f64) -> f64 {
-        let moving = norm(&self.work.rows[1]).max(norm(&self.work.rows[2]));
-        self.size = (0.98 * self.size).max(moving);
-        // Below the rounding of the positions no tolerance can be met.
-        let allowed = (self.tolerance * self.size).max(1e-17 * norm(&self.work.rows[0]));
-        let h = reach(&self.work.rows[..], self.order, allowed);
-        let h = self.fixed.unwrap_or(h);
-        if h.is_nan() { f64::NAN } else { h.min(remaining) }
-    }
-
-    /// The first change of contact of a half within `h`: when, and to what.
-    fn next_contact(&self, b: f64, j: usize, contact: Contact, h: f64) -> Option<(f64, Contact)> {
-        let mut g = [0.0; MAX_ORDER + 1];
-        let g = &mut g[..=self.order];
-        let mut distance = |sign: f64, offset: f64, h: f64| {
-            for (g, s) in g.iter_mut().zip(&self.work.s[j]) {
-                *g = sign * s;
-            }
-            g[0] += offset;
-            first_crossing(g, h)
-        };
-        match contact {
-            0 => {
-                let up = distance(-1.0, b, h).map(|at| (at, 1));
-                let within = up.map_or(h, |(at, _)| at);
-                distance(1.0, b, within).map(|at| (at, -1)).or(up)
-            }
-            side => distance(f64::from(side), -b, h).map(|at| (at, 0)),
-        }
-    }
-}
-
-/// Largest coordinate, free rotation apart.
-#[inline(always)]
-fn norm<const D: usize>(row: &[f64; D]) -> f64 {
-    let mut largest = 0.0f64;
-    for (c, value) in row.iter().enumerate() {
-        if c % PER_HALF != W {
-            // Keeps a NaN, which f64::max would drop.
-            largest = if value.abs() <= largest { largest } else { value.abs() };
-        }
-    }
-    largest
-}
-
-/// The step at which the last two terms are as large as `allowed`.
-#[inline(always)]
-fn reach<const D: usize>(rows: &[[f64; D]], order: usize, allowed: f64) -> f64 {
-    let of = |k: usize| {
-        let last = norm(&rows[k]);
-        if last == 0.0 { f64::INFINITY } else { (allowed / last).powf(1.0 / k as f64) }
-    };
-    let (a, b) = (of(order - 1), of(order));
-    if a < b || a.is_nan() { a } else { b }
-}
-
-/// The step that keeps the local error at `tolerance` times the size of the polynomials' own motion, at most `most`.
-pub(super) fn step_reach<const D: usize>(rows: &[[f64; D]], order: usize, tolerance: f64, most: f64) -> f64 {
-    let size = norm(&rows[0]).max(norm(&rows[1])).max(norm(&rows[2]));
-    let h = reach(rows, order, tolerance * size);
-    if h < most { h } else { most }
-}
-
-/// Values and derivatives of all coordinates at τ = t.
-#[inline(always)]
-pub(super) fn evaluate_rows<const D: usize>(rows: &[[f64; D]], t: f64) -> ([f64; D], [f64; D]) {
-    let (mut x, mut v) = ([0.0; D], [0.0; D]);
-    for row in rows.iter().rev() {
-        for c in 0..D {
-            v[c] = v[c] * t + x[c];
-            x[c] = x[c] * t + row[c];
-        }
-    }
-    (x, v)
 }

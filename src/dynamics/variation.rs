@@ -1,10 +1,17 @@
 //! Small deviations from a motion: the linear map over mesh periods, and how fast they grow.
 
+use super::equations::Equations;
 use super::excitation::MAX_ORDER;
+use super::expansion::{ExcitationTerms, Excite};
+use super::lanes::{Lanes, Real};
 use super::model::{Contact, Model, State};
-use super::recurrence::TaylorWork;
+use super::recurrence::{TaylorWork, taylor};
 use super::segment::{Observer, Segment};
 use super::taylor::{evaluate_rows, step_reach};
+use crate::simd::vectorised;
+
+/// Deviations carried side by side.
+const COLUMNS: usize = 8;
 
 /// A deviation: displacements and scaled velocities.
 pub(crate) type Deviation<const D: usize> = ([f64; D], [f64; D]);
@@ -19,12 +26,27 @@ pub(crate) struct Variation<'m, const D: usize> {
     pub columns: Vec<Deviation<D>>,
     tolerance: f64,
     last_contact: Option<[Contact; 2]>,
-    work: Box<TaylorWork<D>>,
+    /// Taken out while in use.
+    memory: Option<Box<Memory<D>>>,
+}
+
+/// Working memory for one deviation and for several.
+struct Memory<const D: usize> {
+    one: Box<TaylorWork<D, f64>>,
+    several: Box<TaylorWork<D, Lanes<COLUMNS>>>,
+    equations: Equations<D, Lanes<COLUMNS>>,
+    terms: ExcitationTerms<f64>,
 }
 
 impl<'m, const D: usize> Variation<'m, D> {
     pub fn new(model: &'m Model<D>, columns: Vec<Deviation<D>>, tolerance: f64) -> Self {
-        Self { model, columns, tolerance, last_contact: None, work: TaylorWork::new() }
+        let memory = Memory {
+            one: TaylorWork::new(),
+            several: TaylorWork::new(),
+            equations: model.in_all_lanes(),
+            terms: ExcitationTerms::new(),
+        };
+        Self { model, columns, tolerance, last_contact: None, memory: Some(Box::new(memory)) }
     }
 
     /// One unit deviation per active displacement, then one per active velocity.
@@ -43,10 +65,11 @@ impl<'m, const D: usize> Variation<'m, D> {
         for j in 0..Model::<D>::HALVES {
             let (was, is) = (before[j], segment.contact[j]);
             let speed = self.model.s(j, &segment.rows[1]);
-            if was == is || speed == 0.0 {
+            let h = &self.model.halves[j];
+            if was == is || speed == 0.0 || h.cm == h.cm_in_gap {
                 continue;
             }
-            let damper = self.model.halves[j].cm * speed;
+            let damper = (h.cm - h.cm_in_gap) * speed;
             let change = f64::from(i8::from(is != 0) - i8::from(was != 0)) * damper;
             let push = self.model.push(j, change);
             for (x, v) in &mut self.columns {
@@ -57,41 +80,76 @@ impl<'m, const D: usize> Variation<'m, D> {
             }
         }
     }
+
+    /// Carries the columns from `first` on, one per lane, over a segment.
+    #[inline(always)]
+    fn carry<R: Real>(
+        &mut self,
+        segment: &Segment<'_, D>,
+        first: usize,
+        equations: &Equations<D, R>,
+        terms: &mut ExcitationTerms<f64>,
+        work: &mut TaylorWork<D, R>,
+    ) {
+        let count = (self.columns.len() - first).min(R::LANES);
+        // Lanes without a column of their own repeat the last one.
+        let column = |lane: usize| first + lane.min(count - 1);
+        let mut x: [R; D] = std::array::from_fn(|c| R::from_fn(|l| self.columns[column(l)].0[c]));
+        let mut v: [R; D] = std::array::from_fn(|c| R::from_fn(|l| self.columns[column(l)].1[c]));
+        let order = segment.degree.clamp(12, MAX_ORDER);
+        let period_tau = self.model.period_tau;
+        let inside = segment.phase + 0.5 * segment.h / period_tau;
+        let contact = segment.contact.map(|c| R::splat(f64::from(c)));
+        let mut at = 0.0;
+        loop {
+            self.model.excite(segment.phase + at / period_tau, inside, order, terms);
+            work.excitation.spread(terms, order);
+            (work.rows[0], work.rows[1]) = (x, v);
+            taylor(equations, contact, order, R::splat(0.0), None, work);
+            let left = segment.h - at;
+            let reaches: R = step_reach(&work.rows, order, self.tolerance);
+            let reach = (0..R::LANES).fold(f64::INFINITY, |least, lane| least.min(reaches.get(lane)));
+            // A NaN reach takes the whole step: the motion itself has diverged and says so.
+            let h = if reach < left { left / (left / reach).ceil().min(1e4) } else { left };
+            (x, v) = evaluate_rows(&work.rows[..=order], R::splat(h));
+            if h >= left {
+                break;
+            }
+            at += h;
+        }
+        for lane in 0..count {
+            self.columns[first + lane] = (x.map(|c| c.get(lane)), v.map(|c| c.get(lane)));
+        }
+    }
 }
 
 impl<const D: usize> Observer<D> for Variation<'_, D> {
     fn segment(&mut self, segment: &Segment<'_, D>) {
         if let Some(before) = self.last_contact
             && before != segment.contact
-            && !self.model.damping_in_gap
         {
             self.jump(segment, before);
         }
         self.last_contact = Some(segment.contact);
-        let order = segment.degree.clamp(12, MAX_ORDER);
-        let inside = segment.phase + 0.5 * segment.h / self.model.period_tau;
-        self.work.excite(self.model, segment.phase, inside, order);
-        let mut filled_at = 0.0;
-        for i in 0..self.columns.len() {
-            let mut at = 0.0;
-            loop {
-                if at != filled_at {
-                    self.work.excite(self.model, segment.phase + at / self.model.period_tau, inside, order);
-                    filled_at = at;
+        let Some(mut memory) = self.memory.take() else { return };
+        let Memory { one, several, equations, terms } = &mut *memory;
+        vectorised(
+            #[inline(always)]
+            || {
+                let mut first = 0;
+                while first < self.columns.len() {
+                    if self.columns.len() - first == 1 {
+                        let alone: &Equations<D, f64> = self.model;
+                        self.carry::<f64>(segment, first, alone, terms, one);
+                        first += 1;
+                    } else {
+                        self.carry::<Lanes<COLUMNS>>(segment, first, equations, terms, several);
+                        first += COLUMNS;
+                    }
                 }
-                (self.work.rows[0], self.work.rows[1]) = self.columns[i];
-                self.model.taylor(segment.contact, order, false, &mut self.work);
-                let left = segment.h - at;
-                let reach = step_reach(&self.work.rows[..], order, self.tolerance, f64::INFINITY);
-                // A NaN reach takes the whole step: the motion itself has diverged and says so.
-                let h = if reach < left { left / (left / reach).ceil().min(1e4) } else { left };
-                self.columns[i] = evaluate_rows(&self.work.rows[..=order], h);
-                if h >= left {
-                    break;
-                }
-                at += h;
-            }
-        }
+            },
+        );
+        self.memory = Some(memory);
     }
 }
 

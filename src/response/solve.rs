@@ -354,7 +354,8 @@ fn standard_error(mean_squares: &[f64]) -> f64 {
 /// An acceleration that is nothing but rounding: 1e-12 of what the load would give the free mesh, m/s².
 fn smallest<const D: usize>(model: &Model<D>) -> f64 {
     let square = model.omega_ref * model.omega_ref;
-    model.halves.iter().fold(0.0f64, |m, h| m.max((h.load.abs() + h.impact.largest_n()) * h.inv_me * square)) * 1e-12
+    (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(model.largest_push_n(j) * model.halves[j].inv_me * square))
+        * 1e-12
 }
 
 /// Largest relative difference of the RMS accelerations of two records; below `floor` they count as equal.

@@ -78,7 +78,7 @@ impl<const D: usize> Search<'_, D> {
         *numerics += once.numerics;
         let defect = difference(&once.end, &first);
         let unbalanced_n = shooting.unbalanced_n(&defect, 1);
-        let load = self.model.halves.iter().fold(0.0f64, |m, h| m.max(h.load.abs() + h.impact.largest_n()));
+        let load = (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.largest_push_n(j)));
         // Rounding and truncation leave a little; a real imbalance is far above.
         if unbalanced_n > 1e-6 * load {
             return Err(DynamicsError::Unbalanced { force_n: unbalanced_n });

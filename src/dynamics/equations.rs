@@ -1,0 +1,312 @@
+//! The linear part of the equations of motion, in the coordinates they are solved in.
+//!
+//! # Coordinates
+//! Per half: y_p, z_p, u, y_g, z_g, w (all lengths) with u = R_p θ_p − R_g θ_g and w = I_p θ_p/R_p + I_g θ_g/R_g scaled to a
+//! length by 1/(I_p/R_p² + I_g/R_g²). u is all the mesh feels of the rotations, w is the free rotation: it is driven only by torsional couplings,
+//! so rigid rotation neither drifts numerically nor costs accuracy. x = y_p − y_g + u and s = cosβ x + sinβ_j (z_p − z_g).
+//!
+//! `Equations<6>` are those of one half of a mirror-symmetric pair (the other half has z and w mirrored as the symmetry says),
+//! `Equations<12>` those of both halves. Time is scaled by a reference frequency: τ = ω_ref t; velocities are dx/dτ.
+
+use super::lanes::Real;
+use super::parameters::{Parameters, Spring};
+
+/// Coordinates per half, and their places.
+pub(crate) const PER_HALF: usize = 6;
+pub(crate) const YP: usize = 0;
+pub(crate) const ZP: usize = 1;
+pub(crate) const U: usize = 2;
+pub(crate) const YG: usize = 3;
+pub(crate) const ZG: usize = 4;
+pub(crate) const W: usize = 5;
+
+/// Spring and damper in scaled time, already divided by the mass they act on.
+#[derive(Debug, Clone, Copy)]
+struct Rate<R> {
+    k: R,
+    c: R,
+}
+
+impl Rate<f64> {
+    fn new(spring: Spring, mass: f64, omega: f64) -> Self {
+        Self { k: spring.stiffness / (mass * omega * omega), c: spring.damping / (mass * omega) }
+    }
+}
+
+impl<R: Real> Rate<R> {
+    fn zero() -> Self {
+        Self { k: R::splat(0.0), c: R::splat(0.0) }
+    }
+
+    #[inline(always)]
+    fn of(self, x: R, v: R) -> R {
+        self.k * x + self.c * v
+    }
+}
+
+/// What belongs to one half.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HalfEquations<R> {
+    pub sin: R,
+    /// Force to scaled acceleration: 1/(m ω²).
+    inv_mp: R,
+    pub(super) inv_mg: R,
+    pub inv_me: R,
+    yp: Rate<R>,
+    zp: Rate<R>,
+    yg: Rate<R>,
+    zg: Rate<R>,
+    yp_other: Rate<R>,
+    zp_other: Rate<R>,
+    yg_other: Rate<R>,
+    zg_other: Rate<R>,
+    /// Torsional couplings act on R_p θ_p and R_g θ_g as forces (per length).
+    torsion_p: Rate<R>,
+    torsion_g: Rate<R>,
+    /// Reduced inertias I_p/R_p², I_g/R_g², and their parts of the sum of both.
+    pub reduced_p: R,
+    pub reduced_g: R,
+    part_p: R,
+    part_g: R,
+    /// 1/(reduced ω²).
+    inv_rp: R,
+    inv_rg: R,
+    inv_rw: R,
+    /// Mesh damper times ω, in contact and in the gap.
+    pub cm: R,
+    pub cm_in_gap: R,
+    /// T_p/R_p, N.
+    pub load: R,
+}
+
+/// The linear part of the equations of one half (D = 6, mirror symmetric) or both (D = 12).
+#[derive(Debug, Clone)]
+pub(crate) struct Equations<const D: usize, R> {
+    pub halves: [HalfEquations<R>; 2],
+    pub cos: R,
+    /// Half the backlash, m.
+    pub b: R,
+    torsional: bool,
+    /// D = 6 only: the other half moves as the mirror image (1) or as its opposite (−1, for variations).
+    parity: f64,
+}
+
+impl<const D: usize> Equations<D, f64> {
+    pub fn new(p: &Parameters, omega_ref: f64) -> Self {
+        let couplings = &p.couplings;
+        let torsional = [couplings.pinion_torsion, couplings.gear_torsion].iter().any(|s| *s != Spring::default());
+        Self {
+            halves: [half(p, 0, omega_ref), half(p, 1, omega_ref)],
+            cos: p.helix_angle_rad.cos(),
+            b: p.half_backlash_m,
+            torsional,
+            parity: 1.0,
+        }
+    }
+
+    /// The equations that variations against the mirror symmetry obey (D = 6).
+    pub fn against_symmetry(&self) -> Self {
+        Self { parity: -1.0, ..self.clone() }
+    }
+
+    /// Coordinates without which the motion is complete: w, when no torsional spring reads it.
+    pub fn active(&self) -> impl Iterator<Item = usize> + use<D> {
+        let with_w = self.torsional && (D > PER_HALF || self.parity < 0.0);
+        (0..D).filter(move |c| with_w || c % PER_HALF != W)
+    }
+
+    /// The diagonal mass matrix of the solver coordinates, kg.
+    pub fn masses_kg(&self, omega_ref: f64) -> [f64; D] {
+        let mut out = [0.0; D];
+        let square = omega_ref * omega_ref;
+        for (j, h) in self.halves[..Self::HALVES].iter().enumerate() {
+            let (mp, mg, me) = (1.0 / (h.inv_mp * square), 1.0 / (h.inv_mg * square), 1.0 / (h.inv_me * square));
+            out[j * PER_HALF..][..PER_HALF].copy_from_slice(&[mp, mp, me, mg, mg, h.reduced_p + h.reduced_g]);
+        }
+        out
+    }
+
+    /// The same equations in every lane.
+    pub fn in_all_lanes<R: Real>(&self) -> Equations<D, R> {
+        let mut out = Equations::at_rest();
+        for lane in 0..R::LANES {
+            out.put(lane, self);
+        }
+        out
+    }
+}
+
+impl<const D: usize, R: Real> Equations<D, R> {
+    pub const HALVES: usize = D / PER_HALF;
+
+    /// Equations under which nothing moves: for lanes not in use.
+    pub fn at_rest() -> Self {
+        let (zero, rate) = (R::splat(0.0), Rate::zero());
+        let half = HalfEquations {
+            sin: zero,
+            inv_mp: zero,
+            inv_mg: zero,
+            inv_me: zero,
+            yp: rate,
+            zp: rate,
+            yg: rate,
+            zg: rate,
+            yp_other: rate,
+            zp_other: rate,
+            yg_other: rate,
+            zg_other: rate,
+            torsion_p: rate,
+            torsion_g: rate,
+            reduced_p: zero,
+            reduced_g: zero,
+            part_p: zero,
+            part_g: zero,
+            inv_rp: zero,
+            inv_rg: zero,
+            inv_rw: zero,
+            cm: zero,
+            cm_in_gap: zero,
+            load: zero,
+        };
+        Self { halves: [half; 2], cos: zero, b: zero, torsional: false, parity: 1.0 }
+    }
+
+    /// Puts one motion's equations into a lane. All lanes have the same parity.
+    pub fn put(&mut self, lane: usize, one: &Equations<D, f64>) {
+        fn rate<R: Real>(to: &mut Rate<R>, lane: usize, from: &Rate<f64>) {
+            to.k.set(lane, from.k);
+            to.c.set(lane, from.c);
+        }
+        self.cos.set(lane, one.cos);
+        self.b.set(lane, one.b);
+        self.torsional |= one.torsional;
+        self.parity = one.parity;
+        for (to, from) in self.halves.iter_mut().zip(&one.halves) {
+            to.sin.set(lane, from.sin);
+            to.inv_mp.set(lane, from.inv_mp);
+            to.inv_mg.set(lane, from.inv_mg);
+            to.inv_me.set(lane, from.inv_me);
+            rate(&mut to.yp, lane, &from.yp);
+            rate(&mut to.zp, lane, &from.zp);
+            rate(&mut to.yg, lane, &from.yg);
+            rate(&mut to.zg, lane, &from.zg);
+            rate(&mut to.yp_other, lane, &from.yp_other);
+            rate(&mut to.zp_other, lane, &from.zp_other);
+            rate(&mut to.yg_other, lane, &from.yg_other);
+            rate(&mut to.zg_other, lane, &from.zg_other);
+            rate(&mut to.torsion_p, lane, &from.torsion_p);
+            rate(&mut to.torsion_g, lane, &from.torsion_g);
+            to.reduced_p.set(lane, from.reduced_p);
+            to.reduced_g.set(lane, from.reduced_g);
+            to.part_p.set(lane, from.part_p);
+            to.part_g.set(lane, from.part_g);
+            to.inv_rp.set(lane, from.inv_rp);
+            to.inv_rg.set(lane, from.inv_rg);
+            to.inv_rw.set(lane, from.inv_rw);
+            to.cm.set(lane, from.cm);
+            to.cm_in_gap.set(lane, from.cm_in_gap);
+            to.load.set(lane, from.load);
+        }
+    }
+
+    /// The other half's place in the coordinates and the factors of its y and w, and of its z.
+    #[inline(always)]
+    fn other(&self, j: usize) -> (usize, R, R) {
+        if D > PER_HALF {
+            ((1 - j) * PER_HALF, R::splat(1.0), R::splat(1.0))
+        } else {
+            (0, R::splat(self.parity), R::splat(-self.parity))
+        }
+    }
+
+    /// s of a half.
+    #[inline(always)]
+    pub fn s(&self, j: usize, x: &[R; D]) -> R {
+        let i = j * PER_HALF;
+        self.cos * (x[i + YP] - x[i + YG] + x[i + U]) + self.halves[j].sin * (x[i + ZP] - x[i + ZG])
+    }
+
+    /// Scaled accelerations of one half given its normal mesh force and the other force along the mesh, T_p/R_p − F_s. Linear
+    /// and homogeneous, so it serves single Taylor coefficients and deviations too.
+    #[inline(always)]
+    pub(super) fn half_acceleration(&self, j: usize, x: &[R; D], v: &[R; D], force: R, along: R) -> [R; PER_HALF] {
+        let h = &self.halves[j];
+        let i = j * PER_HALF;
+        let (o, along_sign, axial_sign) = self.other(j);
+        let fy = self.cos * force;
+        let fz = h.sin * force;
+        let difference = |c: usize, mirrored: R| (x[i + c] - mirrored * x[o + c], v[i + c] - mirrored * v[o + c]);
+        let (dzp, dzpv) = difference(ZP, axial_sign);
+        let (dzg, dzgv) = difference(ZG, axial_sign);
+        let mut a_yp = -h.inv_mp * fy - h.yp.of(x[i + YP], v[i + YP]);
+        let a_zp = -h.inv_mp * fz - h.zp.of(x[i + ZP], v[i + ZP]) - h.zp_other.of(dzp, dzpv);
+        let mut a_yg = h.inv_mg * fy - h.yg.of(x[i + YG], v[i + YG]);
+        let a_zg = h.inv_mg * fz - h.zg.of(x[i + ZG], v[i + ZG]) - h.zg_other.of(dzg, dzgv);
+        let mut a_u = h.inv_me * (along - fy);
+        let mut a_w = R::splat(0.0);
+        if D > PER_HALF || self.parity < 0.0 {
+            let (d, dv) = difference(YP, along_sign);
+            a_yp -= h.yp_other.of(d, dv);
+            let (d, dv) = difference(YG, along_sign);
+            a_yg -= h.yg_other.of(d, dv);
+            if self.torsional {
+                let k = o / PER_HALF;
+                let (ap, ag) = self.arcs(j, x);
+                let (bp, bg) = self.arcs(k, x);
+                let (avp, avg) = self.arcs(j, v);
+                let (bvp, bvg) = self.arcs(k, v);
+                let tp = h.torsion_p.of(ap - along_sign * bp, avp - along_sign * bvp);
+                let tg = h.torsion_g.of(ag - along_sign * bg, avg - along_sign * bvg);
+                a_u += h.inv_rg * tg - h.inv_rp * tp;
+                a_w = -h.inv_rw * (tp + tg);
+            }
+        }
+        [a_yp, a_zp, a_u, a_yg, a_zg, a_w]
+    }
+
+    /// R_p θ_p and R_g θ_g of a half from u and w.
+    #[inline(always)]
+    pub(super) fn arcs(&self, j: usize, x: &[R; D]) -> (R, R) {
+        let h = &self.halves[j];
+        let i = j * PER_HALF;
+        (x[i + W] + h.part_g * x[i + U], x[i + W] - h.part_p * x[i + U])
+    }
+}
+
+fn half(p: &Parameters, j: usize, omega: f64) -> HalfEquations<f64> {
+    let h = &p.halves[j];
+    let c = &p.couplings;
+    let square = omega * omega;
+    let reduced_p = h.pinion_inertia_kg_m2 / (p.pinion_radius_m * p.pinion_radius_m);
+    let reduced_g = h.gear_inertia_kg_m2 / (p.gear_radius_m * p.gear_radius_m);
+    let on_pinion = |s| Rate::new(s, h.pinion_mass_kg, omega);
+    let on_gear = |s| Rate::new(s, h.gear_mass_kg, omega);
+    let per_arc = |s: Spring, r: f64| Rate { k: s.stiffness / (r * r), c: s.damping * omega / (r * r) };
+    let cm = h.mesh_damping_n_s_per_m * omega;
+    HalfEquations {
+        sin: if j == 0 { p.helix_angle_rad.sin() } else { -p.helix_angle_rad.sin() },
+        inv_mp: 1.0 / (h.pinion_mass_kg * square),
+        inv_mg: 1.0 / (h.gear_mass_kg * square),
+        inv_me: 1.0 / (p.equivalent_mass_kg(j) * square),
+        yp: on_pinion(h.pinion_lateral),
+        zp: on_pinion(h.pinion_axial),
+        yg: on_gear(h.gear_lateral),
+        zg: on_gear(h.gear_axial),
+        yp_other: on_pinion(c.pinion_lateral),
+        zp_other: on_pinion(c.pinion_axial),
+        yg_other: on_gear(c.gear_lateral),
+        zg_other: on_gear(c.gear_axial),
+        torsion_p: per_arc(c.pinion_torsion, p.pinion_radius_m),
+        torsion_g: per_arc(c.gear_torsion, p.gear_radius_m),
+        reduced_p,
+        reduced_g,
+        part_p: reduced_p / (reduced_p + reduced_g),
+        part_g: reduced_g / (reduced_p + reduced_g),
+        inv_rp: 1.0 / (reduced_p * square),
+        inv_rg: 1.0 / (reduced_g * square),
+        inv_rw: 1.0 / ((reduced_p + reduced_g) * square),
+        cm,
+        cm_in_gap: if p.damping_in_gap { cm } else { 0.0 },
+        load: h.pinion_torque_nm / p.pinion_radius_m,
+    }
+}
