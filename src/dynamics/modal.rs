@@ -1,23 +1,33 @@
 //! Natural frequencies and static deflection with the mean mesh stiffness, in the source's twelve displacements.
 
+mod members;
+mod mode;
+
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
+use members::{members, mesh_direction};
+
 use super::error::DynamicsError;
-use super::parameters::{Parameters, Spring};
+use super::parameters::Parameters;
 
 /// Natural frequencies and mode shapes of the undamped system with mean mesh stiffness and closed contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NaturalModes {
     /// Ascending, Hz; motions that nothing holds have 0.
     pub frequencies_hz: Vec<f64>,
-    /// One per frequency, in the source's order of displacements, normalised to φᵀ M φ = 1.
+    /// One per frequency, in the source's order of displacements, normalised to φᵀ M φ = 1, with the largest displacement (of
+    /// rotations: the arc) positive. Of several modes with one frequency, which may be any mixture, those that are as plain as they can be:
+    /// free rotation first, then what moves both halves alike or against each other.
     pub shapes: Vec<[f64; 12]>,
 }
 
-/// Squared frequencies below this fraction of the largest are motions that nothing holds: far above rounding (1e-15), far
-/// below any spring that matters.
+/// Squared frequencies below this fraction of the largest are motions that nothing holds, and those closer than this are equal: far
+/// above rounding (1e-15), far below any spring that matters.
 const RIGID: f64 = 1e-12;
+
+/// Values over the source's twelve displacements.
+type Row = [f64; 12];
 
 impl NaturalModes {
     /// Solves K φ = ω² M φ by the eigenvalues of M^-½ K M^-½.
@@ -34,12 +44,20 @@ impl NaturalModes {
         let mut order: Vec<usize> = (0..12).collect();
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
         let largest = eigen.eigenvalues.amax();
-        let frequencies_hz = order
-            .iter()
-            .map(|&i| eigen.eigenvalues[i])
-            .map(|l| if l > RIGID * largest { l.sqrt() / std::f64::consts::TAU } else { 0.0 })
-            .collect();
-        let shapes = order.iter().map(|&i| std::array::from_fn(|c| eigen.eigenvectors[(c, i)] * root[c])).collect();
+        // What nothing holds is one group of equal frequencies.
+        let squares: Vec<f64> =
+            order.iter().map(|&i| eigen.eigenvalues[i]).map(|l| if l > RIGID * largest { l } else { 0.0 }).collect();
+        let frequencies_hz = squares.iter().map(|l| l.sqrt() / std::f64::consts::TAU).collect();
+        let vectors: Vec<Row> = order.iter().map(|&i| std::array::from_fn(|c| eigen.eigenvectors[(c, i)])).collect();
+        let wanted = preferred(p).map(|row| std::array::from_fn(|c| row[c] / root[c]));
+        let mut shapes = Vec::with_capacity(12);
+        let mut from = 0;
+        while from < 12 {
+            let group = squares[from..].iter().take_while(|l| **l - squares[from] <= RIGID * largest).count();
+            shapes.extend(canonical(&vectors[from..from + group], &wanted));
+            from += group;
+        }
+        let shapes = shapes.into_iter().map(|v| upright(p, std::array::from_fn(|c| v[c] * root[c]))).collect();
         Ok(Self { frequencies_hz, shapes })
     }
 
@@ -55,7 +73,7 @@ impl NaturalModes {
         for j in 0..2 {
             let side = if p.halves[j].pinion_torque_nm < 0.0 { -1.0 } else { 1.0 };
             let seat = p.halves[j].mesh_stiffness.mean_n_per_m() * side * p.half_backlash_m;
-            force += mesh_direction(p, j) * seat;
+            force += DVector::from_row_slice(&mesh_direction(p, j)) * seat;
         }
         let mut q = [0.0; 12];
         for (shape, f) in self.shapes.iter().zip(&self.frequencies_hz) {
@@ -71,18 +89,6 @@ impl NaturalModes {
     }
 }
 
-/// s_j as a row over the twelve displacements.
-pub(super) fn mesh_direction(p: &Parameters, j: usize) -> DVector<f64> {
-    let (sin, cos) = p.helix_angle_rad.sin_cos();
-    let sin = if j == 0 { sin } else { -sin };
-    let mut e = DVector::zeros(12);
-    let half = [cos, sin, cos * p.pinion_radius_m, -cos, -sin, -cos * p.gear_radius_m];
-    for (c, value) in half.into_iter().enumerate() {
-        e[6 * j + c] = value;
-    }
-    e
-}
-
 fn torques(p: &Parameters) -> DVector<f64> {
     let mut f = DVector::zeros(12);
     for (j, h) in p.halves.iter().enumerate() {
@@ -90,6 +96,81 @@ fn torques(p: &Parameters) -> DVector<f64> {
         f[6 * j + 5] = -h.pinion_torque_nm * p.gear_radius_m / p.pinion_radius_m;
     }
     f
+}
+
+/// The directions that modes of one frequency are turned to, in this order: free rotation of both halves alike and against each
+/// other, then every displacement alike (as mirror images) and against each other.
+fn preferred(p: &Parameters) -> [Row; 14] {
+    let rotation = |c: usize| match c {
+        2 => 1.0 / p.pinion_radius_m,
+        5 => 1.0 / p.gear_radius_m,
+        _ => 0.0,
+    };
+    std::array::from_fn(|i| {
+        let half = |c: usize| if i < 2 { rotation(c) } else { f64::from(u8::from(c == i / 2 - 1)) };
+        let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+        std::array::from_fn(|c| if c < 6 { half(c) } else { sign * mirrored(c) * half(c - 6) })
+    })
+}
+
+/// −1 for the axial displacements, which a mirror between the halves turns over.
+fn mirrored(c: usize) -> f64 {
+    if c % 6 == 1 || c % 6 == 4 { -1.0 } else { 1.0 }
+}
+
+/// An orthonormal basis of the space of the orthonormal `vectors` that depends on that space alone: the directions of `wanted` in
+/// turn, as far as they lie in it and are new.
+fn canonical(vectors: &[Row], wanted: &[Row]) -> Vec<Row> {
+    // As the directions span everything, one of those left always has a twelfth of its square in what is left of the space.
+    const NEW: f64 = 1e-2;
+    if vectors.len() == 1 {
+        return vectors.to_vec();
+    }
+    let dot = |a: &Row, b: &Row| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut basis: Vec<Row> = Vec::with_capacity(vectors.len());
+    for least in [NEW, 1e-9] {
+        for direction in wanted {
+            if basis.len() == vectors.len() {
+                return basis;
+            }
+            let mut inside = [0.0; 12];
+            for v in vectors {
+                let amount = dot(v, direction);
+                (0..12).for_each(|c| inside[c] += amount * v[c]);
+            }
+            for _ in 0..2 {
+                for b in &basis {
+                    let amount = dot(b, &inside);
+                    (0..12).for_each(|c| inside[c] -= amount * b[c]);
+                }
+            }
+            let square = dot(&inside, &inside);
+            if square > least * dot(direction, direction) {
+                basis.push(inside.map(|value| value / square.sqrt()));
+            }
+        }
+    }
+    // Only numbers that are not finite lead here.
+    basis.extend_from_slice(&vectors[basis.len()..]);
+    basis
+}
+
+/// The shape with its largest displacement (of rotations: the arc at the radius) positive; of equal ones the first counts.
+fn upright(p: &Parameters, shape: Row) -> Row {
+    const EQUAL: f64 = 1.0 - 1e-6;
+    let arcs = arcs(p, &shape);
+    let largest = arcs.iter().fold(0.0f64, |m, a| m.max(a.abs()));
+    let sign = arcs.iter().find(|a| a.abs() >= EQUAL * largest).map_or(1.0, |a| a.signum());
+    shape.map(|value| sign * value)
+}
+
+/// The displacements with rotations as arcs at the radii of the plane in use.
+fn arcs(p: &Parameters, shape: &Row) -> Row {
+    std::array::from_fn(|c| match c % 6 {
+        2 => shape[c] * p.pinion_radius_m,
+        5 => shape[c] * p.gear_radius_m,
+        _ => shape[c],
+    })
 }
 
 fn masses(p: &Parameters) -> [f64; 12] {
@@ -106,27 +187,9 @@ fn masses(p: &Parameters) -> [f64; 12] {
 
 fn stiffness_matrix(p: &Parameters) -> DMatrix<f64> {
     let mut k = DMatrix::zeros(12, 12);
-    let between = |k: &mut DMatrix<f64>, c: usize, spring: Spring| {
-        k[(c, c)] += spring.stiffness;
-        k[(c + 6, c + 6)] += spring.stiffness;
-        k[(c, c + 6)] -= spring.stiffness;
-        k[(c + 6, c)] -= spring.stiffness;
-    };
-    for (j, h) in p.halves.iter().enumerate() {
-        let i = 6 * j;
-        k[(i, i)] += h.pinion_lateral.stiffness;
-        k[(i + 1, i + 1)] += h.pinion_axial.stiffness;
-        k[(i + 3, i + 3)] += h.gear_lateral.stiffness;
-        k[(i + 4, i + 4)] += h.gear_axial.stiffness;
-        let e = mesh_direction(p, j);
-        k += &e * e.transpose() * h.mesh_stiffness.mean_n_per_m();
+    for member in members(p) {
+        let row = DVector::from_row_slice(&member.row);
+        k += &row * row.transpose() * member.spring.stiffness;
     }
-    let c = &p.couplings;
-    between(&mut k, 0, c.pinion_lateral);
-    between(&mut k, 1, c.pinion_axial);
-    between(&mut k, 2, c.pinion_torsion);
-    between(&mut k, 3, c.gear_lateral);
-    between(&mut k, 4, c.gear_axial);
-    between(&mut k, 5, c.gear_torsion);
     k
 }

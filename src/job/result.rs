@@ -227,6 +227,33 @@ pub struct Response {
     /// energy, over the integral of the absolute power on each coordinate; null when nothing moves.
     #[serde(default)]
     pub energy_balance_residual: Option<f64>,
+    /// What each of `natural_frequencies_hz` is, in their order: undamped, contact closed, mean mesh stiffness.
+    #[serde(default)]
+    pub natural_modes: Vec<NaturalMode>,
+}
+
+/// A natural mode and what it is made of.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct NaturalMode {
+    /// 0 for a motion that nothing holds.
+    pub frequency_hz: f64,
+    /// After the springs with at least half of the strain energy, else the two largest groups; `meshes in phase` where the halves mirror each
+    /// other, `meshes opposed` where they do the opposite.
+    pub name: String,
+    /// The 12 displacements in the source's order (y, z, rotation of pinion and gear; left, then right half), rotations as arcs at the radii of
+    /// the plane in use; the largest is 1.
+    pub shape: Vec<f64>,
+    /// Modal mass of that shape.
+    pub modal_mass_kg: f64,
+    /// Damping ratio as far as damping does not couple the modes; null for a motion that nothing holds.
+    pub damping_ratio: Option<f64>,
+    /// Share of each group of springs in the strain energy: `mesh_left`, `mesh_right`, supports (`pinion_lateral`, `gear_lateral`, `pinion_axial`,
+    /// `gear_axial`) and shafts between the halves (`pinion_halves_axial`, …).
+    pub strain_energy: BTreeMap<String, f64>,
+    /// Share of each kind of displacement in the kinetic energy: `pinion_lateral`, `pinion_axial`, `pinion_rotation`, `gear_lateral`,
+    /// `gear_axial`, `gear_rotation`.
+    pub kinetic_energy: BTreeMap<String, f64>,
 }
 
 /// A Floquet multiplier in polar form.

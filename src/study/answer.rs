@@ -1,6 +1,6 @@
 //! From a solved response to the result's `response` block.
 
-use crate::dynamics::Parameters;
+use crate::dynamics::{DynamicsError, NaturalModes, Parameters};
 use crate::job::document::{JobDocument, Plane};
 use crate::job::result::{self, PerHalf, Poincare, Rms};
 use crate::response::{self, Halves};
@@ -12,6 +12,23 @@ fn per_half(halves: Halves<f64>) -> PerHalf {
 fn interval(halves: Halves<response::Interval>) -> result::IntervalPerHalf {
     let of = |interval: response::Interval| result::Interval { low: interval.low, high: interval.high };
     result::IntervalPerHalf { left: of(halves.left), right: of(halves.right) }
+}
+
+/// The natural modes of the equations, with what they are made of.
+///
+/// # Errors
+/// [`DynamicsError`] where the equations are refused.
+pub fn natural_modes(parameters: &Parameters) -> Result<Vec<result::NaturalMode>, DynamicsError> {
+    let modes = NaturalModes::new(parameters)?.describe(parameters).into_iter().map(|mode| result::NaturalMode {
+        frequency_hz: mode.frequency_hz,
+        name: mode.name,
+        shape: mode.shape.to_vec(),
+        modal_mass_kg: mode.modal_mass_kg,
+        damping_ratio: mode.damping_ratio,
+        strain_energy: mode.strain_energy.iter().map(|(group, share)| (group.word().to_owned(), *share)).collect(),
+        kinetic_energy: mode.kinetic_energy.iter().map(|(kind, share)| ((*kind).to_owned(), *share)).collect(),
+    });
+    Ok(modes.collect())
 }
 
 fn multipliers(found: &[response::Multiplier]) -> Vec<result::FloquetMultiplier> {
@@ -66,6 +83,7 @@ pub fn block(document: &JobDocument, parameters: &Parameters, response: &respons
             pinion_axial_acceleration_m_s2: interval(intervals.pinion_axial_acceleration_m_s2),
         }),
         energy_balance_residual: summary.energy_balance_residual,
+        natural_modes: Vec::new(),
     }
 }
 

@@ -287,6 +287,9 @@ fn a_response_says_how_it_repeats_and_how_well_it_is_balanced() {
     assert!(
         share.left == share.right && (0.5..1.0).contains(&share.left) && share.left == response.fraction_in_contact
     );
+    let frequencies: Vec<f64> = response.natural_modes.iter().map(|mode| mode.frequency_hz).collect();
+    assert_eq!(frequencies, response.natural_frequencies_hz);
+    assert!(response.natural_modes.iter().any(|mode| mode.name == "mesh mode, meshes in phase"));
     check_worst("Job: balances", "energy of given_stiffness over its period", response.energy_balance_residual, 1e-8);
 }
 

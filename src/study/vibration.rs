@@ -81,8 +81,12 @@ pub fn run(
         rms: summary.rms.channels.get(&channel.name).copied().unwrap_or(0.0),
         values: channel.values.clone(),
     };
+    let mut block = answer::block(document, parameters, &response);
+    if wanted.whole {
+        block.natural_modes = answer::natural_modes(parameters).map_err(failed)?;
+    }
     Ok(Vibration {
-        summary: answer::block(document, parameters, &response),
+        summary: block,
         series: response.channels.iter().map(channel).collect(),
         warnings: warnings(summary, document.analysis.accuracy),
         end_state: Some(response.final_state.to_vec()),
