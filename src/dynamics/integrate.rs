@@ -123,11 +123,7 @@ impl<'a, const D: usize> Motion<'a, D> {
             }
             from = end;
         }
-        // Free rotation may go on for ever, everything else is a few micrometres unless something is very wrong.
-        let grown = |row: &[f64; D]| {
-            row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > LARGEST_M))
-        };
-        if grown(&self.state.x) || grown(&self.state.v) {
+        if grown(&self.state) {
             return Err(DynamicsError::Diverged { time_s: self.time_s() });
         }
         self.state.period += 1;
@@ -138,4 +134,11 @@ impl<'a, const D: usize> Motion<'a, D> {
     pub fn time_s(&self) -> f64 {
         (self.state.period as f64 + self.state.phase) * self.model.period_tau / self.model.omega_ref
     }
+}
+
+/// A state beyond all reason: free rotation may go on for ever, everything else is a few micrometres.
+pub(super) fn grown<const D: usize>(state: &State<D>) -> bool {
+    [&state.x, &state.v]
+        .iter()
+        .any(|row| row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > LARGEST_M)))
 }

@@ -22,6 +22,7 @@
 // Loops over coordinates and Taylor orders read as the formulas do with an index.
 #![allow(clippy::needless_range_loop)]
 
+mod convoy;
 mod crossing;
 mod equations;
 mod error;
@@ -46,8 +47,9 @@ pub use integrate::{Integrator, Numerics};
 pub use modal::NaturalModes;
 pub use model::Contact;
 pub use parameters::{Couplings, HalfParameters, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m};
-pub use trajectory::{Reached, advance};
+pub use trajectory::{Reached, advance, advance_many};
 
+pub(crate) use convoy::{Passenger, carry};
 pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP};
 pub(crate) use excitation::MAX_ORDER;
 pub(crate) use integrate::Motion;

@@ -179,14 +179,14 @@ pub(super) struct Rattling {
 
 impl Rattling {
     /// To be told of each change. Rattling faster than can be followed goes on by a short free step and takes the contact it
-    /// finds.
-    pub fn changed<const D: usize>(&mut self, model: &Model<D>, state: &mut State<D>, end: f64) {
+    /// finds; returns whether it did.
+    pub fn changed<const D: usize>(&mut self, model: &Model<D>, state: &mut State<D>, end: f64) -> bool {
         if self.period != state.period {
             *self = Self { period: state.period, changes: 0 };
         }
         self.changes += 1;
         if self.changes <= MOST_CHANGES_PER_PERIOD {
-            return;
+            return false;
         }
         let step = (end - state.phase).min(1e-4);
         let a = model.acceleration(state.phase, state.phase + 0.5 * step, &state.x, &state.v);
@@ -199,6 +199,7 @@ impl Rattling {
         for j in 0..Model::<D>::HALVES {
             state.contact[j] = model.contact_of(model.s(j, &state.x));
         }
+        true
     }
 }
 

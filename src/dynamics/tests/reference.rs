@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-use crate::dynamics::integrate::{Integrator, Motion};
 use crate::dynamics::equations::{U, YG, YP};
+use crate::dynamics::integrate::{Integrator, Motion};
 use crate::dynamics::model::Model;
 use crate::dynamics::segment::{Observer, Segment, Unobserved};
 use crate::dynamics::*;

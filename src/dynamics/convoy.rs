@@ -1,0 +1,317 @@
+//! Several motions side by side in lanes, each on its own clock.
+
+use super::equations::Equations;
+use super::error::DynamicsError;
+use super::excitation::MAX_ORDER;
+use super::expansion::LaneExcitations;
+use super::integrate::{Numerics, grown};
+use super::lanes::{Lanes, Real};
+use super::model::{Contact, Model, State};
+use super::recurrence::TaylorWork;
+use super::segment::Segment;
+use super::taylor::{Rattling, Stepped, Stretch, evaluate_rows, order_for, refused, step};
+use crate::simd::vectorised;
+use crate::watch::{Canceled, Watch};
+
+/// Motions that go side by side.
+pub(crate) const SIDE_BY_SIDE: usize = 8;
+
+/// One motion of a convoy: where it starts, what looks at it, and when it has got where it was to go.
+pub(crate) trait Passenger<const D: usize> {
+    fn model(&self) -> &Model<D>;
+
+    /// State at the start of a mesh period.
+    fn start(&self) -> State<D>;
+
+    /// Local error of a step relative to the size of the motion.
+    fn tolerance(&self) -> f64;
+
+    /// Whether [`Passenger::segment`] wants to see the present mesh period.
+    fn looks(&self) -> bool;
+
+    fn segment(&mut self, segment: &Segment<'_, D>);
+
+    /// A mesh period has ended in `state`. Returns whether the motion goes on.
+    fn period_ended(&mut self, state: &State<D>) -> bool;
+
+    /// The motion has ended, by itself or with an error.
+    fn ended(&mut self, numerics: Numerics, error: Option<DynamicsError>);
+}
+
+/// Steps between two looks at the watch.
+const STEPS_PER_CHECKPOINT: u32 = 2048;
+
+/// Takes all passengers to where they are going, [`SIDE_BY_SIDE`] at a time; as soon as one has arrived the next takes its lane. Each
+/// moves exactly as it would alone at the order of `tolerance`. `max_steps`: budget of each.
+///
+/// # Errors
+/// [`Canceled`] by the watch; passengers' own errors go to the passengers.
+pub(crate) fn carry<const D: usize, P: Passenger<D>>(
+    passengers: &mut [P],
+    order_tolerance: f64,
+    max_steps: u64,
+    watch: &Watch<'_>,
+) -> Result<(), Canceled> {
+    let models: Vec<Model<D>> = passengers.iter().map(|p| p.model().clone()).collect();
+    let mut convoy = Convoy::<D, SIDE_BY_SIDE>::new(order_for(order_tolerance), max_steps);
+    let mut waiting = 0;
+    let mut arrived = 0;
+    let mut since_checkpoint = 0;
+    loop {
+        for lane in 0..SIDE_BY_SIDE {
+            if convoy.riders[lane].is_none() && waiting < passengers.len() {
+                convoy.board(lane, waiting, &models[waiting], &passengers[waiting]);
+                waiting += 1;
+            }
+        }
+        if convoy.riders.iter().all(Option::is_none) {
+            return Ok(());
+        }
+        // Lanes are looked at for new passengers only after one has arrived.
+        loop {
+            let before = arrived;
+            let stepped = convoy.step();
+            arrived += convoy.settle(&stepped, &models, passengers);
+            since_checkpoint += 1;
+            if since_checkpoint == STEPS_PER_CHECKPOINT {
+                since_checkpoint = 0;
+                watch.checkpoint(arrived as f64 / passengers.len() as f64)?;
+            }
+            if arrived > before {
+                break;
+            }
+        }
+    }
+}
+
+/// Who is in a lane.
+#[derive(Clone, Copy)]
+struct Rider {
+    passenger: usize,
+    period: u64,
+    /// Index of the breakpoint at which the present smooth stretch ends.
+    breakpoint: usize,
+    steps: u64,
+    evaluations: u64,
+    rattling: Rattling,
+}
+
+/// The lanes.
+struct Convoy<'m, const D: usize, const L: usize> {
+    order: usize,
+    max_steps: u64,
+    riders: [Option<Rider>; L],
+    equations: Equations<D, Lanes<L>>,
+    excitations: LaneExcitations<'m, L>,
+    stretch: Stretch<Lanes<L>>,
+    contact: [Lanes<L>; 2],
+    size: Lanes<L>,
+    work: Box<TaylorWork<D, Lanes<L>>>,
+    /// Displacements and velocities at the end of the step.
+    end: ([Lanes<L>; D], [Lanes<L>; D]),
+    /// Polynomials of one lane, for those that look.
+    rows: Box<[[f64; D]; MAX_ORDER + 1]>,
+    force: Box<[[f64; MAX_ORDER + 1]; 2]>,
+}
+
+impl<'m, const D: usize, const L: usize> Convoy<'m, D, L> {
+    fn new(order: usize, max_steps: u64) -> Self {
+        let zero = Lanes::splat(0.0);
+        Self {
+            order,
+            max_steps,
+            riders: [None; L],
+            equations: Equations::at_rest(),
+            excitations: LaneExcitations::none(),
+            stretch: Stretch {
+                phase: zero,
+                end: zero,
+                inside: zero,
+                period_tau: Lanes::splat(1.0),
+                tolerance: Lanes::splat(1.0),
+                fixed: Lanes::splat(f64::INFINITY),
+                switching: zero,
+            },
+            contact: [zero; 2],
+            size: zero,
+            work: TaylorWork::new(),
+            end: ([zero; D], [zero; D]),
+            rows: Box::new([[0.0; D]; MAX_ORDER + 1]),
+            force: Box::new([[0.0; MAX_ORDER + 1]; 2]),
+        }
+    }
+
+    fn board(&mut self, lane: usize, passenger: usize, model: &'m Model<D>, who: &impl Passenger<D>) {
+        let state = who.start();
+        self.equations.put(lane, model);
+        self.excitations.put(lane, &model.excitations);
+        self.riders[lane] = Some(Rider {
+            passenger,
+            period: state.period,
+            breakpoint: 0,
+            steps: 0,
+            evaluations: 0,
+            rattling: Rattling::default(),
+        });
+        self.size.set(lane, 0.0);
+        let s = &mut self.stretch;
+        s.period_tau.set(lane, model.period_tau);
+        s.tolerance.set(lane, who.tolerance());
+        s.switching.set(lane, if model.switches() { 1.0 } else { 0.0 });
+        self.place(lane, &state);
+        self.aim(lane, model, 0.0, 0);
+    }
+
+    /// Puts a state into a lane.
+    fn place(&mut self, lane: usize, state: &State<D>) {
+        for c in 0..D {
+            self.end.0[c].set(lane, state.x[c]);
+            self.end.1[c].set(lane, state.v[c]);
+        }
+        for j in 0..2 {
+            self.contact[j].set(lane, f64::from(state.contact[j]));
+        }
+        self.stretch.phase.set(lane, state.phase);
+    }
+
+    /// The smooth stretch from `from` to the breakpoint of this index.
+    fn aim(&mut self, lane: usize, model: &Model<D>, from: f64, breakpoint: usize) {
+        let end = model.breakpoints[breakpoint];
+        self.stretch.end.set(lane, end);
+        self.stretch.inside.set(lane, 0.5 * (from + end));
+    }
+
+    fn state(&self, lane: usize, period: u64) -> State<D> {
+        State {
+            period,
+            phase: self.stretch.phase.get(lane),
+            x: self.end.0.map(|c| c.get(lane)),
+            v: self.end.1.map(|c| c.get(lane)),
+            contact: self.contact.map(|c| c.get(lane) as Contact),
+        }
+    }
+
+    /// One step of every lane.
+    fn step(&mut self) -> Stepped<Lanes<L>> {
+        let Self { order, equations, excitations, stretch, contact, size, work, end, .. } = self;
+        vectorised(
+            #[inline(always)]
+            || {
+                (work.rows[0], work.rows[1]) = *end;
+                let stepped = step(equations, &*excitations, *order, *stretch, *contact, size, work);
+                *end = evaluate_rows(&work.rows[..=stepped.degree], stepped.h);
+                stepped
+            },
+        )
+    }
+
+    /// What the step means to each lane's rider; returns how many have arrived.
+    fn settle<P: Passenger<D>>(
+        &mut self,
+        stepped: &Stepped<Lanes<L>>,
+        models: &'m [Model<D>],
+        passengers: &mut [P],
+    ) -> usize {
+        let mut arrived = 0;
+        for lane in 0..L {
+            let Some(mut rider) = self.riders[lane] else { continue };
+            let who = &mut passengers[rider.passenger];
+            let model = &models[rider.passenger];
+            let (h, changed) = (stepped.h.get(lane), stepped.changed.get(lane));
+            let (from, end) = (self.stretch.phase.get(lane), self.stretch.end.get(lane));
+            let to_end = stepped.to_end.get(lane) != 0.0;
+            let phase = if to_end { end } else { (from + h / model.period_tau).min(end) };
+            rider.steps += 1;
+            rider.evaluations += (stepped.degree - 1) as u64;
+            let refused = refused(model, rider.period, from, h, phase > from || changed >= 0.0);
+            let error = refused.or_else(|| {
+                (rider.steps > self.max_steps).then(|| DynamicsError::TooManySteps {
+                    time_s: (rider.period as f64 + from) * model.period_tau / model.omega_ref,
+                    limit: self.max_steps,
+                })
+            });
+            if let Some(error) = error {
+                self.leave(lane, &rider, who, Some(error));
+                arrived += 1;
+                continue;
+            }
+            if who.looks() {
+                self.show(lane, &rider, model, h, stepped.degree, who);
+            }
+            self.stretch.phase.set(lane, phase);
+            if changed >= 0.0 {
+                self.contact[changed as usize].set(lane, stepped.contact.get(lane));
+                let mut state = self.state(lane, rider.period);
+                if rider.rattling.changed(model, &mut state, end) {
+                    self.place(lane, &state);
+                }
+            }
+            if self.stretch.phase.get(lane) >= end {
+                rider.breakpoint += 1;
+                if rider.breakpoint < model.breakpoints.len() {
+                    self.aim(lane, model, end, rider.breakpoint);
+                } else {
+                    rider.period += 1;
+                    rider.breakpoint = 0;
+                    self.stretch.phase.set(lane, 0.0);
+                    self.aim(lane, model, 0.0, 0);
+                    let state = self.state(lane, rider.period);
+                    let error = grown(&state).then(|| DynamicsError::Diverged {
+                        time_s: rider.period as f64 * model.period_tau / model.omega_ref,
+                    });
+                    if error.is_some() || !who.period_ended(&state) {
+                        self.leave(lane, &rider, who, error);
+                        arrived += 1;
+                        continue;
+                    }
+                }
+            }
+            self.riders[lane] = Some(rider);
+        }
+        arrived
+    }
+
+    /// Shows the step of a lane to its passenger.
+    fn show(
+        &mut self,
+        lane: usize,
+        rider: &Rider,
+        model: &Model<D>,
+        h: f64,
+        degree: usize,
+        who: &mut impl Passenger<D>,
+    ) {
+        for n in 0..=degree {
+            for c in 0..D {
+                self.rows[n][c] = self.work.rows[n][c].get(lane);
+            }
+        }
+        for j in 0..Model::<D>::HALVES {
+            for n in 0..=degree {
+                self.force[j][n] = self.work.force[j][n].get(lane);
+            }
+        }
+        who.segment(&Segment {
+            model,
+            period: rider.period,
+            phase: self.stretch.phase.get(lane),
+            h,
+            degree,
+            rows: &self.rows,
+            force: &self.force,
+            contact: self.contact.map(|c| c.get(lane) as Contact),
+        });
+    }
+
+    /// Empties a lane: what is left in it stands still.
+    fn leave(&mut self, lane: usize, rider: &Rider, who: &mut impl Passenger<D>, error: Option<DynamicsError>) {
+        self.riders[lane] = None;
+        let rest = State { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [0; 2] };
+        self.place(lane, &rest);
+        self.stretch.end.set(lane, 0.0);
+        self.stretch.inside.set(lane, 0.0);
+        self.stretch.switching.set(lane, 0.0);
+        let numerics = Numerics { steps: rider.steps, rejected_steps: 0, force_evaluations: rider.evaluations };
+        who.ended(numerics, error);
+    }
+}
