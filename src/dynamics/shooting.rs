@@ -140,7 +140,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
 }
 
 /// Displacements along which no spring acts, from the eigenvectors of M^-½ K M^-½ in solver coordinates.
-fn free_motions<const D: usize>(
+pub(super) fn free_motions<const D: usize>(
     model: &Model<D>,
     active: &[usize],
     masses: &[f64; D],

@@ -4,6 +4,7 @@
 #![allow(clippy::needless_range_loop)]
 
 mod analysis;
+mod budget;
 mod channel;
 mod confidence;
 mod energy;

@@ -2,8 +2,9 @@
 
 use std::collections::VecDeque;
 
-use crate::dynamics::{Both, DynamicsError, Model, PER_HALF, W};
-use crate::dynamics::{Deviation, Motion, State, Unobserved, Variation, difference};
+use crate::dynamics::{
+    Both, Deviation, DynamicsError, FreeMotions, Model, Motion, PER_HALF, State, Unobserved, Variation, W, difference,
+};
 use crate::watch::Watch;
 
 /// The longest period that is looked for, in mesh periods.
@@ -16,14 +17,22 @@ pub(super) const CHAOS_PER_MESH_PERIOD: f64 = 0.01;
 /// States at the starts of the last mesh periods.
 pub(super) struct Section<const D: usize> {
     states: VecDeque<State<D>>,
+    free: FreeMotions<D>,
 }
 
 impl<const D: usize> Section<D> {
+    /// States as they are: for motions of which it is not asked whether they repeat.
     pub fn new() -> Self {
-        Self { states: VecDeque::with_capacity(LONGEST_PERIOD + 1) }
+        Self { states: VecDeque::with_capacity(LONGEST_PERIOD + 1), free: FreeMotions::none() }
     }
 
-    pub fn push(&mut self, state: State<D>) {
+    /// States without their free motions, whose drift keeps no motion from repeating.
+    pub fn held(model: &Model<D>) -> Result<Self, DynamicsError> {
+        Ok(Self { free: FreeMotions::new(model)?, ..Self::new() })
+    }
+
+    pub fn push(&mut self, mut state: State<D>) {
+        (state.x, state.v) = self.free.held(&(state.x, state.v));
         if self.states.len() > LONGEST_PERIOD {
             self.states.pop_front();
         }
@@ -84,22 +93,24 @@ pub(super) fn largest<const D: usize>(d: &Deviation<D>) -> f64 {
 
 /// Largest Lyapunov exponent per mesh period, from one deviation carried along `periods` mesh periods of the motion (the first
 /// tenth only turns it into the fastest direction).
+///
+/// Deviations along free motions are taken out after every mesh period: they stay for ever (or grow with time, not
+/// exponentially), so over any finite time they would hide every exponent below zero: a mean that tends to 0 like
+/// ln(t)/t from whatever the motion's own is.
 pub(super) fn lyapunov<const D: usize>(
     motion: &mut Motion<'_, D>,
     variation_model: &Model<D>,
     periods: u64,
     watch: &Watch<'_>,
 ) -> Result<f64, DynamicsError> {
-    let mut start = ([0.0; D], [0.0; D]);
-    for (i, c) in variation_model.active().enumerate() {
-        // No direction is preferred, none is left out.
-        start.0[c] = 1.0 / (i + 1) as f64;
-    }
-    let mut variation = Variation::new(variation_model, vec![start], 1e-9);
+    let start = every_way(variation_model);
+    let free = FreeMotions::new(variation_model)?;
+    let mut variation = Variation::new(variation_model, vec![free.held(&start)], 1e-9);
     let (mut sum, mut counted) = (0.0, 0u64);
     for period in 0..periods {
         let before = largest(&variation.columns[0]);
         motion.advance_period(&mut Both(&mut Unobserved, &mut variation), watch, 0.0)?;
+        variation.columns[0] = free.held(&variation.columns[0]);
         let (x, v) = &mut variation.columns[0];
         let after = largest(&(*x, *v));
         if !(after > 0.0 && after.is_finite()) {
@@ -112,4 +123,28 @@ pub(super) fn lyapunov<const D: usize>(
         x.iter_mut().chain(v.iter_mut()).for_each(|c| *c /= after);
     }
     Ok(sum / counted.max(1) as f64)
+}
+
+/// What is left of a deviation after one mesh period of the motion, free motions apart: its largest component over what it was.
+pub(super) fn faded<const D: usize>(
+    motion: &mut Motion<'_, D>,
+    variation_model: &Model<D>,
+    free: &FreeMotions<D>,
+    watch: &Watch<'_>,
+) -> Result<f64, DynamicsError> {
+    let start = free.held(&every_way(variation_model));
+    let mut variation = Variation::new(variation_model, vec![start], 1e-6);
+    motion.advance_period(&mut Both(&mut Unobserved, &mut variation), watch, 0.0)?;
+    let left = largest(&free.held(&variation.columns[0])) / largest(&start);
+    // An infinite or undefined answer is no sign of fading.
+    Ok(if left.is_nan() { f64::INFINITY } else { left })
+}
+
+/// A deviation that prefers no direction and leaves none out.
+fn every_way<const D: usize>(model: &Model<D>) -> Deviation<D> {
+    let mut start = ([0.0; D], [0.0; D]);
+    for (i, c) in model.active().enumerate() {
+        start.0[c] = 1.0 / (i + 1) as f64;
+    }
+    start
 }

@@ -138,7 +138,7 @@ impl Run<'_> {
             },
             period: found.orbit.as_ref().map(|(n, _)| *n),
             floquet: found.floquet,
-            multipliers: found.orbit.as_ref().map(|_| {
+            multipliers: found.orbit.as_ref().filter(|_| !found.multipliers.is_empty()).map(|_| {
                 found.multipliers.iter().map(|m| Multiplier { modulus: m.norm(), angle_rad: m.arg() }).collect()
             }),
             lyapunov: found.lyapunov,
@@ -244,7 +244,8 @@ impl Run<'_> {
         beside: &mut impl Observer<D>,
     ) -> Result<Record<D>, DynamicsError> {
         let model = motion.model;
-        let mut recent = Section::new();
+        // A motion of which it is known that it repeats is not asked.
+        let mut recent = if periods > 8 { Section::held(model)? } else { Section::new() };
         let mut points = Vec::with_capacity(periods as usize);
         let batch = (periods / BATCHES).max(1);
         let mut batches = Vec::new();

@@ -2,22 +2,37 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use super::regime::{CHAOS_PER_MESH_PERIOD, Section, largest, lyapunov};
+use super::budget::{Budget, exhausted, steps_per_period};
+use super::regime::{CHAOS_PER_MESH_PERIOD, Section, faded, largest, lyapunov};
 use crate::dynamics::{
-    Deviation, DynamicsError, Integrator, Limits, Model, Motion, Numerics, PER_HALF, Shooting, State, Unobserved,
-    difference,
+    Deviation, DynamicsError, FreeMotions, Integrator, Limits, Model, Motion, Numerics, PER_HALF, Shooting, State,
+    Unobserved, difference,
 };
 
 /// Mesh periods after which a motion that has not come near to repeating is taken not to repeat.
 const PATIENCE_MESH_PERIODS: u64 = 1500;
+/// With fewer mesh periods than this a motion cannot be said not to repeat.
+const LEAST_PATIENCE_MESH_PERIODS: u64 = 40;
 /// Relative change over its period from which Newton's method is tried.
 const NEAR_REPEAT: f64 = 1e-3;
 /// Mesh periods between two tries.
 const BETWEEN_TRIES: u64 = 40;
 /// Mesh periods over which a Lyapunov exponent is averaged.
 const LYAPUNOV_MESH_PERIODS: u64 = 400;
-/// Length of the record of a motion that does not repeat.
+/// Length of the record of a motion that does not repeat, and the steps it may take.
 const LONG_RECORD_MESH_PERIODS: u64 = 2000;
+const LONG_RECORD_STEPS: u64 = 4_000_000;
+/// Steps of a mesh period beyond which the motion is first followed through a few periods in the hope that everything has died away
+/// then: the linear map takes as many deviations along as there are displacements and velocities.
+const MANY_STEPS_PER_PERIOD: f64 = 2000.0;
+/// How many periods, and by how much the change has to fall from one to the next.
+const SOON_MESH_PERIODS: u64 = 6;
+const SOON_FALL: f64 = 0.03;
+/// What is left of a deviation after a mesh period when everything dies away within it.
+const FADED: f64 = 0.01;
+/// Multiplier from which a motion's start is corrected once more with a finer tolerance: an error of the map moves
+/// the start of a motion that hardly decays by 1/(1 - multiplier) times as much.
+const SLOW_DECAY: f64 = 0.95;
 
 /// A motion ready to be recorded.
 pub(super) struct Found<const D: usize> {
@@ -50,62 +65,150 @@ pub(super) struct Search<'a, const D: usize> {
 impl<const D: usize> Search<'_, D> {
     /// The steady state reached from `start`, or the periodic one without loss of contact when it exists and is stable.
     pub fn run(&self, start: State<D>) -> Result<Found<D>, DynamicsError> {
-        let shooting = Shooting::new(self.model, self.mean_stiffness_n_per_m, self.limits)?;
+        let mut budget = Budget::new::<D>(&self.limits);
         let mut numerics = Numerics::default();
-        if let Some(found) = self.without_separation(&shooting, start, &mut numerics)? {
+        if steps_per_period(self.model) > MANY_STEPS_PER_PERIOD
+            && let Some(found) = self.soon(start, &mut budget, &mut numerics)?
+        {
             return Ok(found);
         }
-        self.with_separation(&shooting, start, numerics)
-    }
-
-    fn motion(&self, start: State<D>) -> Motion<'_, D> {
-        Motion::new(self.model, start, Integrator::Taylor, self.limits.tolerance, self.limits.max_steps)
-    }
-
-    /// With contact held the equations are linear: one period from any start gives the periodic solution.
-    fn without_separation(
-        &self,
-        shooting: &Shooting<'_, D>,
-        start: State<D>,
-        numerics: &mut Numerics,
-    ) -> Result<Option<Found<D>>, DynamicsError> {
-        let held = self.model.holding_contact();
-        let mut first = start;
-        for j in 0..Model::<D>::HALVES {
-            first.contact[j] = if self.model.halves[j].load < 0.0 { -1 } else { 1 };
+        if let Some(found) = self.without_separation(start, &mut budget, &mut numerics)? {
+            return Ok(found);
         }
-        let once = shooting.map(&held, first, 1)?;
-        *numerics += once.numerics;
-        let defect = difference(&once.end, &first);
-        let unbalanced_n = shooting.unbalanced_n(&defect, 1);
+        self.with_separation(start, &mut budget, numerics)
+    }
+
+    fn motion(&self, start: State<D>, budget: &Budget) -> Motion<'_, D> {
+        let Limits { tolerance, .. } = self.limits;
+        Motion::new(self.model, start, Integrator::Taylor, tolerance, budget.steps(0))
+    }
+
+    /// The period map under what is left of the budget.
+    fn shooting<'s>(&'s self, model: &'s Model<D>, budget: &Budget) -> Result<Shooting<'s, D>, DynamicsError> {
+        Shooting::new(model, self.mean_stiffness_n_per_m, budget.limits(&self.limits, 2 * model.active().count()))
+    }
+
+    /// Fails when the mean load has a part along a motion that nothing holds.
+    fn balanced(&self, shooting: &Shooting<'_, D>, defect: &Deviation<D>) -> Result<(), DynamicsError> {
+        let unbalanced_n = shooting.unbalanced_n(defect, 1);
         let load = (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.largest_push_n(j)));
         // Rounding and truncation leave a little; a real imbalance is far above.
         if unbalanced_n > 1e-6 * load {
             return Err(DynamicsError::Unbalanced { force_n: unbalanced_n });
         }
-        let within = shooting.multipliers(&once.map);
-        let modulus = within.first().map(|m| m.norm());
-        if !modulus.is_some_and(|m| m < 1.0) {
+        Ok(())
+    }
+
+    /// A motion of which nothing is left after a mesh period but what that period's excitation makes: found by following it, for a
+    /// few steps where the map would take very many. None when the transient does not die so fast.
+    fn soon(
+        &self,
+        start: State<D>,
+        budget: &mut Budget,
+        numerics: &mut Numerics,
+    ) -> Result<Option<Found<D>>, DynamicsError> {
+        let free = FreeMotions::new(self.model)?;
+        let mut motion = self.motion(start, budget);
+        let mut section = Section::held(self.model)?;
+        section.push(motion.state);
+        let (mut last, mut before) = (motion.state, f64::INFINITY);
+        let mut settled = false;
+        for _ in 0..SOON_MESH_PERIODS {
+            last = motion.state;
+            motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
+            section.push(motion.state);
+            let change = section.change(1).unwrap_or(f64::INFINITY);
+            settled = change <= 10.0 * self.limits.tolerance;
+            if settled || change > SOON_FALL * before {
+                break;
+            }
+            before = change;
+        }
+        budget.spend(&motion.numerics, 0);
+        *numerics += motion.numerics;
+        let steps = motion.numerics.steps / (motion.state.period - start.period).max(1);
+        if !settled || !budget.affords(steps, 1) {
             return Ok(None);
         }
+        let near = State { period: 0, ..last };
+        // Everything else might still be held by some motion that this start did not wake.
+        let mut fades = |model: &Model<D>, free: &FreeMotions<D>| {
+            let mut motion = self.motion(near, budget);
+            let left = faded(&mut motion, model, free, self.limits.watch)?;
+            budget.spend(&motion.numerics, 1);
+            *numerics += motion.numerics;
+            Ok::<_, DynamicsError>(left < FADED)
+        };
+        if !fades(self.model, &free)? {
+            return Ok(None);
+        }
+        if D == PER_HALF {
+            let opposite = self.model.against_symmetry();
+            if !fades(&opposite, &FreeMotions::new(&opposite)?)? {
+                return Ok(None);
+            }
+        }
+        let shooting = self.shooting(self.model, budget)?;
+        let defect = difference(&motion.state, &last);
+        self.balanced(&shooting, &defect)?;
+        let n = 2 * self.model.active().count();
+        let nothing_left = DMatrix::zeros(n, n);
+        let Some(correction) = shooting.correction(&defect, &nothing_left, 1) else { return Ok(None) };
+        Ok(Some(Found {
+            start: moved(self.model, near, &correction),
+            record: 1,
+            orbit: Some((1, nothing_left)),
+            floquet: None,
+            multipliers: Vec::new(),
+            lyapunov: None,
+            leaves_symmetry: false,
+            tolerance: self.limits.tolerance,
+            numerics: *numerics,
+        }))
+    }
+
+    /// With contact held the equations are linear: one period from any start gives the periodic solution.
+    fn without_separation(
+        &self,
+        start: State<D>,
+        budget: &mut Budget,
+        numerics: &mut Numerics,
+    ) -> Result<Option<Found<D>>, DynamicsError> {
+        let deviations = 2 * self.model.active().count();
+        let held = self.model.holding_contact();
+        let mut first = start;
+        for j in 0..Model::<D>::HALVES {
+            first.contact[j] = if self.model.halves[j].load < 0.0 { -1 } else { 1 };
+        }
+        let shooting = self.shooting(self.model, budget)?;
+        let once = shooting.map(&held, first, 1)?;
+        budget.spend(&once.numerics, deviations);
+        *numerics += once.numerics;
+        let defect = difference(&once.end, &first);
+        self.balanced(&shooting, &defect)?;
+        let within = shooting.multipliers(&once.map);
+        let modulus = within.first().map(|m| m.norm());
+        let Some(modulus) = modulus.filter(|m| *m < 1.0) else { return Ok(None) };
         let Some(correction) = shooting.correction(&defect, &once.map, 1) else { return Ok(None) };
         let orbit_start = moved(self.model, first, &correction);
         if orbit_start.contact != first.contact {
             return Ok(None);
         }
-        let mut motion = self.motion(orbit_start);
+        let mut motion = self.motion(orbit_start, budget);
         motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
+        budget.spend(&motion.numerics, 0);
         *numerics += motion.numerics;
         if motion.contact_changed {
             return Ok(None);
         }
-        let (against, multipliers) = self.with_those_against_symmetry(within, orbit_start, 1)?;
+        let start = self.polished(&shooting, (orbit_start, 1), &once.map, modulus, budget, numerics)?;
+        let (against, multipliers) = self.with_those_against_symmetry(within, start, 1, budget)?;
         Ok(Some(Found {
+            start,
             multipliers,
-            start: orbit_start,
             record: 1,
             orbit: Some((1, once.map)),
-            floquet: modulus.map(|m| m.max(against)),
+            floquet: Some(modulus.max(against)),
             lyapunov: None,
             leaves_symmetry: against > 1.0,
             tolerance: self.limits.tolerance,
@@ -115,52 +218,59 @@ impl<const D: usize> Search<'_, D> {
 
     fn with_separation(
         &self,
-        shooting: &Shooting<'_, D>,
         start: State<D>,
+        budget: &mut Budget,
         mut numerics: Numerics,
     ) -> Result<Found<D>, DynamicsError> {
-        let mut motion = self.motion(start);
-        let mut section = Section::new();
+        let all = budget.steps(0);
+        let mut motion = self.motion(start, budget);
+        let mut section = Section::held(self.model)?;
         section.push(motion.state);
         let mut next_try = 8;
-        for period in 1..=PATIENCE_MESH_PERIODS {
-            let fraction = 0.9 * period as f64 / PATIENCE_MESH_PERIODS as f64;
+        let mut followed = 0;
+        // Half of the budget is kept for what follows.
+        while followed < PATIENCE_MESH_PERIODS && motion.numerics.steps <= all / 2 {
+            followed += 1;
+            let fraction = 0.9 * followed as f64 / PATIENCE_MESH_PERIODS as f64;
             motion.advance_period(&mut Unobserved, self.limits.watch, fraction)?;
             self.limits.watch.checkpoint(fraction)?;
             section.push(motion.state);
-            if period < next_try {
+            if followed < next_try {
                 continue;
             }
             if let Some((n, _)) = section.repeats(NEAR_REPEAT) {
-                next_try = period + BETWEEN_TRIES;
-                if let Some(mut found) = self.newton(shooting, motion.state, n as u64, section.size())? {
+                next_try = followed + BETWEEN_TRIES;
+                let found = self.newton(motion.state, n as u64, section.size(), budget)?;
+                if let Some(mut found) = found {
                     numerics += motion.numerics;
                     found.numerics += numerics;
                     return Ok(found);
                 }
             }
         }
+        budget.spend(&motion.numerics, 0);
         numerics += motion.numerics;
-        motion.numerics = Numerics::default();
+        let steps = motion.numerics.steps / followed.max(1);
+        if followed < PATIENCE_MESH_PERIODS.min(LEAST_PATIENCE_MESH_PERIODS) {
+            return Err(exhausted(all, motion.time_s()));
+        }
         if self.must_repeat {
             let change = section.change(1).unwrap_or(f64::INFINITY);
-            return Err(DynamicsError::NotPeriodic { mesh_periods: PATIENCE_MESH_PERIODS, change });
+            return Err(DynamicsError::NotPeriodic { mesh_periods: followed, change });
         }
-        let mut across = self.motion(motion.state);
-        let exponent = lyapunov(&mut across, self.model, LYAPUNOV_MESH_PERIODS, self.limits.watch)?;
-        numerics += across.numerics;
-        let leaves_symmetry = if D == PER_HALF {
-            let mut against = self.motion(motion.state);
-            let opposite = self.model.against_symmetry();
-            let exponent = lyapunov(&mut against, &opposite, LYAPUNOV_MESH_PERIODS, self.limits.watch)?;
-            numerics += against.numerics;
-            exponent > CHAOS_PER_MESH_PERIOD
-        } else {
-            false
+        let periods = LYAPUNOV_MESH_PERIODS.min(budget.steps(1) / 2 / steps.max(1));
+        let mut exponent_of = |model: &Model<D>| {
+            let mut across = self.motion(motion.state, budget);
+            let exponent = lyapunov(&mut across, model, periods, self.limits.watch)?;
+            budget.spend(&across.numerics, 1);
+            numerics += across.numerics;
+            Ok::<_, DynamicsError>(exponent)
         };
+        let exponent = exponent_of(self.model)?;
+        let leaves_symmetry = D == PER_HALF && exponent_of(&self.model.against_symmetry())? > CHAOS_PER_MESH_PERIOD;
         Ok(Found {
             start: motion.state,
-            record: LONG_RECORD_MESH_PERIODS,
+            record: LONG_RECORD_MESH_PERIODS.min(LONG_RECORD_STEPS / steps.max(1)).max(LEAST_PATIENCE_MESH_PERIODS),
             orbit: None,
             floquet: None,
             multipliers: Vec::new(),
@@ -174,32 +284,35 @@ impl<const D: usize> Search<'_, D> {
     /// Newton's method on the map over `n` mesh periods; None when it does not lead to a stable motion close by.
     fn newton(
         &self,
-        shooting: &Shooting<'_, D>,
         near: State<D>,
         n: u64,
         size: f64,
+        budget: &mut Budget,
     ) -> Result<Option<Found<D>>, DynamicsError> {
+        let deviations = 2 * self.model.active().count();
+        let free = FreeMotions::new(self.model)?;
         let mut start = State { period: 0, ..near };
         let mut numerics = Numerics::default();
         let mut last = f64::INFINITY;
         for _ in 0..10 {
+            let shooting = self.shooting(self.model, budget)?;
             let round = shooting.map(self.model, start, n)?;
+            budget.spend(&round.numerics, deviations);
             numerics += round.numerics;
             let defect = difference(&round.end, &start);
             let change = largest(&defect) / size;
             if change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last) {
                 let within = shooting.multipliers(&round.map);
                 let modulus = within.first().map(|m| m.norm());
-                if !modulus.is_some_and(|m| m < 1.0) {
-                    return Ok(None);
-                }
-                let (against, multipliers) = self.with_those_against_symmetry(within, start, n)?;
+                let Some(modulus) = modulus.filter(|m| *m < 1.0) else { return Ok(None) };
+                let start = self.polished(&shooting, (start, n), &round.map, modulus, budget, &mut numerics)?;
+                let (against, multipliers) = self.with_those_against_symmetry(within, start, n, budget)?;
                 return Ok(Some(Found {
                     multipliers,
                     start,
                     record: n,
                     orbit: Some((n, round.map)),
-                    floquet: modulus.map(|m| m.max(against).powf(1.0 / n as f64)),
+                    floquet: Some(modulus.max(against).powf(1.0 / n as f64)),
                     lyapunov: None,
                     leaves_symmetry: against > 1.0,
                     tolerance: self.limits.tolerance,
@@ -208,12 +321,38 @@ impl<const D: usize> Search<'_, D> {
             }
             last = change;
             let Some(correction) = shooting.correction(&defect, &round.map, n) else { return Ok(None) };
-            if largest(&correction) > 0.1 * size {
+            // A free motion may need any speed to close.
+            if largest(&free.held(&correction)) > 0.1 * size {
                 return Ok(None);
             }
             start = moved(self.model, start, &correction);
         }
         Ok(None)
+    }
+
+    /// The start of a motion that hardly decays, corrected by what it fails to close when it is followed more finely.
+    fn polished(
+        &self,
+        shooting: &Shooting<'_, D>,
+        (start, n): (State<D>, u64),
+        map: &DMatrix<f64>,
+        modulus: f64,
+        budget: &mut Budget,
+        numerics: &mut Numerics,
+    ) -> Result<State<D>, DynamicsError> {
+        let fine = (1e-3 * self.limits.tolerance).max(1e-15);
+        if modulus < SLOW_DECAY || fine >= self.limits.tolerance {
+            return Ok(start);
+        }
+        let mut motion = Motion::new(self.model, start, Integrator::Taylor, fine, budget.steps(0));
+        for _ in 0..n {
+            motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
+        }
+        budget.spend(&motion.numerics, 0);
+        *numerics += motion.numerics;
+        let correction = shooting.correction(&difference(&motion.state, &start), map, n);
+        let better = correction.map(|by| moved(self.model, start, &by));
+        Ok(better.filter(|b| b.contact == start.contact).map_or(start, |b| State { period: start.period, ..b }))
     }
 
     /// Largest modulus of the Floquet multipliers of deviations against the mirror symmetry over `n` periods (0 with twelve
@@ -223,13 +362,15 @@ impl<const D: usize> Search<'_, D> {
         mut within: Vec<Complex<f64>>,
         start: State<D>,
         n: u64,
+        budget: &mut Budget,
     ) -> Result<(f64, Vec<Complex<f64>>), DynamicsError> {
         if D != PER_HALF {
             return Ok((0.0, within));
         }
         let opposite = self.model.against_symmetry();
-        let shooting = Shooting::new(&opposite, self.mean_stiffness_n_per_m, self.limits)?;
+        let shooting = self.shooting(&opposite, budget)?;
         let round = shooting.map(self.model, start, n)?;
+        budget.spend(&round.numerics, 2 * opposite.active().count());
         let against = shooting.multipliers(&round.map);
         let largest = against.first().map_or(f64::INFINITY, |m| m.norm());
         within.extend(against);

@@ -1,0 +1,85 @@
+//! What a search for a steady motion may spend.
+
+use crate::dynamics::{DynamicsError, Limits, Model, Numerics, PER_HALF};
+
+/// Work of a search in all its parts: transient, maps, exponents. One unit is one step of the six coordinates of one half, or of
+/// one deviation carried along with them: 0.5 to 1 µs on a processor of 2020, so that a search ends within some 20 s. It counts steps, not
+/// seconds, so that equal input ends in the same way on every machine.
+const SEARCH_UNITS: u64 = 25_000_000;
+
+/// Work that is left.
+pub(super) struct Budget {
+    left: u64,
+    /// Steps after which any one motion ends, whatever is left.
+    max_steps: u64,
+    /// Units of one step of the motion itself.
+    per_step: u64,
+}
+
+impl Budget {
+    pub fn new<const D: usize>(limits: &Limits<'_>) -> Self {
+        let per_step = (D / PER_HALF) as u64;
+        Self {
+            left: SEARCH_UNITS.min(limits.max_steps.saturating_mul(per_step)),
+            max_steps: limits.max_steps,
+            per_step,
+        }
+    }
+
+    /// Steps that a motion which carries `deviations` may still take.
+    pub fn steps(&self, deviations: usize) -> u64 {
+        (self.left / (self.per_step * (1 + deviations as u64))).min(self.max_steps)
+    }
+
+    /// Whether a motion of `steps` steps that carries `deviations` can be afforded.
+    pub fn affords(&self, steps: u64, deviations: usize) -> bool {
+        steps <= self.steps(deviations)
+    }
+
+    /// Limits under which a motion that carries `deviations` keeps within the budget.
+    pub fn limits<'a>(&self, of: &Limits<'a>, deviations: usize) -> Limits<'a> {
+        Limits { max_steps: self.steps(deviations), ..*of }
+    }
+
+    /// Takes off what a motion that carried `deviations` has spent.
+    pub fn spend(&mut self, numerics: &Numerics, deviations: usize) {
+        let steps = numerics.steps + numerics.rejected_steps;
+        self.left = self.left.saturating_sub(steps * self.per_step * (1 + deviations as u64));
+    }
+}
+
+/// A rough upper estimate of the steps of a mesh period: what the fastest vibration and the fastest decay ask of a series of finite
+/// reach, and the edges of the excitations. Good enough to choose a way by.
+pub(super) fn steps_per_period<const D: usize>(model: &Model<D>) -> f64 {
+    /// Scaled time (of the fastest rate) that a step of the usual order covers.
+    const REACH: f64 = 3.0;
+    let masses = model.masses_kg();
+    let rest = model.acceleration(0.5, 0.5, &[0.0; D], &[0.0; D]);
+    // Frobenius norm of the damping matrix over roots of the masses: no decay is faster. At rest in mid-gap the mesh damper may not act, so
+    // it is looked at in contact too.
+    let mut norm = 0.0f64;
+    for pressed in [0.0, 1.0] {
+        let mut x = [0.0; D];
+        let mut at = rest;
+        if pressed > 0.0 {
+            for j in 0..Model::<D>::HALVES {
+                x[j * PER_HALF + crate::dynamics::U] = 2.0 * model.b / model.cos + f64::MIN_POSITIVE;
+            }
+            at = model.acceleration(0.5, 0.5, &x, &[0.0; D]);
+        }
+        let mut sum = 0.0;
+        for c in 0..D {
+            let mut v = [0.0; D];
+            v[c] = 1.0;
+            let a = model.acceleration(0.5, 0.5, &x, &v);
+            sum += (0..D).map(|r| (a[r] - at[r]).powi(2) * masses[r] / masses[c]).sum::<f64>();
+        }
+        norm = norm.max(sum.sqrt());
+    }
+    model.period_tau * norm.max(1.0) / REACH + model.breakpoints.len() as f64
+}
+
+/// The answer to a search whose budget is used up at `time_s`.
+pub(super) fn exhausted(steps: u64, time_s: f64) -> DynamicsError {
+    DynamicsError::TooManySteps { time_s, limit: steps }
+}
