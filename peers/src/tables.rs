@@ -1,0 +1,119 @@
+//! The tables, as Markdown.
+
+use std::fmt::Write;
+
+use crate::case::Case;
+use crate::measure::{Ladder, PERIODS, error_periods};
+use crate::methods::Whose;
+
+/// The error at which times are compared.
+const COMPARED: f64 = 1e-6;
+
+/// Ends the name of a method that is begun afresh at the edges of the impact.
+pub const RESTARTED: &str = ", restarted";
+
+/// The ladders of a case, of those that were run both ways the faster at the compared error only.
+pub fn better<'a>(case: &Case, ladders: &'a [Ladder]) -> Vec<&'a Ladder> {
+    let of_case = || ladders.iter().filter(|l| l.case == case.name);
+    let time = |l: &Ladder| l.seconds_at(COMPARED).unwrap_or(f64::INFINITY);
+    let other = |l: &Ladder| match l.name.strip_suffix(RESTARTED) {
+        Some(straight) => of_case().find(|o| o.name == straight),
+        None => of_case().find(|o| o.name.strip_suffix(RESTARTED) == Some(&l.name)),
+    };
+    // Of two that do not reach it, the restarted one.
+    let keep = |l: &&Ladder| match other(l) {
+        None => true,
+        Some(o) if time(l) == time(o) => l.name.ends_with(RESTARTED),
+        Some(o) => time(l) < time(o),
+    };
+    of_case().filter(keep).collect()
+}
+
+/// The fastest at the compared error.
+fn fastest<'a>(ladders: &[&'a Ladder], of: impl Fn(&Ladder) -> bool) -> Option<(&'a Ladder, f64)> {
+    let times = ladders.iter().filter(|l| of(l)).filter_map(|l| l.seconds_at(COMPARED).map(|t| (*l, t)));
+    times.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+pub fn all(cases: &[Case], ladders: &[Ladder]) -> String {
+    let kept: Vec<Vec<&Ladder>> = cases.iter().map(|case| better(case, ladders)).collect();
+    let mut out = format!(
+        "Time per mesh period at a relative error of {COMPARED:.0e} (r: restarted at the edges of the impact):\n\n| method |"
+    );
+    for case in cases {
+        let _ = write!(out, " {}, after {} periods |", case.name, error_periods(case));
+    }
+    let _ = writeln!(out, "\n|---|{}", "---|".repeat(cases.len()));
+    let plain = |l: &Ladder| l.name.trim_end_matches(RESTARTED).to_owned();
+    for name in kept[0].iter().map(|l| plain(l)) {
+        let _ = write!(out, "| {name} |");
+        for kept in &kept {
+            let ladder = kept.iter().find(|l| plain(l) == name);
+            let _ = match ladder.and_then(|l| l.seconds_at(COMPARED).map(|t| (l, t))) {
+                Some((l, t)) => write!(out, " {}{} |", time(t), if l.name.ends_with(RESTARTED) { " r" } else { "" }),
+                None => write!(out, " not reached |"),
+            };
+        }
+        out.push('\n');
+    }
+    out.push_str("\nRatios to herringbone Taylor, as the product would choose:\n\n| against |");
+    for case in cases {
+        let _ = write!(out, " {} |", case.name);
+    }
+    let _ = writeln!(out, "\n|---|{}", "---|".repeat(cases.len()));
+    let ratio = |what: &str, of: &dyn Fn(&Ladder) -> bool, ours: &str, out: &mut String| {
+        let _ = write!(out, "| {what} |");
+        for kept in &kept {
+            let own = fastest(kept, |l| l.whose == Whose::Own && l.name == ours);
+            let _ = match (own, fastest(kept, of)) {
+                (Some((_, own)), Some((peer, t))) => write!(out, " {:.1} ({}) |", t / own, peer.name),
+                _ => write!(out, " not reached |"),
+            };
+        }
+        out.push('\n');
+    };
+    const OURS: &str = "herringbone Taylor";
+    ratio("best peer", &|l| l.whose == Whose::Peer, OURS, &mut out);
+    ratio("SciPy DOP853", &|l| l.name.starts_with("SciPy DOP853"), OURS, &mut out);
+    ratio("best of SciPy", &|l| l.whose == Whose::Scipy, OURS, &mut out);
+    ratio(
+        "best peer, ours with 12 coordinates",
+        &|l| l.whose == Whose::Peer,
+        "herringbone Taylor, 12 coordinates",
+        &mut out,
+    );
+    out.push_str("\nEvery rung:\n");
+    for case in cases {
+        let _ = writeln!(
+            out,
+            "\n| case {}: method | tolerance | error after {} periods | error after {PERIODS} periods | time per mesh period |\n|---|---|---|---|---|",
+            case.name,
+            error_periods(case)
+        );
+        for ladder in ladders.iter().filter(|l| l.case == case.name) {
+            for r in &ladder.rungs {
+                let _ = writeln!(
+                    out,
+                    "| {} | {:.1e} | {:.1e} | {:.1e} | {} |",
+                    ladder.name,
+                    r.tolerance,
+                    r.error,
+                    r.late_error,
+                    time(r.seconds)
+                );
+            }
+        }
+    }
+    out
+}
+
+/// Three digits, in µs.
+fn time(seconds: f64) -> String {
+    let micro = seconds * 1e6;
+    let digits = (2 - micro.log10().floor() as i32).clamp(0, 2) as usize;
+    let rounded = format!("{micro:.digits$}");
+    match rounded.split_once('.') {
+        None if rounded.len() > 4 => format!("{} {} µs", &rounded[..rounded.len() - 3], &rounded[rounded.len() - 3..]),
+        _ => format!("{rounded} µs"),
+    }
+}
