@@ -40,6 +40,9 @@ pub struct JobDocument {
     pub axes: Vec<Axis>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub continuation: Option<Continuation>,
+    /// What the rows of a sweep carry beside their numbers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub record: Vec<Recorded>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -382,4 +385,20 @@ pub enum Continuation {
     None,
     Up,
     Down,
+    /// Up and then down, and where the two differ.
+    Both,
+}
+
+/// What a row of a sweep can carry beside its numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Recorded {
+    /// The motion at the starts of mesh periods.
+    Poincare,
+    /// Amplitudes at the mesh orders.
+    Spectrum,
+}
+
+impl Recorded {
+    pub const ALL: [(&'static str, Recorded); 2] = [("poincare", Recorded::Poincare), ("spectrum", Recorded::Spectrum)];
 }

@@ -207,7 +207,8 @@ pub struct Response {
     #[serde(default)]
     pub period_mesh_periods: Option<u64>,
     /// What small deviations are multiplied by over one period of the motion (`period_mesh_periods`), largest modulus first, motions that
-    /// nothing holds left out; null when the motion was not found by the periodic method.
+    /// nothing holds left out; null when the motion was not found by the periodic method, and where nothing is left of any deviation after a
+    /// mesh period.
     #[serde(default)]
     pub floquet_multipliers: Option<Vec<FloquetMultiplier>>,
     /// Modulus of the largest multiplier, as growth per mesh period; below 1 the motion is stable.
@@ -316,6 +317,76 @@ pub struct Spectrum {
 pub struct Sweep {
     pub axes: Vec<SweepAxis>,
     pub points: Vec<SweepPoint>,
+    /// Mesh orders of the rows' `acceleration_spectrum_m_s2`, where `record` asks for it.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub spectrum_mesh_orders: Option<Vec<f64>>,
+    /// With continuation in both directions: where they lead to different motions.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub hysteresis: Option<Vec<Hysteresis>>,
+    /// With continuation: where a branch jumps between neighbouring points.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub jumps: Option<Vec<Jump>>,
+    /// For a sweep over the speed: natural frequencies against mesh orders; one for every value of the other axis.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub campbell: Vec<Campbell>,
+}
+
+/// An interval of the first axis in which the motions found from below and from above differ.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Hysteresis {
+    /// Value of the second axis, where there is one.
+    pub second_axis_value: Option<f64>,
+    /// First and last point that differ.
+    pub from: f64,
+    pub to: f64,
+    /// What differs: `rms` (mesh acceleration, by more than 1 % and three times the errors), `regime`, `contact`.
+    pub differ: Vec<String>,
+    /// Largest ratio of the mesh accelerations' RMS, the stronger over the weaker motion.
+    pub largest_rms_ratio: f64,
+}
+
+/// Two neighbouring points of a branch between which the motion jumps: the RMS of the mesh acceleration changes by more than a tenth
+/// and three times as much as between the points before and after.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Jump {
+    /// `up` or `down`.
+    pub branch: String,
+    /// Value of the second axis, where there is one.
+    pub second_axis_value: Option<f64>,
+    /// Values of the first axis before and after, in the direction of the branch.
+    pub from: f64,
+    pub to: f64,
+    pub rms_before_m_s2: f64,
+    pub rms_after_m_s2: f64,
+}
+
+/// Natural frequencies against the orders of the mesh frequency over the swept speeds.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Campbell {
+    /// Value of the other axis, where there is one.
+    pub other_axis_value: Option<f64>,
+    /// Least and greatest speed of the sweep, and the mesh frequencies there; order n is n times as high.
+    pub pinion_speed_rpm: [f64; 2],
+    pub mesh_frequency_hz: [f64; 2],
+    pub mesh_orders: Vec<u32>,
+    pub natural_modes: Vec<NaturalMode>,
+    /// Speeds at which an order meets a natural frequency, ascending.
+    pub crossings: Vec<CampbellCrossing>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct CampbellCrossing {
+    pub pinion_speed_rpm: f64,
+    pub frequency_hz: f64,
+    pub mesh_order: u32,
+    /// Place in `natural_modes`, from 0.
+    pub mode: u32,
+    /// Share of the meshes in the mode's strain energy: how much the mesh excites it.
+    pub mesh_strain_energy: f64,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -342,6 +413,16 @@ pub struct SweepPoint {
     pub loaded_contact_ratio: Option<f64>,
     /// Why this point has no response.
     pub error: Option<String>,
+    /// With continuation: the direction that found the point, `up` or `down`.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub branch: Option<String>,
+    /// Left mesh at the starts of the last mesh periods (at most 200), where `record` asks for it.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub poincare: Option<Poincare>,
+    /// Amplitudes of the left half's circumferential acceleration at `spectrum_mesh_orders`, where `record` asks for it: each the root of the
+    /// sum of squares of the spectral lines nearest to that order.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub acceleration_spectrum_m_s2: Option<Vec<f64>>,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

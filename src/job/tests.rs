@@ -143,3 +143,24 @@ fn the_schema_accepts_the_examples_and_rejects_what_the_reader_rejects() {
     assert_eq!(schema["properties"]["design"]["properties"]["gap_width_mm"]["default"], json!(30.0));
     assert_eq!(schema["properties"]["design"]["properties"]["gap_width_mm"]["x-unit"], json!("mm"));
 }
+
+#[test]
+fn a_sweep_records_what_it_knows_and_no_more() {
+    let mut document = table1();
+    document["kind"] = json!("sweep");
+    document["axes"] = json!([{"pointer": "/operation/pinion_speed_rpm", "from": 500, "to": 900, "points": 5}]);
+    document["record"] = json!(["spectrum", "poincare"]);
+    document["continuation"] = json!("both");
+    let parsed = parse_value(&document).expect("valid");
+    assert_eq!(
+        (parsed.record, parsed.continuation),
+        (vec![Recorded::Spectrum, Recorded::Poincare], Some(Continuation::Both))
+    );
+    document["record"] = json!(["waterfall"]);
+    assert_eq!(violations(&document)[0].pointer, "/record/0");
+    document["record"] = json!(["poincare"]);
+    document["axes"][0]["points"] = json!(100_000);
+    assert_eq!(violations(&document)[0].pointer, "/record");
+    let alone = with("/record", json!(["poincare"]));
+    assert_eq!(violations(&alone)[0].pointer, "/record");
+}

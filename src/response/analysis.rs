@@ -35,8 +35,9 @@ pub struct Analysis {
     pub samples_per_mesh_period: usize,
     /// Channels to record as series (and to give statistics of).
     pub channels: Vec<ChannelId>,
-    /// 12 displacements in the source's order, then 12 velocities; for `Integrate`. None: static deflection under the mean
-    /// mesh stiffness, at rest.
+    /// 12 displacements in the source's order, then 12 velocities. `Integrate` begins there; the other methods report the steady motion
+    /// that is reached from there, of several. None: static deflection under the mean mesh stiffness, at rest; the other
+    /// methods then prefer the motion that keeps contact.
     pub initial_state: Option<[f64; 24]>,
     /// Steps after which an integration gives up.
     pub max_steps: u64,

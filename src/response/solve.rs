@@ -32,18 +32,14 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
         at_rest
     };
     let run = Run { p, analysis, modes: &modes, watch };
+    let start = analysis.initial_state.unwrap_or_else(rest);
+    if let Some(bad) = start.iter().find(|v| !v.is_finite()) {
+        return Err(DynamicsError::InvalidParameter { name: "initial state", value: *bad, reason: "must be finite" });
+    }
+    let mirrored = p.is_symmetric() && (analysis.initial_state.is_none() || is_mirrored(&start));
     match analysis.method {
         Method::Integrate { mesh_periods, record_mesh_periods } => {
             let record = record_mesh_periods.clamp(1, mesh_periods.max(1));
-            let start = analysis.initial_state.unwrap_or_else(rest);
-            if let Some(bad) = start.iter().find(|v| !v.is_finite()) {
-                return Err(DynamicsError::InvalidParameter {
-                    name: "initial state",
-                    value: *bad,
-                    reason: "must be finite",
-                });
-            }
-            let mirrored = p.is_symmetric() && (analysis.initial_state.is_none() || is_mirrored(&start));
             if mirrored {
                 run.integrate::<6>(&start, mesh_periods.max(1), record)
             } else {
@@ -51,14 +47,11 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
             }
         }
         Method::Auto | Method::Periodic => {
-            let start = rest();
-            if p.is_symmetric()
-                && let Some(response) = run.steady::<6>(&start, false)?
-            {
+            if mirrored && let Some(response) = run.steady::<6>(&start, false)? {
                 return Ok(response);
             }
             // Equal halves come here only when their motion leaves the mirror symmetry by itself: a start off the symmetry lets it.
-            let found = run.steady::<12>(&start, p.is_symmetric())?;
+            let found = run.steady::<12>(&start, mirrored)?;
             // Twelve coordinates are never given up for fewer.
             found.ok_or(DynamicsError::NotPeriodic { mesh_periods: 0, change: f64::NAN })
         }
@@ -106,6 +99,7 @@ impl Run<'_> {
             mean_stiffness_n_per_m: self.mean_stiffness_n_per_m(),
             limits: self.limits((1e-3 * self.analysis.accuracy).clamp(1e-14, 1e-6)),
             must_repeat: self.analysis.method == Method::Periodic,
+            from_start: self.analysis.initial_state.is_some(),
         };
         let mut state = model.state_from(start);
         if off_symmetry {
@@ -138,7 +132,7 @@ impl Run<'_> {
             },
             period: found.orbit.as_ref().map(|(n, _)| *n),
             floquet: found.floquet,
-            multipliers: found.orbit.as_ref().filter(|_| !found.multipliers.is_empty()).map(|_| {
+            multipliers: (!found.multipliers.is_empty()).then(|| {
                 found.multipliers.iter().map(|m| Multiplier { modulus: m.norm(), angle_rad: m.arg() }).collect()
             }),
             lyapunov: found.lyapunov,

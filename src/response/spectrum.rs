@@ -42,6 +42,23 @@ impl Spectrum {
     }
 }
 
+/// Amplitudes of a spectrum gathered around equally spaced mesh orders.
+impl Spectrum {
+    /// One amplitude for each of the mesh orders 1/`per_order`, 2/`per_order`, … `last_order`: the root of the sum of squares of the lines
+    /// closer to that order than to the next ones. Of a line alone it is that line's amplitude; half the sum of the squares of all is the
+    /// mean square of the channel but for what lies below the first band or above the last one.
+    pub fn bands(&self, per_order: usize, last_order: usize) -> Vec<f64> {
+        let mut squares = vec![0.0; per_order * last_order];
+        for (order, amplitude) in self.mesh_order.iter().zip(&self.amplitude) {
+            let band = (order * per_order as f64).round() as usize;
+            if let Some(sum) = band.checked_sub(1).and_then(|index| squares.get_mut(index)) {
+                *sum += amplitude * amplitude;
+            }
+        }
+        squares.into_iter().map(f64::sqrt).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -63,5 +80,7 @@ mod tests {
         let s = Spectrum::of(&channel, 2.0);
         assert!((s.amplitude[4] - 2.5).abs() < 1e-12 && (s.mesh_order[4] - 2.0).abs() < 1e-12);
         assert!(s.amplitude.iter().enumerate().all(|(i, a)| i == 4 || *a < 1e-12));
+        let bands = s.bands(4, 3);
+        assert!(bands.len() == 12 && (bands[7] - 2.5).abs() < 1e-12, "order 2 is the eighth quarter: {bands:?}");
     }
 }

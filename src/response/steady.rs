@@ -15,6 +15,8 @@ const PATIENCE_MESH_PERIODS: u64 = 1500;
 const LEAST_PATIENCE_MESH_PERIODS: u64 = 40;
 /// Relative change over its period from which Newton's method is tried.
 const NEAR_REPEAT: f64 = 1e-3;
+/// Relative change over a part of its period below which a motion made exact repeats after that part.
+const SAME_MOTION: f64 = 1e-6;
 /// Mesh periods between two tries.
 const BETWEEN_TRIES: u64 = 40;
 /// Mesh periods over which a Lyapunov exponent is averaged.
@@ -60,6 +62,8 @@ pub(super) struct Search<'a, const D: usize> {
     pub limits: Limits<'a>,
     /// A motion that does not repeat is an error.
     pub must_repeat: bool,
+    /// The motion that is reached from the start is wanted, even where another one keeps contact.
+    pub from_start: bool,
 }
 
 impl<const D: usize> Search<'_, D> {
@@ -72,7 +76,9 @@ impl<const D: usize> Search<'_, D> {
         {
             return Ok(found);
         }
-        if let Some(found) = self.without_separation(start, &mut budget, &mut numerics)? {
+        // Also says whether there is a steady state at all.
+        let keeps_contact = self.without_separation(start, &mut budget, &mut numerics)?;
+        if let Some(found) = keeps_contact.filter(|_| !self.from_start) {
             return Ok(found);
         }
         self.with_separation(start, &mut budget, numerics)
@@ -242,6 +248,10 @@ impl<const D: usize> Search<'_, D> {
                 next_try = followed + BETWEEN_TRIES;
                 let found = self.newton(motion.state, n as u64, section.size(), budget)?;
                 if let Some(mut found) = found {
+                    let shorter = self.shorter_period(&found, n as u64, section.size(), budget)?;
+                    if let Some(again) = shorter.map(|d| self.newton(found.start, d, section.size(), budget)) {
+                        found = again?.unwrap_or(found);
+                    }
                     numerics += motion.numerics;
                     found.numerics += numerics;
                     return Ok(found);
@@ -279,6 +289,29 @@ impl<const D: usize> Search<'_, D> {
             tolerance: self.limits.tolerance,
             numerics,
         })
+    }
+
+    /// The part of the `n` mesh periods of a motion after which it repeats already: what is left of a transient turns, and comes closer
+    /// to itself after some numbers of periods than after the motion's own.
+    fn shorter_period(
+        &self,
+        found: &Found<D>,
+        n: u64,
+        size: f64,
+        budget: &mut Budget,
+    ) -> Result<Option<u64>, DynamicsError> {
+        let free = FreeMotions::new(self.model)?;
+        let mut motion = self.motion(found.start, budget);
+        for period in 1..=n / 2 {
+            motion.advance_period(&mut Unobserved, self.limits.watch, 0.9)?;
+            let change = largest(&free.held(&difference(&motion.state, &found.start))) / size;
+            if n.is_multiple_of(period) && change < SAME_MOTION {
+                budget.spend(&motion.numerics, 0);
+                return Ok(Some(period));
+            }
+        }
+        budget.spend(&motion.numerics, 0);
+        Ok(None)
     }
 
     /// Newton's method on the map over `n` mesh periods; None when it does not lead to a stable motion close by.

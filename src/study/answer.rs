@@ -14,6 +14,36 @@ fn interval(halves: Halves<response::Interval>) -> result::IntervalPerHalf {
     result::IntervalPerHalf { left: of(halves.left), right: of(halves.right) }
 }
 
+/// The channel that spectra are of.
+pub const SPECTRUM_CHANNEL: &str = "a_x_left";
+
+fn full_spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<response::Spectrum> {
+    let channel = response.channels.iter().find(|channel| channel.name == SPECTRUM_CHANNEL)?;
+    Some(response::Spectrum::of(channel, mesh_frequency_hz))
+}
+
+/// Bands per mesh order of the spectra in the rows of a sweep.
+const BANDS_PER_ORDER: usize = 4;
+
+/// Amplitudes around the mesh orders of [`band_orders`].
+pub fn bands(response: &response::Response, mesh_frequency_hz: f64) -> Option<Vec<f64>> {
+    Some(full_spectrum(response, mesh_frequency_hz)?.bands(BANDS_PER_ORDER, SPECTRUM_ORDERS as usize))
+}
+
+/// The mesh orders of the spectra in the rows of a sweep: 1/4, 1/2, … 20.
+pub fn band_orders() -> Vec<f64> {
+    (1..=BANDS_PER_ORDER * SPECTRUM_ORDERS as usize).map(|band| band as f64 / BANDS_PER_ORDER as f64).collect()
+}
+
+/// The motion at the starts of the last `most` recorded mesh periods.
+pub fn poincare(response: &response::Response, most: usize) -> Poincare {
+    let points = &response.poincare[response.poincare.len().saturating_sub(most)..];
+    Poincare {
+        x_left_m: points.iter().map(|point| point.x_left_m).collect(),
+        v_x_left_m_s: points.iter().map(|point| point.v_x_left_m_s).collect(),
+    }
+}
+
 /// The natural modes of the equations, with what they are made of.
 ///
 /// # Errors
@@ -43,7 +73,7 @@ pub fn word(value: &impl serde::Serialize) -> String {
     }
 }
 
-/// The response block of the result.
+/// The numbers of the result's response block: without what only a job of its own has (points, spectrum, modes).
 pub fn block(document: &JobDocument, parameters: &Parameters, response: &response::Response) -> result::Response {
     let summary = &response.summary;
     let regime = match summary.period_mesh_periods {
@@ -68,11 +98,8 @@ pub fn block(document: &JobDocument, parameters: &Parameters, response: &respons
         plane: if document.model.plane == Plane::Base { "base" } else { "pitch" }.to_owned(),
         mesh_frequency_hz: parameters.mesh_frequency_hz,
         averaged_mesh_periods: summary.recorded_mesh_periods,
-        poincare: Poincare {
-            x_left_m: response.poincare.iter().map(|point| point.x_left_m).collect(),
-            v_x_left_m_s: response.poincare.iter().map(|point| point.v_x_left_m_s).collect(),
-        },
-        spectrum: spectrum(response, parameters.mesh_frequency_hz),
+        poincare: Poincare::default(),
+        spectrum: None,
         period_mesh_periods: summary.period_mesh_periods,
         floquet_multipliers: summary.floquet_multipliers.as_deref().map(multipliers),
         floquet_modulus_per_mesh_period: summary.floquet_modulus,
@@ -93,9 +120,8 @@ const SPECTRUM_LINES: usize = 4000;
 
 /// Spectrum of the left half's circumferential acceleration, where it was recorded. Of more lines than the result holds,
 /// the largest of each group of neighbours stays.
-fn spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<result::Spectrum> {
-    let channel = response.channels.iter().find(|channel| channel.name == "a_x_left")?;
-    let full = response::Spectrum::of(channel, mesh_frequency_hz);
+pub fn spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<result::Spectrum> {
+    let full = full_spectrum(response, mesh_frequency_hz)?;
     let lines = full.mesh_order.iter().filter(|order| **order <= SPECTRUM_ORDERS).count();
     let group = lines.div_ceil(SPECTRUM_LINES).max(1);
     let largest = |start: usize| {

@@ -70,7 +70,13 @@ fn field_type(pointer: &str) -> Option<String> {
 
 /// The document of one point, before the swept values are put in.
 pub fn base(document: &JobDocument) -> Value {
-    let plain = JobDocument { kind: Kind::Response, axes: Vec::new(), continuation: None, ..document.clone() };
+    let plain = JobDocument {
+        kind: Kind::Response,
+        axes: Vec::new(),
+        continuation: None,
+        record: Vec::new(),
+        ..document.clone()
+    };
     // A document holds finite numbers and strings only, so writing it cannot fail.
     let mut value = serde_json::to_value(plain).unwrap_or_default();
     // Series are not kept for the points of a sweep.

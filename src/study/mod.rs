@@ -3,6 +3,8 @@
 
 mod answer;
 mod axes;
+mod branches;
+mod campbell;
 mod check;
 mod compliance;
 mod equations;
@@ -11,6 +13,7 @@ mod impact;
 mod mesh;
 mod point;
 mod prepare;
+mod row;
 mod sweep;
 mod vibration;
 

@@ -4,8 +4,9 @@ use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
 use super::prepare::{geometry, prepare};
 use super::{Channel, SolveError, Stage, Surroundings, impact, vibration};
-use crate::job::document::{JobDocument, Kind};
-use crate::job::result::{JobResult, Numerics};
+use crate::dynamics::Parameters;
+use crate::job::document::{JobDocument, Kind, Recorded};
+use crate::job::result::{JobResult, Numerics, Poincare};
 
 /// A solved point.
 pub struct Point {
@@ -13,6 +14,9 @@ pub struct Point {
     pub series: Vec<Channel>,
     /// State at the end (24 numbers in the source's order), to continue a neighbouring point from.
     pub end_state: Option<Vec<f64>>,
+    /// What the row of a sweep carries beside its numbers.
+    pub poincare: Option<Poincare>,
+    pub bands: Option<Vec<f64>>,
 }
 
 /// How much of a point is wanted.
@@ -21,11 +25,30 @@ pub struct Wanted<'a> {
     pub start: Option<&'a [f64]>,
     /// Everything a result has; a point of a sweep leaves out what its row does not hold.
     pub whole: bool,
+    /// What the row of a sweep carries beside its numbers.
+    pub record: &'a [Recorded],
 }
 
 impl Wanted<'_> {
     /// A job of its own.
-    pub const WHOLE: Self = Self { start: None, whole: true };
+    pub const WHOLE: Self = Self { start: None, whole: true, record: &[] };
+
+    pub fn records(&self, what: Recorded) -> bool {
+        self.record.contains(&what)
+    }
+}
+
+/// A point with everything before its response: the equations of motion, where the document asks for a response.
+pub struct Staged<'a> {
+    result: JobResult,
+    parameters: Option<Parameters>,
+    clock: Lap<'a>,
+}
+
+impl Staged<'_> {
+    pub fn parameters(&self) -> Option<&Parameters> {
+        self.parameters.as_ref()
+    }
 }
 
 /// Solves one point.
@@ -40,6 +63,19 @@ pub fn solve(
 ) -> Result<Point, SolveError> {
     let progress = |stage, fraction| (surroundings.progress)(stage, of_whole(document.kind, stage, fraction));
     let surroundings = &Surroundings { progress: &progress, ..*surroundings };
+    let staged = stage(document, surroundings, memo)?;
+    respond(document, staged, surroundings, wanted)
+}
+
+/// Geometry, contact and impact of a point, and the equations of motion that follow.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn stage<'a>(
+    document: &JobDocument,
+    surroundings: &Surroundings<'a>,
+    memo: &MeshMemo,
+) -> Result<Staged<'a>, SolveError> {
     let mut numerics = Numerics { solver_version: super::SOLVER_VERSION.to_owned(), ..Numerics::default() };
     let mut clock = Lap::new(surroundings);
     let prepared = prepare(document)?;
@@ -56,25 +92,46 @@ pub fn solve(
     numerics.wall_ms.impact = clock.lap_ms();
     (surroundings.progress)(Stage::Impact, 1.0);
 
-    let mut result = JobResult {
+    let parameters = (document.kind != Kind::Mesh).then(|| {
+        let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
+        equations::parameters(document, &prepared, &plane, mesh.stiffness, impact.pulses, lead)
+    });
+    let result = JobResult {
         geometry: Some(geometry(&prepared)),
+        mesh: Some(mesh.summary),
         impact: impact.summary,
         warnings,
         numerics,
         ..JobResult::default()
     };
-    let (mut series, mut end_state) = (Vec::new(), None);
-    if document.kind != Kind::Mesh {
-        let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
-        let parameters = equations::parameters(document, &prepared, &plane, mesh.stiffness, impact.pulses, lead);
-        let vibration = vibration::run(document, &parameters, wanted, surroundings, &mut result.numerics)?;
-        result.response = Some(vibration.summary);
-        result.warnings.extend(vibration.warnings);
-        (series, end_state) = (vibration.series, vibration.end_state);
-        result.numerics.wall_ms.response = clock.lap_ms();
-    }
-    result.mesh = Some(mesh.summary);
-    Ok(Point { result, series, end_state })
+    Ok(Staged { result, parameters, clock })
+}
+
+/// The response of a staged point, where it has equations.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn respond(
+    document: &JobDocument,
+    staged: Staged,
+    surroundings: &Surroundings,
+    wanted: &Wanted,
+) -> Result<Point, SolveError> {
+    let Staged { mut result, parameters, mut clock } = staged;
+    let Some(parameters) = parameters else {
+        return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });
+    };
+    let vibration = vibration::run(document, &parameters, wanted, surroundings, &mut result.numerics)?;
+    result.response = Some(vibration.summary);
+    result.warnings.extend(vibration.warnings);
+    result.numerics.wall_ms.response = clock.lap_ms();
+    Ok(Point {
+        result,
+        series: vibration.series,
+        end_state: vibration.end_state,
+        poincare: vibration.poincare,
+        bands: vibration.bands,
+    })
 }
 
 /// Fraction of the whole point at a fraction of one of its stages, by what the stages usually cost.

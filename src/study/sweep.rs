@@ -1,18 +1,17 @@
 //! A response over the values of one or two inputs.
 
-use super::axes::{base, set};
+use super::axes::base;
+use super::branches::{self, Way};
 use super::mesh::MeshMemo;
-use super::point::{self, Point, Wanted};
-use super::{SolveError, Stage, Surroundings};
-use crate::job::document::{Axis, Continuation, JobDocument};
+use super::row::{self, Solved};
+use super::{SolveError, Stage, Surroundings, answer, campbell};
+use crate::job::document::{Axis, Continuation, JobDocument, Recorded};
 use crate::job::result::{Sweep, SweepAxis, SweepPoint};
-use crate::job::{DocumentError, parse_value};
 use rayon::prelude::*;
-use serde_json::Value;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Solves every point. Points without continuation are independent and run in parallel; with it, each line along the first
-/// axis is followed in order, the lines of the second axis in parallel.
+/// axis is followed in order, the lines of the second axis in parallel, and upwards beside downwards.
 ///
 /// # Errors
 /// [`SolveError::Canceled`]. A point that fails says so in its row.
@@ -21,35 +20,54 @@ pub fn run(document: &JobDocument, surroundings: &Surroundings, memo: &MeshMemo)
     let (first, second) = (&document.axes[0], document.axes.get(1));
     let lines = second.map_or(1, Axis::len);
     let length = first.len();
+    let ways: &[Way] = match document.continuation.unwrap_or(Continuation::None) {
+        Continuation::None => &[],
+        Continuation::Up => &[Way::Up],
+        Continuation::Down => &[Way::Down],
+        Continuation::Both => &[Way::Up, Way::Down],
+    };
+    let all = lines * length * ways.len().max(1);
     let done = AtomicUsize::new(0);
-    let solve =
-        |line: usize, index: usize, start: Option<&[f64]>| -> Result<(SweepPoint, Option<Vec<f64>>), SolveError> {
-            let mut values = vec![first.value(index)];
-            values.extend(second.map(|axis| axis.value(line)));
-            let row = solve_point(&base, document, values, start, surroundings, memo)?;
-            let count = done.fetch_add(1, Ordering::Relaxed) + 1;
-            (surroundings.progress)(Stage::Sweep, count as f64 / (lines * length) as f64);
-            Ok(row)
-        };
-    let rows: Vec<SweepPoint> = match document.continuation.unwrap_or(Continuation::None) {
-        Continuation::None => independent(lines, length, |line, index| solve(line, index, None).map(|(row, _)| row))?,
-        direction => {
-            // The first line leaves to the others what they share (compliance, contact).
-            let mut followed = vec![follow(first, direction, |index, start| solve(0, index, start))?];
-            followed.par_extend(
-                (1..lines)
-                    .into_par_iter()
-                    .map(|line| follow(first, direction, |index, start| solve(line, index, start)))
-                    .collect::<Result<Vec<_>, _>>()?,
-            );
-            followed.into_iter().flatten().collect()
-        }
+    let solve = |line: usize, index: usize, start: Option<&[f64]>| -> Result<Solved, SolveError> {
+        let mut values = vec![first.value(index)];
+        values.extend(second.map(|axis| axis.value(line)));
+        let solved = row::solve(&base, document, values, start, surroundings, memo)?;
+        let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+        (surroundings.progress)(Stage::Sweep, count as f64 / all as f64);
+        Ok(solved)
     };
     let axes = document.axes.iter().map(|axis| SweepAxis {
         pointer: axis.pointer.clone(),
         values: (0..axis.len()).map(|index| axis.value(index)).collect(),
     });
-    Ok(Sweep { axes: axes.collect(), points: rows })
+    let mut sweep = Sweep {
+        axes: axes.collect(),
+        spectrum_mesh_orders: document.record.contains(&Recorded::Spectrum).then(answer::band_orders),
+        ..Sweep::default()
+    };
+    if ways.is_empty() {
+        sweep.points = independent(lines, length, |line, index| solve(line, index, None).map(|solved| solved.row))?;
+    } else {
+        let follow = |branch: usize| follow(first, ways[branch / lines], |at, start| solve(branch % lines, at, start));
+        // The first line leaves to the others what they share (compliance, contact).
+        let mut followed = vec![follow(0)?];
+        let others: Result<Vec<_>, _> = (1..ways.len() * lines).into_par_iter().map(follow).collect();
+        followed.extend(others?);
+        let value = |line: usize| second.map(|axis| axis.value(line));
+        let jumps = followed
+            .iter()
+            .enumerate()
+            .flat_map(|(branch, line)| branches::jumps(first, ways[branch / lines], value(branch % lines), line));
+        sweep.jumps = Some(jumps.collect());
+        if let [up, down] = followed.chunks(lines).collect::<Vec<_>>()[..] {
+            let pairs = up.iter().zip(down).enumerate();
+            let found = pairs.flat_map(|(line, (up, down))| branches::hysteresis(first, value(line), up, down));
+            sweep.hysteresis = Some(found.collect());
+        }
+        sweep.points = followed.into_iter().flatten().map(|solved| solved.row).collect();
+    }
+    sweep.campbell = campbell::run(&base, document, surroundings, memo)?;
+    Ok(sweep)
 }
 
 /// Solves all points in parallel, but the very first before all others and the first of every line before the rest of it: whatever the
@@ -73,81 +91,19 @@ fn independent(
     Ok(rows)
 }
 
-/// Follows one line of points from its lowest value up or from its highest down; rows come back in the order of the axis.
+/// Follows one line of points from its lowest value up or from its highest down; they come back in the order of the axis.
 fn follow(
     axis: &Axis,
-    direction: Continuation,
-    mut solve: impl FnMut(usize, Option<&[f64]>) -> Result<(SweepPoint, Option<Vec<f64>>), SolveError>,
-) -> Result<Vec<SweepPoint>, SolveError> {
-    let mut order: Vec<usize> = (0..axis.len()).collect();
-    order.sort_by(|&a, &b| axis.value(a).total_cmp(&axis.value(b)));
-    if direction == Continuation::Down {
-        order.reverse();
-    }
-    let mut rows = vec![SweepPoint::default(); axis.len()];
+    way: Way,
+    mut solve: impl FnMut(usize, Option<&[f64]>) -> Result<Solved, SolveError>,
+) -> Result<Vec<Solved>, SolveError> {
+    let mut line = vec![Solved::default(); axis.len()];
     let mut state: Option<Vec<f64>> = None;
-    for index in order {
-        let (row, end) = solve(index, state.as_deref())?;
-        state = end;
-        rows[index] = row;
+    for index in branches::order(axis, way) {
+        let mut solved = solve(index, state.as_deref())?;
+        solved.row.branch = Some(way.word().to_owned());
+        state = solved.end_state.take();
+        line[index] = solved;
     }
-    Ok(rows)
-}
-
-fn solve_point(
-    base: &Value,
-    document: &JobDocument,
-    values: Vec<f64>,
-    start: Option<&[f64]>,
-    surroundings: &Surroundings,
-    memo: &MeshMemo,
-) -> Result<(SweepPoint, Option<Vec<f64>>), SolveError> {
-    let mut value = base.clone();
-    for (axis, number) in document.axes.iter().zip(&values) {
-        set(&mut value, &axis.pointer, *number);
-    }
-    let solved = parse_value(&value).map_err(SolveError::from).and_then(|document| {
-        point::solve(
-            &document,
-            &Surroundings { progress: &|_, _| {}, ..*surroundings },
-            memo,
-            &Wanted { start, whole: false },
-        )
-    });
-    match solved {
-        Ok(point) => Ok((row(values, &point), point.end_state)),
-        Err(SolveError::Canceled(canceled)) => Err(canceled.into()),
-        Err(error) => Ok((SweepPoint { values, error: Some(reason(&error)), ..SweepPoint::default() }, None)),
-    }
-}
-
-fn row(values: Vec<f64>, point: &Point) -> SweepPoint {
-    let result = &point.result;
-    let response = result.response.as_ref();
-    SweepPoint {
-        values,
-        mesh_circumferential_acceleration_rms_m_s2: response.map(|r| r.rms.mesh_circumferential_acceleration_m_s2),
-        pinion_axial_acceleration_rms_m_s2: response.map(|r| r.rms.pinion_axial_acceleration_m_s2),
-        dynamic_factor: response.and_then(|r| r.dynamic_factor),
-        regime: response.map(|r| r.regime.clone()),
-        contact: response.map(|r| r.contact.clone()),
-        min_displacement_um: response.map(|r| r.min_displacement_um),
-        stiffness_mean_n_per_um: result.mesh.as_ref().map(|mesh| mesh.stiffness_mean_n_per_um),
-        impact_force_n: result.impact.as_ref().map(|impact| impact.force_n),
-        total_contact_ratio: result.geometry.as_ref().map(|geometry| geometry.total_contact_ratio),
-        loaded_contact_ratio: result.mesh.as_ref().and_then(|mesh| mesh.loaded_contact_ratio),
-        error: None,
-    }
-}
-
-/// What a row says of a point without a response.
-fn reason(error: &SolveError) -> String {
-    match error {
-        SolveError::Document(DocumentError::Invalid(violations) | DocumentError::Unsupported(violations)) => violations
-            .iter()
-            .map(|violation| format!("{} {}", violation.pointer, violation.detail))
-            .collect::<Vec<_>>()
-            .join("; "),
-        other => other.to_string(),
-    }
+    Ok(line)
 }

@@ -339,29 +339,137 @@ fn the_first_twenty_periods_of_the_reference_cases() {
     }
 }
 
-/// Primary resonance with loss of contact: two motions at the same speed, found by coming from below and from above.
+/// Primary resonance with loss of contact (backlash 40 µm, mesh damping ratio 0.03): two motions at the same speed, found by coming
+/// from below and from above, each branch with its jump.
 #[test]
-fn continuation_finds_both_branches_of_the_resonance() {
+fn continuation_finds_both_branches_of_the_resonance_and_their_jumps() {
     let mut value = example("given_stiffness");
     value["kind"] = json!("sweep");
     value["axes"] = json!([{"pointer": "/operation/pinion_speed_rpm", "from": 8500, "to": 9600, "points": 12}]);
-    value["analysis"] = json!({"accuracy": 1e-5, "mesh_periods": 400, "record_mesh_periods": 50});
+    value["analysis"] = json!({"accuracy": 1e-5});
     value["operation"]["pinion_torque_nm"] = json!(200.0);
     value["model"]["impact"] = json!({"source": "none"});
-    let mut branch = |direction: &str| {
-        value["continuation"] = json!(direction);
-        solved(&value).result.sweep.expect("a sweep").points
-    };
-    let (up, down) = (branch("up"), branch("down"));
+    value["continuation"] = json!("both");
+    let sweep = solved(&value).result.sweep.expect("a sweep");
+    let (up, down) = sweep.points.split_at(12);
+    assert!(up.iter().all(|row| row.branch.as_deref() == Some("up")));
+    assert!(down.iter().all(|row| row.branch.as_deref() == Some("down")));
     let rms = |row: &SweepPoint| row.mesh_circumferential_acceleration_rms_m_s2.expect("a response").left;
     // Far from the jumps there is one motion; between them, at 9100 r/min, the upper one is more than twice as strong.
-    assert!((rms(&up[0]) / rms(&down[0]) - 1.0).abs() < 1e-4 && (rms(&up[11]) / rms(&down[11]) - 1.0).abs() < 1e-4);
+    let topic = "Job: continuation";
+    for (at, rpm) in [(0, 8500), (3, 8800), (10, 9500), (11, 9600)] {
+        let error = rms(&up[at]) / rms(&down[at]) - 1.0;
+        check_worst(topic, &format!("both branches at {rpm} r/min, RMS of x_left''"), [error], 1e-5);
+    }
     assert_eq!(
         (up[6].values[0], up[6].contact.as_deref(), down[6].contact.as_deref()),
         (9100.0, Some("continuous"), Some("single-sided"))
     );
     assert!(rms(&down[6]) > 2.0 * rms(&up[6]), "{} and {}", rms(&down[6]), rms(&up[6]));
-    assert!(up.iter().all(|row| row.regime.as_deref() == Some("period-1")));
+    assert!(sweep.points.iter().all(|row| row.regime.as_deref() == Some("period-1")));
+    let hysteresis = sweep.hysteresis.expect("both directions");
+    assert_eq!(hysteresis.len(), 1);
+    assert_eq!((hysteresis[0].from, hysteresis[0].to), (8900.0, 9300.0));
+    assert!(hysteresis[0].differ.contains(&"rms".to_owned()) && hysteresis[0].largest_rms_ratio > 2.0);
+    let jumps: Vec<_> = sweep.jumps.expect("a continuation").into_iter().map(|j| (j.branch, j.from, j.to)).collect();
+    assert_eq!(jumps, [("up".to_owned(), 9300.0, 9400.0), ("down".to_owned(), 8900.0, 8800.0)]);
+    // The branch from below is the one found by following the motion for long at each speed.
+    value["analysis"] =
+        json!({"accuracy": 1e-5, "method": "integrate", "mesh_periods": 400, "record_mesh_periods": 50});
+    value["continuation"] = json!("up");
+    let followed = solved(&value).result.sweep.expect("a sweep");
+    let errors = up.iter().zip(&followed.points).map(|(a, b)| rms(a) / rms(b) - 1.0);
+    check_worst(topic, "steady motions found from the neighbour's end, against 400 mesh periods each", errors, 1e-4);
+    assert_eq!((followed.hysteresis, followed.jumps.map(|jumps| jumps.len())), (None, Some(1)));
+}
+
+/// From one motion to two, to chaos and back over the torque, with the amplitudes at quarters of the mesh order.
+#[test]
+fn rows_carry_what_is_asked_for() {
+    let mut value = example("given_stiffness");
+    value["kind"] = json!("sweep");
+    value["axes"] = json!([{"pointer": "/operation/pinion_torque_nm", "values": [40.0, 80.0, 800.0]}]);
+    value["analysis"] = json!({"accuracy": 1e-5});
+    let plain = solved(&value).result.sweep.expect("a sweep");
+    assert!(plain.points.iter().all(|row| row.poincare.is_none() && row.acceleration_spectrum_m_s2.is_none()));
+    assert!(plain.spectrum_mesh_orders.is_none() && plain.campbell.is_empty() && plain.jumps.is_none());
+    value["record"] = json!(["poincare", "spectrum"]);
+    let sweep = solved(&value).result.sweep.expect("a sweep");
+    let orders = sweep.spectrum_mesh_orders.expect("asked for");
+    assert_eq!((orders.len(), orders[0], orders[79]), (80, 0.25, 20.0));
+    for (row, (regime, points)) in sweep.points.iter().zip([("chaotic", 200), ("period-2", 2), ("period-1", 1)]) {
+        let poincare = row.poincare.as_ref().expect("asked for");
+        assert_eq!((row.regime.as_deref(), poincare.x_left_m.len()), (Some(regime), points));
+        assert_eq!(poincare.v_x_left_m_s.len(), points);
+        let bands = row.acceleration_spectrum_m_s2.as_ref().expect("asked for");
+        let power: f64 = bands.iter().map(|a| 0.5 * a * a).sum();
+        let rms = row.mesh_circumferential_acceleration_rms_m_s2.expect("a response").left;
+        let quantity = format!("power of the row's spectrum against its RMS, {regime}");
+        check_value("Job: sweeps", &quantity, power.sqrt(), rms, Relative(0.01));
+        // A motion of one period has whole orders only, one of two the halves too.
+        let besides = |per_order: f64| {
+            let between = orders.iter().zip(bands).filter(|(order, _)| (*order * per_order).fract() != 0.0);
+            between.map(|(_, a)| 0.5 * a * a).sum::<f64>().sqrt() / rms
+        };
+        let least = match regime {
+            "period-1" => besides(1.0) < 1e-9,
+            "period-2" => besides(2.0) < 1e-9 && besides(1.0) > 0.1,
+            _ => besides(2.0) > 0.1,
+        };
+        assert!(least, "{regime}: {} {}", besides(1.0), besides(2.0));
+    }
+    let plainly = |mut row: SweepPoint| {
+        (row.poincare, row.acceleration_spectrum_m_s2) = (None, None);
+        row
+    };
+    assert!(sweep.points.into_iter().map(plainly).eq(plain.points), "recording changes nothing else");
+}
+
+#[test]
+fn a_speed_sweep_has_its_campbell_diagram() {
+    let mut value = example("given_stiffness");
+    value["kind"] = json!("sweep");
+    value["analysis"] = json!({"accuracy": 1e-3});
+    value["axes"] = json!([
+        {"pointer": "/design/supports/gear_axial_n_per_um", "values": [200.0, 300.0]},
+        {"pointer": "/operation/pinion_speed_rpm", "from": 2000, "to": 12000, "points": 2},
+    ]);
+    let campbell = solved(&value).result.sweep.expect("a sweep").campbell;
+    assert_eq!(campbell.iter().map(|c| c.other_axis_value).collect::<Vec<_>>(), [Some(200.0), Some(300.0)]);
+    let diagram = &campbell[0];
+    let teeth = value["design"]["pinion"]["teeth"].as_f64().expect("a number");
+    assert_eq!(diagram.mesh_frequency_hz, [2000.0 / 60.0 * teeth, 12000.0 / 60.0 * teeth]);
+    // Every meeting of an order with a natural frequency in the range of speeds, and no other.
+    let mut expected = 0;
+    for (mode, natural) in diagram.natural_modes.iter().enumerate() {
+        for order in diagram.mesh_orders.iter().filter(|_| natural.frequency_hz > 0.0) {
+            let rpm = natural.frequency_hz / f64::from(*order) / teeth * 60.0;
+            if (2000.0..=12000.0).contains(&rpm) {
+                expected += 1;
+                let same =
+                    |c: &&crate::job::result::CampbellCrossing| (c.mode as usize, c.mesh_order) == (mode, *order);
+                let found = diagram.crossings.iter().find(same).expect("a crossing");
+                assert!(
+                    (found.pinion_speed_rpm / rpm - 1.0).abs() < 1e-12 && found.frequency_hz == natural.frequency_hz
+                );
+                assert!((0.0..=1.0).contains(&found.mesh_strain_energy));
+            }
+        }
+    }
+    assert!(expected == diagram.crossings.len() && expected > 3, "{expected}");
+    assert!(diagram.crossings.windows(2).all(|two| two[0].pinion_speed_rpm <= two[1].pinion_speed_rpm));
+    // The first order meets the mesh mode near the resonance of the other test.
+    let mesh = diagram
+        .crossings
+        .iter()
+        .filter(|c| c.mesh_order == 1)
+        .max_by(|a, b| a.mesh_strain_energy.total_cmp(&b.mesh_strain_energy));
+    assert!(
+        mesh.is_some_and(|c| c.mesh_strain_energy > 0.5 && (8500.0..11000.0).contains(&c.pinion_speed_rpm)),
+        "{mesh:?}"
+    );
+    // Stiffer gear bearings: another diagram.
+    assert_ne!(campbell[1].crossings, diagram.crossings);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::point::Wanted;
 use super::{Channel, SolveError, Stage, Surroundings, answer};
 use crate::dynamics::{self, DynamicsError, Parameters};
 use crate::gear::Warning;
-use crate::job::document::{Integrator, JobDocument, Method};
+use crate::job::document::{Integrator, JobDocument, Method, Recorded};
 use crate::job::result::{self, Numerics};
 use crate::job::{DocumentError, Violation};
 use crate::response::{self, Analysis, ChannelId};
@@ -16,6 +16,9 @@ pub struct Vibration {
     pub series: Vec<Channel>,
     pub warnings: Vec<Warning>,
     pub end_state: Option<Vec<f64>>,
+    /// What the row of a sweep carries beside its numbers.
+    pub poincare: Option<result::Poincare>,
+    pub bands: Option<Vec<f64>>,
 }
 
 /// Whether `asked` names the channel `name`: the velocities and accelerations of x may leave the x out (`a_left`).
@@ -52,6 +55,9 @@ pub fn channels(document: &JobDocument) -> Result<Vec<ChannelId>, DocumentError>
     if violations.is_empty() { Ok(ids) } else { Err(DocumentError::Invalid(violations)) }
 }
 
+/// Most points of the motion at the starts of mesh periods in the row of a sweep.
+const POINCARE_POINTS: usize = 200;
+
 /// Runs the response stage.
 ///
 /// # Errors
@@ -83,11 +89,18 @@ pub fn run(
     };
     let mut block = answer::block(document, parameters, &response);
     if wanted.whole {
+        block.poincare = answer::poincare(&response, usize::MAX);
+        block.spectrum = answer::spectrum(&response, parameters.mesh_frequency_hz);
         block.natural_modes = answer::natural_modes(parameters).map_err(failed)?;
     }
     Ok(Vibration {
         summary: block,
-        series: response.channels.iter().map(channel).collect(),
+        poincare: wanted.records(Recorded::Poincare).then(|| answer::poincare(&response, POINCARE_POINTS)),
+        bands: wanted
+            .records(Recorded::Spectrum)
+            .then(|| answer::bands(&response, parameters.mesh_frequency_hz))
+            .flatten(),
+        series: if wanted.whole { response.channels.iter().map(channel).collect() } else { Vec::new() },
         warnings: warnings(summary, document.analysis.accuracy),
         end_state: Some(response.final_state.to_vec()),
     })
@@ -96,16 +109,18 @@ pub fn run(
 fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, DocumentError> {
     let asked = &document.analysis;
     let state = wanted.start.or(asked.initial_state.as_deref());
-    // Of several steady motions the one that follows from the neighbour's is wanted: only integration from there finds it.
-    let integrate = wanted.start.is_some() || asked.method == Method::Integrate;
+    let mut channels = channels(document)?;
+    if wanted.records(Recorded::Spectrum) {
+        channels.extend(ChannelId::parse(answer::SPECTRUM_CHANNEL));
+    }
     Ok(Analysis {
         method: match asked.method {
-            _ if integrate => response::Method::Integrate {
+            Method::Integrate => response::Method::Integrate {
                 mesh_periods: u64::from(asked.mesh_periods),
                 record_mesh_periods: u64::from(asked.record_mesh_periods),
             },
             Method::Periodic => response::Method::Periodic,
-            _ => response::Method::Auto,
+            Method::Auto => response::Method::Auto,
         },
         integrator: match asked.integrator {
             Integrator::Taylor => dynamics::Integrator::Taylor,
@@ -113,14 +128,15 @@ fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, Documen
         },
         accuracy: asked.accuracy,
         samples_per_mesh_period: asked.samples_per_mesh_period as usize,
-        channels: channels(document)?,
+        channels,
         initial_state: state.and_then(|state| <[f64; 24]>::try_from(state).ok()),
         energy_balance: wanted.whole,
         ..Analysis::default()
     })
 }
 
-fn failed(error: DynamicsError) -> SolveError {
+/// Why the equations have no response.
+pub fn failed(error: DynamicsError) -> SolveError {
     let (code, sim_time_s) = match &error {
         DynamicsError::Canceled(canceled) => return (*canceled).into(),
         DynamicsError::Diverged { time_s } => ("diverged", Some(*time_s)),

@@ -73,6 +73,7 @@ fn schema_of(kind: Kind) -> Value {
         if kind != Kind::Sweep {
             properties.remove("axes");
             properties.remove("continuation");
+            properties.remove("record");
         }
         let help = properties.get("kind").and_then(|field| field.get("description")).cloned();
         properties.insert("kind".to_owned(), json!({"const": kind.word(), "description": help}));

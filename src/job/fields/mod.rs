@@ -13,6 +13,8 @@ use serde_json::Value;
 
 /// Largest number of points of a sweep.
 pub const MAX_SWEEP_POINTS: usize = 100_000;
+/// Largest number of points of a sweep whose rows carry more than numbers.
+pub const MAX_RECORDED_POINTS: usize = 5_000;
 /// Largest number of samples per recorded channel.
 pub const MAX_SERIES_SAMPLES: u64 = 4_000_000;
 
@@ -61,8 +63,9 @@ pub fn read(root: Object) -> JobDocument {
     let analysis = analysis::analysis(root.object("analysis", false, "Accuracy and method."));
     let axes = sweep::axes(&root, kind);
     let continuation = sweep::continuation(&root, kind);
+    let record = sweep::record(&root, kind, &axes);
     root.finish();
-    JobDocument { kind, name, label, design, operation, model, analysis, axes, continuation }
+    JobDocument { kind, name, label, design, operation, model, analysis, axes, continuation, record }
 }
 
 fn conflict(object: &Object, name: &str, detail: &str) {

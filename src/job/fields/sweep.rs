@@ -1,6 +1,6 @@
 //! The inputs of a sweep.
 
-use super::{MAX_SWEEP_POINTS, conflict, number};
+use super::{MAX_RECORDED_POINTS, MAX_SWEEP_POINTS, conflict, number};
 use crate::job::document::*;
 use crate::job::reader::Object;
 use crate::job::violation::Violation;
@@ -77,14 +77,48 @@ fn axis(object: Object) -> Axis {
 pub(super) fn continuation(root: &Object, kind: Kind) -> Option<Continuation> {
     let value = root.choice(
         "continuation",
-        &[("none", Continuation::None), ("up", Continuation::Up), ("down", Continuation::Down)],
+        &[
+            ("none", Continuation::None),
+            ("up", Continuation::Up),
+            ("down", Continuation::Down),
+            ("both", Continuation::Both),
+        ],
         Continuation::None,
         "none",
-        "sweep: whether a point starts cold, or from the end of its neighbour below (up) or above (down); continued points \
-         are integrated over analysis.mesh_periods.",
+        "sweep: whether a point starts cold, or from the end of its neighbour below (up) or above (down) along the first axis; both: \
+         up, then down, and where they differ. The steady motion is found from there; with method integrate, by \
+         analysis.mesh_periods.",
     );
     if kind != Kind::Sweep && root.has("continuation") {
         conflict(root, "continuation", "is given, but kind is not \"sweep\"");
     }
     (kind == Kind::Sweep).then_some(value)
+}
+
+pub(super) fn record(root: &Object, kind: Kind, axes: &[Axis]) -> Vec<Recorded> {
+    let help = "sweep: what every row carries beside its numbers: poincare (mesh displacement and velocity at the starts of the \
+                last mesh periods), spectrum (amplitudes at the mesh orders 1/4 to 20).";
+    let Some(words) = root.texts("record", Recorded::ALL.len(), help) else { return Vec::new() };
+    let mut record = Vec::new();
+    for (index, word) in words.iter().enumerate() {
+        match Recorded::ALL.iter().find(|(known, _)| known == word) {
+            Some((_, what)) if !record.contains(what) => record.push(*what),
+            Some(_) => {}
+            None => {
+                let detail = format!("is \"{word}\"; permitted: poincare, spectrum");
+                let pointer = format!("{}/{index}", root.pointer_to("record"));
+                root.reading().violate(Violation::new(pointer, "not-one-of", detail));
+            }
+        }
+    }
+    if kind != Kind::Sweep && !record.is_empty() {
+        conflict(root, "record", "is given, but kind is not \"sweep\"");
+        return Vec::new();
+    }
+    let points: usize = axes.iter().map(Axis::len).product();
+    if !record.is_empty() && points > MAX_RECORDED_POINTS {
+        let detail = format!("is given for {points} points; permitted: at most {MAX_RECORDED_POINTS}");
+        conflict(root, "record", &detail);
+    }
+    record
 }

@@ -34,7 +34,11 @@ pub const GROUPS: &[GroupPlan] = &[
         title: "Sweep",
         help: "One or two inputs that vary: give first and last value, or a list of values.",
         open: true,
-        blocks: &[block("First axis", &["/axes/0"]), block("Second axis", &["/axes/1"]), block("", &["/continuation"])],
+        blocks: &[
+            block("First axis", &["/axes/0"]),
+            block("Second axis", &["/axes/1"]),
+            block("", &["/continuation", "/record"]),
+        ],
     },
     GroupPlan {
         id: "gears",
@@ -181,6 +185,7 @@ pub const GROUPS: &[GroupPlan] = &[
 pub const CONDITIONS: &[Condition] = &[
     Condition { pointer: "/axes", on: "/kind", values: "sweep" },
     Condition { pointer: "/continuation", on: "/kind", values: "sweep" },
+    Condition { pointer: "/record", on: "/kind", values: "sweep" },
     Condition { pointer: "/model/mesh_stiffness/fidelity", on: "/model/mesh_stiffness/source", values: "ltca" },
     Condition { pointer: "/model/mesh_stiffness/elements", on: "/model/mesh_stiffness/fidelity", values: "fe" },
     Condition { pointer: "/model/mesh_stiffness/accuracy", on: "/model/mesh_stiffness/source", values: "ltca" },
