@@ -5,21 +5,21 @@ use super::lanes::Real;
 /// First τ in (0, h] at which the polynomial Σ c_n τ^n, not negative at 0, passes below zero; infinite where there is none or
 /// `wanted` is 0.
 ///
-/// The search advances by d with g + g' d − ½ A d² = 0, where A bounds |g''| on [0, h]: no zero can be passed over, minima
+/// The search advances by d with g + g' d − ½ A d² = 0, where A bounds −g'' over d: no zero can be passed over, minima
 /// that dip below zero between the ends of the step included, and towards a simple zero it converges as Newton's method
-/// does, from the near side. A dip shallower than rounding (1e-16 of A h²) is not seen.
+/// does, from the near side. The bound is that of g'' over all of [0, h] or, where it leads further, what −g'' can come to over d from
+/// where it is, by the bound of the third derivative. A dip shallower than rounding (1e-16 of A h²) is not seen.
 #[inline(always)]
 pub(super) fn first_crossing<R: Real>(c: &[R], h: R, wanted: R) -> R {
     let zero = R::splat(0.0);
-    let mut bound = zero;
-    let mut reach = zero;
+    let (mut reach, mut second, mut third) = (zero, zero, zero);
     let mut power = R::splat(1.0);
     for (n, &cn) in c.iter().enumerate().skip(1) {
+        let n = n as f64;
         let size = cn.map(f64::abs) * power;
         reach += size * h;
-        if n >= 2 {
-            bound += size * R::splat((n * (n - 1)) as f64);
-        }
+        second += size * R::splat(n * (n - 1.0));
+        third += size * R::splat(n * (n - 1.0) * (n - 2.0));
         power = power * h;
     }
     let mut at = R::splat(f64::INFINITY);
@@ -28,49 +28,72 @@ pub(super) fn first_crossing<R: Real>(c: &[R], h: R, wanted: R) -> R {
     if !open.any(|o| o != 0.0) {
         return at;
     }
-    let bound = bound / h;
+    let second = second / h;
+    let third = third / (h * h);
     let mut floor = h * R::splat(1e-9);
     let (mut here, mut previous) = (zero, zero);
+    // Value and slope at `previous`.
+    let (mut g_before, mut dg_before) = (zero, zero);
     for iteration in 0.. {
-        let (g, dg) = evaluate(c, here);
+        let (g, dg, half_ddg) = evaluate(c, here);
         let g = g.zip(here, |g, here| if here == 0.0 { g.max(0.0) } else { g });
         for l in 0..R::LANES {
             if open.get(l) != 0.0 && g.get(l) < 0.0 {
-                at.set(l, bisected_newton(c, l, previous.get(l), here.get(l)));
+                // The search comes up to a simple zero in steps that shrink with the distance: the last point before it is as
+                // close as needs be for one step of Newton's method. Elsewhere, near a minimum, bisection helps.
+                let (low, high) = (previous.get(l), here.get(l));
+                let newton = -g_before.get(l) / dg_before.get(l);
+                let simple = high - low <= 2e-9 * h.get(l) && newton >= 0.0 && newton < high - low;
+                at.set(l, if simple { low + newton } else { bisected_newton(c, l, low, high) });
                 open.set(l, 0.0);
             }
         }
-        let root = (dg * dg + R::splat(2.0) * bound * g).map(f64::sqrt);
-        let falling = g * R::splat(2.0) / (root - dg);
-        let rising = (dg + root) / bound;
-        let step = R::from_fn(|l| {
-            let safe = if dg.get(l) < 0.0 { falling.get(l) } else { rising.get(l) };
-            // A bound of zero: a straight line, or a constant.
-            if safe.is_nan() { h.get(l) } else { safe.max(floor.get(l)) }
-        });
         open = R::from_fn(|l| if here.get(l) < h.get(l) { open.get(l) } else { 0.0 });
         if !open.any(|o| o != 0.0) {
             break;
+        }
+        let left = h - here;
+        let mut step = safe_step(g, dg, second, left);
+        // Steps over which g'' has bounds of its own, tried from the whole rest down.
+        for part in [1.0, 0.2] {
+            let length = left * R::splat(part);
+            let local = (third * length * R::splat(1.0 / 3.0) - half_ddg * R::splat(2.0)).map(|a| a.max(0.0));
+            step = step.zip(safe_step(g, dg, local, length), f64::max);
         }
         if iteration > 60 {
             // Only a long stretch that nearly touches comes here; the resolution is lowered so that the search ends.
             floor = floor * R::splat(1.5);
         }
-        previous = here;
-        here = (here + step).zip(h, f64::min);
+        (previous, g_before, dg_before) = (here, g, dg);
+        here = (here + step.zip(floor, f64::max)).zip(h, f64::min);
     }
     at
 }
 
-/// Value and derivative.
+/// The d up to `most` to which g + g' d − ½ A d² stays above zero, A ≥ 0 being a bound of −g'' as far as `most`.
 #[inline(always)]
-fn evaluate<R: Real>(c: &[R], t: R) -> (R, R) {
-    let (mut g, mut dg) = (R::splat(0.0), R::splat(0.0));
+fn safe_step<R: Real>(g: R, dg: R, bound: R, most: R) -> R {
+    let root = (dg * dg + R::splat(2.0) * bound * g).map(f64::sqrt);
+    let falling = g * R::splat(2.0) / (root - dg);
+    let rising = (dg + root) / bound;
+    R::from_fn(|l| {
+        let safe = if dg.get(l) < 0.0 { falling.get(l) } else { rising.get(l) };
+        // A bound of zero: a straight line that rises, or a constant.
+        if safe.is_nan() { most.get(l) } else { safe.min(most.get(l)) }
+    })
+}
+
+/// Value, derivative and half the second derivative.
+#[inline(always)]
+fn evaluate<R: Real>(c: &[R], t: R) -> (R, R, R) {
+    let zero = R::splat(0.0);
+    let (mut g, mut dg, mut half_ddg) = (zero, zero, zero);
     for &cn in c.iter().rev() {
+        half_ddg = half_ddg * t + dg;
         dg = dg * t + g;
         g = g * t + cn;
     }
-    (g, dg)
+    (g, dg, half_ddg)
 }
 
 /// The zero of one lane's polynomial between `low` (not negative) and `high` (negative), to rounding.
@@ -83,6 +106,7 @@ fn bisected_newton<R: Real>(c: &[R], lane: usize, mut low: f64, mut high: f64) -
         }
         (g, dg)
     };
+    // The search comes up to the zero in steps that shrink with the distance, so the last point before it is close.
     let mut at = low;
     for _ in 0..80 {
         let (g, dg) = value(at);

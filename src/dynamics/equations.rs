@@ -235,9 +235,8 @@ impl<const D: usize, R: Real> Equations<D, R> {
         let (o, along_sign, axial_sign) = self.other(j);
         let fy = self.cos * force;
         let fz = h.sin * force;
-        let difference = |c: usize, mirrored: R| (x[i + c] - mirrored * x[o + c], v[i + c] - mirrored * v[o + c]);
-        let (dzp, dzpv) = difference(ZP, axial_sign);
-        let (dzg, dzgv) = difference(ZG, axial_sign);
+        let (dzp, dzpv) = difference(x, v, (i + ZP, o + ZP), axial_sign);
+        let (dzg, dzgv) = difference(x, v, (i + ZG, o + ZG), axial_sign);
         let mut a_yp = -h.inv_mp * fy - h.yp.of(x[i + YP], v[i + YP]);
         let a_zp = -h.inv_mp * fz - h.zp.of(x[i + ZP], v[i + ZP]) - h.zp_other.of(dzp, dzpv);
         let mut a_yg = h.inv_mg * fy - h.yg.of(x[i + YG], v[i + YG]);
@@ -245,9 +244,9 @@ impl<const D: usize, R: Real> Equations<D, R> {
         let mut a_u = h.inv_me * (along - fy);
         let mut a_w = R::splat(0.0);
         if D > PER_HALF || self.parity < 0.0 {
-            let (d, dv) = difference(YP, along_sign);
+            let (d, dv) = difference(x, v, (i + YP, o + YP), along_sign);
             a_yp -= h.yp_other.of(d, dv);
-            let (d, dv) = difference(YG, along_sign);
+            let (d, dv) = difference(x, v, (i + YG, o + YG), along_sign);
             a_yg -= h.yg_other.of(d, dv);
             if self.torsional {
                 let k = o / PER_HALF;
@@ -271,6 +270,12 @@ impl<const D: usize, R: Real> Equations<D, R> {
         let i = j * PER_HALF;
         (x[i + W] + h.part_g * x[i + U], x[i + W] - h.part_p * x[i + U])
     }
+}
+
+/// A coordinate and its velocity less the mirrored ones of the other half.
+#[inline(always)]
+fn difference<const D: usize, R: Real>(x: &[R; D], v: &[R; D], at: (usize, usize), mirrored: R) -> (R, R) {
+    (x[at.0] - mirrored * x[at.1], v[at.0] - mirrored * v[at.1])
 }
 
 fn half(p: &Parameters, j: usize, omega: f64) -> HalfEquations<f64> {

@@ -80,9 +80,14 @@ pub(crate) struct Lanes<const L: usize>([f64; L]);
 impl<const L: usize> Real for Lanes<L> {
     const LANES: usize = L;
 
+    // Plain loops, here and below: the closures of std's array functions are not always inlined.
     #[inline(always)]
-    fn from_fn(number: impl FnMut(usize) -> f64) -> Self {
-        Self(std::array::from_fn(number))
+    fn from_fn(mut number: impl FnMut(usize) -> f64) -> Self {
+        let mut out = [0.0; L];
+        for (lane, out) in out.iter_mut().enumerate() {
+            *out = number(lane);
+        }
+        Self(out)
     }
 
     #[inline(always)]
@@ -103,7 +108,11 @@ macro_rules! lane_by_lane {
 
             #[inline(always)]
             fn $function(self, other: Self) -> Self {
-                Self(std::array::from_fn(|lane| self.0[lane] $symbol other.0[lane]))
+                let mut out = [0.0; L];
+                for lane in 0..L {
+                    out[lane] = self.0[lane] $symbol other.0[lane];
+                }
+                Self(out)
             }
         }
     )*};
@@ -115,7 +124,11 @@ impl<const L: usize> Neg for Lanes<L> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(self.0.map(|number| -number))
+        let mut out = [0.0; L];
+        for lane in 0..L {
+            out[lane] = -self.0[lane];
+        }
+        Self(out)
     }
 }
 

@@ -75,8 +75,12 @@ pub(crate) fn taylor<const D: usize, R: Real>(
     let mut power = enough.map_or(zero, |e| e.remaining);
     for n in 0..order - 1 {
         let n1 = (n + 1) as f64;
-        let x = rows[n];
-        let v = rows[n + 1].map(|c| c * R::splat(n1));
+        let (known, next) = rows.split_at_mut(n + 2);
+        let (x, next) = (&known[n], &mut next[0]);
+        let mut v = known[n + 1];
+        for c in &mut v {
+            *c = *c * R::splat(n1);
+        }
         let scale = R::splat(1.0 / (n1 * (n1 + 1.0))) * alive;
         for j in 0..halves {
             let h = &equations.halves[j];
@@ -97,14 +101,14 @@ pub(crate) fn taylor<const D: usize, R: Real>(
             if n == 0 {
                 along += loads * h.load;
             }
-            let a = equations.half_acceleration(j, &x, &v, f, along);
+            let a = equations.half_acceleration(j, x, &v, f, along);
             let i = j * PER_HALF;
             for c in 0..PER_HALF {
-                rows[n + 2][i + c] = a[c] * scale;
+                next[i + c] = a[c] * scale;
             }
         }
         for j in 0..halves {
-            s[j][n + 2] = equations.s(j, &rows[n + 2]);
+            s[j][n + 2] = equations.s(j, next);
         }
         if let Some(e) = &enough {
             let before = power;

@@ -140,14 +140,18 @@ fn next_contact<R: Real>(s: &[R], b: R, contact: R, h: R, switching: R) -> (R, R
 /// The step at which the last two terms are as large as `allowed`.
 #[inline(always)]
 fn reach<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, allowed: R) -> R {
-    let of = |k: usize| {
-        allowed.zip(norm(&rows[k]), |allowed, last| {
-            let root = rough_root(allowed / last, k as f64);
-            let root = if last == 0.0 { f64::INFINITY } else { root };
-            if last.is_nan() { f64::NAN } else { root }
-        })
-    };
-    of(order - 1).zip(of(order), |a, b| if a < b || a.is_nan() { a } else { b })
+    let before = term_reach(norm(&rows[order - 1]), order - 1, allowed);
+    before.zip(term_reach(norm(&rows[order]), order, allowed), |a, b| if a < b || a.is_nan() { a } else { b })
+}
+
+/// The step at which a term of size `last` and power `k` is as large as `allowed`.
+#[inline(always)]
+fn term_reach<R: Real>(last: R, k: usize, allowed: R) -> R {
+    allowed.zip(last, |allowed, last| {
+        let root = rough_root(allowed / last, k as f64);
+        let root = if last == 0.0 { f64::INFINITY } else { root };
+        if last.is_nan() { f64::NAN } else { root }
+    })
 }
 
 /// The step that keeps the local error at `tolerance` times the size of the polynomials' own motion.
@@ -203,7 +207,7 @@ impl Rattling {
     }
 }
 
-/// Why a step of length `h` cannot be taken, if it cannot.
+/// Why a step of length `h` cannot be taken, if it cannot. `advances`: it changes the phase or the contact.
 #[inline(always)]
 pub(super) fn refused<const D: usize>(
     model: &Model<D>,
@@ -212,7 +216,7 @@ pub(super) fn refused<const D: usize>(
     h: f64,
     advances: bool,
 ) -> Option<DynamicsError> {
-    if h > 0.0 && h < f64::INFINITY && advances {
+    if advances && h >= 0.0 && h < f64::INFINITY {
         return None;
     }
     let time_s = (period as f64 + phase) * model.period_tau / model.omega_ref;
@@ -280,7 +284,6 @@ impl<const D: usize> Taylor<D> {
         let h = stepped.h;
         let phase = if stepped.to_end != 0.0 { end } else { (state.phase + h / model.period_tau).min(end) };
         let advances = phase > state.phase || stepped.changed >= 0.0;
-        let h = if stepped.changed >= 0.0 { h.max(f64::MIN_POSITIVE) } else { h };
         if let Some(error) = refused(model, state.period, state.phase, h, advances) {
             return Err(error);
         }
