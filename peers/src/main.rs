@@ -40,6 +40,8 @@ fn arguments() -> Result<Arguments, String> {
 
 fn run() -> Result<(), String> {
     let arguments = arguments()?;
+    // Everything on this thread, whose processor time is measured.
+    rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global().map_err(|e| e.to_string())?;
     let cases = case::all();
     let mut methods = methods::all(arguments.python.as_deref());
     let results = measure::all(&cases, &mut methods, arguments.rounds);

@@ -26,7 +26,7 @@ pub struct Rung {
     pub error: f64,
     /// After [`PERIODS`].
     pub late_error: f64,
-    /// Processor time per mesh period.
+    /// Processor time per mesh period and operating point.
     pub seconds: f64,
     times: Vec<f64>,
 }
@@ -124,7 +124,7 @@ fn turn(method: &mut dyn Method, case: &Case, rung: &mut Rung) {
         let elsewhere =
             (0..count).filter_map(|_| black_box(method.run(case, rung.tolerance, PERIODS)).ok()?.seconds).sum();
         let here = watch.seconds();
-        (if elsewhere > 0.0 { elsewhere } else { here }) / count as f64
+        (if elsewhere > 0.0 { elsewhere } else { here }) / (count * method.points()) as f64
     };
     let first = runs(1);
     let count = (SHORTEST_TURN_S / first.max(1e-6)).ceil();

@@ -36,6 +36,7 @@ fn fastest<'a>(ladders: &[&'a Ladder], of: impl Fn(&Ladder) -> bool) -> Option<(
 }
 
 const OURS: &str = "herringbone Taylor";
+const OURS_IN_LANES: &str = "herringbone Taylor, 8 in lanes";
 const OURS_WITH_BOTH_HALVES: &str = "herringbone Taylor, 12 coordinates";
 
 pub fn all(cases: &[Case], ladders: &[Ladder]) -> String {
@@ -65,7 +66,8 @@ pub fn all(cases: &[Case], ladders: &[Ladder]) -> String {
     }
     let _ = writeln!(out, "\n|---|{}", "---|".repeat(cases.len()));
     type Which = fn(&Ladder) -> bool;
-    let ratios: [(&str, &str, Which); 5] = [
+    let ratios: [(&str, &str, Which); 6] = [
+        ("the best other program but SciPy, ours in lanes", OURS_IN_LANES, |l| l.whose == Whose::Peer),
         ("the best other program but SciPy", OURS, |l| l.whose == Whose::Peer),
         ("the same, ours with 12 coordinates", OURS_WITH_BOTH_HALVES, |l| l.whose == Whose::Peer),
         ("SciPy DOP853 as it is called", OURS, |l| l.name == "SciPy DOP853"),

@@ -35,6 +35,10 @@ pub trait Method {
     fn whose(&self) -> Whose;
     /// From coarse to fine.
     fn tolerances(&self) -> Vec<f64>;
+    /// Operating points followed in a run.
+    fn points(&self) -> usize {
+        1
+    }
     /// From the case's start through `periods`.
     fn run(&mut self, case: &Case, tolerance: f64, periods: u64) -> Result<Run, String>;
 }

@@ -1,25 +1,68 @@
 //! This crate.
 
-use herringbone::dynamics::{Integrator, advance};
+use herringbone::dynamics::{Integrator, Parameters, advance, advance_many};
 use herringbone::watch::Watch;
 
 use super::{Method, Run, Whose, ladder};
 use crate::case::Case;
 
-struct Own {
+/// One motion.
+struct Alone {
     integrator: Integrator,
     /// Both halves solved although they are equal: the mesh damping of the right one is made greater by the last bit of the number, which
     /// is enough for the product to see two different halves.
     both_halves: bool,
 }
 
-pub fn all() -> Vec<Box<dyn Method>> {
-    [(Integrator::Taylor, false), (Integrator::Taylor, true), (Integrator::RungeKutta, false)]
-        .map(|(integrator, both_halves)| Box::new(Own { integrator, both_halves }) as Box<dyn Method>)
-        .into()
+/// Operating points side by side: the case, and the same at speeds higher by one, two … per cent.
+struct Lanes {
+    points: usize,
 }
 
-impl Method for Own {
+pub fn all() -> Vec<Box<dyn Method>> {
+    let mut out: Vec<Box<dyn Method>> = vec![Box::new(Lanes { points: 8 })];
+    for (integrator, both_halves) in
+        [(Integrator::Taylor, false), (Integrator::Taylor, true), (Integrator::RungeKutta, false)]
+    {
+        out.push(Box::new(Alone { integrator, both_halves }));
+    }
+    out
+}
+
+impl Method for Lanes {
+    fn name(&self) -> String {
+        format!("herringbone Taylor, {} in lanes", self.points)
+    }
+
+    fn whose(&self) -> Whose {
+        Whose::Own
+    }
+
+    fn tolerances(&self) -> Vec<f64> {
+        ladder(3, 14)
+    }
+
+    fn points(&self) -> usize {
+        self.points
+    }
+
+    fn run(&mut self, case: &Case, tolerance: f64, periods: u64) -> Result<Run, String> {
+        let p = case.parameters();
+        let faster = |i: usize| p.mesh_frequency_hz * (1.0 + 0.01 * i as f64);
+        let points: Vec<Parameters> =
+            (0..self.points).map(|i| Parameters { mesh_frequency_hz: faster(i), ..p.clone() }).collect();
+        let starts = vec![case.start; self.points];
+        let mut reached =
+            advance_many(&points, &starts, periods, tolerance, &Watch::none()).map_err(|e| e.to_string())?.into_iter();
+        let first = reached.next().ok_or("no points")?.map_err(|e| e.to_string())?;
+        for other in reached {
+            other.map_err(|e| e.to_string())?;
+        }
+        Ok(first.state.into())
+    }
+}
+
+impl Method for Alone {
     fn name(&self) -> String {
         let method = match self.integrator {
             Integrator::Taylor => "Taylor",
