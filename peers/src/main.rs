@@ -1,6 +1,6 @@
 //! Run time against error of other programs and ours, on the reference cases of the equations of motion, in one run.
 //!
-//! `scripts/peers` builds and starts it. Arguments: `--python PATH` (SciPy is measured through it; without it, not at all), `--plots FOLDER` (draws peers_*.svg
+//! `scripts/peers` builds and starts it. Arguments: `--python PATH` (SciPy and heyoka are reached through it; without it, not at all), `--plots FOLDER` (draws peers_*.svg
 //! there), `--rounds N`. The tables go to standard output as Markdown.
 //!
 //! Everybody follows the motion through 20 mesh periods from the reference's start, on one thread. The time is the processor's, with the

@@ -36,6 +36,8 @@ pub struct Ladder {
     pub case: String,
     pub name: String,
     pub whose: Whose,
+    /// Operating points side by side.
+    pub points: usize,
     pub rungs: Vec<Rung>,
 }
 
@@ -81,7 +83,13 @@ pub fn all(cases: &[Case], methods: &mut [Box<dyn Method>], rounds: usize) -> Ve
                     }
                 }
             }
-            ladders.push(Ladder { case: case.name.clone(), name: method.name(), whose: method.whose(), rungs });
+            ladders.push(Ladder {
+                case: case.name.clone(),
+                name: method.name(),
+                whose: method.whose(),
+                points: method.points(),
+                rungs,
+            });
             of.push((m, c));
         }
     }

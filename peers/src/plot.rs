@@ -24,11 +24,13 @@ struct Series {
     color: &'static str,
 }
 
-const SERIES: [Series; 10] = [
+const SERIES: [Series; 12] = [
     Series { names: &["herringbone Taylor, 8"], color: "#12a5a5" },
     Series { names: &["herringbone Taylor, 12"], color: "#35a36b" },
     Series { names: &["herringbone Taylor"], color: "#1f8fd6" },
     Series { names: &["herringbone Runge"], color: "#5f8fb0" },
+    Series { names: &["heyoka Taylor with events, 8"], color: "#c05fc0" },
+    Series { names: &["heyoka Taylor with events"], color: "#9a3fb0" },
     Series { names: &["ode_solvers"], color: "#d9a400" },
     Series { names: &["differential-equations DOP853"], color: "#e8743b" },
     Series { names: &["differential-equations DOPRI5", "differential-equations Verner"], color: "#d2475f" },

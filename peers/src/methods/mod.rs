@@ -4,7 +4,7 @@ mod differential_equations;
 mod diffsol;
 mod ode_solvers;
 mod own;
-mod scipy;
+mod python;
 
 use crate::case::{Case, SourceState};
 
@@ -43,13 +43,13 @@ pub trait Method {
     fn run(&mut self, case: &Case, tolerance: f64, periods: u64) -> Result<Run, String>;
 }
 
-/// Ours and everybody's. SciPy through `python`, when there is one.
+/// Ours and everybody's. SciPy and heyoka through `python`, when there is one.
 pub fn all(python: Option<&str>) -> Vec<Box<dyn Method>> {
     let mut out = own::all();
     out.extend(ode_solvers::all());
     out.extend(differential_equations::all());
     out.extend(diffsol::all());
-    out.extend(python.map(scipy::all).unwrap_or_default());
+    out.extend(python.map(python::all).unwrap_or_default());
     out
 }
 
