@@ -66,10 +66,9 @@ pub fn all(cases: &[Case], ladders: &[Ladder]) -> String {
     }
     let _ = writeln!(out, "\n|---|{}", "---|".repeat(cases.len()));
     type Which = fn(&Ladder) -> bool;
-    let ratios: [(&str, &str, Which); 7] = [
+    let ratios: [(&str, &str, Which); 6] = [
         ("heyoka, 8 side by side, ours in lanes", OURS_IN_LANES, |l| l.whose == Whose::Peer && l.points > 1),
-        ("the best other program but SciPy, one motion", OURS, |l| l.whose == Whose::Peer && l.points == 1),
-        ("the same, ours with 12 coordinates", OURS_WITH_BOTH_HALVES, |l| l.whose == Whose::Peer && l.points == 1),
+        ("the best other program, one motion", OURS, |l| l.whose == Whose::Peer && l.points == 1),
         ("the best with all 24 states, ours with 12 coordinates", OURS_WITH_BOTH_HALVES, |l| {
             l.whose == Whose::Peer && !l.name.starts_with("heyoka")
         }),
