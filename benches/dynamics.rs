@@ -1,83 +1,100 @@
-//! Time per mesh period of the Taylor method and time per operating point, on the reference cases.
+//! Time per mesh period of the methods, alone and in lanes, and time per operating point, on the reference cases.
 //!
 //! `cargo bench --no-default-features --bench dynamics`
 
 use std::hint::black_box;
+use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use herringbone::dynamics::{
-    Couplings, HalfParameters, Harmonic, Impact, Parameters, Spring, Stiffness, equivalent_mass_kg,
-    mesh_damping_n_s_per_m,
-};
-use herringbone::response::{Analysis, Method, solve};
+use herringbone::dynamics::{Integrator, NaturalModes, Parameters, advance, advance_many};
+use herringbone::response::{Analysis, Method, solve, solve_many};
 use herringbone::watch::Watch;
 
-/// Reference cases A (linear, contact kept) and C (period 2, contact lost and closed) of tests/data/dynamics_reference.json.
-fn parameters(torque_per_half_nm: f64, half_backlash_m: f64, damping_ratio: f64, amplitude: f64) -> Parameters {
-    let (rp, rg) = (0.056_015_195_318_438_44, 0.144_980_505_530_064_2);
-    let (mp, ip, mg, ig) = (6.0, 0.0325, 38.0, 1.85);
-    let me = equivalent_mass_kg(rp, ip, rg, ig);
-    let harmonics = [(1.0, 0.3), (0.05 / 0.12, 1.1), (0.25, 2.0), (0.125, 0.7)];
-    let half = HalfParameters {
-        pinion_mass_kg: mp,
-        pinion_inertia_kg_m2: ip,
-        gear_mass_kg: mg,
-        gear_inertia_kg_m2: ig,
-        pinion_torque_nm: torque_per_half_nm,
-        pinion_lateral: Spring::with_damping_ratio(6e8, 0.03, mp),
-        gear_lateral: Spring::with_damping_ratio(6e8, 0.03, mg),
-        pinion_axial: Spring::default(),
-        gear_axial: Spring::with_damping_ratio(2e8, 0.03, mg),
-        mesh_stiffness: Stiffness::Fourier {
-            mean_n_per_m: 9e8,
-            harmonics: harmonics.map(|(a, phase_rad)| Harmonic { amplitude: a * amplitude, phase_rad }).to_vec(),
-        },
-        mesh_damping_n_s_per_m: mesh_damping_n_s_per_m(damping_ratio, 9e8, me),
-        impact: Some(Impact::HalfSine { force_n: 3000.0, duration_mesh_periods: 0.08, start_mesh_periods: 0.0 }),
-        phase_shift_mesh_periods: 0.0,
-    };
-    Parameters {
-        mesh_frequency_hz: 2000.0 / 60.0 * 17.0,
-        pinion_radius_m: rp,
-        gear_radius_m: rg,
-        helix_angle_rad: 24.43f64.to_radians(),
-        half_backlash_m,
-        damping_in_gap: true,
-        halves: [half.clone(), half],
-        couplings: Couplings {
-            pinion_axial: Spring::with_damping_ratio(3e8, 0.03, mp),
-            gear_axial: Spring::with_damping_ratio(3e8, 0.03, mg),
-            ..Couplings::default()
-        },
+#[path = "dynamics_cases.rs"]
+mod cases;
+
+const PERIODS: u64 = 100;
+const POINTS: usize = 32;
+/// Local error of a step that gives an RMS error of 1e-6 (what `integrate` chooses at that accuracy).
+const TOLERANCE: f64 = 5e-8;
+
+/// Static deflection at rest, both halves mirrored to the last bit.
+fn start(p: &Parameters) -> [f64; 24] {
+    let mut start = [0.0; 24];
+    if let Ok(modes) = NaturalModes::new(p) {
+        start[..12].copy_from_slice(&modes.static_deflection(p));
+    }
+    for c in 0..6 {
+        start[6 + c] = if c == 1 || c == 4 { -start[c] } else { start[c] };
+    }
+    start
+}
+
+/// The case at speeds a thousandth apart.
+fn speeds(p: &Parameters, points: usize) -> Vec<Parameters> {
+    let at = |i| Parameters { mesh_frequency_hz: p.mesh_frequency_hz * (0.5 + i as f64 / points as f64), ..p.clone() };
+    (0..points).map(at).collect()
+}
+
+/// Divide by 100 (alone) or by 3200 (in lanes) for one mesh period of one point.
+fn trajectories(c: &mut Criterion) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool of one thread");
+    for name in ["A", "B", "C"] {
+        let p = cases::case(name);
+        let from = start(&p);
+        let mut staggered = p.clone();
+        staggered.halves[1].phase_shift_mesh_periods = 0.5;
+        for (what, p) in [("6 coordinates", &p), ("12 coordinates", &staggered)] {
+            c.bench_function(&format!("{name}, {what}: 100 mesh periods alone"), |b| {
+                b.iter(|| advance(black_box(p), &from, PERIODS, Integrator::Taylor, TOLERANCE, &Watch::none()))
+            });
+            let points = vec![p.clone(); POINTS];
+            let starts = vec![from; POINTS];
+            c.bench_function(&format!("{name}, {what}: 100 mesh periods of 32 points in lanes, one thread"), |b| {
+                b.iter(|| {
+                    pool.install(|| advance_many(black_box(&points), &starts, PERIODS, TOLERANCE, &Watch::none()))
+                })
+            });
+        }
     }
 }
 
-fn bench(c: &mut Criterion) {
-    let a = parameters(400.0, 1e-6, 0.1, 0.12);
-    let mut staggered = a.clone();
-    staggered.halves[1].phase_shift_mesh_periods = 0.5;
-    let period_2 = parameters(40.0, 2e-5, 0.03, 0.24);
-    for (name, p) in [("A", &a), ("A, 12 coordinates", &staggered), ("C", &period_2)] {
-        // The difference of the two divided by 1000 is the cost of one mesh period; of the last two, with statistics.
-        for (what, mesh_periods, record) in
-            [("1 period", 1, 1), ("1001 periods", 1001, 1), ("1001 recorded", 1001, 1001)]
-        {
-            let method = Method::Integrate { mesh_periods, record_mesh_periods: record };
-            let analysis = Analysis { method, ..Analysis::default() };
-            c.bench_function(&format!("{name}: {what}"), |b| {
-                b.iter(|| solve(black_box(p), &analysis, &Watch::none()).map(|r| r.summary.error_estimate))
-            });
-        }
-        let analysis = Analysis::default();
-        c.bench_function(&format!("{name}: auto"), |b| {
-            b.iter(|| solve(black_box(p), &analysis, &Watch::none()).map(|r| r.summary.error_estimate))
+fn points(c: &mut Criterion) {
+    for name in ["A", "C"] {
+        let p = cases::case(name);
+        let auto = Analysis { energy_balance: false, ..Analysis::default() };
+        c.bench_function(&format!("{name}: steady state of one point"), |b| {
+            b.iter(|| solve(black_box(&p), &auto, &Watch::none()).map(|r| r.summary.error_estimate))
+        });
+        let recorded = Method::Integrate { mesh_periods: PERIODS, record_mesh_periods: PERIODS };
+        let recorded = Analysis { method: recorded, ..auto.clone() };
+        c.bench_function(&format!("{name}: 100 mesh periods recorded, with their error"), |b| {
+            b.iter(|| solve(black_box(&p), &recorded, &Watch::none()).map(|r| r.summary.error_estimate))
         });
     }
 }
 
+/// All threads of the pool.
+fn sweeps(c: &mut Criterion) {
+    let mut group = c.benchmark_group("1000 speeds");
+    group.sample_size(10);
+    let auto = Analysis { energy_balance: false, ..Analysis::default() };
+    let linear = speeds(&cases::case("A"), 1000);
+    group.bench_function("A: steady states", |b| b.iter(|| solve_many(black_box(&linear), &auto, &Watch::none())));
+    let method = Method::Integrate { mesh_periods: 300, record_mesh_periods: 100 };
+    let integrate = Analysis { method, ..auto };
+    let separating = speeds(&cases::case("C"), 1000);
+    group.bench_function("C: 300 mesh periods each, 100 recorded", |b| {
+        b.iter(|| solve_many(black_box(&separating), &integrate, &Watch::none()))
+    });
+}
+
 criterion_group! {
     name = benches;
-    config = Criterion::default().sample_size(20).warm_up_time(std::time::Duration::from_millis(300)).measurement_time(std::time::Duration::from_secs(2));
-    targets = bench
+    config = Criterion::default()
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(2));
+    targets = trajectories, points, sweeps
 }
 criterion_main!(benches);

@@ -26,6 +26,11 @@ impl<'a> Watch<'a> {
         Watch { progress: &|_| {}, canceled: &|| false }
     }
 
+    /// Fails when the calculation is no longer wanted, without a report.
+    pub fn checkpoint_quietly(&self) -> Result<(), Canceled> {
+        if (self.canceled)() { Err(Canceled) } else { Ok(()) }
+    }
+
     /// Reports the fraction done (0 to 1) and fails when the calculation is no longer wanted.
     pub fn checkpoint(&self, fraction: f64) -> Result<(), Canceled> {
         if (self.canceled)() {

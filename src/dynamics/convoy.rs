@@ -4,11 +4,11 @@ use super::equations::Equations;
 use super::error::DynamicsError;
 use super::excitation::MAX_ORDER;
 use super::expansion::LaneExcitations;
-use super::integrate::{Numerics, grown};
+use super::integrate::{Integrator, Motion, Numerics, grown};
 use super::lanes::{Lanes, Real};
 use super::model::{Contact, Model, State};
 use super::recurrence::TaylorWork;
-use super::segment::Segment;
+use super::segment::{Observer, Segment};
 use super::taylor::{Rattling, Stepped, Stretch, evaluate_rows, order_for, refused, step};
 use crate::simd::vectorised;
 use crate::watch::{Canceled, Watch};
@@ -17,14 +17,17 @@ use crate::watch::{Canceled, Watch};
 pub(crate) const SIDE_BY_SIDE: usize = 8;
 
 /// One motion of a convoy: where it starts, what looks at it, and when it has got where it was to go.
-pub(crate) trait Passenger<const D: usize> {
-    fn model(&self) -> &Model<D>;
+pub(crate) trait Passenger<'m, const D: usize> {
+    fn model(&self) -> &'m Model<D>;
 
     /// State at the start of a mesh period.
     fn start(&self) -> State<D>;
 
     /// Local error of a step relative to the size of the motion.
     fn tolerance(&self) -> f64;
+
+    /// How far it has got, 0 … 1: for progress.
+    fn fraction_done(&self) -> f64;
 
     /// Whether [`Passenger::segment`] wants to see the present mesh period.
     fn looks(&self) -> bool;
@@ -46,13 +49,12 @@ const STEPS_PER_CHECKPOINT: u32 = 2048;
 ///
 /// # Errors
 /// [`Canceled`] by the watch; passengers' own errors go to the passengers.
-pub(crate) fn carry<const D: usize, P: Passenger<D>>(
+pub(crate) fn carry<'m, const D: usize, P: Passenger<'m, D>>(
     passengers: &mut [P],
     order_tolerance: f64,
     max_steps: u64,
     watch: &Watch<'_>,
 ) -> Result<(), Canceled> {
-    let models: Vec<Model<D>> = passengers.iter().map(|p| p.model().clone()).collect();
     let mut convoy = Convoy::<D, SIDE_BY_SIDE>::new(order_for(order_tolerance), max_steps);
     let mut waiting = 0;
     let mut arrived = 0;
@@ -60,7 +62,7 @@ pub(crate) fn carry<const D: usize, P: Passenger<D>>(
     loop {
         for lane in 0..SIDE_BY_SIDE {
             if convoy.riders[lane].is_none() && waiting < passengers.len() {
-                convoy.board(lane, waiting, &models[waiting], &passengers[waiting]);
+                convoy.board(lane, waiting, &passengers[waiting]);
                 waiting += 1;
             }
         }
@@ -71,7 +73,7 @@ pub(crate) fn carry<const D: usize, P: Passenger<D>>(
         loop {
             let before = arrived;
             let stepped = convoy.step();
-            arrived += convoy.settle(&stepped, &models, passengers);
+            arrived += convoy.settle(&stepped, passengers);
             since_checkpoint += 1;
             if since_checkpoint == STEPS_PER_CHECKPOINT {
                 since_checkpoint = 0;
@@ -80,6 +82,46 @@ pub(crate) fn carry<const D: usize, P: Passenger<D>>(
             if arrived > before {
                 break;
             }
+        }
+    }
+}
+
+/// Takes one passenger where it is going, by any method.
+///
+/// # Errors
+/// [`Canceled`] by the watch; the passenger's own errors go to the passenger.
+pub(crate) fn carry_one<'m, const D: usize, P: Passenger<'m, D>>(
+    passenger: &mut P,
+    integrator: Integrator,
+    max_steps: u64,
+    watch: &Watch<'_>,
+) -> Result<(), Canceled> {
+    let mut motion = Motion::new(passenger.model(), passenger.start(), integrator, passenger.tolerance(), max_steps);
+    let error = loop {
+        let fraction = passenger.fraction_done();
+        let advanced = motion.advance_period(&mut Looking(passenger), watch, fraction);
+        if let Err(error) = advanced {
+            break Some(error);
+        }
+        watch.checkpoint(fraction)?;
+        if !passenger.period_ended(&motion.state) {
+            break None;
+        }
+    };
+    if error == Some(DynamicsError::Canceled(Canceled)) {
+        return Err(Canceled);
+    }
+    passenger.ended(motion.numerics, error);
+    Ok(())
+}
+
+/// Shows a motion to the passenger that wants to see it.
+struct Looking<'a, P>(&'a mut P);
+
+impl<'m, const D: usize, P: Passenger<'m, D>> Observer<D> for Looking<'_, P> {
+    fn segment(&mut self, segment: &Segment<'_, D>) {
+        if self.0.looks() {
+            self.0.segment(segment);
         }
     }
 }
@@ -141,7 +183,8 @@ impl<'m, const D: usize, const L: usize> Convoy<'m, D, L> {
         }
     }
 
-    fn board(&mut self, lane: usize, passenger: usize, model: &'m Model<D>, who: &impl Passenger<D>) {
+    fn board(&mut self, lane: usize, passenger: usize, who: &impl Passenger<'m, D>) {
+        let model = who.model();
         let state = who.start();
         self.equations.put(lane, model);
         self.excitations.put(lane, &model.excitations);
@@ -206,17 +249,12 @@ impl<'m, const D: usize, const L: usize> Convoy<'m, D, L> {
     }
 
     /// What the step means to each lane's rider; returns how many have arrived.
-    fn settle<P: Passenger<D>>(
-        &mut self,
-        stepped: &Stepped<Lanes<L>>,
-        models: &'m [Model<D>],
-        passengers: &mut [P],
-    ) -> usize {
+    fn settle<P: Passenger<'m, D>>(&mut self, stepped: &Stepped<Lanes<L>>, passengers: &mut [P]) -> usize {
         let mut arrived = 0;
         for lane in 0..L {
             let Some(mut rider) = self.riders[lane] else { continue };
             let who = &mut passengers[rider.passenger];
-            let model = &models[rider.passenger];
+            let model = who.model();
             let (h, changed) = (stepped.h.get(lane), stepped.changed.get(lane));
             let (from, end) = (self.stretch.phase.get(lane), self.stretch.end.get(lane));
             let to_end = stepped.to_end.get(lane) != 0.0;
@@ -279,7 +317,7 @@ impl<'m, const D: usize, const L: usize> Convoy<'m, D, L> {
         model: &Model<D>,
         h: f64,
         degree: usize,
-        who: &mut impl Passenger<D>,
+        who: &mut impl Passenger<'m, D>,
     ) {
         for n in 0..=degree {
             for c in 0..D {
@@ -304,7 +342,7 @@ impl<'m, const D: usize, const L: usize> Convoy<'m, D, L> {
     }
 
     /// Empties a lane: what is left in it stands still.
-    fn leave(&mut self, lane: usize, rider: &Rider, who: &mut impl Passenger<D>, error: Option<DynamicsError>) {
+    fn leave(&mut self, lane: usize, rider: &Rider, who: &mut impl Passenger<'m, D>, error: Option<DynamicsError>) {
         self.riders[lane] = None;
         let rest = State { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [0; 2] };
         self.place(lane, &rest);

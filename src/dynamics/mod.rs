@@ -50,7 +50,7 @@ pub use model::Contact;
 pub use parameters::{Couplings, HalfParameters, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m};
 pub use trajectory::{Reached, advance, advance_many};
 
-pub(crate) use convoy::{Passenger, carry};
+pub(crate) use convoy::{Passenger, carry, carry_one};
 pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP};
 pub(crate) use excitation::MAX_ORDER;
 pub(crate) use free::FreeMotions;

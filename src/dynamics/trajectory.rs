@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::convoy::{Passenger, carry};
+use super::convoy::{Passenger, carry, carry_one};
 use super::error::DynamicsError;
-use super::integrate::{Integrator, Motion, Numerics};
+use super::integrate::{Integrator, Numerics};
 use super::model::{Model, State};
 use super::parameters::Parameters;
-use super::segment::{Segment, Unobserved};
+use super::segment::Segment;
 use crate::watch::{Canceled, Watch};
 
 /// Where a motion has got to.
@@ -39,13 +39,11 @@ pub fn advance(
         watch: &Watch<'_>,
     ) -> Result<Reached, DynamicsError> {
         let model = Model::<D>::new(p)?;
-        let mut motion = Motion::new(&model, model.state_from(start), integrator, tolerance, u64::MAX);
-        for period in 0..mesh_periods {
-            let fraction = period as f64 / mesh_periods as f64;
-            motion.advance_period(&mut Unobserved, watch, fraction)?;
-            watch.checkpoint(fraction)?;
+        let mut traveller = Traveller::new(&model, start, mesh_periods, tolerance);
+        if mesh_periods > 0 {
+            carry_one(&mut traveller, integrator, u64::MAX, watch)?;
         }
-        Ok(Reached { state: model.source_state(&motion.state), numerics: motion.numerics })
+        traveller.reached
     }
     if p.is_symmetric() && is_mirrored(start) {
         run::<6>(p, start, mesh_periods, (integrator, tolerance), watch)
@@ -70,12 +68,12 @@ pub fn advance_many(
     let groups: Result<Vec<_>, Canceled> = asked
         .par_chunks(POINTS_PER_GROUP)
         .map(|group| {
-            let mut out: Vec<Option<Result<Reached, DynamicsError>>> = vec![None; group.len()];
+            let mut out = vec![Err(DynamicsError::Canceled(Canceled)); group.len()];
             let mirrored = |(p, start): &(&Parameters, &[f64; 24])| p.is_symmetric() && is_mirrored(start);
             let (halves, whole): (Vec<usize>, Vec<usize>) = (0..group.len()).partition(|&i| mirrored(&group[i]));
             travel::<6>(group, &halves, mesh_periods, tolerance, watch, &mut out)?;
             travel::<12>(group, &whole, mesh_periods, tolerance, watch, &mut out)?;
-            Ok(out.into_iter().map(|o| o.unwrap_or(Err(DynamicsError::Canceled(Canceled)))).collect::<Vec<_>>())
+            Ok(out)
         })
         .collect();
     Ok(groups?.into_iter().flatten().collect())
@@ -85,13 +83,19 @@ pub fn advance_many(
 const POINTS_PER_GROUP: usize = 32;
 
 /// A motion that only wants to get there.
-struct Traveller<const D: usize> {
-    index: usize,
-    model: Model<D>,
+struct Traveller<'m, const D: usize> {
+    model: &'m Model<D>,
     state: State<D>,
     mesh_periods: u64,
     tolerance: f64,
-    reached: Option<Result<Reached, DynamicsError>>,
+    reached: Result<Reached, DynamicsError>,
+}
+
+impl<'m, const D: usize> Traveller<'m, D> {
+    fn new(model: &'m Model<D>, start: &[f64; 24], mesh_periods: u64, tolerance: f64) -> Self {
+        let reached = Ok(Reached { state: *start, numerics: Numerics::default() });
+        Self { model, state: model.state_from(start), mesh_periods, tolerance, reached }
+    }
 }
 
 fn travel<const D: usize>(
@@ -100,29 +104,32 @@ fn travel<const D: usize>(
     mesh_periods: u64,
     tolerance: f64,
     watch: &Watch<'_>,
-    out: &mut [Option<Result<Reached, DynamicsError>>],
+    out: &mut [Result<Reached, DynamicsError>],
 ) -> Result<(), Canceled> {
+    let models: Vec<_> = indices.iter().map(|&i| Model::<D>::new(points[i].0)).collect();
     let mut travellers = Vec::with_capacity(indices.len());
-    for &index in indices {
-        let (p, start) = points[index];
-        match Model::<D>::new(p) {
+    let mut places = Vec::with_capacity(indices.len());
+    for (&index, model) in indices.iter().zip(&models) {
+        match model {
             Ok(model) => {
-                let state = model.state_from(start);
-                travellers.push(Traveller { index, model, state, mesh_periods, tolerance, reached: None });
+                travellers.push(Traveller::new(model, points[index].1, mesh_periods, tolerance));
+                places.push(index);
             }
-            Err(error) => out[index] = Some(Err(error)),
+            Err(error) => out[index] = Err(error.clone()),
         }
     }
-    carry(&mut travellers, tolerance, u64::MAX, watch)?;
-    for traveller in travellers {
-        out[traveller.index] = traveller.reached;
+    if mesh_periods > 0 {
+        carry(&mut travellers, tolerance, u64::MAX, watch)?;
+    }
+    for (index, traveller) in places.into_iter().zip(travellers) {
+        out[index] = traveller.reached;
     }
     Ok(())
 }
 
-impl<const D: usize> Passenger<D> for Traveller<D> {
-    fn model(&self) -> &Model<D> {
-        &self.model
+impl<'m, const D: usize> Passenger<'m, D> for Traveller<'m, D> {
+    fn model(&self) -> &'m Model<D> {
+        self.model
     }
 
     fn start(&self) -> State<D> {
@@ -131,6 +138,10 @@ impl<const D: usize> Passenger<D> for Traveller<D> {
 
     fn tolerance(&self) -> f64 {
         self.tolerance
+    }
+
+    fn fraction_done(&self) -> f64 {
+        self.state.period as f64 / self.mesh_periods as f64
     }
 
     fn looks(&self) -> bool {
@@ -146,7 +157,7 @@ impl<const D: usize> Passenger<D> for Traveller<D> {
 
     fn ended(&mut self, numerics: Numerics, error: Option<DynamicsError>) {
         let reached = Reached { state: self.model.source_state(&self.state), numerics };
-        self.reached = Some(error.map_or(Ok(reached), Err));
+        self.reached = error.map_or(Ok(reached), Err);
     }
 }
 

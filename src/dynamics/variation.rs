@@ -11,7 +11,7 @@ use super::taylor::{evaluate_rows, step_reach};
 use crate::simd::vectorised;
 
 /// Deviations carried side by side.
-const COLUMNS: usize = 8;
+const COLUMNS: usize = 12;
 
 /// A deviation: displacements and scaled velocities.
 pub(crate) type Deviation<const D: usize> = ([f64; D], [f64; D]);

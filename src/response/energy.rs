@@ -1,15 +1,7 @@
 //! The work–energy theorem over a record: a check of the solution that knows nothing of the method that made it.
 
-use std::sync::LazyLock;
-
+use super::quadrature::GAUSS;
 use crate::dynamics::{Model, Observer, PER_HALF, Segment, W};
-
-/// Gauss–Legendre nodes per segment: exact for powers up to 2·16 − 1 = 31 in time, so what is left of a step's series of
-/// order 20 is far below its own truncation.
-const NODES: usize = 16;
-
-/// Nodes and weights over 0 … 1.
-static GAUSS: LazyLock<[(f64, f64); NODES]> = LazyLock::new(gauss_legendre);
 
 /// A motion whose velocities stay below this part of its displacements (scaled time) does not move: what it shows is rounding.
 const STILL: f64 = 1e-9;
@@ -94,25 +86,6 @@ fn at<const D: usize>(segment: &Segment<'_, D>, t: f64) -> ([f64; D], [f64; D]) 
         }
     }
     (x, v)
-}
-
-/// Gauss–Legendre quadrature: the roots of P_n by Newton's method from Tricomi's estimate, weights 2/((1 − x²) P_n'²).
-fn gauss_legendre() -> [(f64, f64); NODES] {
-    let n = NODES as f64;
-    std::array::from_fn(|i| {
-        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..10 {
-            let (mut before, mut p) = (1.0, x);
-            for k in 2..=NODES {
-                let k = k as f64;
-                (before, p) = (p, ((2.0 * k - 1.0) * x * p - (k - 1.0) * before) / k);
-            }
-            slope = n * (x * p - before) / (x * x - 1.0);
-            x -= p / slope;
-        }
-        (0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope))
-    })
 }
 
 #[cfg(test)]

@@ -8,7 +8,9 @@ mod budget;
 mod channel;
 mod confidence;
 mod energy;
+mod quadrature;
 mod recorder;
+mod recording;
 mod regime;
 mod report;
 mod solve;
@@ -21,7 +23,7 @@ pub use analysis::{
 };
 pub use channel::{Channel, ChannelId, Quantity};
 pub use confidence::Interval;
-pub use solve::solve;
+pub use solve::{solve, solve_many};
 pub use spectrum::Spectrum;
 pub use statistics::Statistics;
 

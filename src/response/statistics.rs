@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
+use super::quadrature::{GAUSS, NODES};
 use crate::dynamics::MAX_ORDER;
 
 /// A channel over the recorded periods. Means are exact time means of the solution's polynomials, not of samples.
@@ -17,9 +18,9 @@ pub struct Statistics {
     pub max: f64,
 }
 
-/// 1/(i + j + 1): ∫ τ^(i+j) over 0 … 1.
-static INTEGRALS: LazyLock<[[f64; MAX_ORDER + 1]; MAX_ORDER + 1]> =
-    LazyLock::new(|| std::array::from_fn(|i| std::array::from_fn(|j| 1.0 / (i + j + 1) as f64)));
+/// Powers of the nodes: τ_q^n in row n.
+static POWERS: LazyLock<[[f64; NODES]; MAX_ORDER + 1]> =
+    LazyLock::new(|| std::array::from_fn(|n| std::array::from_fn(|q| GAUSS[q].0.powi(n as i32))));
 
 /// Integrals and extremes of one channel, gathered segment by segment.
 #[derive(Debug, Clone, Copy)]
@@ -59,44 +60,50 @@ impl Gathered {
         }
         b[0] -= offset;
         let b = &b[..c.len()];
-        let mut square = 0.0;
-        let mut mean = 0.0;
-        for (i, bi) in b.iter().enumerate() {
-            mean += bi / (i + 1) as f64;
-            let row = &INTEGRALS[i][..b.len()];
-            square += bi * b.iter().zip(row).map(|(bj, w)| bj * w).sum::<f64>();
+        // Exact: the square's degree is below that to which the nodes are.
+        let mut values = [0.0; NODES];
+        for (bi, row) in b.iter().zip(POWERS.iter()) {
+            for (value, power) in values.iter_mut().zip(row) {
+                *value += bi * power;
+            }
+        }
+        let (mut mean, mut square) = (0.0, 0.0);
+        for (value, (_, weight)) in values.iter().zip(GAUSS.iter()) {
+            mean += weight * value;
+            square += weight * value * value;
         }
         self.first += h * mean;
         self.second += h * square;
         self.length += h;
         if extremes {
-            self.add_extremes(b, offset);
+            self.add_extremes(b, &values, offset);
         }
     }
 
-    /// Extremes over the unit interval: a coarse look, then Newton's method on the derivative around the best point.
-    fn add_extremes(&mut self, b: &[f64], offset: f64) {
-        const POINTS: usize = 9;
-        let mut values = [0.0; POINTS];
-        for (i, value) in values.iter_mut().enumerate() {
-            *value = horner(b, i as f64 / (POINTS - 1) as f64);
+    /// Extremes over the unit interval: the nodes and both ends, then Newton's method on the derivative around the best of
+    /// them.
+    fn add_extremes(&mut self, b: &[f64], at_nodes: &[f64; NODES], offset: f64) {
+        const POINTS: usize = NODES + 2;
+        let mut points = [(0.0, b[0]); POINTS];
+        for (point, (value, (node, _))) in points[1..].iter_mut().zip(at_nodes.iter().zip(GAUSS.iter())) {
+            *point = (*node, *value);
         }
+        points[POINTS - 1] = (1.0, b.iter().sum());
         for sign in [1.0, -1.0] {
             let best = if sign > 0.0 { self.max - offset } else { offset - self.min };
             let mut at = 0;
             for i in 1..POINTS {
-                if sign * values[i] > sign * values[at] {
+                if sign * points[i].1 > sign * points[at].1 {
                     at = i;
                 }
             }
-            let mut top = sign * values[at];
+            let mut top = sign * points[at].1;
             // The tip of a parabola through neighbours lies above the middle one by less than the largest of the differences.
-            let neighbour = |i: usize| (values[i] - values[at]).abs();
+            let neighbour = |i: usize| (points[i].1 - points[at].1).abs();
             let margin = neighbour(at.saturating_sub(1)).max(neighbour((at + 1).min(POINTS - 1)));
             if top + margin > best {
-                let width = 1.0 / (POINTS - 1) as f64;
-                let (low, high) = ((at as f64 - 1.0).max(0.0) * width, ((at + 1) as f64 * width).min(1.0));
-                let mut t = at as f64 * width;
+                let (low, high) = (points[at.saturating_sub(1)].0, points[(at + 1).min(POINTS - 1)].0);
+                let mut t = points[at].0;
                 for _ in 0..8 {
                     let (d1, d2) = derivatives(b, t);
                     if d2 * sign >= 0.0 {
