@@ -224,7 +224,7 @@ pub struct Response {
     /// one that does, or when the record is too short against its correlation to say.
     #[serde(default)]
     pub confidence_interval_95: Option<RmsIntervals>,
-    /// Work-energy theorem over the recorded periods: what the work of all forces does not explain of the change of kinetic
+    /// Work-energy theorem over the recorded periods (the first 200 of a longer record): what the work of all forces does not explain of the change of kinetic
     /// energy, over the integral of the absolute power on each coordinate; null when nothing moves.
     #[serde(default)]
     pub energy_balance_residual: Option<f64>,
