@@ -63,9 +63,11 @@ async function plot(axes, points, quantity) {
     await draw(byId("sweep-plot"), traces, { x: labels[0], y: quantity.unit || quantity.label });
   } else {
     const [columns, rows] = axes.map((_, index) => [...new Set(points.map((point) => point.values[index]))].sort((a, b) => a - b));
-    const byPlace = new Map(points.map((point) => [point.values.join(), quantity.pick(point)]));
+    // Of two directions of continuation the first is shown.
+    const [{ branch, sorted }] = branchesOf(points);
+    const byPlace = new Map(sorted.map((point) => [point.values.join(), quantity.pick(point)]));
     const grid = rows.map((row) => columns.map((column) => byPlace.get([column, row].join()) ?? null));
-    await draw(byId("sweep-plot"), [heatMap(columns, rows, grid, quantity.unit)], { x: labels[0], y: labels[1], title: y });
+    await draw(byId("sweep-plot"), [heatMap(columns, rows, grid, quantity.unit)], { x: labels[0], y: labels[1], title: [y, branch].filter(Boolean).join(", ") });
   }
 }
 
