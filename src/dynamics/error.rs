@@ -15,7 +15,11 @@ pub enum DynamicsError {
     #[error("a step of {step_s} s at {time_s} s is too small to advance the time")]
     StepSizeTooSmall { time_s: f64, step_s: f64 },
     /// The step budget is used up: the stiffest motion is too fast for the time that was asked for.
-    #[error("{limit} steps were not enough; the integration had reached {time_s} s")]
+    #[error(
+        "{limit} steps were not enough, they reached {time_s} s: some part of the pair vibrates or decays very many times within a mesh \
+         period. A stiffness or damper far too large for the mass it acts on, a mass or inertia far too small, or a very low speed \
+         makes it so"
+    )]
     TooManySteps { time_s: f64, limit: u64 },
     /// The mean load has a component along a motion that nothing holds (a rigid rotation or the axial screw motion of
     /// the pinion), so no steady state exists.

@@ -2,10 +2,11 @@
 
 use crate::dynamics::{DynamicsError, Limits, Model, Numerics, PER_HALF};
 
-/// Work of a search in all its parts: transient, maps, exponents. One unit is one step of the six coordinates of one half, or of
-/// one deviation carried along with them: 0.5 to 1 µs on a processor of 2020, so that a search ends within some 20 s. It counts steps, not
-/// seconds, so that equal input ends in the same way on every machine.
-const SEARCH_UNITS: u64 = 25_000_000;
+/// Work of a search in all its parts: transient, maps, exponents. One unit is one step of the six coordinates of one half, or
+/// of one deviation carried along with them: 0.5 to 2 µs on a processor of 2020, so that a search ends within some 20 s and an
+/// answer with its record and its error within 30 s. It counts steps, not seconds, so that equal input ends in the same way on every
+/// machine.
+const SEARCH_UNITS: u64 = 10_000_000;
 
 /// Work that is left.
 pub(super) struct Budget {

@@ -28,4 +28,6 @@ pub use spectrum::Spectrum;
 pub use statistics::Statistics;
 
 #[cfg(test)]
+mod properties;
+#[cfg(test)]
 mod tests;

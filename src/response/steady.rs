@@ -23,13 +23,15 @@ const BETWEEN_TRIES: u64 = 40;
 const LYAPUNOV_MESH_PERIODS: u64 = 400;
 /// Length of the record of a motion that does not repeat, and the steps it may take.
 const LONG_RECORD_MESH_PERIODS: u64 = 2000;
-const LONG_RECORD_STEPS: u64 = 4_000_000;
+const LONG_RECORD_STEPS: u64 = 2_000_000;
 /// Steps of a mesh period beyond which the motion is first followed through a few periods in the hope that everything has died away
 /// then: the linear map takes as many deviations along as there are displacements and velocities.
 const MANY_STEPS_PER_PERIOD: f64 = 2000.0;
 /// How many periods, and by how much the change has to fall from one to the next.
 const SOON_MESH_PERIODS: u64 = 6;
 const SOON_FALL: f64 = 0.03;
+/// A change that no longer falls is rounding below this; what it means for the answer is measured later.
+const SOON_ROUNDING: f64 = 1e-5;
 /// What is left of a deviation after a mesh period when everything dies away within it.
 const FADED: f64 = 0.01;
 /// Multiplier from which a motion's start is corrected once more with a finer tolerance: an error of the map moves
@@ -124,7 +126,9 @@ impl<const D: usize> Search<'_, D> {
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
             section.push(motion.state);
             let change = section.change(1).unwrap_or(f64::INFINITY);
-            settled = change <= 10.0 * self.limits.tolerance;
+            // Or as well as rounding lets it: a slow motion's velocity has few digits beside its displacement.
+            let floor = change <= SOON_ROUNDING && change > SOON_FALL * before;
+            settled = floor || change <= 10.0 * self.limits.tolerance;
             if settled || change > SOON_FALL * before {
                 break;
             }

@@ -1,6 +1,7 @@
 //! Tests of the equations and methods against independent answers.
 
 mod cost;
+mod drift;
 mod lanes;
 mod order;
 mod oscillator;
