@@ -13,6 +13,10 @@ use crate::simd::vectorised;
 /// Deviations carried side by side.
 const COLUMNS: usize = 12;
 
+/// What has died away as far as this is nothing: below the normal range of numbers it would have no digits left to choose a step by, and
+/// the steps would shrink for ever.
+const GONE: f64 = 1e-200;
+
 /// A deviation: displacements and scaled velocities.
 pub(crate) type Deviation<const D: usize> = ([f64; D], [f64; D]);
 
@@ -94,8 +98,9 @@ impl<'m, const D: usize> Variation<'m, D> {
         let count = (self.columns.len() - first).min(R::LANES);
         // Lanes without a column of their own repeat the last one.
         let column = |lane: usize| first + lane.min(count - 1);
-        let mut x: [R; D] = std::array::from_fn(|c| R::from_fn(|l| self.columns[column(l)].0[c]));
-        let mut v: [R; D] = std::array::from_fn(|c| R::from_fn(|l| self.columns[column(l)].1[c]));
+        let alive = |c: f64| if c.abs() < GONE { 0.0 } else { c };
+        let mut x: [R; D] = std::array::from_fn(|c| R::from_fn(|l| alive(self.columns[column(l)].0[c])));
+        let mut v: [R; D] = std::array::from_fn(|c| R::from_fn(|l| alive(self.columns[column(l)].1[c])));
         let order = segment.degree.clamp(12, MAX_ORDER);
         let period_tau = self.model.period_tau;
         let inside = segment.phase + 0.5 * segment.h / period_tau;

@@ -191,7 +191,9 @@ fn slow_speeds_end_soon() {
 }
 
 /// Largest Lyapunov exponents of case B per mesh period: within the mirror symmetry, against it, and of all twelve
-/// coordinates. An independent program states 0.27, 0.475 and 0.37.
+/// coordinates. An independent program states 0.27, 0.475 and 0.37. Averages over 4000 mesh periods of two runs that differ by
+/// rounding alone were 0.470 and 0.440 against the symmetry, 0.264 and 0.369 otherwise: the tolerance is four times that scatter at twice
+/// the length.
 #[test]
 fn exponents_of_the_chaotic_case() {
     fn run<const D: usize>(against: bool, periods: u64) -> f64 {
@@ -208,10 +210,10 @@ fn exponents_of_the_chaotic_case() {
         lyapunov(&mut motion, &of, periods, &Watch::none()).unwrap()
     }
     let topic = "Response: regime";
-    let of = |what: &str| format!("Lyapunov exponent of case B over 4000 mesh periods, {what}");
-    check(topic, &of("within the mirror symmetry"), run::<6>(false, 4000), 0.27, Absolute(0.03));
-    check(topic, &of("against it"), run::<6>(true, 4000), 0.475, Absolute(0.03));
-    check(topic, &of("all twelve coordinates"), run::<12>(false, 4000), 0.37, Absolute(0.03));
+    let of = |what: &str| format!("Lyapunov exponent of case B over 8000 mesh periods, {what}");
+    check(topic, &of("within the mirror symmetry"), run::<6>(false, 8000), 0.27, Absolute(0.06));
+    check(topic, &of("against it"), run::<6>(true, 8000), 0.475, Absolute(0.06));
+    check(topic, &of("all twelve coordinates"), run::<12>(false, 8000), 0.37, Absolute(0.06));
 }
 
 /// Motions other than those of the reference: speeds, starts, stagger, samples.
@@ -292,4 +294,19 @@ fn estimates_hold_off_the_reference_cases() {
     let topic = "Response: error estimate";
     check_worst(topic, "error over estimate, motions off the reference cases", below, 1.0);
     check_worst(topic, "estimate over error, the same motions", above, 100.0);
+}
+
+/// No load, no play, at rest until the first pulse: the pulse is found, and the load adds nothing to a linear pair's motion.
+#[test]
+fn an_unloaded_pair_wakes_up() {
+    let mut p = parameters("A");
+    p.half_backlash_m = 0.0;
+    for h in &mut p.halves {
+        h.mesh_stiffness = Stiffness::Constant { mean_n_per_m: 9e8 };
+    }
+    let loaded = auto(&p, 1e-9);
+    p.halves.iter_mut().for_each(|h| h.pinion_torque_nm = 0.0);
+    let unloaded = auto(&p, 1e-9);
+    let errors = relative(accelerations(&unloaded), accelerations(&loaded));
+    check_worst(PROPERTIES, "constant stiffness, no play: RMS without load against RMS with load", errors, 1e-9);
 }

@@ -5,7 +5,7 @@ use nalgebra::{Complex, DMatrix};
 use super::budget::{Budget, exhausted, steps_per_period};
 use super::regime::{CHAOS_PER_MESH_PERIOD, Section, faded, largest, lyapunov};
 use crate::dynamics::{
-    Deviation, DynamicsError, FreeMotions, Integrator, Limits, Model, Motion, Numerics, PER_HALF, Shooting, State,
+    Deviation, DynamicsError, FreeMotions, Integrator, Limits, Model, Motion, Numerics, PER_HALF, Shooting, State, U,
     Unobserved, difference,
 };
 
@@ -72,6 +72,7 @@ impl<const D: usize> Search<'_, D> {
     /// The steady state reached from `start`, or the periodic one without loss of contact when it exists and is stable.
     pub fn run(&self, start: State<D>) -> Result<Found<D>, DynamicsError> {
         let mut budget = Budget::new::<D>(&self.limits);
+        let start = self.woken(start);
         let mut numerics = Numerics::default();
         if steps_per_period(self.model) > MANY_STEPS_PER_PERIOD
             && let Some(found) = self.soon(start, &mut budget, &mut numerics)?
@@ -84,6 +85,23 @@ impl<const D: usize> Search<'_, D> {
             return Ok(found);
         }
         self.with_separation(start, &mut budget, numerics)
+    }
+
+    /// A pair without load rests at zero: there is no size of its motion to measure a step by, when a pulse comes. It sets out from a
+    /// millionth of the deflection that the pulse could give instead; where it sets out from is forgotten.
+    fn woken(&self, start: State<D>) -> State<D> {
+        const SLIGHTLY: f64 = 1e-6;
+        if start.x.iter().chain(&start.v).any(|c| *c != 0.0) {
+            return start;
+        }
+        let masses = self.model.masses_kg();
+        let square = self.model.omega_ref * self.model.omega_ref;
+        let mut push: Deviation<D> = ([0.0; D], [0.0; D]);
+        for j in 0..Model::<D>::HALVES {
+            let u = j * PER_HALF + U;
+            push.0[u] = SLIGHTLY * self.model.largest_push_n(j) / (masses[u] * square);
+        }
+        moved(self.model, start, &push)
     }
 
     fn motion(&self, start: State<D>, budget: &Budget) -> Motion<'_, D> {
