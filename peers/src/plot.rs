@@ -66,8 +66,8 @@ pub fn draw(case: &Case, ladders: &[Ladder]) -> String {
         for [x, y] in &places {
             let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.6\" fill=\"{color}\"/>");
         }
-        if let Some(end) = places.last() {
-            labels.push(Label { end: *end, name: ladder.name.replace(RESTARTED, " (restarted)"), color });
+        if let (Some(begin), Some(end)) = (places.first(), places.last()) {
+            labels.push(Label { ends: [*end, *begin], name: ladder.name.replace(RESTARTED, " (restarted)"), color });
         }
         lines.push(places);
     }
@@ -77,13 +77,13 @@ pub fn draw(case: &Case, ladders: &[Ladder]) -> String {
 }
 
 struct Label {
-    /// The finest rung.
-    end: [f64; 2],
+    /// The finest and the coarsest rung.
+    ends: [[f64; 2]; 2],
     name: String,
     color: &'static str,
 }
 
-/// Names as near to the fine ends of their lines as they find room: touching no other name and no line.
+/// Names as near to an end of their lines as they find room: touching no other name and no line.
 fn place(svg: &mut String, labels: Vec<Label>, lines: &[Vec<[f64; 2]>]) {
     let between = |a: [f64; 2], b: [f64; 2]| {
         let pieces = ((a[0] - b[0]).hypot(a[1] - b[1]) / 4.0).ceil().max(1.0);
@@ -108,18 +108,17 @@ fn place(svg: &mut String, labels: Vec<Label>, lines: &[Vec<[f64; 2]>]) {
                     .iter()
                     .all(|p| p[0] < left - 5.0 || p[0] > right + 5.0 || p[1] < top - 3.0 || p[1] > bottom + 3.0)
         };
-        // The middle of the name on widening rings about the end, from its right downwards.
-        let rings =
-            (0..60).flat_map(|ring| (0..24).map(move |turn| (4.0 * f64::from(ring), f64::from(turn) * TAU / 24.0)));
+        // The middle of the name on widening rings about the ends, from their right downwards.
+        let rings = (0..60).flat_map(|ring| (0..48).map(move |turn| (4.0 * f64::from(ring), turn)));
         let spot = rings
             .map(|(r, turn)| {
-                let (dx, dy) = (turn.cos(), turn.sin());
-                let middle =
-                    [label.end[0] + (r + 0.5 * width + 8.0) * dx, label.end[1] + (r + 0.5 * height + 6.0) * dy];
+                let (dy, dx) = (f64::from(turn % 24) * TAU / 24.0).sin_cos();
+                let end = label.ends[turn as usize / 24];
+                let middle = [end[0] + (r + 0.5 * width + 8.0) * dx, end[1] + (r + 0.5 * height + 6.0) * dy];
                 [middle[0] - 0.5 * width, middle[1] - 0.5 * height]
             })
             .find(|corner| fits(*corner));
-        let [left, top] = spot.unwrap_or(label.end);
+        let [left, top] = spot.unwrap_or(label.ends[0]);
         taken.push([left, left + width, top, top + height]);
         let _ = writeln!(
             svg,
