@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::regime::lyapunov;
 use super::*;
 use crate::dynamics::tests::reference::{parameters, reference};
-use crate::dynamics::{Integrator, Model, Motion, Parameters, Spring, Stiffness, Unobserved};
+use crate::dynamics::{DynamicsError, Integrator, Model, Motion, Parameters, Spring, Stiffness, Unobserved};
 use crate::oracle::Tolerance::Absolute;
 use crate::oracle::{check, check_worst};
 use crate::watch::Watch;
@@ -294,6 +294,15 @@ fn estimates_hold_off_the_reference_cases() {
     let topic = "Response: error estimate";
     check_worst(topic, "error over estimate, motions off the reference cases", below, 1.0);
     check_worst(topic, "estimate over error, the same motions", above, 100.0);
+}
+
+/// Springs that cannot carry the load are named as the reason.
+#[test]
+fn a_load_nothing_carries_is_refused() {
+    let mut p = parameters("A");
+    p.halves.iter_mut().for_each(|h| h.pinion_lateral.stiffness = 1.0);
+    let refused = solve(&p, &Analysis::default(), &Watch::none());
+    assert!(matches!(refused, Err(DynamicsError::InvalidParameter { .. })), "{refused:?}");
 }
 
 /// No load, no play, at rest until the first pulse: the pulse is found, and the load adds nothing to a linear pair's motion.

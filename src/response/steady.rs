@@ -72,6 +72,7 @@ impl<const D: usize> Search<'_, D> {
     /// The steady state reached from `start`, or the periodic one without loss of contact when it exists and is stable.
     pub fn run(&self, start: State<D>) -> Result<Found<D>, DynamicsError> {
         let mut budget = Budget::new::<D>(&self.limits);
+        self.carried(&start)?;
         let start = self.woken(start);
         let mut numerics = Numerics::default();
         if steps_per_period(self.model) > MANY_STEPS_PER_PERIOD
@@ -85,6 +86,20 @@ impl<const D: usize> Search<'_, D> {
             return Ok(found);
         }
         self.with_separation(start, &mut budget, numerics)
+    }
+
+    /// Fails where the load would press the pair further than any motion may go.
+    fn carried(&self, start: &State<D>) -> Result<(), DynamicsError> {
+        const FURTHEST_M: f64 = 1e3;
+        let furthest = largest(&(start.x, [0.0; D]));
+        if furthest > FURTHEST_M {
+            return Err(DynamicsError::InvalidParameter {
+                name: "static deflection in m",
+                value: furthest,
+                reason: "the springs are far too weak for the load",
+            });
+        }
+        Ok(())
     }
 
     /// A pair without load rests at zero: there is no size of its motion to measure a step by, when a pulse comes. It sets out from a
