@@ -216,7 +216,7 @@ pub(super) fn refused<const D: usize>(
     h: f64,
     advances: bool,
 ) -> Option<DynamicsError> {
-    if advances && h >= 0.0 && h < f64::INFINITY {
+    if advances && (0.0..f64::INFINITY).contains(&h) {
         return None;
     }
     let time_s = (period as f64 + phase) * model.period_tau / model.omega_ref;

@@ -184,6 +184,7 @@ pub(super) enum Probe<const D: usize> {
 
 impl<const D: usize> Probe<D> {
     /// The channel's polynomial in scaled time since the segment's start; returns its degree.
+    #[inline(always)]
     pub fn polynomial(&self, segment: &Segment<'_, D>, out: &mut [f64; MAX_ORDER + 1]) -> usize {
         match self {
             Probe::Linear { row, places, derivative } => {

@@ -39,11 +39,13 @@ fn lopsided(name: &str) -> Parameters {
 
 fn every_spring(p: &mut Parameters, change: impl Fn(&mut Spring)) {
     for h in &mut p.halves {
-        [&mut h.pinion_lateral, &mut h.gear_lateral, &mut h.pinion_axial, &mut h.gear_axial].map(&change);
+        [&mut h.pinion_lateral, &mut h.gear_lateral, &mut h.pinion_axial, &mut h.gear_axial]
+            .into_iter()
+            .for_each(&change);
     }
     let c = &mut p.couplings;
-    [&mut c.pinion_axial, &mut c.gear_axial, &mut c.pinion_lateral, &mut c.gear_lateral].map(&change);
-    [&mut c.pinion_torsion, &mut c.gear_torsion].map(&change);
+    [&mut c.pinion_axial, &mut c.gear_axial, &mut c.pinion_lateral, &mut c.gear_lateral].into_iter().for_each(&change);
+    [&mut c.pinion_torsion, &mut c.gear_torsion].into_iter().for_each(&change);
 }
 
 /// Stiffnesses, torques and impacts doubled at √2 of the speed, dampers √2 of theirs: the same path, accelerations doubled.

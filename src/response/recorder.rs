@@ -3,6 +3,7 @@
 use super::channel::{ChannelId, Probe};
 use super::statistics::{Gathered, horner};
 use crate::dynamics::{MAX_ORDER, Model, Observer, PER_HALF, Segment};
+use crate::simd::vectorised;
 
 /// What to record of one channel.
 struct Track<const D: usize> {
@@ -113,9 +114,15 @@ impl<const D: usize> Observer<D> for Recorder<D> {
             }
         }
         for track in &mut self.tracks {
-            let degree = track.probe.polynomial(segment, &mut polynomial);
+            let degree = vectorised(
+                #[inline(always)]
+                || {
+                    let degree = track.probe.polynomial(segment, &mut polynomial);
+                    track.gathered.add(&polynomial[..=degree], segment.h, track.extremes);
+                    degree
+                },
+            );
             let c = &polynomial[..=degree];
-            track.gathered.add(c, segment.h, track.extremes);
             if let Some(samples) = &mut track.samples {
                 for i in first..last {
                     samples.push(horner(c, (i as f64 / per_period as f64 - segment.phase) * period_tau));

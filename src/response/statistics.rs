@@ -50,6 +50,7 @@ impl Gathered {
     }
 
     /// Adds the polynomial `c` over [0, h].
+    #[inline(always)]
     pub fn add(&mut self, c: &[f64], h: f64, extremes: bool) {
         let offset = *self.offset.get_or_insert(c[0]);
         let mut b = [0.0; MAX_ORDER + 1];

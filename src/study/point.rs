@@ -3,10 +3,12 @@
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
 use super::prepare::{geometry, prepare};
+use super::vibration::Vibration;
 use super::{Channel, SolveError, Stage, Surroundings, impact, vibration};
-use crate::dynamics::Parameters;
+use crate::dynamics::{DynamicsError, Parameters};
 use crate::job::document::{JobDocument, Kind, Recorded};
 use crate::job::result::{JobResult, Numerics, Poincare};
+use crate::response::Response;
 
 /// A solved point.
 pub struct Point {
@@ -48,6 +50,25 @@ pub struct Staged<'a> {
 impl Staged<'_> {
     pub fn parameters(&self) -> Option<&Parameters> {
         self.parameters.as_ref()
+    }
+
+    fn without_response(self) -> Point {
+        Point { result: self.result, series: Vec::new(), end_state: None, poincare: None, bands: None }
+    }
+
+    fn with(self, vibration: Vibration, numerics: Numerics) -> Point {
+        let Staged { mut result, mut clock, .. } = self;
+        result.numerics = numerics;
+        result.response = Some(vibration.summary);
+        result.warnings.extend(vibration.warnings);
+        result.numerics.wall_ms.response = clock.lap_ms();
+        Point {
+            result,
+            series: vibration.series,
+            end_state: vibration.end_state,
+            poincare: vibration.poincare,
+            bands: vibration.bands,
+        }
     }
 }
 
@@ -117,21 +138,26 @@ pub fn respond(
     surroundings: &Surroundings,
     wanted: &Wanted,
 ) -> Result<Point, SolveError> {
-    let Staged { mut result, parameters, mut clock } = staged;
-    let Some(parameters) = parameters else {
-        return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });
-    };
-    let vibration = vibration::run(document, &parameters, wanted, surroundings, &mut result.numerics)?;
-    result.response = Some(vibration.summary);
-    result.warnings.extend(vibration.warnings);
-    result.numerics.wall_ms.response = clock.lap_ms();
-    Ok(Point {
-        result,
-        series: vibration.series,
-        end_state: vibration.end_state,
-        poincare: vibration.poincare,
-        bands: vibration.bands,
-    })
+    let Some(parameters) = staged.parameters.clone() else { return Ok(staged.without_response()) };
+    let mut numerics = staged.result.numerics.clone();
+    let vibration = vibration::run(document, &parameters, wanted, surroundings, &mut numerics)?;
+    Ok(staged.with(vibration, numerics))
+}
+
+/// A staged point with the response to its equations, found elsewhere.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn answered(
+    document: &JobDocument,
+    staged: Staged,
+    wanted: &Wanted,
+    response: Result<Response, DynamicsError>,
+) -> Result<Point, SolveError> {
+    let Some(parameters) = staged.parameters.clone() else { return Ok(staged.without_response()) };
+    let mut numerics = staged.result.numerics.clone();
+    let vibration = vibration::told(document, &parameters, wanted, response, &mut numerics)?;
+    Ok(staged.with(vibration, numerics))
 }
 
 /// Fraction of the whole point at a fraction of one of its stages, by what the stages usually cost.

@@ -3,10 +3,13 @@
 use super::axes::set;
 use super::mesh::MeshMemo;
 use super::point::{self, Point, Wanted};
-use super::{SolveError, Surroundings};
+use super::{SolveError, Surroundings, vibration};
+use crate::dynamics::{DynamicsError, Parameters};
 use crate::job::document::JobDocument;
 use crate::job::result::SweepPoint;
 use crate::job::{DocumentError, parse_value};
+use crate::response::{self, Analysis, Response};
+use crate::watch::Watch;
 use serde_json::Value;
 
 /// A row, and what its neighbours need of it.
@@ -50,6 +53,61 @@ pub fn solve(
         Ok(point) => Ok(of_point(values, point)),
         Err(error) => failed(values, error),
     }
+}
+
+/// Solves several points from their own starts, their motions side by side where they are integrated: as [`solve`] does each.
+///
+/// # Errors
+/// [`SolveError::Canceled`].
+pub fn solve_together(
+    base: &Value,
+    sweep: &JobDocument,
+    group: Vec<Vec<f64>>,
+    surroundings: &Surroundings,
+    memo: &MeshMemo,
+) -> Result<Vec<Solved>, SolveError> {
+    let quiet = Surroundings { progress: &|_, _| {}, ..*surroundings };
+    let wanted = Wanted { start: None, whole: false, record: &sweep.record };
+    let staged: Vec<_> = group
+        .iter()
+        .map(|values| {
+            let document = document(base, sweep, values)?;
+            let staged = point::stage(&document, &quiet, memo)?;
+            let analysis = vibration::analysis(&document, &wanted)?;
+            Ok::<_, SolveError>((document, staged, analysis))
+        })
+        .collect();
+    // Together: those that ask the same of their equations.
+    let mut asked: Vec<(&Analysis, Vec<usize>, Vec<Parameters>)> = Vec::new();
+    for (i, one) in staged.iter().enumerate() {
+        let Ok((_, staged, analysis)) = one else { continue };
+        let Some(parameters) = staged.parameters() else { continue };
+        match asked.iter_mut().find(|(other, ..)| *other == analysis) {
+            Some((_, places, points)) => {
+                places.push(i);
+                points.push(parameters.clone());
+            }
+            None => asked.push((analysis, vec![i], vec![parameters.clone()])),
+        }
+    }
+    let mut responses: Vec<Option<Result<Response, DynamicsError>>> = group.iter().map(|_| None).collect();
+    let watch = Watch::new(&|_| {}, surroundings.canceled);
+    for (analysis, places, points) in asked {
+        for (i, response) in places.into_iter().zip(response::solve_many(&points, analysis, &watch)?) {
+            responses[i] = Some(response);
+        }
+    }
+    let solved = group.into_iter().zip(staged).zip(responses).map(|((values, staged), response)| {
+        let point = staged.and_then(|(document, staged, _)| match response {
+            Some(response) => point::answered(&document, staged, &wanted, response),
+            None => point::respond(&document, staged, &quiet, &wanted),
+        });
+        match point {
+            Ok(point) => Ok(of_point(values, point)),
+            Err(error) => failed(values, error),
+        }
+    });
+    solved.collect()
 }
 
 /// What is kept of a solved point.

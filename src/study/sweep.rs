@@ -5,10 +5,13 @@ use super::branches::{self, Way};
 use super::mesh::MeshMemo;
 use super::row::{self, Solved};
 use super::{SolveError, Stage, Surroundings, answer, campbell};
-use crate::job::document::{Axis, Continuation, JobDocument, Recorded};
+use crate::job::document::{Axis, Continuation, JobDocument, Method, Recorded};
 use crate::job::result::{Sweep, SweepAxis, SweepPoint};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Points that are integrated side by side: a multiple of the lanes, few enough to keep all threads busy.
+const SIDE_BY_SIDE: usize = 32;
 
 /// Solves every point. Points without continuation are independent and run in parallel; with it, each line along the first
 /// axis is followed in order, the lines of the second axis in parallel, and upwards beside downwards.
@@ -28,14 +31,28 @@ pub fn run(document: &JobDocument, surroundings: &Surroundings, memo: &MeshMemo)
     };
     let all = lines * length * ways.len().max(1);
     let done = AtomicUsize::new(0);
-    let solve = |line: usize, index: usize, start: Option<&[f64]>| -> Result<Solved, SolveError> {
+    let values = |line: usize, index: usize| {
         let mut values = vec![first.value(index)];
         values.extend(second.map(|axis| axis.value(line)));
-        let solved = row::solve(&base, document, values, start, surroundings, memo)?;
-        let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+        values
+    };
+    let count = |solved: usize| {
+        let count = done.fetch_add(solved, Ordering::Relaxed) + solved;
         (surroundings.progress)(Stage::Sweep, count as f64 / all as f64);
+    };
+    let solve = |line: usize, index: usize, start: Option<&[f64]>| -> Result<Solved, SolveError> {
+        let solved = row::solve(&base, document, values(line, index), start, surroundings, memo)?;
+        count(1);
         Ok(solved)
     };
+    let solve_together = |points: &[(usize, usize)]| -> Result<Vec<SweepPoint>, SolveError> {
+        let group = points.iter().map(|&(line, index)| values(line, index)).collect();
+        let solved = row::solve_together(&base, document, group, surroundings, memo)?;
+        count(points.len());
+        Ok(solved.into_iter().map(|solved| solved.row).collect())
+    };
+    // Points that are integrated go side by side; the others take very different times, so each is for the next free thread.
+    let together = if document.analysis.method == Method::Integrate { SIDE_BY_SIDE } else { 1 };
     let axes = document.axes.iter().map(|axis| SweepAxis {
         pointer: axis.pointer.clone(),
         values: (0..axis.len()).map(|index| axis.value(index)).collect(),
@@ -46,7 +63,7 @@ pub fn run(document: &JobDocument, surroundings: &Surroundings, memo: &MeshMemo)
         ..Sweep::default()
     };
     if ways.is_empty() {
-        sweep.points = independent(lines, length, |line, index| solve(line, index, None).map(|solved| solved.row))?;
+        sweep.points = independent((lines, length), together, solve_together)?;
     } else {
         let follow = |branch: usize| follow(first, ways[branch / lines], |at, start| solve(branch % lines, at, start));
         // The first line leaves to the others what they share (compliance, contact).
@@ -73,21 +90,21 @@ pub fn run(document: &JobDocument, surroundings: &Surroundings, memo: &MeshMemo)
 /// Solves all points in parallel, but the very first before all others and the first of every line before the rest of it: whatever the
 /// points share (compliance, contact) is then there and not computed by several at once.
 fn independent(
-    lines: usize,
-    length: usize,
-    solve: impl Fn(usize, usize) -> Result<SweepPoint, SolveError> + Sync,
+    (lines, length): (usize, usize),
+    together: usize,
+    solve: impl Fn(&[(usize, usize)]) -> Result<Vec<SweepPoint>, SolveError> + Sync,
 ) -> Result<Vec<SweepPoint>, SolveError> {
+    let all = |points: Vec<(usize, usize)>, together: usize| {
+        let solved = points.par_chunks(together).map(|group| Ok((group.to_vec(), solve(group)?)));
+        solved.collect::<Result<Vec<_>, SolveError>>()
+    };
+    let mut solved = all(vec![(0, 0)], 1)?;
+    solved.extend(all((1..lines).map(|line| (line, 0)).collect(), 1)?);
+    solved.extend(all((0..lines).flat_map(|line| (1..length).map(move |at| (line, at))).collect(), together)?);
     let mut rows = vec![SweepPoint::default(); lines * length];
-    rows[0] = solve(0, 0)?;
-    let mut firsts: Vec<_> = rows.iter_mut().step_by(length).enumerate().skip(1).collect();
-    firsts.par_iter_mut().try_for_each(|(line, row)| {
-        **row = solve(*line, 0)?;
-        Ok::<_, SolveError>(())
-    })?;
-    rows.par_iter_mut().enumerate().filter(|(point, _)| point % length > 0).try_for_each(|(point, row)| {
-        *row = solve(point / length, point % length)?;
-        Ok::<_, SolveError>(())
-    })?;
+    for ((line, index), row) in solved.into_iter().flat_map(|(points, rows)| points.into_iter().zip(rows)) {
+        rows[line * length + index] = row;
+    }
     Ok(rows)
 }
 

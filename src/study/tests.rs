@@ -171,6 +171,32 @@ fn a_sweep_over_speed_equals_its_points_and_shares_the_contact() {
     assert_eq!(row.mesh_circumferential_acceleration_rms_m_s2, Some(single.rms.mesh_circumferential_acceleration_m_s2));
 }
 
+/// Integrated points of a sweep go side by side in lanes: their rows are what each point says alone, to the last bit.
+#[test]
+fn integrated_points_of_a_sweep_are_the_points_alone() {
+    let mut value = example("given_stiffness");
+    value["analysis"]["method"] = json!("integrate");
+    value["analysis"]["mesh_periods"] = json!(40);
+    value["analysis"]["record_mesh_periods"] = json!(20);
+    let mut sweep = value.clone();
+    sweep["kind"] = json!("sweep");
+    sweep["axes"] = json!([
+        {"pointer": "/operation/pinion_speed_rpm", "from": 1500.0, "to": 4000.0, "points": 6},
+        {"pointer": "/operation/pinion_torque_nm", "values": [60.0, 800.0]},
+    ]);
+    let points = solved(&sweep).result.sweep.expect("a sweep").points;
+    assert_eq!(points.len(), 12);
+    for row in points {
+        value["operation"]["pinion_speed_rpm"] = json!(row.values[0]);
+        value["operation"]["pinion_torque_nm"] = json!(row.values[1]);
+        let alone = solved(&value).result.response.expect("a response");
+        let rms = row.mesh_circumferential_acceleration_rms_m_s2.expect("a response");
+        assert_eq!(rms.left.to_bits(), alone.rms.mesh_circumferential_acceleration_m_s2.left.to_bits());
+        assert_eq!(row.min_displacement_um, Some(alone.min_displacement_um));
+        assert_eq!((row.regime, row.contact), (Some(alone.regime), Some(alone.contact)));
+    }
+}
+
 #[test]
 fn a_sweep_that_leaves_the_range_is_refused_and_one_that_meets_an_impossible_gear_says_so() {
     let mut value = example("table1");

@@ -72,7 +72,21 @@ pub fn run(
     let analysis = analysis(document, wanted)?;
     let progress = |fraction: f64| (surroundings.progress)(Stage::Response, fraction);
     let watch = Watch::new(&progress, surroundings.canceled);
-    let response = response::solve(parameters, &analysis, &watch).map_err(failed)?;
+    told(document, parameters, wanted, response::solve(parameters, &analysis, &watch), numerics)
+}
+
+/// What the stage leaves of a response.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn told(
+    document: &JobDocument,
+    parameters: &Parameters,
+    wanted: &Wanted,
+    response: Result<response::Response, DynamicsError>,
+    numerics: &mut Numerics,
+) -> Result<Vibration, SolveError> {
+    let response = response.map_err(failed)?;
     let summary = &response.summary;
     numerics.steps = summary.numerics.steps;
     numerics.rejected_steps = summary.numerics.rejected_steps;
@@ -106,7 +120,11 @@ pub fn run(
     })
 }
 
-fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, DocumentError> {
+/// What is asked of the equations of motion.
+///
+/// # Errors
+/// [`DocumentError::Invalid`] for names that are no channel.
+pub fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, DocumentError> {
     let asked = &document.analysis;
     let state = wanted.start.or(asked.initial_state.as_deref());
     let mut channels = channels(document)?;

@@ -116,9 +116,9 @@ fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
 
 /// How fast neighbours of case C come back to it. An independent program states -0.037 per mesh period for all twelve
 /// coordinates and -0.03 for deviations against the mirror symmetry. The multipliers of the period-2 orbit, and two motions that are
-/// simply followed side by side, agree with each other on a faster decay; the free motions (rotation of each half,
-/// screw motion of the pinion), along which a deviation stays for ever, are what slows the stated averages down: with them in, the
-/// distance of the same two motions stops falling.
+/// simply followed side by side, agree with each other on a faster decay. A likely reason, not shown: free motions (rotation of each half, screw
+/// motion of the pinion), along which a deviation stays for ever, were part of the stated averages; with them in, the distance
+/// of the same two motions falls more slowly here too.
 #[test]
 fn neighbours_of_case_c_approach_as_its_multipliers_say() {
     let watch = Watch::none();
