@@ -21,7 +21,7 @@ pub(crate) const ZG: usize = 4;
 pub(crate) const W: usize = 5;
 
 /// Spring and damper in scaled time, already divided by the mass they act on.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Rate<R> {
     k: R,
     c: R,
@@ -34,10 +34,6 @@ impl Rate<f64> {
 }
 
 impl<R: Real> Rate<R> {
-    fn zero() -> Self {
-        Self { k: R::splat(0.0), c: R::splat(0.0) }
-    }
-
     #[inline(always)]
     fn of(self, x: R, v: R) -> R {
         self.k * x + self.c * v
@@ -45,7 +41,7 @@ impl<R: Real> Rate<R> {
 }
 
 /// What belongs to one half.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct HalfEquations<R> {
     pub sin: R,
     /// Force to scaled acceleration: 1/(m ω²).
@@ -141,34 +137,13 @@ impl<const D: usize, R: Real> Equations<D, R> {
 
     /// Equations under which nothing moves: for lanes not in use.
     pub fn at_rest() -> Self {
-        let (zero, rate) = (R::splat(0.0), Rate::zero());
-        let half = HalfEquations {
-            sin: zero,
-            inv_mp: zero,
-            inv_mg: zero,
-            inv_me: zero,
-            yp: rate,
-            zp: rate,
-            yg: rate,
-            zg: rate,
-            yp_other: rate,
-            zp_other: rate,
-            yg_other: rate,
-            zg_other: rate,
-            torsion_p: rate,
-            torsion_g: rate,
-            reduced_p: zero,
-            reduced_g: zero,
-            part_p: zero,
-            part_g: zero,
-            inv_rp: zero,
-            inv_rg: zero,
-            inv_rw: zero,
-            cm: zero,
-            cm_in_gap: zero,
-            load: zero,
-        };
-        Self { halves: [half; 2], cos: zero, b: zero, torsional: false, parity: 1.0 }
+        Self {
+            halves: [HalfEquations::default(); 2],
+            cos: R::default(),
+            b: R::default(),
+            torsional: false,
+            parity: 1.0,
+        }
     }
 
     /// Puts one motion's equations into a lane. All lanes have the same parity.

@@ -10,6 +10,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 /// One number, or one number per lane.
 pub(crate) trait Real:
     Copy
+    + Default
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
@@ -76,6 +77,12 @@ impl Real for f64 {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(transparent)]
 pub(crate) struct Lanes<const L: usize>([f64; L]);
+
+impl<const L: usize> Default for Lanes<L> {
+    fn default() -> Self {
+        Self([0.0; L])
+    }
+}
 
 impl<const L: usize> Real for Lanes<L> {
     const LANES: usize = L;

@@ -2,6 +2,7 @@
 
 use super::excitation::{Coefficients, MAX_ORDER};
 use super::model::{Contact, Model};
+use super::taylor::evaluate_rows;
 
 /// The motion over one step: coordinates as polynomials in scaled time since the step's start.
 pub(crate) struct Segment<'a, const D: usize> {
@@ -17,6 +18,13 @@ pub(crate) struct Segment<'a, const D: usize> {
     /// Normal mesh force of each half, N, powers 0 to `degree` − 2.
     pub force: &'a [Coefficients; 2],
     pub contact: [Contact; 2],
+}
+
+impl<const D: usize> Segment<'_, D> {
+    /// Displacements and velocities at scaled time `t` since the segment's start.
+    pub fn at(&self, t: f64) -> ([f64; D], [f64; D]) {
+        evaluate_rows(&self.rows[..=self.degree], t)
+    }
 }
 
 /// Sees every step of a motion in order.

@@ -70,7 +70,7 @@ impl<const D: usize> Observer<D> for EnergyBalance<'_, D> {
         let inside = segment.phase + 0.5 * segment.h * per_tau;
         for &(node, weight) in GAUSS.iter() {
             let t = node * segment.h;
-            let (x, v) = at(segment, t);
+            let (x, v) = segment.at(t);
             let a = self.model.acceleration(segment.phase + t * per_tau, inside, &x, &v);
             for c in 0..D {
                 let power = self.masses[c] * a[c] * v[c] * weight * segment.h;
@@ -82,7 +82,7 @@ impl<const D: usize> Observer<D> for EnergyBalance<'_, D> {
                 }
             }
         }
-        self.last = self.kinetic(&at(segment, segment.h).1);
+        self.last = self.kinetic(&segment.at(segment.h).1);
     }
 }
 
@@ -93,18 +93,6 @@ impl<const D: usize> Observer<D> for Option<EnergyBalance<'_, D>> {
             balance.segment(segment);
         }
     }
-}
-
-/// Displacements and velocities of a segment at scaled time `t` since its start.
-fn at<const D: usize>(segment: &Segment<'_, D>, t: f64) -> ([f64; D], [f64; D]) {
-    let (mut x, mut v) = ([0.0; D], [0.0; D]);
-    for row in segment.rows[..=segment.degree].iter().rev() {
-        for c in 0..D {
-            v[c] = v[c] * t + x[c];
-            x[c] = x[c] * t + row[c];
-        }
-    }
-    (x, v)
 }
 
 #[cfg(test)]

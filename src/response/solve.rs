@@ -188,7 +188,13 @@ impl Point<'_> {
             return Ok(None);
         }
         let mut numerics = found.numerics;
-        let finished = self.record(&model, found.start, found.tolerance, found.record)?;
+        let finished = self.record(
+            &model,
+            (found.start, found.tolerance),
+            found.record,
+            self.recorder(&model, found.record),
+            self.energy(&model),
+        )?;
         let section = finished.record;
         numerics += section.numerics;
         let error_estimate = match &found.orbit {
@@ -262,32 +268,17 @@ impl Point<'_> {
         self.analysis.energy_balance.then(|| EnergyBalance::new(model))
     }
 
-    /// Records `periods` mesh periods of the motion from `start`, with the energy balance where it is asked for.
+    /// Records `periods` mesh periods of the motion from `start`.
     fn record<'m, const D: usize>(
         &self,
         model: &'m Model<D>,
-        start: State<D>,
-        tolerance: f64,
+        (start, tolerance): (State<D>, f64),
         periods: u64,
+        recorder: Recorder<D>,
+        energy: Option<EnergyBalance<'m, D>>,
     ) -> Result<Finished<'m, D>, DynamicsError> {
         let span = (start.period, start.period + periods);
-        let run = Run::new(model, start, tolerance, span, self.recorder(model, periods))?;
-        self.finish(run.with_energy(self.energy(model)))
-    }
-
-    /// The same of the accelerations alone.
-    fn record_rms<'m, const D: usize>(
-        &self,
-        model: &'m Model<D>,
-        start: State<D>,
-        tolerance: f64,
-        periods: u64,
-    ) -> Result<Finished<'m, D>, DynamicsError> {
-        let span = (start.period, start.period + periods);
-        self.finish(Run::new(model, start, tolerance, span, self.recorder_of_rms(model))?)
-    }
-
-    fn finish<'m, const D: usize>(&self, mut run: Run<'m, D>) -> Result<Finished<'m, D>, DynamicsError> {
+        let mut run = Run::new(model, start, tolerance, span, recorder)?.with_energy(energy);
         carry_one(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
         run.finish()
     }
@@ -304,11 +295,13 @@ impl Point<'_> {
     ) -> Result<f64, DynamicsError> {
         let tight = (1e-3 * found.tolerance).max(1e-15);
         let start = State { period: 0, ..found.start };
-        let once = self.record_rms(model, start, tight, n)?.record;
+        let once = self.record(model, (start, tight), n, self.recorder_of_rms(model), None)?.record;
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tight))?;
         let defect = difference(&once.last, &start);
         let Some(correction) = shooting.correction(&defect, map, n) else { return Ok(f64::INFINITY) };
-        let better = self.record_rms(model, moved(model, start, &correction), tight, n)?.recorder;
+        let better = self
+            .record(model, (moved(model, start, &correction), tight), n, self.recorder_of_rms(model), None)?
+            .recorder;
         Ok(SAFETY * rms_difference(recorder, &better, smallest(model)) + ROUNDING)
     }
 

@@ -3,7 +3,6 @@
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
 use super::prepare::{geometry, prepare};
-use super::vibration::Vibration;
 use super::{Channel, SolveError, Stage, Surroundings, impact, vibration};
 use crate::dynamics::{DynamicsError, Parameters};
 use crate::job::document::{JobDocument, Kind, Recorded};
@@ -50,25 +49,6 @@ pub struct Staged<'a> {
 impl Staged<'_> {
     pub fn parameters(&self) -> Option<&Parameters> {
         self.parameters.as_ref()
-    }
-
-    fn without_response(self) -> Point {
-        Point { result: self.result, series: Vec::new(), end_state: None, poincare: None, bands: None }
-    }
-
-    fn with(self, vibration: Vibration, numerics: Numerics) -> Point {
-        let Staged { mut result, mut clock, .. } = self;
-        result.numerics = numerics;
-        result.response = Some(vibration.summary);
-        result.warnings.extend(vibration.warnings);
-        result.numerics.wall_ms.response = clock.lap_ms();
-        Point {
-            result,
-            series: vibration.series,
-            end_state: vibration.end_state,
-            poincare: vibration.poincare,
-            bands: vibration.bands,
-        }
     }
 }
 
@@ -138,13 +118,12 @@ pub fn respond(
     surroundings: &Surroundings,
     wanted: &Wanted,
 ) -> Result<Point, SolveError> {
-    let Some(parameters) = staged.parameters.clone() else { return Ok(staged.without_response()) };
-    let mut numerics = staged.result.numerics.clone();
-    let vibration = vibration::run(document, &parameters, wanted, surroundings, &mut numerics)?;
-    Ok(staged.with(vibration, numerics))
+    let solve = |parameters| vibration::solve(document, parameters, wanted, surroundings);
+    let response = staged.parameters().map(solve).transpose()?;
+    answered(document, staged, wanted, response)
 }
 
-/// A staged point with the response to its equations, found elsewhere.
+/// A staged point with the response to its equations, where it has any.
 ///
 /// # Errors
 /// [`SolveError`].
@@ -152,12 +131,23 @@ pub fn answered(
     document: &JobDocument,
     staged: Staged,
     wanted: &Wanted,
-    response: Result<Response, DynamicsError>,
+    response: Option<Result<Response, DynamicsError>>,
 ) -> Result<Point, SolveError> {
-    let Some(parameters) = staged.parameters.clone() else { return Ok(staged.without_response()) };
-    let mut numerics = staged.result.numerics.clone();
-    let vibration = vibration::told(document, &parameters, wanted, response, &mut numerics)?;
-    Ok(staged.with(vibration, numerics))
+    let Staged { mut result, parameters, mut clock } = staged;
+    let (Some(parameters), Some(response)) = (parameters, response) else {
+        return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });
+    };
+    let vibration = vibration::told(document, &parameters, wanted, response, &mut result.numerics)?;
+    result.response = Some(vibration.summary);
+    result.warnings.extend(vibration.warnings);
+    result.numerics.wall_ms.response = clock.lap_ms();
+    Ok(Point {
+        result,
+        series: vibration.series,
+        end_state: vibration.end_state,
+        poincare: vibration.poincare,
+        bands: vibration.bands,
+    })
 }
 
 /// Fraction of the whole point at a fraction of one of its stages, by what the stages usually cost.

@@ -98,10 +98,7 @@ pub fn solve_together(
         }
     }
     let solved = group.into_iter().zip(staged).zip(responses).map(|((values, staged), response)| {
-        let point = staged.and_then(|(document, staged, _)| match response {
-            Some(response) => point::answered(&document, staged, &wanted, response),
-            None => point::respond(&document, staged, &quiet, &wanted),
-        });
+        let point = staged.and_then(|(document, staged, _)| point::answered(&document, staged, &wanted, response));
         match point {
             Ok(point) => Ok(of_point(values, point)),
             Err(error) => failed(values, error),

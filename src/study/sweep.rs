@@ -88,7 +88,7 @@ pub fn run(document: &JobDocument, surroundings: &Surroundings, memo: &MeshMemo)
 }
 
 /// Solves all points in parallel, but the very first before all others and the first of every line before the rest of it: whatever the
-/// points share (compliance, contact) is then there and not computed by several at once.
+/// points share (compliance, contact) is then there and not computed by several at once. The rest goes in groups of `together`.
 fn independent(
     (lines, length): (usize, usize),
     together: usize,

@@ -58,21 +58,20 @@ pub fn channels(document: &JobDocument) -> Result<Vec<ChannelId>, DocumentError>
 /// Most points of the motion at the starts of mesh periods in the row of a sweep.
 const POINCARE_POINTS: usize = 200;
 
-/// Runs the response stage.
+/// Solves the equations of motion of a point by themselves.
 ///
 /// # Errors
-/// [`SolveError`].
-pub fn run(
+/// [`DocumentError::Invalid`] for names that are no channel.
+pub fn solve(
     document: &JobDocument,
     parameters: &Parameters,
     wanted: &Wanted,
     surroundings: &Surroundings,
-    numerics: &mut Numerics,
-) -> Result<Vibration, SolveError> {
+) -> Result<Result<response::Response, DynamicsError>, DocumentError> {
     let analysis = analysis(document, wanted)?;
     let progress = |fraction: f64| (surroundings.progress)(Stage::Response, fraction);
     let watch = Watch::new(&progress, surroundings.canceled);
-    told(document, parameters, wanted, response::solve(parameters, &analysis, &watch), numerics)
+    Ok(response::solve(parameters, &analysis, &watch))
 }
 
 /// What the stage leaves of a response.
