@@ -5,7 +5,7 @@
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use herringbone::job::document::JobDocument;
 use herringbone::job::parse_value;
-use herringbone::study::{self, NoStageStore, Surroundings};
+use herringbone::study::{self, Surroundings};
 use serde_json::{Value, json};
 use std::hint::black_box;
 
@@ -18,7 +18,7 @@ fn example(change: impl FnOnce(&mut Value)) -> JobDocument {
 
 fn solve(document: &JobDocument) -> study::Outcome {
     let surroundings =
-        Surroundings { stages: &NoStageStore, progress: &|_, _| {}, canceled: &|| false, clock_ms: &|| 0.0 };
+        Surroundings::none();
     study::solve(document, &surroundings).expect("the example solves")
 }
 

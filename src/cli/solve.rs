@@ -107,8 +107,8 @@ fn solve(document: &JobDocument, stages: &dyn StageStore) -> Result<study::Outco
         &Surroundings {
             stages,
             progress: &progress,
-            canceled: &|| false,
             clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,
+            ..Surroundings::none()
         },
     );
     bar.finish_and_clear();

@@ -411,6 +411,8 @@ pub struct SweepPoint {
     pub impact_force_n: Option<f64>,
     pub total_contact_ratio: Option<f64>,
     pub loaded_contact_ratio: Option<f64>,
+    /// Estimated relative error of the RMS values.
+    pub error_estimate: Option<f64>,
     /// Why this point has no response.
     pub error: Option<String>,
     /// With continuation: the direction that found the point, `up` or `down`.
@@ -429,7 +431,7 @@ pub struct SweepPoint {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct Numerics {
     pub wall_ms: WallMs,
-    /// Stages that were taken from the store instead of computed: `result`, `mesh`.
+    /// Stages that were taken from the store instead of computed: `result`, `mesh`, `finite_elements`, `points` (some of a sweep).
     pub reused: Vec<String>,
     pub steps: u64,
     pub rejected_steps: u64,

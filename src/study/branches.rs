@@ -1,6 +1,5 @@
 //! Branches of a continuation: where they jump, and where up and down lead to different motions.
 
-use super::row::Solved;
 use crate::job::document::Axis;
 use crate::job::result::{Hysteresis, Jump, SweepPoint};
 
@@ -43,7 +42,7 @@ pub fn order(axis: &Axis, way: Way) -> Vec<usize> {
 }
 
 /// Where a branch jumps between neighbours; `line` in the order of the axis.
-pub fn jumps(axis: &Axis, way: Way, second_axis_value: Option<f64>, line: &[Solved]) -> Vec<Jump> {
+pub fn jumps(axis: &Axis, way: Way, second_axis_value: Option<f64>, line: &[SweepPoint]) -> Vec<Jump> {
     let order = order(axis, way);
     let changes: Vec<Option<f64>> = order.windows(2).map(|two| change(&line[two[0]], &line[two[1]])).collect();
     let mut found = Vec::new();
@@ -51,7 +50,7 @@ pub fn jumps(axis: &Axis, way: Way, second_axis_value: Option<f64>, line: &[Solv
         let (before, after) = (&line[two[0]], &line[two[1]]);
         let beside = |other: Option<usize>| other.and_then(|i| *changes.get(i)?).unwrap_or(0.0);
         let usual = beside(at.checked_sub(1)).max(beside(Some(at + 1)));
-        let (Some(change), Some(rms_before), Some(rms_after)) = (changes[at], rms(&before.row), rms(&after.row)) else {
+        let (Some(change), Some(rms_before), Some(rms_after)) = (changes[at], rms(before), rms(after)) else {
             continue;
         };
         if change > JUMP.max(uncertainty(before, after)) && change > STANDS_OUT * usual {
@@ -69,7 +68,7 @@ pub fn jumps(axis: &Axis, way: Way, second_axis_value: Option<f64>, line: &[Solv
 }
 
 /// Where the branches of the same line differ; both in the order of the axis.
-pub fn hysteresis(axis: &Axis, second_axis_value: Option<f64>, up: &[Solved], down: &[Solved]) -> Vec<Hysteresis> {
+pub fn hysteresis(axis: &Axis, second_axis_value: Option<f64>, up: &[SweepPoint], down: &[SweepPoint]) -> Vec<Hysteresis> {
     let mut found: Vec<Hysteresis> = Vec::new();
     let mut open = false;
     for at in order(axis, Way::Up) {
@@ -98,7 +97,7 @@ pub fn hysteresis(axis: &Axis, second_axis_value: Option<f64>, up: &[Solved], do
     found
 }
 
-fn differences(a: &Solved, b: &Solved) -> Vec<&'static str> {
+fn differences(a: &SweepPoint, b: &SweepPoint) -> Vec<&'static str> {
     let Some(change) = change(a, b) else { return Vec::new() };
     let uncertain = uncertainty(a, b);
     let mut differ = Vec::new();
@@ -106,23 +105,23 @@ fn differences(a: &Solved, b: &Solved) -> Vec<&'static str> {
         differ.push("rms");
     }
     if change > DIFFERENT_WORDS.max(uncertain) {
-        if a.row.regime != b.row.regime {
+        if a.regime != b.regime {
             differ.push("regime");
         }
-        if a.row.contact != b.row.contact {
+        if a.contact != b.contact {
             differ.push("contact");
         }
     }
     differ
 }
 
-fn uncertainty(a: &Solved, b: &Solved) -> f64 {
-    ERRORS * (a.error_estimate + b.error_estimate)
+fn uncertainty(a: &SweepPoint, b: &SweepPoint) -> f64 {
+    ERRORS * (a.error_estimate.unwrap_or(0.0) + b.error_estimate.unwrap_or(0.0))
 }
 
 /// |ln| of the ratio of the mesh accelerations; None where one is not known.
-fn change(a: &Solved, b: &Solved) -> Option<f64> {
-    let (a, b) = (rms(&a.row)?, rms(&b.row)?);
+fn change(a: &SweepPoint, b: &SweepPoint) -> Option<f64> {
+    let (a, b) = (rms(a)?, rms(b)?);
     Some(if a.max(b) < STILL_M_S2 { 0.0 } else { (a.max(STILL_M_S2) / b.max(STILL_M_S2)).ln().abs() })
 }
 
@@ -142,12 +141,15 @@ mod tests {
         Axis { pointer: "/x".into(), points: AxisPoints::Values { values: values.to_vec() } }
     }
 
-    fn line(rms: &[f64]) -> Vec<Solved> {
+    fn line(rms: &[f64]) -> Vec<SweepPoint> {
         let solved = |rms: &f64| {
             let halves = PerHalf { left: *rms, right: *rms };
             let response = (*rms > 0.0).then_some(halves);
-            let row = SweepPoint { mesh_circumferential_acceleration_rms_m_s2: response, ..SweepPoint::default() };
-            Solved { row, end_state: None, error_estimate: 1e-6 }
+            SweepPoint {
+                mesh_circumferential_acceleration_rms_m_s2: response,
+                error_estimate: Some(1e-6),
+                ..SweepPoint::default()
+            }
         };
         rms.iter().map(solved).collect()
     }
@@ -175,8 +177,8 @@ mod tests {
         assert!((found[0].largest_rms_ratio - 2.0).abs() < 1e-12);
         // Means of a finite record scatter by their errors.
         let mut noisy = up.clone();
-        noisy[1].row.mesh_circumferential_acceleration_rms_m_s2 = Some(PerHalf { left: 5.2, right: 5.2 });
-        noisy[1].error_estimate = 0.02;
+        noisy[1].mesh_circumferential_acceleration_rms_m_s2 = Some(PerHalf { left: 5.2, right: 5.2 });
+        noisy[1].error_estimate = Some(0.02);
         assert_eq!(hysteresis(&axis, None, &up, &noisy), []);
     }
 }

@@ -12,6 +12,7 @@ mod hash;
 mod impact;
 mod mesh;
 mod point;
+mod points;
 mod prepare;
 mod row;
 mod sweep;
@@ -29,11 +30,11 @@ use serde::{Deserialize, Serialize};
 
 pub use check::check;
 pub use hash::input_hash;
-
+pub use points::{KeptPoints, LineEnd, NoPointStore, PointStore};
 pub use vibration::is_channel;
 
 /// Version of the calculation: results and stages stored under another version are not reused.
-pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-3");
+pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-4");
 
 /// Stages in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -78,11 +79,26 @@ impl StageStore for NoStageStore {
 /// What a solve is given from outside besides the document.
 pub struct Surroundings<'a> {
     pub stages: &'a dyn StageStore,
+    /// Points of this sweep.
+    pub points: &'a dyn PointStore,
     /// Receives (stage, fraction of the whole job done).
     pub progress: &'a (dyn Fn(Stage, f64) + Sync),
     pub canceled: &'a (dyn Fn() -> bool + Sync),
     /// Milliseconds since an arbitrary start; the physics itself has no clock.
     pub clock_ms: &'a (dyn Fn() -> f64 + Sync),
+}
+
+impl Surroundings<'static> {
+    /// Nothing is kept, nobody looks on, and no time passes.
+    pub fn none() -> Self {
+        Self {
+            stages: &NoStageStore,
+            points: &NoPointStore,
+            progress: &|_, _| {},
+            canceled: &|| false,
+            clock_ms: &|| 0.0,
+        }
+    }
 }
 
 /// A recorded, uniformly sampled channel.
@@ -153,13 +169,16 @@ pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outc
         return Ok(Outcome { result: point.result, series: point.series });
     }
     let started_ms = (surroundings.clock_ms)();
-    let sweep = sweep::run(document, surroundings, &memo)?;
+    let kept = surroundings.points.load();
+    let reused = if kept.rows.is_empty() { Vec::new() } else { vec!["points".to_owned()] };
+    let sweep = sweep::run(document, kept, surroundings, &memo)?;
     let mut result = JobResult {
         geometry: Some(report.geometry),
         sweep: Some(sweep),
         warnings: report.warnings,
         ..JobResult::default()
     };
+    result.numerics.reused = reused;
     result.numerics.solver_version = SOLVER_VERSION.to_owned();
     result.numerics.wall_ms.response = (surroundings.clock_ms)() - started_ms;
     Ok(Outcome { result, series: Vec::new() })

@@ -13,13 +13,11 @@ use crate::watch::Watch;
 use serde_json::Value;
 
 /// A row, and what its neighbours need of it.
-#[derive(Default, Clone)]
+#[derive(Default)]
 pub struct Solved {
     pub row: SweepPoint,
     /// State to continue a neighbour from.
     pub end_state: Option<Vec<f64>>,
-    /// Estimated relative error of the row's RMS values.
-    pub error_estimate: f64,
 }
 
 /// The document of one point: `base` with the values of the axes put in.
@@ -123,12 +121,13 @@ pub fn of_point(values: Vec<f64>, point: Point) -> Solved {
         impact_force_n: result.impact.as_ref().map(|impact| impact.force_n),
         total_contact_ratio: result.geometry.as_ref().map(|geometry| geometry.total_contact_ratio),
         loaded_contact_ratio: result.mesh.as_ref().and_then(|mesh| mesh.loaded_contact_ratio),
+        error_estimate: response.map(|r| r.error_estimate),
         error: None,
         branch: None,
         poincare: point.poincare,
         acceleration_spectrum_m_s2: point.bands,
     };
-    Solved { row, end_state: point.end_state, error_estimate: response.map_or(0.0, |r| r.error_estimate) }
+    Solved { row, end_state: point.end_state }
 }
 
 /// The row of a point without a response.

@@ -2,12 +2,13 @@
 
 use super::*;
 use crate::job::parse_value;
-use crate::job::result::SweepPoint;
+use crate::job::result::{Sweep, SweepPoint};
 use crate::oracle::Tolerance::{Absolute, Relative};
 use crate::oracle::{check as check_value, check_worst};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn example(name: &str) -> Value {
     let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
@@ -104,7 +105,7 @@ fn a_hash_depends_on_what_decides_and_on_nothing_else() {
 
 fn solved(value: &Value) -> Outcome {
     let surroundings =
-        Surroundings { stages: &NoStageStore, progress: &|_, _| {}, canceled: &|| false, clock_ms: &|| 0.0 };
+        Surroundings::none();
     solve(&document(value), &surroundings).expect("solved")
 }
 
@@ -213,7 +214,7 @@ fn a_sweep_that_leaves_the_range_is_refused_and_one_that_meets_an_impossible_gea
 #[test]
 fn a_canceled_job_stops() {
     let surroundings =
-        Surroundings { stages: &NoStageStore, progress: &|_, _| {}, canceled: &|| true, clock_ms: &|| 0.0 };
+        Surroundings { canceled: &|| true, ..Surroundings::none() };
     let outcome = solve(&document(&example("table1")), &surroundings);
     assert!(matches!(outcome, Err(SolveError::Canceled(_))));
 }
@@ -232,7 +233,7 @@ impl StageStore for Memory {
 #[test]
 fn the_contact_analysis_is_kept_and_taken_again() {
     let memory = Memory::default();
-    let surroundings = Surroundings { stages: &memory, progress: &|_, _| {}, canceled: &|| false, clock_ms: &|| 0.0 };
+    let surroundings = Surroundings { stages: &memory, ..Surroundings::none() };
     let first = solve(&document(&example("table1")), &surroundings).expect("solved").result;
     let mut faster = example("table1");
     faster["operation"]["pinion_speed_rpm"] = json!(2500.0);
@@ -244,7 +245,7 @@ fn the_contact_analysis_is_kept_and_taken_again() {
 #[test]
 fn finite_elements_are_solved_once_per_gear() {
     let memory = Memory::default();
-    let surroundings = Surroundings { stages: &memory, progress: &|_, _| {}, canceled: &|| false, clock_ms: &|| 0.0 };
+    let surroundings = Surroundings { stages: &memory, ..Surroundings::none() };
     let mut value = example("table1");
     value["kind"] = json!("mesh");
     value["design"]["face_width_mm"] = json!(30.0);
@@ -508,10 +509,77 @@ fn progress_is_that_of_the_whole_job_and_never_goes_back() {
         let told = Mutex::new(Vec::new());
         let progress = |_: Stage, fraction: f64| told.lock().expect("unpoisoned").push(fraction);
         let surroundings =
-            Surroundings { stages: &NoStageStore, progress: &progress, canceled: &|| false, clock_ms: &|| 0.0 };
+            Surroundings { progress: &progress, ..Surroundings::none() };
         solve(&document(&value), &surroundings).expect("solved");
         let told = told.into_inner().expect("unpoisoned");
         assert!(told.windows(2).all(|pair| pair[0] <= pair[1]), "{kind}: {told:?}");
         assert!(told[0] < 0.05 && told.iter().all(|fraction| (0.0..=1.0).contains(fraction)), "{kind}: {told:?}");
+    }
+}
+
+/// Keeps points as a store does, and lets the calculation go on for so many of them.
+#[derive(Default)]
+struct Points {
+    kept: Mutex<KeptPoints>,
+    saved: AtomicUsize,
+}
+impl PointStore for Points {
+    fn load(&self) -> KeptPoints {
+        // As a store would: rows go through JSON.
+        let mut kept = self.kept.lock().expect("unpoisoned").clone();
+        for row in kept.rows.values_mut() {
+            *row = serde_json::from_str(&serde_json::to_string(row).expect("written")).expect("read");
+        }
+        kept
+    }
+    fn save(&self, position: usize, row: &SweepPoint, end: Option<&LineEnd>) {
+        let mut kept = self.kept.lock().expect("unpoisoned");
+        assert!(kept.rows.insert(position, row.clone()).is_none(), "point {position} was solved twice");
+        if let Some(end) = end {
+            kept.ends.insert(end.line, end.clone());
+        }
+        self.saved.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn a_sweep_that_was_stopped_goes_on_where_it_was() {
+    let axes = json!([
+        {"pointer": "/operation/pinion_speed_rpm", "values": [2000.0, 4000.0, 3000.0, 5000.0]},
+        {"pointer": "/design/backlash_um", "values": [2.0, 30.0]},
+    ]);
+    for (continuation, method) in [("none", "auto"), ("none", "integrate"), ("both", "auto")] {
+        let mut value = example("table1");
+        value["kind"] = json!("sweep");
+        value["axes"] = axes.clone();
+        value["continuation"] = json!(continuation);
+        value["analysis"] = json!({"method": method, "mesh_periods": 40, "record_mesh_periods": 10});
+        value["model"]["mesh_stiffness"] = json!({"source": "given", "mean_n_per_um": 900.0, "harmonics": [{"amplitude": 0.2}]});
+        value["model"]["impact"] = json!({"source": "none"});
+        let document = document(&value);
+        let whole = solve(&document, &Surroundings::none()).expect("solved").result;
+        let points = Points::default();
+        let mut runs = 0;
+        let pieced = loop {
+            let (before, limit) = (points.saved.load(Ordering::Relaxed), 1 + runs % 3);
+            let canceled = || points.saved.load(Ordering::Relaxed) >= before + limit;
+            runs += 1;
+            match solve(&document, &Surroundings { points: &points, canceled: &canceled, ..Surroundings::none() }) {
+                Ok(outcome) => break outcome.result,
+                Err(SolveError::Canceled(_)) => assert!(runs < 40, "no run gets further"),
+                Err(error) => panic!("{error}"),
+            }
+        };
+        assert!(runs > 2, "{continuation}: {runs} run(s)");
+        assert_eq!(pieced.numerics.reused, ["points"]);
+        let (pieced, whole) = (pieced.sweep.expect("a sweep"), whole.sweep.expect("a sweep"));
+        for (pieced, whole) in pieced.points.iter().zip(&whole.points) {
+            // The largest force is looked for between the steps, which neighbours in a group may set.
+            let difference = pieced.dynamic_factor.unwrap_or(0.0) - whole.dynamic_factor.unwrap_or(0.0);
+            assert!(difference.abs() < 1e-9, "{continuation}, {method}: {difference}");
+            assert_eq!(&SweepPoint { dynamic_factor: whole.dynamic_factor, ..pieced.clone() }, whole, "{continuation}");
+        }
+        let rest = |sweep| Sweep { points: Vec::new(), ..sweep };
+        assert!(rest(pieced) == rest(whole), "{continuation}, {method}: the rows are alike, but not the rest");
     }
 }
