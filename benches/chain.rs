@@ -17,8 +17,7 @@ fn example(change: impl FnOnce(&mut Value)) -> JobDocument {
 }
 
 fn solve(document: &JobDocument) -> study::Outcome {
-    let surroundings =
-        Surroundings::none();
+    let surroundings = Surroundings::none();
     study::solve(document, &surroundings).expect("the example solves")
 }
 

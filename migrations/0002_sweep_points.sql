@@ -18,8 +18,10 @@ CREATE TABLE sweep_line_ends (
     PRIMARY KEY (job_id, line)
 );
 
--- Where the rows of sweep_points belong in the body (a byte offset), and a hash of them all in order; null without rows.
+-- Where the rows of sweep_points belong in the body (a byte offset), how many they are, and a hash of them all in order; null
+-- when the result is not a sweep's.
 ALTER TABLE results ADD COLUMN points_at INTEGER;
+ALTER TABLE results ADD COLUMN points_n INTEGER;
 ALTER TABLE results ADD COLUMN points_digest TEXT;
 
 ALTER TABLE jobs ADD COLUMN turns INTEGER NOT NULL DEFAULT 0;      -- how often it made way for others; fewer runs first

@@ -10,6 +10,9 @@ pub const MAX_WAIT_S: u64 = 30;
 /// Page of a job list: default and cap.
 pub(super) const DEFAULT_PAGE: u32 = 50;
 pub(super) const MAX_PAGE: u32 = 200;
+/// Rows of a page of a sweep's points: default and cap.
+pub(super) const DEFAULT_ROWS: u32 = 1000;
+pub(super) const MAX_ROWS: u32 = 10_000;
 /// Points of a downsampled series: default and bounds.
 pub(super) const DEFAULT_POINTS: u64 = 2000;
 pub(super) const MIN_POINTS: u64 = 4;

@@ -8,6 +8,7 @@ mod config;
 mod downsample;
 mod envelope;
 mod openapi;
+mod points;
 mod problem;
 mod request;
 mod router;

@@ -2,6 +2,7 @@
 
 use super::config::RETRY_LIVE_S;
 use super::problem::Problem;
+use crate::job::document::Kind;
 use crate::store::{JobRecord, State};
 use axum::Json;
 use axum::http::header::{CACHE_CONTROL, ETAG, RETRY_AFTER};
@@ -52,6 +53,8 @@ pub struct JobLinks {
     pub input: String,
     pub result: String,
     pub series: String,
+    /// Of a sweep.
+    pub points: Option<String>,
 }
 
 impl From<&JobRecord> for Job {
@@ -80,6 +83,7 @@ impl From<&JobRecord> for Job {
                 input: format!("{path}/input"),
                 result: format!("{path}/result"),
                 series: format!("{path}/series"),
+                points: (job.kind == Kind::Sweep.word()).then(|| format!("{path}/points")),
                 itself: path,
             },
         }

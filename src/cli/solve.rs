@@ -112,7 +112,10 @@ fn solve(document: &JobDocument, stages: &dyn StageStore) -> Result<study::Outco
         },
     );
     bar.finish_and_clear();
-    outcome
+    outcome.map(|mut outcome| {
+        outcome.result.note_not_finite();
+        outcome
+    })
 }
 
 fn bar() -> ProgressBar {

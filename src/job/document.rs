@@ -45,6 +45,14 @@ pub struct JobDocument {
     pub record: Vec<Recorded>,
 }
 
+impl JobDocument {
+    /// Rows of the sweep: every point once for each direction of continuation.
+    pub fn sweep_points(&self) -> usize {
+        let ways = if self.continuation == Some(Continuation::Both) { 2 } else { 1 };
+        ways * self.axes.iter().map(Axis::len).product::<usize>()
+    }
+}
+
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Design {
     pub normal_module_mm: f64,

@@ -2,6 +2,7 @@
 
 pub mod document;
 mod fields;
+mod finite;
 mod reader;
 pub mod result;
 pub mod schema;
@@ -10,4 +11,5 @@ mod tests;
 mod violation;
 
 pub use fields::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_value};
+pub use finite::not_finite;
 pub use violation::{DocumentError, Violation};

@@ -438,6 +438,18 @@ pub struct Numerics {
     pub force_evaluations: u64,
     pub degrees_of_freedom: u32,
     pub solver_version: String,
+    /// Numbers that are null because they are not finite.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub not_finite: Vec<NotFinite>,
+}
+
+/// A number that JSON cannot hold.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct NotFinite {
+    /// Where it stands in the result.
+    pub pointer: String,
+    pub reason: String,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -43,6 +43,7 @@ impl Store {
         if let Some(job) = canceled {
             record_event(&mut transaction, &job, now).await?;
             transaction.commit().await?;
+            self.waiting.add(-1);
             return Ok(Cancellation::Canceled(job));
         }
         sqlx::query(

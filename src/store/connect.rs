@@ -1,5 +1,6 @@
 //! Opening the database: one writer connection, read-only readers, WAL.
 
+use super::waiting::Waiting;
 use sqlx::migrate::Migrator;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous};
 use sqlx::{Sqlite, Transaction};
@@ -56,6 +57,7 @@ pub struct Store {
     pub(super) writer: SqlitePool,
     pub(super) reader: SqlitePool,
     pub(super) stage_cache_bytes: i64,
+    pub(super) waiting: Waiting,
     _lock: Arc<File>,
 }
 
@@ -80,7 +82,8 @@ impl Store {
             .connect_with(options.read_only(true).create_if_missing(false))
             .await?;
         let stage_cache_bytes = i64::from(config.stage_cache_mib) << 20;
-        Ok(Self { writer, reader, stage_cache_bytes, _lock: Arc::new(lock) })
+        let waiting = Waiting::counted(&writer).await?;
+        Ok(Self { writer, reader, stage_cache_bytes, waiting, _lock: Arc::new(lock) })
     }
 
     /// Begins a transaction that writes.

@@ -3,6 +3,7 @@
 use super::connect::{Store, StoreError};
 use super::failure::Failure;
 use super::lifecycle::JobId;
+use super::points::{PointBatch, PointsOfResult, copy_points, drop_line_ends, insert_points};
 use super::record::{JobRecord, job_columns, record_event};
 use super::result::etag_of;
 use super::series::PackedSeries;
@@ -17,7 +18,11 @@ pub struct Completion {
     pub input_hash: String,
     pub solver_version: String,
     pub series: Vec<PackedSeries>,
-    /// The job whose series are copied instead, when its result was taken.
+    /// Of a sweep: its rows stand apart from the body, at this place.
+    pub points: Option<PointsOfResult>,
+    /// Those of its rows that are not yet written.
+    pub rows: PointBatch,
+    /// The job whose series and rows are copied instead, when its result was taken.
     pub reused_from: Option<JobId>,
 }
 
@@ -104,17 +109,26 @@ pub(super) async fn complete(
     .await?;
     let Some(job) = done else { return Ok(None) };
     record_event(transaction, &job, now).await?;
-    sqlx::query("INSERT INTO results (job_id, body, etag, input_hash, solver_version) VALUES ($1, $2, $3, $4, $5)")
-        .bind(id.to_string())
-        .bind(&completion.body)
-        .bind(etag_of(&completion.body))
-        .bind(&completion.input_hash)
-        .bind(&completion.solver_version)
-        .execute(&mut **transaction)
-        .await?;
+    let points = completion.points.as_ref();
+    sqlx::query(
+        "INSERT INTO results (job_id, body, etag, input_hash, solver_version, points_at, points_n, points_digest) \
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
+    )
+    .bind(id.to_string())
+    .bind(&completion.body)
+    .bind(etag_of(&completion.body, points))
+    .bind(&completion.input_hash)
+    .bind(&completion.solver_version)
+    .bind(points.map(|points| points.at as i64))
+    .bind(points.map(|points| points.n as i64))
+    .bind(points.map(|points| &points.digest))
+    .execute(&mut **transaction)
+    .await?;
+    insert_points(transaction, id, &completion.rows).await?;
+    drop_line_ends(transaction, id).await?;
     match completion.reused_from {
         Some(source) => {
-            if !copy_series(transaction, source, id).await? {
+            if !copy_results(transaction, source, id).await? {
                 return Ok(None);
             }
         }
@@ -128,7 +142,7 @@ pub(super) async fn complete(
 }
 
 /// False when the source has no result any more.
-async fn copy_series(
+async fn copy_results(
     transaction: &mut Transaction<'static, Sqlite>,
     source: JobId,
     target: JobId,
@@ -140,6 +154,7 @@ async fn copy_series(
     if there.is_none() {
         return Ok(false);
     }
+    copy_points(transaction, source, target).await?;
     sqlx::query(
         "INSERT INTO series (job_id, position, channel, quantity, unit, n, t0_s, dt_s, min, max, rms, samples) \
          SELECT $2, position, channel, quantity, unit, n, t0_s, dt_s, min, max, rms, samples FROM series \

@@ -33,12 +33,6 @@ impl Store {
         Ok(row.map(|row| row.try_get("input")).transpose()?)
     }
 
-    /// How many jobs wait.
-    pub async fn waiting(&self) -> Result<u64, StoreError> {
-        let row = sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'").fetch_one(&self.reader).await?;
-        Ok(row.try_get::<i64, _>("n")?.unsigned_abs())
-    }
-
     /// How many jobs are in each state.
     pub async fn counts(&self) -> Result<Counts, StoreError> {
         let rows = sqlx::query("SELECT state, COUNT(*) AS n FROM jobs GROUP BY state").fetch_all(&self.reader).await?;

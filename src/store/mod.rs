@@ -11,12 +11,15 @@ mod finish;
 mod lifecycle;
 mod list;
 mod lookup;
+mod points;
 mod record;
 mod result;
 mod run;
 mod series;
 mod stages;
 mod submit;
+mod unavailable;
+mod waiting;
 
 pub use cancel::{Cancellation, Deletion};
 pub use connect::{Store, StoreConfig, StoreError};
@@ -25,9 +28,10 @@ pub use finish::Completion;
 pub use lifecycle::{JobId, State};
 pub use list::{JobFilter, JobPage};
 pub use lookup::Counts;
+pub use points::{LineEndRow, PointBatch, PointRow, PointsOfResult, digest_of_points};
 pub use record::JobRecord;
 pub use result::{Reusable, StoredResult};
-pub use run::{Claim, Recovery};
+pub use run::{Claim, Pause, Recovery, WorkClass};
 pub use series::{PackedSeries, SeriesEntry};
 pub use submit::{NewJob, Submission};
 

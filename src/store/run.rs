@@ -2,10 +2,12 @@
 
 use super::connect::{Store, StoreError};
 use super::failure::Failure;
-use super::lifecycle::JobId;
+use super::lifecycle::{JobId, State};
+use super::points::{PointBatch, insert_points};
 use super::record::{JobRecord, job_columns, record_event};
 use jiff::Timestamp;
 use sqlx::{FromRow, Row, Sqlite, Transaction};
+use std::time::Duration;
 
 /// A job that was just started.
 #[derive(Debug, Clone)]
@@ -13,6 +15,33 @@ pub struct Claim {
     pub job: JobRecord,
     /// The document, as JSON.
     pub input: String,
+    /// Time that earlier attempts took, lost ones left out.
+    pub computed: Duration,
+}
+
+/// What a job takes of the machine; each class has workers and a place in the queue of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum WorkClass {
+    /// One operating point: seconds.
+    Single,
+    /// Many: hours.
+    Sweep,
+}
+
+impl WorkClass {
+    /// The class of a kind of job.
+    pub fn of_kind(kind: &str) -> Self {
+        if kind == "sweep" { WorkClass::Sweep } else { WorkClass::Single }
+    }
+}
+
+/// Why a running job goes back to where it came from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pause {
+    /// The service stops.
+    Shutdown,
+    /// Others had waited long enough.
+    Turn,
 }
 
 /// What was found at the start of the process.
@@ -29,34 +58,51 @@ pub struct Recovery {
 }
 
 impl Store {
-    /// queued → running, for the job that is next in line.
-    pub async fn claim_next(&self, now: Timestamp) -> Result<Option<Claim>, StoreError> {
+    /// queued → running, for the job of this class that is next in line: by priority, then the one that has made way for
+    /// others least often, then the oldest.
+    pub async fn claim_next(&self, class: WorkClass, now: Timestamp) -> Result<Option<Claim>, StoreError> {
         let mut transaction = self.write().await?;
         let row = sqlx::query(concat!(
             "UPDATE jobs SET state = 'running', attempt = attempt + 1, revision = revision + 1, started_at_us = $1, \
-             progress = 0, stage = NULL WHERE state = 'queued' AND id = (SELECT id FROM jobs WHERE state = 'queued' \
-             ORDER BY priority DESC, id LIMIT 1) RETURNING input, ",
+             progress = CASE kind WHEN 'sweep' THEN progress ELSE 0 END, stage = NULL WHERE state = 'queued' AND id = \
+             (SELECT id FROM jobs WHERE state = 'queued' AND (kind = 'sweep') = $2 \
+             ORDER BY priority DESC, turns, id LIMIT 1) RETURNING input, computed_us, ",
             job_columns!()
         ))
         .bind(now.as_microsecond())
+        .bind(class == WorkClass::Sweep)
         .fetch_optional(&mut *transaction)
         .await?;
         let Some(row) = row else { return Ok(None) };
-        let claim = Claim { job: sqlx::FromRow::from_row(&row)?, input: row.try_get("input")? };
+        let computed = Duration::from_micros(row.try_get::<i64, _>("computed_us")?.unsigned_abs());
+        let claim = Claim { job: sqlx::FromRow::from_row(&row)?, input: row.try_get("input")?, computed };
         record_event(&mut transaction, &claim.job, now).await?;
         transaction.commit().await?;
+        self.waiting.add(-1);
         Ok(Some(claim))
     }
 
-    /// Notes how far a running job is; `None` when the job is no longer this attempt's.
+    /// Whether a job of this class waits.
+    pub async fn is_waiting(&self, class: WorkClass) -> Result<bool, StoreError> {
+        let row = sqlx::query("SELECT 1 FROM jobs WHERE state = 'queued' AND (kind = 'sweep') = $1 LIMIT 1")
+            .bind(class == WorkClass::Sweep)
+            .fetch_optional(&self.reader)
+            .await?;
+        Ok(row.is_some())
+    }
+
+    /// Notes how far a running job is, with the points that were solved meanwhile; `None`, and nothing written, when the job is
+    /// no longer this attempt's.
     pub async fn progress(
         &self,
         id: JobId,
         attempt: i64,
         stage: &str,
         fraction: f64,
+        points: &PointBatch,
     ) -> Result<Option<JobRecord>, StoreError> {
-        Ok(sqlx::query_as(concat!(
+        let mut transaction = self.write().await?;
+        let job: Option<JobRecord> = sqlx::query_as(concat!(
             "UPDATE jobs SET progress = $3, stage = $4, revision = revision + 1 \
              WHERE id = $1 AND attempt = $2 AND state = 'running' RETURNING ",
             job_columns!()
@@ -65,15 +111,42 @@ impl Store {
         .bind(attempt)
         .bind(fraction.clamp(0.0, 1.0))
         .bind(stage)
-        .fetch_optional(&self.writer)
-        .await?)
+        .fetch_optional(&mut *transaction)
+        .await?;
+        if job.is_some() {
+            insert_points(&mut transaction, id, points).await?;
+        }
+        transaction.commit().await?;
+        Ok(job)
     }
 
-    /// running → canceled when that was asked for, else running → queued: the worker stopped before the end.
-    pub async fn release(&self, id: JobId, attempt: i64, now: Timestamp) -> Result<Option<JobRecord>, StoreError> {
+    /// running → canceled when that was asked for, else running → queued: the worker stopped before the end, after `computed`.
+    pub async fn release(
+        &self,
+        id: JobId,
+        attempt: i64,
+        pause: Pause,
+        computed: Duration,
+        now: Timestamp,
+    ) -> Result<Option<JobRecord>, StoreError> {
         let mut transaction = self.write().await?;
+        sqlx::query(
+            "UPDATE jobs SET computed_us = computed_us + $3, turns = turns + $4 \
+             WHERE id = $1 AND attempt = $2 AND state = 'running'",
+        )
+        .bind(id.to_string())
+        .bind(attempt)
+        .bind(i64::try_from(computed.as_micros()).unwrap_or(i64::MAX))
+        .bind(i64::from(pause == Pause::Turn))
+        .execute(&mut *transaction)
+        .await?;
         let released = release_in(&mut transaction, id, attempt, now).await?;
-        transaction.commit().await?;
+        let entered = i64::from(released.as_ref().is_some_and(|job| job.state == State::Queued));
+        self.waiting.add(entered);
+        if let Err(error) = transaction.commit().await {
+            self.waiting.add(-entered);
+            return Err(error.into());
+        }
         Ok(released)
     }
 
@@ -105,6 +178,7 @@ impl Store {
             sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'").fetch_one(&mut *transaction).await?;
         recovery.waiting = row.try_get::<i64, _>("n")?.unsigned_abs();
         transaction.commit().await?;
+        self.waiting.add(recovery.requeued as i64);
         Ok(recovery)
     }
 }
@@ -120,7 +194,7 @@ async fn release_in(
          state = CASE WHEN cancel_requested_at_us IS NULL THEN 'queued' ELSE 'canceled' END, \
          ended_at_us = CASE WHEN cancel_requested_at_us IS NULL THEN NULL ELSE $3 END, \
          started_at_us = CASE WHEN cancel_requested_at_us IS NULL THEN NULL ELSE started_at_us END, \
-         progress = CASE WHEN cancel_requested_at_us IS NULL THEN 0 ELSE progress END, \
+         progress = CASE WHEN cancel_requested_at_us IS NULL AND kind <> 'sweep' THEN 0 ELSE progress END, \
          stage = CASE WHEN cancel_requested_at_us IS NULL THEN NULL ELSE stage END \
          WHERE id = $1 AND attempt = $2 AND state = 'running' RETURNING ",
         job_columns!()

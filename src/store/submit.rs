@@ -63,10 +63,17 @@ impl Store {
                 return Box::pin(self.submit(job, None, capacity, now)).await;
             }
         }
-        if !ended && waiting(&mut transaction).await? > i64::from(capacity) {
+        // Only the holder of the one writing connection adds to those that wait.
+        if !ended && self.waiting.get() >= i64::from(capacity) {
             return Ok(Submission::Full);
         }
-        transaction.commit().await?;
+        // Counted before the next writer can look.
+        let entered = i64::from(!ended);
+        self.waiting.add(entered);
+        if let Err(error) = transaction.commit().await {
+            self.waiting.add(-entered);
+            return Err(error.into());
+        }
         Ok(Submission::Accepted(record))
     }
 }
@@ -134,10 +141,4 @@ async fn start(
     .await?;
     record_event(transaction, &record, now).await?;
     Ok(record)
-}
-
-async fn waiting(transaction: &mut Transaction<'static, Sqlite>) -> Result<i64, StoreError> {
-    let row =
-        sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'").fetch_one(&mut **transaction).await?;
-    Ok(row.try_get("n")?)
 }

@@ -68,7 +68,12 @@ pub fn jumps(axis: &Axis, way: Way, second_axis_value: Option<f64>, line: &[Swee
 }
 
 /// Where the branches of the same line differ; both in the order of the axis.
-pub fn hysteresis(axis: &Axis, second_axis_value: Option<f64>, up: &[SweepPoint], down: &[SweepPoint]) -> Vec<Hysteresis> {
+pub fn hysteresis(
+    axis: &Axis,
+    second_axis_value: Option<f64>,
+    up: &[SweepPoint],
+    down: &[SweepPoint],
+) -> Vec<Hysteresis> {
     let mut found: Vec<Hysteresis> = Vec::new();
     let mut open = false;
     for at in order(axis, Way::Up) {

@@ -104,8 +104,7 @@ fn a_hash_depends_on_what_decides_and_on_nothing_else() {
 }
 
 fn solved(value: &Value) -> Outcome {
-    let surroundings =
-        Surroundings::none();
+    let surroundings = Surroundings::none();
     solve(&document(value), &surroundings).expect("solved")
 }
 
@@ -213,8 +212,7 @@ fn a_sweep_that_leaves_the_range_is_refused_and_one_that_meets_an_impossible_gea
 
 #[test]
 fn a_canceled_job_stops() {
-    let surroundings =
-        Surroundings { canceled: &|| true, ..Surroundings::none() };
+    let surroundings = Surroundings { canceled: &|| true, ..Surroundings::none() };
     let outcome = solve(&document(&example("table1")), &surroundings);
     assert!(matches!(outcome, Err(SolveError::Canceled(_))));
 }
@@ -508,8 +506,7 @@ fn progress_is_that_of_the_whole_job_and_never_goes_back() {
         value["kind"] = json!(kind);
         let told = Mutex::new(Vec::new());
         let progress = |_: Stage, fraction: f64| told.lock().expect("unpoisoned").push(fraction);
-        let surroundings =
-            Surroundings { progress: &progress, ..Surroundings::none() };
+        let surroundings = Surroundings { progress: &progress, ..Surroundings::none() };
         solve(&document(&value), &surroundings).expect("solved");
         let told = told.into_inner().expect("unpoisoned");
         assert!(told.windows(2).all(|pair| pair[0] <= pair[1]), "{kind}: {told:?}");
@@ -554,7 +551,8 @@ fn a_sweep_that_was_stopped_goes_on_where_it_was() {
         value["axes"] = axes.clone();
         value["continuation"] = json!(continuation);
         value["analysis"] = json!({"method": method, "mesh_periods": 40, "record_mesh_periods": 10});
-        value["model"]["mesh_stiffness"] = json!({"source": "given", "mean_n_per_um": 900.0, "harmonics": [{"amplitude": 0.2}]});
+        value["model"]["mesh_stiffness"] =
+            json!({"source": "given", "mean_n_per_um": 900.0, "harmonics": [{"amplitude": 0.2}]});
         value["model"]["impact"] = json!({"source": "none"});
         let document = document(&value);
         let whole = solve(&document, &Surroundings::none()).expect("solved").result;

@@ -1,16 +1,38 @@
 //! How much is computed at once.
 
+use crate::store::WorkClass;
 use std::num::NonZeroUsize;
 use std::time::Duration;
 
 /// Workers, threads and queue.
 #[derive(Debug, Clone, clap::Args)]
 pub struct WorkConfig {
-    /// Jobs that run at the same time; the number of processors when not given.
+    /// Jobs of one operating point that run at the same time; the number of processors when not given.
     #[arg(long, env = "HERRINGBONE_WORKERS", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub workers: Option<u32>,
 
-    /// Threads that all running jobs share; the number of processors when not given.
+    /// Sweeps that run at the same time, beside the jobs of one operating point; the others take turns with them.
+    #[arg(long, env = "HERRINGBONE_SWEEP_WORKERS", value_name = "N", default_value_t = 2,
+          value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub sweep_workers: u32,
+
+    /// How long a sweep runs before it makes way for another that waits; it goes on later where it was.
+    #[arg(long, env = "HERRINGBONE_SWEEP_TURN_S", value_name = "SECONDS", default_value_t = 60,
+          value_parser = clap::value_parser!(u32).range(0..=86_400))]
+    pub sweep_turn_s: u32,
+
+    /// Longest time that a job of one operating point may compute; it fails then.
+    #[arg(long, env = "HERRINGBONE_JOB_TIME_LIMIT_S", value_name = "SECONDS", default_value_t = 3600,
+          value_parser = clap::value_parser!(u32).range(1..=2_592_000))]
+    pub job_time_limit_s: u32,
+
+    /// Longest time that a sweep may compute in all its turns; it fails then, and goes on when it is submitted again.
+    #[arg(long, env = "HERRINGBONE_SWEEP_TIME_LIMIT_S", value_name = "SECONDS", default_value_t = 604_800,
+          value_parser = clap::value_parser!(u32).range(1..=31_536_000))]
+    pub sweep_time_limit_s: u32,
+
+    /// Threads that all running jobs of one operating point share, and threads of each sweep; the number of processors when
+    /// not given.
     #[arg(long, env = "HERRINGBONE_THREADS", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
 
@@ -32,7 +54,17 @@ pub struct WorkConfig {
 
 impl Default for WorkConfig {
     fn default() -> Self {
-        Self { workers: None, threads: None, queue_capacity: 10_000, max_losses: 3, drain_s: 10 }
+        Self {
+            workers: None,
+            threads: None,
+            sweep_workers: 2,
+            sweep_turn_s: 60,
+            job_time_limit_s: 3600,
+            sweep_time_limit_s: 604_800,
+            queue_capacity: 10_000,
+            max_losses: 3,
+            drain_s: 10,
+        }
     }
 }
 
@@ -43,6 +75,14 @@ impl WorkConfig {
 
     pub fn thread_count(&self) -> usize {
         self.threads.map_or_else(processors, |threads| threads as usize)
+    }
+
+    /// Longest time that a job of this class may compute.
+    pub fn time_limit(&self, class: WorkClass) -> Duration {
+        Duration::from_secs(match class {
+            WorkClass::Single => self.job_time_limit_s.into(),
+            WorkClass::Sweep => self.sweep_time_limit_s.into(),
+        })
     }
 
     pub fn drain(&self) -> Duration {

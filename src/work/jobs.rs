@@ -9,7 +9,7 @@ use super::reuse::stored_completion;
 use super::solver::Solver;
 use crate::job::DocumentError;
 use crate::job::document::JobDocument;
-use crate::store::{Cancellation, JobId, JobRecord, NewJob, Store, StoreError, Submission};
+use crate::store::{Cancellation, JobId, JobRecord, NewJob, Store, StoreError, Submission, WorkClass};
 use crate::study::CheckReport;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
@@ -161,7 +161,7 @@ impl Jobs {
             Submission::Accepted(job) => {
                 metrics::counter!("herringbone_jobs_submitted_total", "kind" => job.kind.clone()).increment(1);
                 if !job.state.is_ended() {
-                    self.0.queue.announce(job.id);
+                    self.0.queue.announce(job.id, WorkClass::of_kind(&job.kind));
                 }
                 Ok(Submitted { job, replayed: false })
             }

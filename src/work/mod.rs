@@ -4,15 +4,18 @@
 //! Invariant: nothing here knows HTTP or SQL; a job's state changes only through the [`Recorder`].
 
 mod config;
+mod failure;
 mod hub;
 mod jobs;
 mod local;
+mod points;
 mod queue;
 mod recorder;
 mod reuse;
 mod run;
 mod solver;
 mod stages;
+mod stop;
 
 pub use config::WorkConfig;
 pub use hub::Subscription;

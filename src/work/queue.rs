@@ -1,6 +1,6 @@
 //! Where accepted jobs go to be run.
 
-use crate::store::JobId;
+use crate::store::{JobId, WorkClass};
 use std::future::Future;
 use std::pin::Pin;
 use std::time::Duration;
@@ -11,15 +11,18 @@ pub type Pending<'a, T> = Pin<Box<dyn Future<Output = T> + Send + 'a>>;
 /// How many jobs can run at once, and how many do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Workers {
+    /// Of jobs of one operating point.
     pub total: usize,
     pub busy: usize,
+    pub sweeps_total: usize,
+    pub sweeps_busy: usize,
 }
 
 /// Runs the jobs that wait in the store, and reports what becomes of them to the [`super::Recorder`]. A queue owns no
 /// state that a restart would miss: what waits is in the store.
 pub trait Queue: Send + Sync + 'static {
-    /// Tells that a job waits in the store.
-    fn announce(&self, job: JobId);
+    /// Tells that a job of this class waits in the store.
+    fn announce(&self, job: JobId, class: WorkClass);
 
     /// Asks whoever runs the job to stop; nothing happens when nobody does.
     fn stop(&self, job: JobId);

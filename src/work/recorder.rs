@@ -1,9 +1,12 @@
 //! Writes what becomes of a job and tells it to whoever waits; the only way in which a job's state changes.
 
 use super::hub::{Hub, Subscription};
-use crate::store::{Cancellation, Claim, Completion, Failure, JobId, JobRecord, State, Store, StoreError};
+use crate::store::{
+    Cancellation, Claim, Completion, Failure, JobId, JobRecord, Pause, PointBatch, State, Store, StoreError, WorkClass,
+};
 use jiff::Timestamp;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Where times come from; fixed in tests that need it.
 pub type Clock = Arc<dyn Fn() -> Timestamp + Send + Sync>;
@@ -34,17 +37,24 @@ impl Recorder {
         self.hub.subscribe(job)
     }
 
-    /// Takes the next job in line.
-    pub async fn claim_next(&self) -> Result<Option<Claim>, StoreError> {
-        let claim = self.store.claim_next(self.now()).await?;
+    /// Takes the next job of this class in line.
+    pub async fn claim_next(&self, class: WorkClass) -> Result<Option<Claim>, StoreError> {
+        let claim = self.store.claim_next(class, self.now()).await?;
         if let Some(claim) = &claim {
             self.hub.publish(&claim.job);
         }
         Ok(claim)
     }
 
-    pub async fn progress(&self, job: &JobRecord, stage: &str, fraction: f64) -> Result<(), StoreError> {
-        self.told(self.store.progress(job.id, job.attempt, stage, fraction).await?);
+    /// How far a running job is, with the points that were solved meanwhile.
+    pub async fn progress(
+        &self,
+        job: &JobRecord,
+        stage: &str,
+        fraction: f64,
+        points: &PointBatch,
+    ) -> Result<(), StoreError> {
+        self.told(self.store.progress(job.id, job.attempt, stage, fraction, points).await?);
         Ok(())
     }
 
@@ -60,8 +70,13 @@ impl Recorder {
     }
 
     /// The worker stopped before the end: canceled if that was asked for, else queued again.
-    pub async fn release(&self, job: &JobRecord) -> Result<Option<State>, StoreError> {
-        let released = self.store.release(job.id, job.attempt, self.now()).await?;
+    pub async fn release(
+        &self,
+        job: &JobRecord,
+        pause: Pause,
+        computed: Duration,
+    ) -> Result<Option<State>, StoreError> {
+        let released = self.store.release(job.id, job.attempt, pause, computed, self.now()).await?;
         let state = released.as_ref().map(|job| job.state);
         self.ended(released);
         Ok(state)

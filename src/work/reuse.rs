@@ -1,6 +1,7 @@
 //! The same input again: the stored result instead of a calculation.
 
-use crate::store::{Completion, Store, StoreError};
+use super::points::place_of_points;
+use crate::store::{Completion, PointBatch, PointsOfResult, Store, StoreError};
 use serde_json::{Value, json};
 
 /// What would end a job with this input at once, if a result is stored.
@@ -10,11 +11,16 @@ pub(super) async fn stored_completion(
     solver_version: &str,
 ) -> Result<Option<Completion>, StoreError> {
     let Some(found) = store.reusable(input_hash, solver_version).await? else { return Ok(None) };
+    let body = marked_as_reused(&found.body);
+    // Written anew, the body has the place of its points elsewhere.
+    let points = found.points.and_then(|points| Some(PointsOfResult { at: place_of_points(&body)?, ..points }));
     Ok(Some(Completion {
-        body: marked_as_reused(&found.body),
+        body,
         input_hash: input_hash.to_owned(),
         solver_version: solver_version.to_owned(),
         series: Vec::new(),
+        points,
+        rows: PointBatch::default(),
         reused_from: Some(found.job),
     }))
 }

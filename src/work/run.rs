@@ -1,22 +1,35 @@
 //! One claimed job, from its document to what is written.
 
+use super::config::WorkConfig;
+use super::failure::{document_failure, failure_of, internal, panic_failure, public};
+use super::points::{RunningPoints, place_of_points};
 use super::recorder::Recorder;
 use super::reuse::stored_completion;
 use super::solver::Solver;
 use super::stages::StoredStages;
+use super::stop::{Reason, Stop};
+use crate::job;
 use crate::job::document::JobDocument;
-use crate::job::{self, DocumentError};
-use crate::store::{Claim, Completion, Failure, JobRecord, PackedSeries, State, StoreError};
-use crate::study::{SolveError, Stage, Surroundings};
+use crate::job::result::JobResult;
+use crate::store::{
+    Completion, Failure, JobRecord, PackedSeries, Pause, PointBatch, PointsOfResult, State, StoreError, WorkClass,
+};
+use crate::study::{Outcome, SolveError, Stage, Surroundings};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 use tokio::sync::{oneshot, watch};
+use tokio_util::sync::CancellationToken;
 
 /// Progress is written and told at most this often.
 const PROGRESS_EVERY: Duration = Duration::from_millis(250);
+/// First and longest pause before what the database refused is tried again.
+const RETRY_AFTER: Duration = Duration::from_secs(1);
+const RETRY_AFTER_AT_MOST: Duration = Duration::from_secs(30);
+
+/// The stage that runs, and the fraction of the whole job.
+type Progress = (Stage, f64);
 
 /// How a calculation ended.
 enum Ending {
@@ -25,167 +38,230 @@ enum Ending {
     Failed(Failure),
 }
 
-/// Runs a job on the pool and records what becomes of it.
-pub(super) async fn run(
-    claim: Claim,
-    recorder: &Recorder,
-    solver: &Arc<dyn Solver>,
-    pool: &rayon::ThreadPool,
-    stop: &Arc<AtomicBool>,
-) -> Result<(), StoreError> {
-    let document = match job::parse(claim.input.as_bytes()) {
-        Ok(document) => document,
-        Err(error) => return failed(recorder, &claim.job, document_failure(error)).await,
-    };
-    // Stored under the version that solves now: the job may have waited through an upgrade.
-    let input_hash = solver.input_hash(&document);
-    let reusable = stored_completion(recorder.store(), &input_hash, solver.version()).await?;
-    if let Some(completion) = reusable
-        && recorder.succeed(&claim.job, &completion).await?
-    {
-        return Ok(());
-    }
-    match calculate(document, input_hash, &claim.job, recorder, solver, pool, stop).await? {
-        Ending::Solved(completion) => {
-            if !recorder.succeed(&claim.job, &completion).await? {
-                tracing::warn!(job = %claim.job.id, attempt = claim.job.attempt, "a result came too late and was dropped");
-            }
-            Ok(())
-        }
-        Ending::Failed(failure) => failed(recorder, &claim.job, failure).await,
-        Ending::Stopped => stopped(recorder, &claim.job, stop).await,
-    }
+/// A job on its way through this worker.
+pub(super) struct Run<'a> {
+    pub job: JobRecord,
+    /// Time that earlier attempts took.
+    pub computed_before: Duration,
+    pub class: WorkClass,
+    pub config: &'a WorkConfig,
+    pub recorder: &'a Recorder,
+    pub solver: &'a Arc<dyn Solver>,
+    pub pool: &'a rayon::ThreadPool,
+    pub stop: &'a Arc<Stop>,
+    pub closing: &'a CancellationToken,
 }
 
-async fn calculate(
-    document: JobDocument,
-    input_hash: String,
-    job: &JobRecord,
-    recorder: &Recorder,
-    solver: &Arc<dyn Solver>,
-    pool: &rayon::ThreadPool,
-    stop: &Arc<AtomicBool>,
-) -> Result<Ending, StoreError> {
-    let (progress, mut progressed) = watch::channel((Stage::Geometry, 0.0));
-    let (send, mut receive) = oneshot::channel();
-    let stages = StoredStages {
-        store: recorder.store().clone(),
-        runtime: Handle::current(),
-        solver_version: solver.version(),
-        now: recorder.now(),
-    };
-    let (solver, stop) = (Arc::clone(solver), Arc::clone(stop));
-    pool.spawn(move || {
-        // A panic that leaves a closure of `spawn` would abort the process.
-        let ending =
-            catch_unwind(AssertUnwindSafe(|| solve(&document, input_hash, solver.as_ref(), &stages, &progress, &stop)));
-        let _ = send.send(ending.unwrap_or_else(|panic| Ending::Failed(panic_failure(panic.as_ref()))));
-    });
-    let vanished = || Ending::Failed(internal("the calculation vanished"));
-    loop {
-        // The next word on progress may wait, the end may not; a short job writes none.
-        tokio::select! {
-            ending = &mut receive => return Ok(ending.unwrap_or_else(|_| vanished())),
-            () = tokio::time::sleep(PROGRESS_EVERY) => {}
+impl Run<'_> {
+    /// Runs the job on the pool and records what becomes of it. What the database refuses is kept and tried again until it is
+    /// taken or the service closes; then the job is still running in the store, and is taken up after the restart.
+    pub async fn to_its_end(&self, input: &str) {
+        let document = match job::parse(input.as_bytes()) {
+            Ok(document) => document,
+            Err(error) => return self.fail(document_failure(error)).await,
+        };
+        // Stored under the version that solves now: the job may have waited through an upgrade.
+        let input_hash = self.solver.input_hash(&document);
+        let (store, version) = (self.recorder.store(), self.solver.version());
+        let Some(reusable) = self.patiently(|| stored_completion(store, &input_hash, version)).await else { return };
+        if let Some(completion) = reusable
+            && self.patiently(|| self.recorder.succeed(&self.job, &completion)).await.unwrap_or(true)
+        {
+            return;
         }
-        tokio::select! {
-            ending = &mut receive => return Ok(ending.unwrap_or_else(|_| vanished())),
-            Ok(()) = progressed.changed() => {
+        let (id, attempt) = (self.job.id, self.job.attempt);
+        let written = match self.class {
+            WorkClass::Single => Some(PointBatch::default()),
+            WorkClass::Sweep => self.patiently(|| store.kept_points(id, attempt, &input_hash, version)).await,
+        };
+        let Some(written) = written else { return };
+        let points = Arc::new(RunningPoints::after(written, version));
+        let started = Instant::now();
+        let progress = watch::Sender::new((Stage::Geometry, self.job.progress));
+        let mut progressed = progress.subscribe();
+        match self.calculate(document, input_hash, &points, progress, &mut progressed, started).await {
+            Ending::Solved(completion) => {
+                if self.patiently(|| self.recorder.succeed(&self.job, &completion)).await == Some(false) {
+                    tracing::warn!(job = %id, attempt, "a result came too late and was dropped");
+                }
+            }
+            Ending::Failed(failure) => {
+                let last = *progressed.borrow();
+                self.write_points(&points, last).await;
+                self.fail(failure).await;
+            }
+            Ending::Stopped => {
+                let last = *progressed.borrow();
+                self.write_points(&points, last).await;
+                self.stopped(started.elapsed()).await;
+            }
+        }
+    }
+
+    async fn calculate(
+        &self,
+        document: JobDocument,
+        input_hash: String,
+        points: &Arc<RunningPoints>,
+        progress: watch::Sender<Progress>,
+        progressed: &mut watch::Receiver<Progress>,
+        started: Instant,
+    ) -> Ending {
+        let (send, mut receive) = oneshot::channel();
+        let stages = StoredStages {
+            store: self.recorder.store().clone(),
+            runtime: Handle::current(),
+            solver_version: self.solver.version(),
+            now: self.recorder.now(),
+        };
+        let (solver, stop, points_here) = (Arc::clone(self.solver), Arc::clone(self.stop), Arc::clone(points));
+        let span = tracing::Span::current();
+        self.pool.spawn(move || {
+            let _entered = span.entered();
+            let work = Work { solver: solver.as_ref(), stages: &stages, points: &points_here, stop: &stop };
+            // A panic that leaves a closure of `spawn` would abort the process.
+            let ending = catch_unwind(AssertUnwindSafe(|| work.solve(&document, input_hash, &progress)));
+            let _ = send.send(ending.unwrap_or_else(|panic| Ending::Failed(panic_failure(panic.as_ref()))));
+        });
+        loop {
+            // The next word on progress may wait, the end may not; a short job writes none.
+            tokio::select! {
+                ending = &mut receive => {
+                    return ending.unwrap_or_else(|_| Ending::Failed(internal("the calculation vanished")));
+                }
+                () = tokio::time::sleep(PROGRESS_EVERY) => {}
+            }
+            let batch = points.take_unwritten();
+            if progressed.has_changed().unwrap_or(false) || !batch.is_empty() {
                 let (stage, fraction) = *progressed.borrow_and_update();
-                recorder.progress(job, stage.word(), fraction).await?;
+                if let Err(error) = self.recorder.progress(&self.job, stage.word(), fraction, &batch).await {
+                    tracing::warn!(job = %self.job.id, %error, "progress not written");
+                    points.put_back(batch);
+                }
+            }
+            self.stop_when_due(started).await;
+        }
+    }
+
+    /// Stops a calculation that took too long, and a sweep that had its turn while others wait.
+    async fn stop_when_due(&self, started: Instant) {
+        let elapsed = started.elapsed();
+        if self.computed_before + elapsed > self.config.time_limit(self.class) {
+            self.stop.ask(Reason::TimeLimit);
+        }
+        let turn = Duration::from_secs(self.config.sweep_turn_s.into());
+        if self.class == WorkClass::Sweep && elapsed > turn {
+            match self.recorder.store().is_waiting(self.class).await {
+                Ok(true) => self.stop.ask(Reason::Turn),
+                Ok(false) => {}
+                Err(error) => tracing::warn!(%error, "not known whether others wait"),
+            }
+        }
+    }
+
+    async fn stopped(&self, computed: Duration) {
+        let pause = match self.stop.reason() {
+            None => return self.fail(internal("the calculation stopped although nobody asked")).await,
+            Some(Reason::TimeLimit) => {
+                let limit_s = self.config.time_limit(self.class).as_secs();
+                let detail = format!("the job had computed for {limit_s} s, the longest time permitted");
+                return self.fail(Failure::new("time-limit", detail)).await;
+            }
+            Some(Reason::Turn) => Pause::Turn,
+            Some(Reason::Cancel | Reason::Shutdown) => Pause::Shutdown,
+        };
+        let released = self.patiently(|| self.recorder.release(&self.job, pause, computed)).await;
+        if let Some(Some(State::Queued)) = released {
+            let why = if pause == Pause::Turn { "others had waited" } else { "the service shuts down" };
+            tracing::info!(job = %self.job.id, why, "job stopped; it goes on later");
+        }
+    }
+
+    /// Points that were solved after the last word on progress.
+    async fn write_points(&self, points: &RunningPoints, (stage, fraction): Progress) {
+        let batch = points.take_unwritten();
+        if !batch.is_empty() {
+            self.patiently(|| self.recorder.progress(&self.job, stage.word(), fraction, &batch)).await;
+        }
+    }
+
+    async fn fail(&self, failure: Failure) {
+        let request_id = self.job.request_id.as_deref().unwrap_or_default();
+        tracing::warn!(job = %self.job.id, request_id, code = failure.code, detail = failure.detail, "job failed");
+        let failure = public(failure);
+        self.patiently(|| self.recorder.fail(&self.job, &failure)).await;
+    }
+
+    /// Tries until the database takes it; none when the service closed before that.
+    async fn patiently<T, F>(&self, mut attempt: impl FnMut() -> F) -> Option<T>
+    where
+        F: Future<Output = Result<T, StoreError>>,
+    {
+        let mut pause = RETRY_AFTER;
+        loop {
+            match attempt().await {
+                Ok(done) => return Some(done),
+                Err(error) => tracing::error!(job = %self.job.id, %error, "not written; it is tried again"),
+            }
+            tokio::select! {
+                () = tokio::time::sleep(pause) => pause = (2 * pause).min(RETRY_AFTER_AT_MOST),
+                () = self.closing.cancelled() => {
+                    tracing::error!(job = %self.job.id, "what became of the job is not written; it runs again after the restart");
+                    return None;
+                }
             }
         }
     }
 }
 
-/// On a thread of the pool.
-fn solve(
-    document: &JobDocument,
-    input_hash: String,
-    solver: &dyn Solver,
-    stages: &StoredStages,
-    progress: &watch::Sender<(Stage, f64)>,
-    stop: &AtomicBool,
-) -> Ending {
-    let started = Instant::now();
-    let surroundings = Surroundings {
-        stages,
-        progress: &|stage, fraction| {
-            progress.send_replace((stage, fraction));
-        },
-        canceled: &|| stop.load(Ordering::Relaxed),
-        clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,
-    };
-    let outcome = match solver.solve(document, &surroundings) {
-        Ok(outcome) => outcome,
-        Err(SolveError::Canceled(_)) => return Ending::Stopped,
-        Err(error) => return Ending::Failed(failure_of(error)),
-    };
-    let packed: Result<Vec<_>, _> = outcome.series.iter().map(PackedSeries::pack).collect();
-    match (serde_json::to_string(&outcome.result), packed) {
-        (Ok(body), Ok(series)) => Ending::Solved(Box::new(Completion {
+/// What a thread of the pool works with.
+struct Work<'a> {
+    solver: &'a dyn Solver,
+    stages: &'a StoredStages,
+    points: &'a RunningPoints,
+    stop: &'a Stop,
+}
+
+impl Work<'_> {
+    fn solve(&self, document: &JobDocument, input_hash: String, progress: &watch::Sender<Progress>) -> Ending {
+        let started = Instant::now();
+        let surroundings = Surroundings {
+            stages: self.stages,
+            points: self.points,
+            progress: &|stage, fraction| {
+                progress.send_replace((stage, fraction));
+            },
+            canceled: &|| self.stop.is_asked(),
+            clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,
+        };
+        match self.solver.solve(document, &surroundings) {
+            Ok(outcome) => self.packed(outcome, input_hash).unwrap_or_else(|error| Ending::Failed(internal(&error))),
+            Err(SolveError::Canceled(_)) => Ending::Stopped,
+            Err(error) => Ending::Failed(failure_of(error)),
+        }
+    }
+
+    fn packed(&self, outcome: Outcome, input_hash: String) -> Result<Ending, String> {
+        let Outcome { mut result, series } = outcome;
+        let points = result.sweep.as_mut().map(|sweep| std::mem::take(&mut sweep.points));
+        result.note_not_finite();
+        let body = serde_json::to_string::<JobResult>(&result).map_err(|error| error.to_string())?;
+        let (rows, points): (PointBatch, Option<PointsOfResult>) = match points.zip(place_of_points(&body)) {
+            None => Default::default(),
+            Some((points, at)) => {
+                let (rows, points) = self.points.finished(&points, at).map_err(|error| error.to_string())?;
+                (rows, Some(points))
+            }
+        };
+        let packed: Result<Vec<_>, _> = series.iter().map(PackedSeries::pack).collect();
+        Ok(Ending::Solved(Box::new(Completion {
             body,
             input_hash,
-            solver_version: solver.version().to_owned(),
-            series,
+            solver_version: self.solver.version().to_owned(),
+            series: packed.map_err(|error| error.to_string())?,
+            points,
+            rows,
             reused_from: None,
-        })),
-        (Err(error), _) => Ending::Failed(internal(&error.to_string())),
-        (_, Err(error)) => Ending::Failed(internal(&error.to_string())),
-    }
-}
-
-async fn stopped(recorder: &Recorder, job: &JobRecord, stop: &AtomicBool) -> Result<(), StoreError> {
-    if !stop.load(Ordering::Relaxed) {
-        return failed(recorder, job, internal("the calculation stopped although nobody asked")).await;
-    }
-    if let Some(State::Queued) = recorder.release(job).await? {
-        tracing::info!(job = %job.id, "job stopped for the shutdown; it runs again after the restart");
-    }
-    Ok(())
-}
-
-async fn failed(recorder: &Recorder, job: &JobRecord, failure: Failure) -> Result<(), StoreError> {
-    let request_id = job.request_id.as_deref().unwrap_or_default();
-    tracing::warn!(job = %job.id, request_id, code = failure.code, detail = failure.detail, "job failed");
-    recorder.fail(job, &public(failure)).await?;
-    Ok(())
-}
-
-/// Details of internal failures stay in the log.
-fn public(failure: Failure) -> Failure {
-    if failure.code == "internal" {
-        Failure::new("internal", "The calculation failed for a reason that lies in the service; it was logged.")
-    } else {
-        failure
-    }
-}
-
-fn internal(detail: &str) -> Failure {
-    Failure::new("internal", detail)
-}
-
-fn panic_failure(panic: &(dyn std::any::Any + Send)) -> Failure {
-    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
-    internal(&format!("panic: {}", text.unwrap_or_default()))
-}
-
-fn document_failure(error: DocumentError) -> Failure {
-    let detail = error.to_string();
-    match error {
-        DocumentError::Malformed { .. } => internal(&format!("stored document: {detail}")),
-        DocumentError::Invalid(errors) => Failure { errors, ..Failure::new("invalid-design", detail) },
-        DocumentError::Unsupported(errors) => Failure { errors, ..Failure::new("unsupported-design", detail) },
-    }
-}
-
-fn failure_of(error: SolveError) -> Failure {
-    match error {
-        SolveError::Document(error) => document_failure(error),
-        SolveError::Failed { stage, code, detail, sim_time_s, step } => {
-            Failure { stage: Some(stage.word().to_owned()), sim_time_s, step, ..Failure::new(&code, detail) }
-        }
-        SolveError::Canceled(_) => internal("canceled"),
+        })))
     }
 }

@@ -65,7 +65,7 @@ async fn every_worker_works_and_each_job_runs_once() {
     }
     app.solver.breakpoints.reached("solve", 2).await;
     let system = app.get("/api/v1/system").await.json;
-    assert_eq!(system["workers"], serde_json::json!({"total": 2, "busy": 2}));
+    assert_eq!(system["workers"], serde_json::json!({"total": 2, "busy": 2, "sweeps_total": 2, "sweeps_busy": 0}));
     assert_eq!(system["queue"]["depth"], 6);
     app.solver.breakpoints.release("solve");
     for path in &paths {

@@ -12,6 +12,7 @@ mod lifecycle;
 mod list_jobs;
 mod openapi;
 mod operation;
+mod points;
 mod process;
 mod read_job;
 mod restart;

@@ -1,5 +1,5 @@
 use crate::support::*;
-use herringbone::store::{Store, StoreConfig};
+use herringbone::store::{Store, StoreConfig, WorkClass};
 use jiff::Timestamp;
 
 #[tokio::test]
@@ -39,7 +39,7 @@ async fn a_job_that_ran_when_the_process_died_runs_again() {
     let id = path.rsplit('/').next().unwrap().parse().unwrap();
     assert_eq!(store.job(id).await.unwrap().unwrap().state.word(), "running");
     assert_eq!(store.recover(3, Timestamp::now()).await.unwrap().requeued, 1);
-    let claim = store.claim_next(Timestamp::now()).await.unwrap().unwrap();
+    let claim = store.claim_next(WorkClass::Single, Timestamp::now()).await.unwrap().unwrap();
     assert_eq!((claim.job.id, claim.job.attempt), (id, 2));
     let kept = store.job(done.rsplit('/').next().unwrap().parse().unwrap()).await.unwrap().unwrap();
     assert_eq!(kept.revision, before["revision"].as_i64().unwrap());

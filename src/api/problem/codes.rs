@@ -31,6 +31,8 @@ pub enum ProblemCode {
     NoContact,
     SolveFailed,
     WorkerLost,
+    TimeLimit,
+    StorageUnavailable,
 }
 
 /// What is published about a code.
@@ -56,7 +58,7 @@ const fn entry(
 }
 
 /// Every code, by status.
-pub const CODES: [CodeEntry; 26] = [
+pub const CODES: [CodeEntry; 28] = [
     entry(
         ProblemCode::MalformedJson,
         "malformed-json",
@@ -235,6 +237,14 @@ pub const CODES: [CodeEntry; 26] = [
          exhausts the memory looks like this.",
     ),
     entry(
+        ProblemCode::TimeLimit,
+        "time-limit",
+        500,
+        "The job computed for too long",
+        "Error of a failed job: it was stopped at the longest computing time that this service permits. A sweep keeps the \
+         points it had reached; submitted again, it goes on from there.",
+    ),
+    entry(
         ProblemCode::QueueFull,
         "queue-full",
         503,
@@ -247,6 +257,15 @@ pub const CODES: [CodeEntry; 26] = [
         503,
         "The service is shutting down",
         "Jobs that wait or run are taken up after the restart. Submit again after `Retry-After`.",
+    ),
+    entry(
+        ProblemCode::StorageUnavailable,
+        "storage-unavailable",
+        503,
+        "The database cannot be written at the moment",
+        "There is no room left, or the database is locked or its file system fails. Nothing was accepted and nothing is \
+         lost; running jobs keep their results until they can be written. Try again after `Retry-After`, or make room: \
+         delete jobs, or ask whoever runs the service.",
     ),
 ];
 

@@ -62,7 +62,13 @@ impl From<DocumentError> for Refusal {
 
 impl From<StoreError> for Refusal {
     fn from(error: StoreError) -> Self {
-        Self::internal(error)
+        if !error.is_unavailable() {
+            return Self::internal(error);
+        }
+        let detail = "The database cannot be read or written at the moment.";
+        let mut refusal = Self::new(ProblemCode::StorageUnavailable, detail).retry_after(RETRY_FULL_S);
+        refusal.0.cause = Some(error.to_string());
+        refusal
     }
 }
 

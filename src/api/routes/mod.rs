@@ -6,6 +6,7 @@ mod explain_problem;
 mod health;
 mod list_jobs;
 mod list_kinds;
+mod list_points;
 mod list_series;
 mod read_input;
 mod read_job;
@@ -42,7 +43,8 @@ pub fn versioned() -> OpenApiRouter<AppState> {
         .routes(routes!(read_system::read_system))
         .route_layer(from_fn(json_only));
     let stream = OpenApiRouter::new().routes(routes!(watch_job::watch_job)).route_layer(from_fn(event_stream_only));
-    let chosen = OpenApiRouter::new().routes(routes!(read_series::read_series));
+    let chosen =
+        OpenApiRouter::new().routes(routes!(read_series::read_series)).routes(routes!(list_points::list_points));
     json.merge(stream).merge(chosen)
 }
 

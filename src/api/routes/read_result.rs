@@ -1,15 +1,19 @@
 //! `GET /api/v1/jobs/{id}/result`
 
+use crate::api::points;
 use crate::api::problem::Refusal;
 use crate::api::request::{IfNoneMatch, JobPath};
 use crate::api::state::AppState;
 use crate::api::view::not_modified;
 use crate::job::result::JobResult;
+use axum::body::Body;
 use axum::extract::State;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, ETAG};
 use axum::response::{IntoResponse, Response};
 
 /// Read the result of a job: geometry, mesh, impact and response. It never changes.
+///
+/// The points of a sweep are part of it; `GET /jobs/{id}/points` has them a page at a time or as CSV.
 #[utoipa::path(
     get, path = "/jobs/{id}/result", tag = "results",
     params(
@@ -37,5 +41,9 @@ pub async fn read_result(
         return Ok(not_modified(etag));
     }
     let headers = [(CONTENT_TYPE, "application/json".to_owned()), (ETAG, etag), (CACHE_CONTROL, "no-cache".to_owned())];
-    Ok((headers, result.body).into_response())
+    let body = match result.points {
+        None => Body::from(result.body),
+        Some(place) => points::within(state.jobs().store().clone(), id, result.body, &place),
+    };
+    Ok((headers, body).into_response())
 }

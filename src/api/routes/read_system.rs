@@ -34,10 +34,14 @@ pub struct QueueView {
 
 #[derive(Debug, Serialize, ToSchema)]
 pub struct WorkersView {
-    /// Jobs that can run at once.
+    /// Jobs of one operating point that can run at once.
     pub total: usize,
-    /// Jobs that run.
+    /// Those that run.
     pub busy: usize,
+    /// Sweeps that can run at once, beside the others.
+    pub sweeps_total: usize,
+    /// Those that run.
+    pub sweeps_busy: usize,
 }
 
 /// Limits of requests.
@@ -67,8 +71,13 @@ pub async fn read_system(State(state): State<AppState>) -> Result<Json<System>, 
         solver_version: jobs.solver_version(),
         started_at: state.started_at().to_string(),
         shutting_down: jobs.is_closing(),
-        queue: QueueView { depth: jobs.store().waiting().await?, capacity: jobs.capacity() },
-        workers: WorkersView { total: workers.total, busy: workers.busy },
+        queue: QueueView { depth: jobs.store().waiting(), capacity: jobs.capacity() },
+        workers: WorkersView {
+            total: workers.total,
+            busy: workers.busy,
+            sweeps_total: workers.sweeps_total,
+            sweeps_busy: workers.sweeps_busy,
+        },
         limits: Limits {
             max_body_bytes: MAX_BODY_BYTES,
             max_wait_s: MAX_WAIT_S,

@@ -1,5 +1,6 @@
 use super::*;
 use proptest::prelude::*;
+use std::time::Duration;
 
 #[derive(Debug, Clone, Copy)]
 enum Step {
@@ -27,11 +28,15 @@ fn step() -> impl Strategy<Value = Step> {
 async fn apply(store: &Store, id: JobId, step: Step) {
     let failure = Failure::new("diverged", "");
     match step {
-        Step::Claim => drop(store.claim_next(at(1)).await.unwrap()),
-        Step::Progress(attempt) => drop(store.progress(id, attempt, "mesh", 0.5).await.unwrap()),
+        Step::Claim => drop(store.claim_next(WorkClass::Single, at(1)).await.unwrap()),
+        Step::Progress(attempt) => {
+            drop(store.progress(id, attempt, "mesh", 0.5, &PointBatch::default()).await.unwrap())
+        }
         Step::Succeed(attempt) => drop(store.succeed(id, attempt, &completion("a"), at(1)).await.unwrap()),
         Step::Fail(attempt) => drop(store.fail(id, attempt, &failure, at(1)).await.unwrap()),
-        Step::Release(attempt) => drop(store.release(id, attempt, at(1)).await.unwrap()),
+        Step::Release(attempt) => {
+            drop(store.release(id, attempt, Pause::Shutdown, Duration::ZERO, at(1)).await.unwrap())
+        }
         Step::Cancel => drop(store.cancel(id, at(1)).await.unwrap()),
         Step::Recover => drop(store.recover(3, at(1)).await.unwrap()),
     }

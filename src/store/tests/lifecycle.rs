@@ -1,14 +1,15 @@
 use super::*;
+use std::time::Duration;
 
 #[tokio::test]
 async fn queued_running_succeeded() {
     let Fixture { store, .. } = &fixture().await;
     let job = queued(store, "a").await;
     assert_eq!((job.state, job.revision, job.attempt), (State::Queued, 1, 0));
-    let claim = store.claim_next(at(1)).await.unwrap().unwrap();
+    let claim = store.claim_next(WorkClass::Single, at(1)).await.unwrap().unwrap();
     assert_eq!((claim.job.id, claim.job.state, claim.job.attempt), (job.id, State::Running, 1));
     assert_eq!(claim.input, "{\"hash\":\"a\"}");
-    let progressed = store.progress(job.id, 1, "mesh", 0.5).await.unwrap().unwrap();
+    let progressed = store.progress(job.id, 1, "mesh", 0.5, &PointBatch::default()).await.unwrap().unwrap();
     assert_eq!((progressed.progress, progressed.stage.as_deref(), progressed.revision), (0.5, Some("mesh"), 3));
     let done = store.succeed(job.id, 1, &completion("a"), at(2)).await.unwrap().unwrap();
     assert_eq!((done.state, done.progress, done.ended_at), (State::Succeeded, 1.0, Some(at(2))));
@@ -21,9 +22,9 @@ async fn first_in_first_out() {
     let Fixture { store, .. } = &fixture().await;
     let first = queued(store, "a").await.id;
     let second = queued(store, "b").await.id;
-    assert_eq!(store.claim_next(at(1)).await.unwrap().unwrap().job.id, first);
-    assert_eq!(store.claim_next(at(1)).await.unwrap().unwrap().job.id, second);
-    assert!(store.claim_next(at(1)).await.unwrap().is_none());
+    assert_eq!(store.claim_next(WorkClass::Single, at(1)).await.unwrap().unwrap().job.id, first);
+    assert_eq!(store.claim_next(WorkClass::Single, at(1)).await.unwrap().unwrap().job.id, second);
+    assert!(store.claim_next(WorkClass::Single, at(1)).await.unwrap().is_none());
 }
 
 #[tokio::test]
@@ -43,8 +44,8 @@ async fn terminal_is_final() {
     let done = store.succeed(job.id, 1, &completion("a"), at(2)).await.unwrap().unwrap();
     assert!(store.succeed(job.id, 1, &completion("b"), at(3)).await.unwrap().is_none());
     assert!(store.fail(job.id, 1, &Failure::new("diverged", ""), at(3)).await.unwrap().is_none());
-    assert!(store.release(job.id, 1, at(3)).await.unwrap().is_none());
-    assert!(store.progress(job.id, 1, "mesh", 0.1).await.unwrap().is_none());
+    assert!(store.release(job.id, 1, Pause::Shutdown, Duration::ZERO, at(3)).await.unwrap().is_none());
+    assert!(store.progress(job.id, 1, "mesh", 0.1, &PointBatch::default()).await.unwrap().is_none());
     assert_eq!(store.cancel(job.id, at(3)).await.unwrap(), Cancellation::Ended(done.clone()));
     assert_eq!(store.job(job.id).await.unwrap(), Some(done));
 }
@@ -53,11 +54,11 @@ async fn terminal_is_final() {
 async fn a_lost_worker_is_fenced_out() {
     let Fixture { store, .. } = &fixture().await;
     let job = running(store, "a").await;
-    store.release(job.id, 1, at(2)).await.unwrap().unwrap();
-    let again = store.claim_next(at(3)).await.unwrap().unwrap().job;
+    store.release(job.id, 1, Pause::Shutdown, Duration::ZERO, at(2)).await.unwrap().unwrap();
+    let again = store.claim_next(WorkClass::Single, at(3)).await.unwrap().unwrap().job;
     assert_eq!((again.id, again.attempt), (job.id, 2));
     assert!(store.succeed(job.id, 1, &completion("a"), at(4)).await.unwrap().is_none());
-    assert!(store.progress(job.id, 1, "mesh", 0.5).await.unwrap().is_none());
+    assert!(store.progress(job.id, 1, "mesh", 0.5, &PointBatch::default()).await.unwrap().is_none());
     assert!(store.result(job.id).await.unwrap().is_none());
     assert!(store.succeed(job.id, 2, &completion("a"), at(5)).await.unwrap().is_some());
 }
@@ -68,7 +69,7 @@ async fn canceling_a_queued_job_ends_it() {
     let job = queued(store, "a").await;
     let Cancellation::Canceled(canceled) = store.cancel(job.id, at(1)).await.unwrap() else { panic!("not canceled") };
     assert_eq!(canceled.cancel_requested_at, Some(at(1)));
-    assert!(store.claim_next(at(2)).await.unwrap().is_none());
+    assert!(store.claim_next(WorkClass::Single, at(2)).await.unwrap().is_none());
     assert_eq!(store.cancel(job.id, at(2)).await.unwrap(), Cancellation::Ended(canceled));
     assert_eq!(store.cancel(JobId::new(), at(2)).await.unwrap(), Cancellation::NotFound);
 }
@@ -80,7 +81,7 @@ async fn canceling_a_running_job_is_noted_once_and_decides_its_release() {
     let Cancellation::Asked(asked) = store.cancel(job.id, at(2)).await.unwrap() else { panic!("not asked") };
     let Cancellation::Asked(again) = store.cancel(job.id, at(3)).await.unwrap() else { panic!("not asked") };
     assert_eq!(asked, again);
-    let released = store.release(job.id, 1, at(4)).await.unwrap().unwrap();
+    let released = store.release(job.id, 1, Pause::Shutdown, Duration::ZERO, at(4)).await.unwrap().unwrap();
     assert_eq!((released.state, released.ended_at), (State::Canceled, Some(at(4))));
 }
 
@@ -108,8 +109,8 @@ async fn recovery_after_a_dead_process() {
     let store = Store::open(&StoreConfig::at(directory.path().join("jobs.db"))).await.unwrap();
     let recovery = store.recover(3, at(10)).await.unwrap();
     assert_eq!(recovery, Recovery { requeued: 1, canceled: 1, given_up: 0, waiting: 2 });
-    assert_eq!(store.claim_next(at(11)).await.unwrap().unwrap().job.id, lost.id);
-    assert_eq!(store.claim_next(at(11)).await.unwrap().unwrap().job.id, waiting.id);
+    assert_eq!(store.claim_next(WorkClass::Single, at(11)).await.unwrap().unwrap().job.id, lost.id);
+    assert_eq!(store.claim_next(WorkClass::Single, at(11)).await.unwrap().unwrap().job.id, waiting.id);
     assert_eq!(store.job(asked.id).await.unwrap().unwrap().state, State::Canceled);
 }
 
@@ -119,11 +120,11 @@ async fn a_job_that_keeps_killing_its_process_is_given_up() {
     let job = running(store, "a").await;
     for attempt in 1..5 {
         // Shutdowns do not count.
-        store.release(job.id, attempt, at(2)).await.unwrap().unwrap();
-        store.claim_next(at(2)).await.unwrap().unwrap();
+        store.release(job.id, attempt, Pause::Shutdown, Duration::ZERO, at(2)).await.unwrap().unwrap();
+        store.claim_next(WorkClass::Single, at(2)).await.unwrap().unwrap();
     }
     assert_eq!(store.recover(2, at(2)).await.unwrap().requeued, 1);
-    store.claim_next(at(3)).await.unwrap().unwrap();
+    store.claim_next(WorkClass::Single, at(3)).await.unwrap().unwrap();
     assert_eq!(store.recover(2, at(4)).await.unwrap().given_up, 1);
     let failed = store.job(job.id).await.unwrap().unwrap();
     assert_eq!((failed.state, failed.error.unwrap().code.as_str()), (State::Failed, "worker-lost"));
@@ -134,8 +135,8 @@ async fn the_queue_is_bounded() {
     let Fixture { store, .. } = &fixture().await;
     assert!(matches!(store.submit(new_job("a"), None, 1, at(0)).await.unwrap(), Submission::Accepted(_)));
     assert_eq!(store.submit(new_job("b"), None, 1, at(0)).await.unwrap(), Submission::Full);
-    assert_eq!(store.waiting().await.unwrap(), 1);
-    store.claim_next(at(1)).await.unwrap().unwrap();
+    assert_eq!(store.waiting(), 1);
+    store.claim_next(WorkClass::Single, at(1)).await.unwrap().unwrap();
     assert!(matches!(store.submit(new_job("b"), None, 1, at(0)).await.unwrap(), Submission::Accepted(_)));
 }
 

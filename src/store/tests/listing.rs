@@ -28,7 +28,7 @@ async fn filters() {
     let id = labeled.id;
     store.submit(labeled, None, 10, at(0)).await.unwrap();
     queued(store, "b").await;
-    store.claim_next(at(1)).await.unwrap().unwrap();
+    store.claim_next(WorkClass::Single, at(1)).await.unwrap().unwrap();
     let ids = async |filter: JobFilter| -> Vec<JobId> {
         store.list(&filter, None, 10).await.unwrap().jobs.into_iter().map(|job| job.id).collect()
     };

@@ -44,6 +44,8 @@ pub(super) fn completion(hash: &str) -> Completion {
         input_hash: hash.into(),
         solver_version: "test-1".into(),
         series: Vec::new(),
+        points: None,
+        rows: PointBatch::default(),
         reused_from: None,
     }
 }
@@ -57,5 +59,5 @@ pub(super) async fn queued(store: &Store, hash: &str) -> JobRecord {
 
 pub(super) async fn running(store: &Store, hash: &str) -> JobRecord {
     queued(store, hash).await;
-    store.claim_next(at(1)).await.expect("claims").expect("a job waits").job
+    store.claim_next(WorkClass::Single, at(1)).await.expect("claims").expect("a job waits").job
 }

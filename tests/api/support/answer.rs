@@ -44,6 +44,11 @@ impl Answer {
         assert!(self.json["errors"].is_array());
     }
 
+    #[track_caller]
+    pub fn assert_status(&self, status: u16) {
+        assert_eq!(self.status, status, "{self:?}");
+    }
+
     /// The violation with this pointer.
     #[track_caller]
     pub fn violation(&self, pointer: &str) -> &Value {

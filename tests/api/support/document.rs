@@ -24,3 +24,14 @@ pub fn scripted(script: &str) -> Value {
     document["name"] = json!(script);
     document
 }
+
+/// A valid sweep over so many speeds whose name tells the scripted solver what to do.
+pub fn sweep(script: &str, points: u32) -> Value {
+    let mut document = scripted(script);
+    let torque_nm = document["operation"]["pinion_speed_rpm"].clone();
+    document["kind"] = json!("sweep");
+    document["operation"] = json!({"pinion_speed_rpm": 2000.0, "pinion_torque_nm": torque_nm});
+    let to = 1000.0 + f64::from(points.max(2));
+    document["axes"] = json!([{"pointer": "/operation/pinion_speed_rpm", "from": 1000.0, "to": to, "points": points}]);
+    document
+}

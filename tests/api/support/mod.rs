@@ -7,7 +7,7 @@ mod solver;
 
 pub use answer::{Answer, EventStream};
 pub use breakpoints::Breakpoints;
-pub use document::{document, scripted};
+pub use document::{document, scripted, sweep};
 pub use solver::ScriptedSolver;
 
 use axum::Router;
@@ -32,7 +32,7 @@ pub struct App {
 
 /// Two workers, a queue of ten.
 pub fn small() -> WorkConfig {
-    WorkConfig { workers: Some(2), threads: Some(2), queue_capacity: 10, max_losses: 3, drain_s: 5 }
+    WorkConfig { workers: Some(2), threads: Some(2), queue_capacity: 10, drain_s: 5, ..WorkConfig::default() }
 }
 
 pub async fn app() -> App {

@@ -2,13 +2,13 @@
 
 use super::Breakpoints;
 use herringbone::job::DocumentError;
-use herringbone::job::document::JobDocument;
-use herringbone::job::result::JobResult;
+use herringbone::job::document::{JobDocument, Kind};
+use herringbone::job::result::{JobResult, Sweep, SweepPoint};
 use herringbone::study::{self, Channel, CheckReport, Outcome, SolveError, Stage, Surroundings};
 use herringbone::watch::Canceled;
 use herringbone::work::Solver;
 
-/// Name of the document: `fail`, `fail oddly`, `panic`, `stage`; anything else succeeds. Every calculation passes the
+/// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every calculation passes the
 /// breakpoint `solve`, and the one of its own name.
 #[derive(Default)]
 pub struct ScriptedSolver {
@@ -33,7 +33,7 @@ impl Solver for ScriptedSolver {
             }
         }
         match name {
-            "fail" => Err(SolveError::Failed {
+            "fail" | "failing" => Err(SolveError::Failed {
                 stage: Stage::Response,
                 code: "diverged".into(),
                 detail: "the motion left 1 m".into(),
@@ -49,12 +49,49 @@ impl Solver for ScriptedSolver {
             }),
             "panic" => panic!("secret detail"),
             "stage" => Ok(with_stage(surroundings)),
+            "not finite" if document.kind != Kind::Sweep => {
+                let mut outcome = outcome();
+                outcome.result.numerics.wall_ms.mesh = f64::NAN;
+                Ok(outcome)
+            }
+            _ if document.kind == Kind::Sweep => self.sweep(document, surroundings),
             _ => Ok(outcome()),
         }
     }
 
     fn version(&self) -> &'static str {
         "scripted-1"
+    }
+}
+
+impl ScriptedSolver {
+    /// One point after the other, from those that are kept on; each passes the breakpoint `point N`.
+    fn sweep(&self, document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
+        let mut rows = surroundings.points.load().rows;
+        let reused = if rows.is_empty() { Vec::new() } else { vec!["points".to_owned()] };
+        let axis = &document.axes[0];
+        for position in 0..axis.len() {
+            if rows.contains_key(&position) {
+                continue;
+            }
+            if !self.breakpoints.pass(&format!("point {position}"), surroundings.canceled) {
+                return Err(SolveError::Canceled(Canceled));
+            }
+            let not_finite = document.name.as_deref() == Some("not finite");
+            let row = SweepPoint {
+                values: vec![axis.value(position)],
+                dynamic_factor: not_finite.then_some(f64::INFINITY),
+                error: (!not_finite).then(|| "no \"response\", scripted".to_owned()),
+                ..SweepPoint::default()
+            };
+            surroundings.points.save(position, &row, None);
+            rows.insert(position, row);
+        }
+        let mut result = JobResult::default();
+        result.numerics.reused = reused;
+        let points = (0..axis.len()).filter_map(|position| rows.remove(&position)).collect();
+        result.sweep = Some(Sweep { points, ..Sweep::default() });
+        Ok(Outcome { result, series: Vec::new() })
     }
 }
 

@@ -1,0 +1,96 @@
+//! `GET /api/v1/jobs/{id}/points`
+
+use crate::api::config::{DEFAULT_ROWS, MAX_ROWS};
+use crate::api::points;
+use crate::api::problem::Refusal;
+use crate::api::request::{JobPath, Parameters, chosen};
+use crate::api::state::AppState;
+use crate::job::document::Kind;
+use crate::job::result::SweepPoint;
+use crate::job::{MAX_SWEEP_POINTS, parse};
+use axum::Json;
+use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::http::header::{CONTENT_TYPE, VARY};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use serde_json::value::RawValue;
+use utoipa::ToSchema;
+
+/// Some points of a sweep, in the order of their positions.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct PointList {
+    pub items: Vec<PointItem>,
+    /// Position to go on from; null when nothing follows yet.
+    pub next_position: Option<u64>,
+    /// Points that are solved, and points that the sweep has.
+    pub n_solved: u64,
+    pub n_points: u64,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+pub struct PointItem {
+    /// Place in the result's `sweep.points`.
+    pub position: u64,
+    #[schema(value_type = SweepPoint)]
+    pub point: Box<RawValue>,
+}
+
+/// Read the points of a sweep, a page at a time or as CSV.
+///
+/// The points of a sweep that runs, failed or was canceled can be read as far as they are solved; there may then be gaps between
+/// their positions, which are filled later. CSV has all of them unless `limit` is given.
+#[utoipa::path(
+    get, path = "/jobs/{id}/points", tag = "results",
+    params(
+        ("id" = String, Path, description = "Id of the job"),
+        ("from" = Option<u64>, Query, description = "First position; 0 when left out.", minimum = 0),
+        ("limit" = Option<u64>, Query, description = "Points per page, 1 to 10000; 1000 when left out (CSV: all).",
+            minimum = 1, maximum = 10_000, example = 1000),
+    ),
+    responses(
+        (status = 200, description = "The points.", content(
+            (PointList = "application/json"),
+            (String = "text/csv", example = "position,branch,/operation/pinion_speed_rpm\n0,,300.0\n"))),
+        (status = 400, description = "`invalid-parameter`."),
+        (status = 404, description = "No such job, or it is not a sweep."),
+        (status = 406, description = "Neither JSON nor CSV is accepted."),
+    )
+)]
+pub async fn list_points(
+    State(state): State<AppState>,
+    JobPath(id): JobPath,
+    mut query: Parameters,
+    headers: HeaderMap,
+) -> Result<Response, Refusal> {
+    let media_type = chosen(&headers, &["application/json", "text/csv"])?;
+    let from = query.whole("from", 0, MAX_SWEEP_POINTS as u64 * 2, false).unwrap_or(0);
+    let limit = query.whole("limit", 1, MAX_ROWS.into(), false);
+    query.finish()?;
+    let job = super::existing(&state, id).await?;
+    if job.kind != Kind::Sweep.word() {
+        return Err(Refusal::not_found("The job is not a sweep."));
+    }
+    let store = state.jobs().store();
+    let input = store.input(id).await?.ok_or_else(super::no_job)?;
+    let document = parse(input.as_bytes()).map_err(Refusal::internal)?;
+    let vary = (VARY, "accept");
+    if media_type == "text/csv" {
+        let axes: Vec<String> = document.axes.iter().map(|axis| axis.pointer.clone()).collect();
+        let body = points::csv(store.clone(), id, &axes, from, limit.unwrap_or(u64::MAX));
+        return Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response());
+    }
+    let limit = limit.map_or(DEFAULT_ROWS, |limit| limit as u32);
+    // One more tells whether something follows.
+    let mut rows = store.points(id, from, limit + 1).await?;
+    let next_position = rows.get(limit as usize).map(|row| row.position);
+    rows.truncate(limit as usize);
+    let items: Result<Vec<_>, _> = rows
+        .into_iter()
+        .map(|row| Ok(PointItem { position: row.position, point: RawValue::from_string(row.body)? }))
+        .collect();
+    let items = items.map_err(|error: serde_json::Error| Refusal::internal(error))?;
+    let n_solved = store.point_count(id).await?;
+    let list = PointList { items, next_position, n_solved, n_points: document.sweep_points() as u64 };
+    Ok(([vary], Json(list)).into_response())
+}

@@ -1,0 +1,43 @@
+//! What went wrong with a job, in the words it is kept in.
+
+use crate::job::DocumentError;
+use crate::store::Failure;
+use crate::study::SolveError;
+
+/// Details of internal failures stay in the log.
+pub(super) fn public(failure: Failure) -> Failure {
+    if failure.code == "internal" {
+        Failure::new("internal", "The calculation failed for a reason that lies in the service; it was logged.")
+    } else {
+        failure
+    }
+}
+
+pub(super) fn internal(detail: &str) -> Failure {
+    Failure::new("internal", detail)
+}
+
+pub(super) fn panic_failure(panic: &(dyn std::any::Any + Send)) -> Failure {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+    internal(&format!("panic: {}", text.unwrap_or_default()))
+}
+
+pub(super) fn document_failure(error: DocumentError) -> Failure {
+    let detail = error.to_string();
+    match error {
+        DocumentError::Malformed { .. } => internal(&format!("stored document: {detail}")),
+        DocumentError::Invalid(errors) => Failure { errors, ..Failure::new("invalid-design", detail) },
+        DocumentError::Unsupported(errors) => Failure { errors, ..Failure::new("unsupported-design", detail) },
+    }
+}
+
+pub(super) fn failure_of(error: SolveError) -> Failure {
+    match error {
+        SolveError::Document(error) => document_failure(error),
+        SolveError::Failed { stage, code, detail, sim_time_s, step } => {
+            Failure { stage: Some(stage.word().to_owned()), sim_time_s, step, ..Failure::new(&code, detail) }
+        }
+        SolveError::Canceled(_) => internal("canceled"),
+    }
+}

@@ -1,0 +1,196 @@
+//! Sweeps: their points are rows, written while they run, read in pages, and gone on from.
+
+use crate::support::*;
+use herringbone::work::WorkConfig;
+use serde_json::{Value, json};
+
+async fn page(app: &App, path: &str, query: &str) -> Value {
+    let answer = app.get(&format!("{path}/points{query}")).await;
+    assert_eq!(answer.status, 200, "{answer:?}");
+    answer.json
+}
+
+/// Waits until so many points are written.
+async fn written(app: &App, path: &str, n: u64) {
+    for _ in 0..3000 {
+        if page(app, path, "?limit=1").await["n_solved"].as_u64() >= Some(n) {
+            return;
+        }
+        tokio::time::sleep(std::time::Duration::from_millis(10)).await;
+    }
+    panic!("{n} points are not written");
+}
+
+#[tokio::test]
+async fn the_result_has_all_points_and_the_list_has_them_in_pages() {
+    let app = app().await;
+    let (path, job) = app.run(&sweep("all", 25)).await;
+    assert_eq!(
+        (job["state"].as_str(), job["links"]["points"].as_str()),
+        (Some("succeeded"), Some(&*format!("{path}/points")))
+    );
+    let result = app.get(&format!("{path}/result")).await;
+    let points = result.json["sweep"]["points"].as_array().unwrap();
+    assert_eq!(points.len(), 25);
+    let mut from = json!(0);
+    let mut seen = Vec::new();
+    while !from.is_null() {
+        let page = page(&app, &path, &format!("?from={from}&limit=10")).await;
+        assert_eq!((page["n_solved"].as_u64(), page["n_points"].as_u64()), (Some(25), Some(25)));
+        seen.extend(page["items"].as_array().unwrap().clone());
+        from = page["next_position"].clone();
+    }
+    let positions: Vec<_> = seen.iter().map(|item| item["position"].as_u64().unwrap()).collect();
+    assert_eq!(positions, (0..25).collect::<Vec<_>>());
+    assert!(seen.iter().zip(points).all(|(item, point)| item["point"] == *point));
+    app.get(&format!("{path}/points?limit=0")).await.assert_problem(400, "invalid-parameter");
+    let (other, _) = app.run(&document()).await;
+    app.get(&format!("{other}/points")).await.assert_problem(404, "not-found");
+}
+
+#[tokio::test]
+async fn the_table_is_csv_for_those_who_ask() {
+    let app = app().await;
+    let (path, _) = app.run(&sweep("all", 3)).await;
+    let answer = app.get_with(&format!("{path}/points"), &[("accept", "text/csv")]).await;
+    let text = answer.text();
+    let lines: Vec<_> = text.lines().collect();
+    assert_eq!(answer.header("content-type"), "text/csv; charset=utf-8");
+    assert!(
+        lines[0]
+            .starts_with("position,branch,/operation/pinion_speed_rpm,mesh_circumferential_acceleration_rms_left_m_s2")
+    );
+    assert_eq!(lines.len(), 4);
+    let columns = lines[0].split(',').count();
+    // The scripted points carry an error with a comma and a quote.
+    assert!(
+        lines[1].starts_with("0,,1000.0,,") && lines[1].ends_with("\"no \"\"response\"\", scripted\""),
+        "{}",
+        lines[1]
+    );
+    assert_eq!(lines[1].split(',').count(), columns + 1);
+}
+
+#[tokio::test]
+async fn a_reused_sweep_has_its_points_too() {
+    let app = app().await;
+    let document = sweep("all", 5);
+    let (first, _) = app.run(&document).await;
+    let (second, job) = app.run(&document).await;
+    assert!(job["reused_from"].is_string());
+    let results = [app.get(&format!("{first}/result")).await, app.get(&format!("{second}/result")).await];
+    assert_eq!(results[0].json["sweep"], results[1].json["sweep"]);
+    assert_ne!(results[0].header("etag"), results[1].header("etag"));
+    // The copy does not need the first any more.
+    app.delete(&first).await;
+    assert_eq!(app.get(&format!("{second}/result")).await.json["sweep"]["points"].as_array().unwrap().len(), 5);
+}
+
+#[tokio::test]
+async fn points_of_a_running_sweep_can_be_read() {
+    let app = app().await;
+    app.solver.breakpoints.hold("point 3");
+    let path = app.submit(&sweep("all", 6)).await;
+    written(&app, &path, 3).await;
+    let first = page(&app, &path, "").await;
+    assert_eq!((first["items"].as_array().unwrap().len(), first["n_points"].as_u64()), (3, Some(6)));
+    app.get(&format!("{path}/result")).await.assert_problem(409, "result-not-ready");
+    app.solver.breakpoints.release("point 3");
+    app.ended(&path).await;
+    assert_eq!(page(&app, &path, "").await["n_solved"], 6);
+}
+
+#[tokio::test]
+async fn a_sweep_goes_on_after_a_restart_where_it_was() {
+    let app = app().await;
+    app.solver.breakpoints.hold("point 4");
+    let path = app.submit(&sweep("all", 8)).await;
+    app.solver.breakpoints.reached("point 4", 1).await;
+    let app = app.restart().await;
+    let job = app.ended(&path).await;
+    assert_eq!((job["state"].as_str(), job["attempt"].as_i64()), (Some("succeeded"), Some(2)));
+    // Solved before the shutdown, although nothing had told the progress yet.
+    assert_eq!(app.solver.breakpoints.count("point 3"), 0);
+    assert_eq!(app.solver.breakpoints.count("point 4"), 1);
+    assert_eq!(app.get(&format!("{path}/result")).await.json["numerics"]["reused"], json!(["points"]));
+    assert_eq!(page(&app, &path, "").await["n_solved"], 8);
+}
+
+#[tokio::test]
+async fn a_canceled_sweep_is_gone_on_with_when_it_is_submitted_again() {
+    let app = app().await;
+    app.solver.breakpoints.hold("point 4");
+    let document = sweep("all", 8);
+    let first = app.submit(&document).await;
+    app.solver.breakpoints.reached("point 4", 1).await;
+    app.post(&format!("{first}/cancel")).await;
+    assert_eq!(app.ended(&first).await["state"], "canceled");
+    assert_eq!(page(&app, &first, "").await["n_solved"], 4);
+    app.solver.breakpoints.release("point 4");
+    let (second, _) = app.run(&document).await;
+    assert_eq!(app.solver.breakpoints.count("point 3"), 1);
+    assert_eq!(app.solver.breakpoints.count("point 4"), 2);
+    // Each keeps what is its own.
+    app.delete(&first).await.assert_status(204);
+    assert_eq!(page(&app, &second, "").await["n_solved"], 8);
+    app.get(&format!("{first}/points")).await.assert_problem(404, "not-found");
+}
+
+#[tokio::test]
+async fn sweeps_do_not_keep_single_jobs_waiting() {
+    let app = app_with(WorkConfig { workers: Some(1), threads: Some(1), sweep_workers: 1, ..small() }).await;
+    app.solver.breakpoints.hold("point 0");
+    let sweeps = [app.submit(&sweep("all", 3)).await, app.submit(&sweep("all", 3)).await];
+    app.solver.breakpoints.reached("point 0", 1).await;
+    // The only thread of the sweeps is taken, and a sweep waits; a single job runs all the same.
+    let (_, job) = app.run(&document()).await;
+    assert_eq!(job["state"], "succeeded");
+    assert_eq!(app.get("/api/v1/system").await.json["workers"]["sweeps_busy"], 1);
+    app.solver.breakpoints.release("point 0");
+    for path in &sweeps {
+        assert_eq!(app.ended(path).await["state"], "succeeded");
+    }
+}
+
+#[tokio::test]
+async fn a_sweep_that_had_its_turn_makes_way_and_goes_on_later() {
+    let app = app_with(WorkConfig { sweep_workers: 1, sweep_turn_s: 0, ..small() }).await;
+    app.solver.breakpoints.hold("point 2");
+    let long = app.submit(&sweep("all", 4)).await;
+    app.solver.breakpoints.reached("point 2", 1).await;
+    let other = app.submit(&sweep("failing", 1)).await;
+    // The first cannot get past its third point, so the second runs only if the first makes way.
+    assert_eq!(app.ended(&other).await["state"], "failed");
+    app.solver.breakpoints.release("point 2");
+    let job = app.ended(&long).await;
+    assert_eq!(job["state"], "succeeded");
+    assert!(job["attempt"].as_i64() >= Some(2), "{job}");
+    assert_eq!(app.solver.breakpoints.count("point 0"), 1);
+}
+
+#[tokio::test]
+async fn a_job_that_computes_too_long_fails_and_a_sweep_keeps_its_points() {
+    let limits = WorkConfig { job_time_limit_s: 1, sweep_time_limit_s: 1, ..small() };
+    let app = app_with(limits).await;
+    app.solver.breakpoints.hold("slow");
+    app.solver.breakpoints.hold("point 2");
+    let paths = [app.submit(&scripted("slow")).await, app.submit(&sweep("all", 4)).await];
+    for path in &paths {
+        let job = app.ended(path).await;
+        assert_eq!((job["state"].as_str(), job["error"]["code"].as_str()), (Some("failed"), Some("time-limit")));
+    }
+    assert_eq!(page(&app, &paths[1], "").await["n_solved"], 2);
+}
+
+#[tokio::test]
+async fn numbers_that_are_not_finite_leave_as_null_with_a_reason() {
+    let app = app().await;
+    let (path, _) = app.run(&scripted("not finite")).await;
+    let result = app.get(&format!("{path}/result")).await.json;
+    assert!(result["numerics"]["wall_ms"]["mesh"].is_null());
+    assert_eq!(result["numerics"]["not_finite"][0]["pointer"], "/numerics/wall_ms/mesh");
+    let (path, _) = app.run(&sweep("not finite", 2)).await;
+    let item = &page(&app, &path, "").await["items"][0];
+    assert!(item["point"]["dynamic_factor"].is_null());
+    assert!(item["point"]["error"].as_str().is_some_and(|error| error.starts_with("/dynamic_factor")), "{item}");
+}
