@@ -1,5 +1,7 @@
 //! How the service is reached, and the limits of requests.
 
+use super::connections::ConnectionConfig;
+use super::guard::AccessConfig;
 use std::net::SocketAddr;
 use std::time::Duration;
 
@@ -24,10 +26,11 @@ pub(super) const MAX_KEY_CHARS: usize = 255;
 /// Seconds after which a client should look again.
 pub(super) const RETRY_LIVE_S: u64 = 1;
 pub(super) const RETRY_FULL_S: u64 = 5;
+pub(super) const RETRY_FOLLOW_S: u64 = 5;
 /// Event streams say something at least this often.
 pub(super) const KEEP_ALIVE: Duration = Duration::from_secs(15);
 
-/// Address and time limit.
+/// Address and limits.
 #[derive(Debug, Clone, clap::Args)]
 pub struct HttpConfig {
     /// Address to listen on; port 0 takes any free one.
@@ -38,6 +41,12 @@ pub struct HttpConfig {
     #[arg(long, env = "HERRINGBONE_REQUEST_TIMEOUT_S", value_name = "SECONDS", default_value_t = 60,
           value_parser = clap::value_parser!(u32).range(i64::from(MAX_WAIT_S as u32) + 5..=3600))]
     pub request_timeout_s: u32,
+
+    #[command(flatten)]
+    pub access: AccessConfig,
+
+    #[command(flatten)]
+    pub connections: ConnectionConfig,
 }
 
 impl HttpConfig {
@@ -48,6 +57,11 @@ impl HttpConfig {
 
 impl Default for HttpConfig {
     fn default() -> Self {
-        Self { listen: SocketAddr::from(([127, 0, 0, 1], 8080)), request_timeout_s: 60 }
+        Self {
+            listen: SocketAddr::from(([127, 0, 0, 1], 8080)),
+            request_timeout_s: 60,
+            access: AccessConfig::default(),
+            connections: ConnectionConfig::default(),
+        }
     }
 }

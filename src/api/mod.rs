@@ -2,11 +2,14 @@
 //! looks like from outside ([`view`]) and how everything that goes wrong is answered ([`problem`]).
 //!
 //! Invariant: every answer with a status of 400 or above is `application/problem+json` in one schema, with a code of a
-//! closed list; the envelope turns what the framework itself refuses into the same form.
+//! closed list; the envelope turns what the framework itself refuses into the same form. (A request whose head cannot be
+//! read never gets there: see [`connections`].)
 
 mod config;
+mod connections;
 mod downsample;
 mod envelope;
+mod guard;
 mod openapi;
 mod points;
 mod problem;
@@ -19,6 +22,8 @@ mod telemetry;
 mod view;
 
 pub use config::{HttpConfig, MAX_BODY_BYTES, MAX_WAIT_S};
+pub use connections::ConnectionConfig;
+pub use guard::{Access, AccessConfig, AccessError, LoginNotice, LoginPage};
 pub use openapi::openapi_json;
 pub use problem::{Problem, ProblemCode};
 pub use router::{Pages, router};

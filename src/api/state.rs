@@ -5,10 +5,14 @@ use crate::work::Jobs;
 use jiff::Timestamp;
 use metrics_exporter_prometheus::PrometheusHandle;
 use std::sync::Arc;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 /// Jobs, metrics and the time of the start. Cheap to clone.
 #[derive(Clone)]
-pub struct AppState(Arc<Inner>);
+pub struct AppState {
+    inner: Arc<Inner>,
+    followers: Arc<Semaphore>,
+}
 
 struct Inner {
     jobs: Jobs,
@@ -19,18 +23,30 @@ struct Inner {
 impl AppState {
     /// The state of a service over these jobs, started now.
     pub fn new(jobs: Jobs, started_at: Timestamp) -> Self {
-        Self(Arc::new(Inner { jobs, metrics: telemetry::recorder(), started_at }))
+        let inner = Arc::new(Inner { jobs, metrics: telemetry::recorder(), started_at });
+        Self { inner, followers: Arc::new(Semaphore::new(Semaphore::MAX_PERMITS)) }
+    }
+
+    /// The same with a bound on clients that follow jobs.
+    pub(super) fn with_followers(self, limit: usize) -> Self {
+        Self { followers: Arc::new(Semaphore::new(limit)), ..self }
     }
 
     pub fn jobs(&self) -> &Jobs {
-        &self.0.jobs
+        &self.inner.jobs
     }
 
     pub(super) fn metrics(&self) -> &PrometheusHandle {
-        &self.0.metrics
+        &self.inner.metrics
     }
 
     pub(super) fn started_at(&self) -> Timestamp {
-        self.0.started_at
+        self.inner.started_at
+    }
+
+    /// A place among the clients that follow a job (an event stream, a wait for its end), so that they cannot use up all
+    /// connections; `None` when all are taken.
+    pub(super) fn follow(&self) -> Option<OwnedSemaphorePermit> {
+        self.followers.clone().try_acquire_owned().ok()
     }
 }

@@ -2,7 +2,7 @@
 
 use anyhow::Context;
 use clap::Args;
-use herringbone::api::{self, AppState, HttpConfig, Pages};
+use herringbone::api::{self, Access, AppState, HttpConfig, LoginPage, Pages};
 use herringbone::store::{Store, StoreConfig};
 use herringbone::web;
 use herringbone::work::{Jobs, StudySolver, WorkConfig};
@@ -12,6 +12,9 @@ use std::sync::Arc;
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tracing_subscriber::EnvFilter;
+
+/// Files open besides connections: database, logs, sockets of the runtime.
+const OTHER_FILES: u64 = 64;
 
 #[derive(Debug, Args)]
 pub struct Serve {
@@ -66,18 +69,16 @@ async fn serve(arguments: &Serve) -> anyhow::Result<()> {
     let (http, work) = (&arguments.http, &arguments.work);
     let mut terminate = signal(SignalKind::terminate()).context("signal handler")?;
     let mut interrupt = signal(SignalKind::interrupt()).context("signal handler")?;
+    let access = Access::new(&http.access, http.listen)?;
+    raise_file_limit(http.connections.max_connections);
     let listener = TcpListener::bind(http.listen).await.with_context(|| format!("cannot listen on {}", http.listen))?;
     let store = Store::open(&arguments.store).await?;
     let jobs = Jobs::start(store, work, Arc::new(StudySolver), Arc::new(Timestamp::now))
         .await
         .map_err(anyhow::Error::from_boxed)?;
     let state = AppState::new(jobs.clone(), Timestamp::now());
-    let pages = Pages { routes: web::routes(), not_found: axum::routing::any(web::not_found) };
-    let app = api::router(state, http, pages);
+    let app = api::router(state, http, &access, pages(access.has_token()));
     let address = listener.local_addr()?;
-    if !address.ip().is_loopback() {
-        tracing::warn!(%address, "reachable from other machines, and nothing asks for credentials");
-    }
     println!("herringbone {} serves on http://{address}/", env!("CARGO_PKG_VERSION"));
     let shutdown = async {
         tokio::select! {
@@ -86,5 +87,25 @@ async fn serve(arguments: &Serve) -> anyhow::Result<()> {
         }
         tracing::info!("shutting down");
     };
-    api::serve(listener, app, jobs, shutdown).await.context("serving failed")
+    api::serve(listener, app, &http.connections, jobs, shutdown).await;
+    Ok(())
+}
+
+fn pages(has_login: bool) -> Pages {
+    Pages {
+        routes: web::routes(has_login),
+        not_found: axum::routing::any(web::not_found),
+        login: LoginPage(|notice| web::login(notice.status, notice.next, notice.trouble)),
+    }
+}
+
+/// Lets this process have as many files open as the system permits: each connection is one.
+fn raise_file_limit(connections: u32) {
+    match rlimit::increase_nofile_limit(u64::MAX) {
+        Ok(files) if files < u64::from(connections) + OTHER_FILES => {
+            tracing::warn!(files, connections, "fewer files may be open than connections are allowed (ulimit -n)");
+        }
+        Ok(_) => {}
+        Err(error) => tracing::warn!(%error, "the limit of open files could not be raised"),
+    }
 }

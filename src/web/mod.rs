@@ -9,21 +9,23 @@ mod form;
 mod pages;
 mod plotly;
 
-pub use pages::not_found;
+pub use pages::{login, not_found};
 
-use axum::Router;
 use axum::http::{HeaderName, HeaderValue, header};
 use axum::routing::get;
+use axum::{Extension, Router};
 
 /// What the pages may load and do. Every page is sent with it.
 ///
 /// `img-src data: blob:` is what plotly needs for heat maps (a canvas turned into an image) and for saving a plot as an
-/// image. Its style rules come as a linked stylesheet, so inline style elements stay forbidden.
+/// image. Its style rules come as a linked stylesheet, so inline style elements stay forbidden (styles that its script sets
+/// on elements are no matter of the policy).
 pub const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; \
                                            base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
-/// The pages `/`, `/jobs`, `/jobs/{id}` and the files under `/assets/`.
-pub fn routes() -> Router {
+/// The pages `/`, `/jobs`, `/jobs/{id}` and the files under `/assets/`. `has_login` says whether the service has a token,
+/// so that people can log out.
+pub fn routes(has_login: bool) -> Router {
     Router::new()
         .route("/", get(pages::design))
         .route("/jobs", get(pages::jobs))
@@ -31,9 +33,11 @@ pub fn routes() -> Router {
         .route("/assets/plotly.js", get(plotly::script))
         .route("/assets/plotly.css", get(plotly::stylesheet))
         .route("/assets/{file}", get(assets::file))
+        .layer(Extension(pages::HasLogin(has_login)))
 }
 
-/// Headers of every page.
+/// Headers of every page. The login form needs `Referrer-Policy: same-origin`: under `no-referrer` browsers send forms
+/// with `Origin: null`, which is refused as another site's.
 fn page_headers() -> [(HeaderName, HeaderValue); 4] {
     [
         (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(CONTENT_SECURITY_POLICY)),

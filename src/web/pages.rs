@@ -3,6 +3,7 @@
 use super::form::{self, Control, Group};
 use super::{page_headers, plotly};
 use askama::Template;
+use axum::Extension;
 use axum::extract::Path;
 use axum::http::StatusCode;
 use axum::response::{Html, IntoResponse, Response};
@@ -10,43 +11,68 @@ use axum::response::{Html, IntoResponse, Response};
 #[derive(Template)]
 #[template(path = "design.html")]
 struct DesignPage {
+    has_login: bool,
     groups: &'static [Group],
     sweepable: &'static [String],
 }
 
 #[derive(Template)]
 #[template(path = "jobs.html")]
-struct JobsPage;
+struct JobsPage {
+    has_login: bool,
+}
 
 #[derive(Template)]
 #[template(path = "job.html")]
 struct JobPage {
+    has_login: bool,
     id: String,
     plotly_script: String,
 }
 
 #[derive(Template)]
 #[template(path = "not_found.html")]
-struct NotFoundPage;
+struct NotFoundPage {
+    has_login: bool,
+}
+
+#[derive(Template)]
+#[template(path = "login.html")]
+struct LoginPage<'a> {
+    has_login: bool,
+    next: &'a str,
+    trouble: &'a str,
+}
+
+/// Whether people log in here, and so can log out.
+#[derive(Debug, Clone, Copy)]
+pub struct HasLogin(pub bool);
+
+type Site = Extension<HasLogin>;
 
 /// `/`: the form for a new job, filled with the source paper's example.
-pub async fn design() -> Response {
-    page(StatusCode::OK, &DesignPage { groups: form::groups(), sweepable: form::sweepable_pointers() })
+pub async fn design(Extension(HasLogin(has_login)): Site) -> Response {
+    page(StatusCode::OK, &DesignPage { has_login, groups: form::groups(), sweepable: form::sweepable_pointers() })
 }
 
 /// `/jobs`: the list of jobs.
-pub async fn jobs() -> Response {
-    page(StatusCode::OK, &JobsPage)
+pub async fn jobs(Extension(HasLogin(has_login)): Site) -> Response {
+    page(StatusCode::OK, &JobsPage { has_login })
 }
 
 /// `/jobs/{id}`: one job. Whether it exists is for the API to say, which the page asks.
-pub async fn job(Path(id): Path<String>) -> Response {
-    page(StatusCode::OK, &JobPage { id, plotly_script: plotly::script_url() })
+pub async fn job(Extension(HasLogin(has_login)): Site, Path(id): Path<String>) -> Response {
+    page(StatusCode::OK, &JobPage { has_login, id, plotly_script: plotly::script_url() })
 }
 
 /// The page for addresses that lead nowhere (status 404); for the router's fallback.
 pub async fn not_found() -> Response {
-    page(StatusCode::NOT_FOUND, &NotFoundPage)
+    page(StatusCode::NOT_FOUND, &NotFoundPage { has_login: false })
+}
+
+/// The page that asks for the token. It works without scripts, and shows nothing of the service.
+pub fn login(status: StatusCode, next: &str, trouble: Option<&str>) -> Response {
+    page(status, &LoginPage { has_login: false, next, trouble: trouble.unwrap_or_default() })
 }
 
 fn page(status: StatusCode, template: &impl Template) -> Response {

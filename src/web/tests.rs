@@ -5,7 +5,7 @@ use axum::http::StatusCode;
 use axum_test::TestServer;
 
 fn server() -> TestServer {
-    TestServer::new(routes().fallback(not_found))
+    TestServer::new(routes(true).fallback(not_found))
 }
 
 #[tokio::test]
@@ -79,4 +79,26 @@ async fn every_label_names_an_input_of_the_form() {
         labels += 1;
     }
     assert!(labels > 80, "{labels} labels");
+}
+
+#[tokio::test]
+async fn the_login_page_works_without_scripts_and_escapes_what_it_is_given() {
+    let shown = login(StatusCode::UNAUTHORIZED, "/jobs?label=\"><script>alert(1)</script>", Some("wrong"));
+    assert_eq!(shown.status(), StatusCode::UNAUTHORIZED);
+    let body = axum::body::to_bytes(shown.into_body(), 1 << 20).await.unwrap();
+    let text = String::from_utf8(body.to_vec()).unwrap();
+    assert!(!text.contains("<script") && !text.contains("<noscript") && !text.contains("/logout"), "{text}");
+    assert!(text.contains("method=\"post\"") && text.contains("name=\"token\"") && text.contains("wrong"), "{text}");
+    let mut files: Vec<_> = text.split("\"/assets/").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    files.sort_unstable();
+    files.dedup();
+    assert_eq!(files, ["icon.svg", "style.css"], "what is served without credentials");
+}
+
+#[tokio::test]
+async fn people_can_log_out_where_they_can_log_in() {
+    for has_login in [true, false] {
+        let text = TestServer::new(routes(has_login)).get("/jobs").await.text();
+        assert_eq!(text.contains("action=\"/logout\""), has_login);
+    }
 }

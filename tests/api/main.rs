@@ -18,6 +18,7 @@ mod read_job;
 mod restart;
 mod result;
 mod reuse;
+mod security;
 mod series;
 mod serving;
 mod submit_job;

@@ -9,6 +9,7 @@ pub enum ProblemCode {
     InvalidParameter,
     InvalidCursor,
     Unauthenticated,
+    CrossOrigin,
     NotFound,
     MethodNotAllowed,
     NotAcceptable,
@@ -18,11 +19,14 @@ pub enum ProblemCode {
     JobNotSucceeded,
     PayloadTooLarge,
     UnsupportedMediaType,
+    MisdirectedRequest,
     InvalidDesign,
     UnsupportedDesign,
     IdempotencyKeyReused,
+    TooManyAttempts,
     Internal,
     QueueFull,
+    TooManyStreams,
     ShuttingDown,
     NotConverged,
     Diverged,
@@ -58,7 +62,7 @@ const fn entry(
 }
 
 /// Every code, by status.
-pub const CODES: [CodeEntry; 28] = [
+pub const CODES: [CodeEntry; 32] = [
     entry(
         ProblemCode::MalformedJson,
         "malformed-json",
@@ -87,7 +91,16 @@ pub const CODES: [CodeEntry; 28] = [
         "unauthenticated",
         401,
         "The request has no valid credentials",
-        "The service was started with a token and the request did not carry it.",
+        "The service was started with a token and the request did not carry it. Programs send it as `Authorization: Bearer` \
+         and the token; people enter it at /login.",
+    ),
+    entry(
+        ProblemCode::CrossOrigin,
+        "cross-origin",
+        403,
+        "The request comes from another site",
+        "A page of another site made the browser send it. The service takes changes from its own pages and from programs. \
+         Behind a proxy: it must pass the headers Host and Origin unchanged.",
     ),
     entry(
         ProblemCode::NotFound,
@@ -154,6 +167,14 @@ pub const CODES: [CodeEntry; 28] = [
         "Send job documents with `Content-Type: application/json`, uncompressed.",
     ),
     entry(
+        ProblemCode::MisdirectedRequest,
+        "misdirected-request",
+        421,
+        "The request names another host",
+        "The header Host is not a name of this service. Use localhost or 127.0.0.1, or start the service with \
+         `--allowed-host` and the name.",
+    ),
+    entry(
         ProblemCode::InvalidDesign,
         "invalid-design",
         422,
@@ -174,6 +195,14 @@ pub const CODES: [CodeEntry; 28] = [
         422,
         "The Idempotency-Key was used with another document",
         "A key names one submission. Use a new one for a new document.",
+    ),
+    entry(
+        ProblemCode::TooManyAttempts,
+        "too-many-attempts",
+        429,
+        "Too many wrong tokens",
+        "Wrong tokens came faster than is answered, from this client or others. Try again after `Retry-After`; the right \
+         token is taken at any time.",
     ),
     entry(
         ProblemCode::NotConverged,
@@ -252,6 +281,14 @@ pub const CODES: [CodeEntry; 28] = [
         "The queue has a bound (see /api/v1/system). Submit again after `Retry-After`.",
     ),
     entry(
+        ProblemCode::TooManyStreams,
+        "too-many-streams",
+        503,
+        "Too many clients follow jobs",
+        "Event streams have a bound, so that they cannot use up all connections. Try again after `Retry-After`, or ask for \
+         the job now and then.",
+    ),
+    entry(
         ProblemCode::ShuttingDown,
         "shutting-down",
         503,
@@ -291,12 +328,15 @@ impl ProblemCode {
     pub fn of_status(status: StatusCode) -> Self {
         match status.as_u16() {
             401 => Self::Unauthenticated,
+            403 => Self::CrossOrigin,
             404 => Self::NotFound,
             405 => Self::MethodNotAllowed,
             406 => Self::NotAcceptable,
             408 => Self::RequestTimeout,
             413 => Self::PayloadTooLarge,
             415 => Self::UnsupportedMediaType,
+            421 => Self::MisdirectedRequest,
+            429 => Self::TooManyAttempts,
             400..=499 => Self::InvalidParameter,
             503 => Self::ShuttingDown,
             _ => Self::Internal,

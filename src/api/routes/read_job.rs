@@ -12,7 +12,8 @@ use axum::response::Response;
 /// Read a job, or wait for it.
 ///
 /// With `Prefer: wait=N` the answer comes when the job has ended, after N seconds at the latest; together with
-/// `If-None-Match` it comes as soon as the job is no longer what the client has.
+/// `If-None-Match` it comes as soon as the job is no longer what the client has. When as many clients follow jobs as the
+/// service allows, it comes at once, without `Preference-Applied`.
 #[utoipa::path(
     get, path = "/jobs/{id}", tag = "jobs",
     params(
@@ -37,12 +38,13 @@ pub async fn read_job(
 ) -> Result<Response, Refusal> {
     let is_news = |job: &JobRecord| !known.has(&job_etag(job));
     let enough = |job: &JobRecord| job.state.is_ended() || (known.is_given() && is_news(job));
-    let job = match prefer.wait {
-        Some(wait) => state.jobs().wait(id, wait, enough).await?.ok_or_else(super::no_job)?,
+    let wait = prefer.wait.and_then(|wait| Some((wait, state.follow()?)));
+    let job = match wait {
+        Some((wait, _)) => state.jobs().wait(id, wait, enough).await?.ok_or_else(super::no_job)?,
         None => super::existing(&state, id).await?,
     };
     let mut response = if is_news(&job) { job_response(StatusCode::OK, &job) } else { not_modified(job_etag(&job)) };
-    if let Some(wait) = prefer.wait {
+    if let Some((wait, _)) = wait {
         let applied = HeaderValue::try_from(format!("wait={}", wait.as_secs())).map_err(Refusal::internal)?;
         response.headers_mut().insert(HeaderName::from_static("preference-applied"), applied);
     }

@@ -48,7 +48,8 @@ pub async fn submit_job(
     let submitted = state.jobs().submit(request).await?;
     let mut job = submitted.job;
     let mut headers = HeaderMap::new();
-    if let Some(wait) = prefer.wait {
+    let wait = prefer.wait.and_then(|wait| Some((wait, state.follow()?)));
+    if let Some((wait, _)) = wait {
         job = state.jobs().wait(job.id, wait, |job| job.state.is_ended()).await?.ok_or_else(super::no_job)?;
         let applied = HeaderValue::try_from(format!("wait={}", wait.as_secs())).map_err(Refusal::internal)?;
         headers.insert(HeaderName::from_static("preference-applied"), applied);
@@ -57,7 +58,7 @@ pub async fn submit_job(
     if submitted.replayed {
         headers.insert(HeaderName::from_static("idempotent-replayed"), HeaderValue::from_static("true"));
     }
-    let ended_in_time = prefer.wait.is_some() && job.state.is_ended();
+    let ended_in_time = wait.is_some() && job.state.is_ended();
     let status = if ended_in_time { StatusCode::OK } else { StatusCode::ACCEPTED };
     if status == StatusCode::ACCEPTED && job.state.is_ended() {
         headers.insert(RETRY_AFTER, HeaderValue::from(0));

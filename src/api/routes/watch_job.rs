@@ -1,7 +1,7 @@
 //! `GET /api/v1/jobs/{id}/events`
 
-use crate::api::config::KEEP_ALIVE;
-use crate::api::problem::Refusal;
+use crate::api::config::{KEEP_ALIVE, RETRY_FOLLOW_S};
+use crate::api::problem::{ProblemCode, Refusal};
 use crate::api::request::JobPath;
 use crate::api::state::AppState;
 use crate::api::view::Job;
@@ -11,7 +11,7 @@ use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
-use futures_util::stream::{Stream, unfold};
+use futures_util::stream::{Stream, StreamExt, unfold};
 use std::convert::Infallible;
 use std::sync::Arc;
 use tokio_util::sync::CancellationToken;
@@ -32,6 +32,7 @@ use tokio_util::sync::CancellationToken;
             content_type = "text/event-stream"),
         (status = 204, description = "The client has seen the end of this job (`Last-Event-ID`): do not reconnect."),
         (status = 404, description = "No such job."),
+        (status = 503, description = "`too-many-streams`; `Retry-After` says when to try again."),
     )
 )]
 pub async fn watch_job(
@@ -45,8 +46,17 @@ pub async fn watch_job(
     if job.state.is_ended() && last_event(&headers) == Some(job.revision) {
         return Ok(StatusCode::NO_CONTENT.into_response());
     }
-    let events = events(id, Arc::new(job), changes, state.jobs().closing().clone());
+    let place = state.follow().ok_or_else(too_many)?;
+    let events = events(id, Arc::new(job), changes, state.jobs().closing().clone()).map(move |event| {
+        let _ = &place;
+        event
+    });
     Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE)).into_response())
+}
+
+fn too_many() -> Refusal {
+    let detail = "As many clients follow jobs as the service allows.";
+    Refusal::new(ProblemCode::TooManyStreams, detail).retry_after(RETRY_FOLLOW_S)
 }
 
 fn last_event(headers: &HeaderMap) -> Option<i64> {

@@ -32,7 +32,14 @@ async function request(method, path, { body, headers = {}, signal } = {}) {
   } catch {
     problem = { title: `The server answered with status ${response.status}` };
   }
+  if (response.status === 401) logIn();
   throw new Problem({ ...problem, status: response.status });
+}
+
+/** The session has ended: to the login page, and back here. */
+function logIn() {
+  const here = window.location.pathname + window.location.search;
+  window.location.assign(`/login?${new URLSearchParams({ next: here })}`);
 }
 
 const at = (id) => `/jobs/${encodeURIComponent(id)}`;
@@ -65,6 +72,7 @@ export const isEnded = (job) => ["succeeded", "failed", "canceled"].includes(job
 /** The CSV text of a whole channel. */
 export async function seriesCsv(id, channel) {
   const response = await fetch(`${seriesUrl(id, channel)}?method=none`, { headers: { Accept: "text/csv" } });
+  if (response.status === 401) logIn();
   if (!response.ok) throw new Problem({ title: `The server answered with status ${response.status}`, status: response.status });
   return response.text();
 }

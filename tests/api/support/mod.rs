@@ -13,8 +13,9 @@ pub use solver::ScriptedSolver;
 use axum::Router;
 use axum::body::Body;
 use axum::http::{Method, Request};
-use herringbone::api::{self, AppState, HttpConfig, Pages};
+use herringbone::api::{self, Access, AppState, HttpConfig, LoginPage, Pages};
 use herringbone::store::{Store, StoreConfig};
+use herringbone::web;
 use herringbone::work::{Jobs, Solver, WorkConfig};
 use jiff::Timestamp;
 use serde_json::Value;
@@ -49,17 +50,24 @@ pub async fn impatient_app() -> App {
     start(tempfile::tempdir().expect("temporary directory"), small(), http).await
 }
 
+/// A service that is reached in another way than by default.
+pub async fn app_reached(http: HttpConfig) -> App {
+    start(tempfile::tempdir().expect("temporary directory"), small(), http).await
+}
+
 async fn start(directory: TempDir, work: WorkConfig, http: HttpConfig) -> App {
     let solver = Arc::new(ScriptedSolver::default());
     let store = Store::open(&StoreConfig::at(directory.path().join("jobs.db"))).await.expect("store opens");
     let dyn_solver: Arc<dyn Solver> = solver.clone();
     let jobs = Jobs::start(store, &work, dyn_solver, Arc::new(Timestamp::now)).await.expect("jobs start");
     let state = AppState::new(jobs.clone(), Timestamp::now());
+    let access = Access::new(&http.access, http.listen).expect("access");
     let pages = Pages {
-        routes: Router::new().route("/panics", axum::routing::get(panics)),
+        routes: web::routes(access.has_token()).route("/panics", axum::routing::get(panics)),
         not_found: axum::routing::any(async || (axum::http::StatusCode::NOT_FOUND, axum::response::Html("no page"))),
+        login: LoginPage(|notice| web::login(notice.status, notice.next, notice.trouble)),
     };
-    let router = api::router(state, &http, pages);
+    let router = api::router(state, &http, &access, pages);
     App { router, jobs, solver, directory }
 }
 

@@ -1,0 +1,73 @@
+//! Taking connections in.
+
+use super::config::{ACCEPT_PAUSE, ConnectionConfig};
+use super::connection;
+use super::crowd::Crowd;
+use super::pulse::Pulse;
+use axum::Router;
+use std::io;
+use std::sync::Arc;
+use tokio::net::{TcpListener, TcpStream};
+use tokio_util::sync::CancellationToken;
+use tokio_util::task::TaskTracker;
+
+/// How connections are brought to an end.
+#[derive(Debug, Clone, Default)]
+pub struct Endings {
+    /// No more connections; open ones end with the request in progress.
+    pub stop: CancellationToken,
+    /// Open ones end now.
+    pub cut: CancellationToken,
+}
+
+/// Takes connections in until told to stop, then waits for the end of all.
+pub async fn listen(listener: TcpListener, app: Router, config: ConnectionConfig, endings: Endings) {
+    let crowd = Arc::new(Crowd::new(config.max_connections));
+    let tasks = TaskTracker::new();
+    while let Some(stream) = next(&listener, &crowd, &endings.stop).await {
+        // The newcomer waits here when all places are taken by requests in progress, the ones after it in the system.
+        let place = tokio::select! {
+            place = crowd.place() => place,
+            () = endings.stop.cancelled() => break,
+        };
+        let leave = endings.stop.child_token();
+        let pulse = Pulse::new(crowd.clone(), leave.clone(), config.clone());
+        let (app, cut) = (app.clone(), endings.cut.clone());
+        tasks.spawn(async move {
+            let _place = place;
+            let connection = connection::run(stream, app, pulse, leave);
+            let _ = cut.run_until_cancelled_owned(connection).await;
+        });
+    }
+    drop(listener);
+    tasks.close();
+    tasks.wait().await;
+}
+
+/// The next connection; `None` when it is time to stop.
+async fn next(listener: &TcpListener, crowd: &Crowd, stop: &CancellationToken) -> Option<TcpStream> {
+    loop {
+        let accepted = stop.run_until_cancelled(listener.accept()).await?;
+        match accepted {
+            Ok((stream, _)) => {
+                // Events are small and must not wait for each other.
+                if let Err(error) = stream.set_nodelay(true) {
+                    tracing::debug!(%error, "no TCP_NODELAY");
+                }
+                return Some(stream);
+            }
+            // The client was gone before it was its turn.
+            Err(error) if is_of_client(&error) => {}
+            Err(error) => {
+                tracing::warn!(%error, "a connection could not be accepted");
+                crowd.make_room();
+                stop.run_until_cancelled(tokio::time::sleep(ACCEPT_PAUSE)).await?;
+            }
+        }
+    }
+}
+
+fn is_of_client(error: &io::Error) -> bool {
+    use io::ErrorKind::{ConnectionAborted, ConnectionRefused, ConnectionReset, Interrupted};
+    matches!(error.kind(), ConnectionAborted | ConnectionRefused | ConnectionReset | Interrupted)
+}
