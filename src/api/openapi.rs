@@ -39,12 +39,24 @@ const COMMON: [(&str, &str); 3] = [
     ("500", "The service failed (`internal`)."),
 ];
 
+/// What every endpoint but the probes may answer before it is asked.
+const GUARDS: [(&str, &str); 4] = [
+    ("401", "The service has a token, and the request shows neither it nor a session (`unauthenticated`)."),
+    ("403", "A page of another site made a browser send the request (`cross-origin`)."),
+    ("421", "The header Host names another host (`misdirected-request`)."),
+    ("429", "Wrong tokens come too fast (`too-many-attempts`); `Retry-After` says when to try again."),
+];
+
 /// The OpenAPI document as JSON text.
 pub fn openapi_json() -> String {
     let (_, document) = described_routes().split_for_parts();
     let mut document = serde_json::to_value(document).unwrap_or_default();
     let schema = job_document_schema();
     document["components"]["schemas"]["JobDocument"] = schema;
+    document["components"]["securitySchemes"]["token"] = json!({
+        "type": "http", "scheme": "bearer", "description": "The token of a service that was started with one.",
+    });
+    document["security"] = json!([{}, {"token": []}]);
     if let Some(paths) = document["paths"].as_object_mut() {
         for (path, operations) in paths {
             let Some(operations) = operations.as_object_mut() else { continue };
@@ -70,6 +82,11 @@ fn complete(path: &str, operation: &mut Value) {
     let Some(responses) = operation["responses"].as_object_mut() else { return };
     if path.starts_with("/api/v1") {
         for (status, description) in COMMON {
+            responses.entry(status).or_insert_with(|| json!({"description": description}));
+        }
+    }
+    if !["/healthz", "/readyz"].contains(&path) {
+        for (status, description) in GUARDS {
             responses.entry(status).or_insert_with(|| json!({"description": description}));
         }
     }

@@ -64,6 +64,11 @@ impl Crowd {
         self.waiting().line.remove(&ticket);
     }
 
+    #[cfg(test)]
+    pub fn len(&self) -> usize {
+        self.waiting().line.len()
+    }
+
     fn waiting(&self) -> MutexGuard<'_, Waiting> {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
