@@ -18,6 +18,7 @@ use axum::routing::MethodRouter;
 use tower::ServiceExt;
 use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::CompressionLayer;
+use tower_http::limit::RequestBodyLimitLayer;
 use tower_http::sensitive_headers::{SetSensitiveRequestHeadersLayer, SetSensitiveResponseHeadersLayer};
 use tower_http::timeout::TimeoutLayer;
 use utoipa_swagger_ui::{Config, SwaggerUi};
@@ -44,6 +45,8 @@ pub fn router(state: AppState, config: &HttpConfig, access: &Access, pages: Page
         .merge(login_routes(access, pages.login))
         .fallback(async move |request: Request| nothing_here(request, not_found).await)
         .layer(DefaultBodyLimit::max(MAX_BODY_BYTES))
+        // The same bound for what a request announces, before any of it is asked for.
+        .layer(RequestBodyLimitLayer::new(MAX_BODY_BYTES))
         .layer(TimeoutLayer::with_status_code(StatusCode::REQUEST_TIMEOUT, config.request_timeout()))
         .layer(from_fn_with_state(access.clone(), check_credentials))
         .layer(check_origin())

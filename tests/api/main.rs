@@ -3,6 +3,7 @@
 mod support;
 
 mod cancel_job;
+mod connections;
 mod delete_job;
 mod documents;
 mod errors;
@@ -20,7 +21,6 @@ mod result;
 mod reuse;
 mod security;
 mod series;
-mod serving;
 mod submit_job;
 mod validate_job;
 mod watch_job;

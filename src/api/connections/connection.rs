@@ -13,18 +13,13 @@ use std::convert::Infallible;
 use std::future::{Future, poll_fn};
 use std::pin::{Pin, pin};
 use std::task::{Context, Poll};
-use tokio::io::{AsyncRead, AsyncWrite};
+use tokio::net::TcpStream;
 use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 use tower::ServiceExt;
 
 /// Serves requests until the client ends, a deadline passes, or (between requests) `leave` is cancelled.
-pub async fn run(
-    stream: impl AsyncRead + AsyncWrite + Unpin + Send + 'static,
-    app: Router,
-    pulse: Pulse,
-    leave: CancellationToken,
-) {
+pub async fn run(stream: TcpStream, app: Router, pulse: Pulse, leave: CancellationToken) {
     let requests = {
         let pulse = pulse.clone();
         service_fn(move |request: hyper::Request<Incoming>| {

@@ -88,6 +88,11 @@ impl Pulse {
         self.0.leave.is_cancelled()
     }
 
+    /// Whether an answer is ready that the client does not take.
+    pub fn is_blocked(&self) -> bool {
+        self.state().blocked_since.is_some()
+    }
+
     /// Nothing is lost when the connection is cut off now: no request is in progress and no answer on its way.
     pub fn is_dispensable(&self) -> bool {
         let state = self.state();

@@ -5,17 +5,18 @@ use std::io::{self, IoSlice};
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+use tokio::net::TcpStream;
 
 /// A stream that tells its connection's [`Pulse`] what happens to it.
-pub struct Watched<S> {
-    inner: S,
+pub struct Watched {
+    inner: TcpStream,
     pulse: Pulse,
     /// This side has said that it sends no more.
     is_shut: bool,
 }
 
-impl<S> Watched<S> {
-    pub fn new(inner: S, pulse: Pulse) -> Self {
+impl Watched {
+    pub fn new(inner: TcpStream, pulse: Pulse) -> Self {
         Self { inner, pulse, is_shut: false }
     }
 
@@ -25,7 +26,7 @@ impl<S> Watched<S> {
     }
 }
 
-impl<S: AsyncRead + Unpin> AsyncRead for Watched<S> {
+impl AsyncRead for Watched {
     fn poll_read(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -40,7 +41,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for Watched<S> {
     }
 }
 
-impl<S: AsyncRead + AsyncWrite + Unpin> AsyncWrite for Watched<S> {
+impl AsyncWrite for Watched {
     fn poll_write(mut self: Pin<&mut Self>, context: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         let written = Pin::new(&mut self.inner).poll_write(context, bytes);
         self.wrote(written)
@@ -85,5 +86,15 @@ impl<S: AsyncRead + AsyncWrite + Unpin> AsyncWrite for Watched<S> {
         }
         context.waker().wake_by_ref();
         Poll::Pending
+    }
+}
+
+impl Drop for Watched {
+    /// What a client does not take is not kept by the system for it either.
+    fn drop(&mut self) {
+        if self.pulse.is_blocked() {
+            // A connection that the client has reset meanwhile has nothing to forget.
+            let _ = self.inner.set_zero_linger();
+        }
     }
 }

@@ -6,6 +6,7 @@ mod host;
 mod leaks;
 mod login;
 mod origin;
+mod start;
 mod token;
 
 use crate::support::*;

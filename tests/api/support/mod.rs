@@ -3,11 +3,13 @@
 mod answer;
 mod breakpoints;
 mod document;
+mod program;
 mod solver;
 
 pub use answer::{Answer, EventStream};
 pub use breakpoints::Breakpoints;
 pub use document::{document, scripted, sweep};
+pub use program::Program;
 pub use solver::ScriptedSolver;
 
 use axum::Router;
