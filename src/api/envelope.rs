@@ -12,6 +12,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use std::any::Any;
 use std::time::Instant;
+use tracing::Instrument;
 use uuid::Uuid;
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
@@ -47,11 +48,14 @@ pub async fn envelope(mut request: Request, next: Next) -> Response {
     let method = request.method().clone();
     let route = request.extensions().get::<MatchedPath>().map_or("unmatched", MatchedPath::as_str).to_owned();
 
-    let mut response = in_one_form(next.run(request).await, &id);
+    let span = tracing::error_span!("request", request_id = id, %method, route);
+    let answered = next.run(request).instrument(span.clone()).await;
+    let _entered = span.entered();
+    let mut response = in_one_form(answered, &id);
 
     let status = response.status().as_u16();
     let duration = started.elapsed();
-    tracing::info!(%method, route, status, duration_ms = duration.as_secs_f64() * 1e3, request_id = id, "request");
+    tracing::info!(status, duration_ms = duration.as_secs_f64() * 1e3, "request");
     let labels = [("method", counted(&method).to_owned()), ("route", route), ("status", status.to_string())];
     metrics::counter!("herringbone_http_requests_total", &labels).increment(1);
     metrics::histogram!("herringbone_http_request_duration_seconds", &labels[..2]).record(duration.as_secs_f64());
@@ -63,6 +67,7 @@ pub async fn envelope(mut request: Request, next: Next) -> Response {
 pub fn answer_panic(panic: Box<dyn Any + Send + 'static>) -> Response {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
+    metrics::counter!("herringbone_panics_total", "in" => "request").increment(1);
     Refusal::internal(format!("panic: {text}")).into_response()
 }
 
@@ -97,7 +102,7 @@ fn in_one_form(mut response: Response, id: &str) -> Response {
         }
     };
     if let Some(cause) = cause {
-        tracing::error!(cause, request_id = id, "request failed");
+        tracing::error!(cause, "request failed");
     }
     let problem = Problem { request_id: Some(id.to_owned()), ..problem };
     let body = serde_json::to_vec(&problem).unwrap_or_default();

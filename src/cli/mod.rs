@@ -1,5 +1,6 @@
 //! The subcommands, one file each.
 
+mod backup;
 mod cache;
 mod check;
 mod input;
@@ -24,6 +25,8 @@ pub struct Arguments {
 enum Command {
     /// Serve the HTTP interface and the web pages.
     Serve(Box<serve::Serve>),
+    /// Copy the database, also while the service runs.
+    Backup(backup::Backup),
     /// Solve one job document in place: the result as JSON on standard output.
     Solve(solve::Solve),
     /// Check one job document: geometry and warnings, or every violation.
@@ -35,6 +38,7 @@ enum Command {
 pub fn run(arguments: Arguments) -> ExitCode {
     match arguments.command {
         Command::Serve(arguments) => serve::run(*arguments),
+        Command::Backup(arguments) => backup::run(arguments),
         Command::Solve(arguments) => solve::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Openapi => openapi::run(),

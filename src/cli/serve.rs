@@ -5,7 +5,7 @@ use clap::Args;
 use herringbone::api::{self, Access, AppState, HttpConfig, LoginPage, Pages};
 use herringbone::store::{Store, StoreConfig};
 use herringbone::web;
-use herringbone::work::{Jobs, StudySolver, WorkConfig};
+use herringbone::work::{self, Jobs, StudySolver, WorkConfig};
 use jiff::Timestamp;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -76,6 +76,9 @@ async fn serve(arguments: &Serve) -> anyhow::Result<()> {
     let jobs = Jobs::start(store, work, Arc::new(StudySolver), Arc::new(Timestamp::now))
         .await
         .map_err(anyhow::Error::from_boxed)?;
+    let housekeeper =
+        work::tend(jobs.store().clone(), arguments.store.retention, Arc::new(Timestamp::now), jobs.closing().clone());
+    tokio::spawn(housekeeper);
     let state = AppState::new(jobs.clone(), Timestamp::now());
     let app = api::router(state, http, &access, pages(access.has_token()));
     let address = listener.local_addr()?;

@@ -31,7 +31,8 @@ impl Store {
     pub async fn cancel(&self, id: JobId, now: Timestamp) -> Result<Cancellation, StoreError> {
         let mut transaction = self.write().await?;
         let canceled: Option<JobRecord> = sqlx::query_as(concat!(
-            "UPDATE jobs SET state = 'canceled', revision = revision + 1, ended_at_us = $2, \
+            "UPDATE jobs SET state = 'canceled', revision = revision + 1, \
+             ended_at_us = MAX($2, COALESCE(started_at_us, submitted_at_us)), \
              cancel_requested_at_us = COALESCE(cancel_requested_at_us, $2) \
              WHERE id = $1 AND state = 'queued' RETURNING ",
             job_columns!()

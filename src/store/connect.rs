@@ -1,16 +1,32 @@
 //! Opening the database: one writer connection, read-only readers, WAL.
 
+use super::backup;
+pub use super::error::StoreError;
+use super::examine::{OPEN_WAIT, beside, examine};
+use super::open_error::OpenError;
+use super::probe::Probe;
+use super::retention::{Limit, RetentionConfig};
 use super::waiting::Waiting;
-use sqlx::migrate::Migrator;
-use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous};
+use sqlx::migrate::{MigrateError, Migrator};
+use sqlx::sqlite::{
+    SqliteAutoVacuum, SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
+};
 use sqlx::{Sqlite, Transaction};
-use std::fs::File;
+use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
+use tokio::sync::{Mutex, Notify};
 
 /// The migrations, embedded.
 pub(super) static MIGRATIONS: Migrator = sqlx::migrate!("./migrations");
+
+/// How long a statement waits for a lock of another program.
+const BUSY_WAIT: Duration = Duration::from_secs(10);
+/// How long a caller waits for the one connection that writes.
+const WRITER_WAIT: Duration = Duration::from_secs(15);
+/// The log keeps this much room after its content has gone into the file.
+const LOG_BYTES: u64 = 64 << 20;
 
 /// Where the data is kept.
 #[derive(Debug, Clone, clap::Args)]
@@ -28,27 +44,16 @@ pub struct StoreConfig {
     #[arg(long, env = "HERRINGBONE_STAGE_CACHE_MIB", value_name = "MIB", default_value_t = 256,
           value_parser = clap::value_parser!(u32).range(0..=1_048_576))]
     pub stage_cache_mib: u32,
+
+    #[command(flatten)]
+    pub retention: RetentionConfig,
 }
 
 impl StoreConfig {
     pub fn at(database: impl Into<PathBuf>) -> Self {
-        Self { database: database.into(), database_readers: 2, stage_cache_mib: 256 }
+        let (database, retention) = (database.into(), RetentionConfig::default());
+        Self { database, database_readers: 2, stage_cache_mib: 256, retention }
     }
-}
-
-/// Why the store could not answer.
-#[derive(Debug, thiserror::Error)]
-pub enum StoreError {
-    #[error("database: {0}")]
-    Database(#[from] sqlx::Error),
-    #[error("database migration: {0}")]
-    Migration(#[from] sqlx::migrate::MigrateError),
-    #[error("the database {path} is in use by another process", path = .0.display())]
-    InUse(PathBuf),
-    #[error("lock file {path}: {source}", path = .path.display())]
-    Lock { path: PathBuf, source: std::io::Error },
-    #[error("stored {what} cannot be read: {detail}")]
-    Corrupt { what: &'static str, detail: String },
 }
 
 /// The open database. Cheap to clone.
@@ -58,32 +63,74 @@ pub struct Store {
     pub(super) reader: SqlitePool,
     pub(super) stage_cache_bytes: i64,
     pub(super) waiting: Waiting,
+    pub(super) limit: Option<Limit>,
+    pub(super) path: Arc<Path>,
+    pub(super) pressed: Arc<Notify>,
+    pub(super) probe: Arc<Mutex<Option<Probe>>>,
     _lock: Arc<File>,
 }
 
 impl Store {
-    /// Opens the database, creates it when missing and applies the migrations.
+    /// Opens the database, creates it when missing and applies the migrations; an existing one is copied before.
     ///
     /// # Errors
-    /// [`StoreError::InUse`] when another process has it open.
-    pub async fn open(config: &StoreConfig) -> Result<Self, StoreError> {
-        let lock = lock(&config.database)?;
+    /// Why it was not opened; it is then as it was before.
+    pub async fn open(config: &StoreConfig) -> Result<Self, OpenError> {
+        Self::open_with(config, &MIGRATIONS).await
+    }
+
+    pub(super) async fn open_with(config: &StoreConfig, migrations: &Migrator) -> Result<Self, OpenError> {
+        let path = config.database.as_path();
+        let lock = lock(path)?;
+        let found = examine(path, migrations).await?;
+        let wrong = |error| OpenError::of_database(path, error);
+        let limit = config.retention.limit(found.page_bytes);
         let options = SqliteConnectOptions::new()
-            .filename(&config.database)
+            .filename(path)
             .create_if_missing(true)
             .journal_mode(SqliteJournalMode::Wal)
             .synchronous(SqliteSynchronous::Full)
             .foreign_keys(true)
-            .busy_timeout(Duration::from_secs(10));
-        let writer = SqlitePoolOptions::new().max_connections(1).connect_with(options.clone()).await?;
-        MIGRATIONS.run(&writer).await?;
-        let reader = SqlitePoolOptions::new()
+            .busy_timeout(OPEN_WAIT)
+            .pragma("journal_size_limit", LOG_BYTES.to_string());
+        if let Some(to) = found.upgrade_to {
+            keep_copy(path, to).await?;
+        }
+        if found.schema.is_none() || found.upgrade_to.is_some() {
+            // Only heeded before the first table; on an existing file it would be one more write.
+            let new = found.schema.is_none().then_some(SqliteAutoVacuum::Incremental);
+            let options = new.into_iter().fold(options.clone(), SqliteConnectOptions::auto_vacuum);
+            let pool = SqlitePoolOptions::new().max_connections(1).connect_with(options).await.map_err(wrong)?;
+            let applied = migrations.run(&pool).await;
+            pool.close().await;
+            applied.map_err(|error| not_upgraded(path, migrations, error))?;
+        }
+        let mut options = options.busy_timeout(BUSY_WAIT);
+        if let Some(limit) = &limit {
+            options = options.pragma("max_page_count", limit.max_pages.to_string());
+        }
+        let lasting = || SqlitePoolOptions::new().idle_timeout(None).max_lifetime(None);
+        let writer = lasting().max_connections(1).acquire_timeout(WRITER_WAIT);
+        let writer = writer.connect_with(options.clone()).await.map_err(wrong)?;
+        try_to_write(&writer).await.map_err(wrong)?;
+        let reader = lasting()
             .max_connections(config.database_readers)
             .connect_with(options.read_only(true).create_if_missing(false))
-            .await?;
-        let stage_cache_bytes = i64::from(config.stage_cache_mib) << 20;
-        let waiting = Waiting::counted(&writer).await?;
-        Ok(Self { writer, reader, stage_cache_bytes, waiting, _lock: Arc::new(lock) })
+            .await
+            .map_err(wrong)?;
+        let stage_cache_bytes = (i64::from(config.stage_cache_mib) << 20).min(Limit::stages(limit.as_ref()));
+        let waiting = Waiting::counted(&writer).await.map_err(wrong)?;
+        Ok(Self {
+            writer,
+            reader,
+            stage_cache_bytes,
+            waiting,
+            limit,
+            path: path.into(),
+            pressed: Arc::default(),
+            probe: Arc::default(),
+            _lock: Arc::new(lock),
+        })
     }
 
     /// Begins a transaction that writes.
@@ -105,14 +152,49 @@ impl Store {
 }
 
 /// Two processes on one database would each take the other's running jobs for lost ones.
-fn lock(database: &Path) -> Result<File, StoreError> {
-    let mut name = database.as_os_str().to_owned();
-    name.push(".lock");
-    let path = PathBuf::from(name);
-    let file = File::create(&path).map_err(|source| StoreError::Lock { path: path.clone(), source })?;
+fn lock(database: &Path) -> Result<File, OpenError> {
+    let path = beside(database, ".lock");
+    if database.is_dir() {
+        return Err(OpenError::NotAFile(database.to_owned()));
+    }
+    // A missing directory is the database's, a forbidden file may be the lock's alone.
+    let wrong = |error: std::io::Error| match OpenError::of_file(&path, error) {
+        OpenError::NoDirectory(_) => OpenError::NoDirectory(database.to_owned()),
+        other => other,
+    };
+    let file = OpenOptions::new().write(true).create(true).truncate(false).open(&path).map_err(wrong)?;
     match file.try_lock() {
         Ok(()) => Ok(file),
-        Err(std::fs::TryLockError::WouldBlock) => Err(StoreError::InUse(database.to_owned())),
-        Err(std::fs::TryLockError::Error(source)) => Err(StoreError::Lock { path, source }),
+        Err(std::fs::TryLockError::WouldBlock) => Err(OpenError::InUse(database.to_owned())),
+        Err(std::fs::TryLockError::Error(source)) => Err(OpenError::of_file(&path, source)),
     }
+}
+
+/// The way back: an older herringbone does not read the new schema.
+async fn keep_copy(path: &Path, to: i64) -> Result<(), OpenError> {
+    let copy = beside(path, &format!(".before-schema-{to}"));
+    let copied = backup::copy(path, &copy).await.map_err(|error| match error {
+        backup::BackupError::Database { source, .. } => OpenError::of_database(path, source),
+        backup::BackupError::File { path, source } => OpenError::of_file(&path, source),
+        other => OpenError::Upgrade { path: path.to_owned(), to, source: Box::new(other) },
+    })?;
+    tracing::info!(copy = %copy.display(), bytes = copied.bytes, "copy made before the upgrade of the database");
+    Ok(())
+}
+
+fn not_upgraded(path: &Path, migrations: &Migrator, error: MigrateError) -> OpenError {
+    let to = migrations.iter().map(|step| step.version).max().unwrap_or_default();
+    match error {
+        MigrateError::Execute(source) => OpenError::of_database(path, source),
+        MigrateError::ExecuteMigration(source, _) => match OpenError::of_database(path, source) {
+            OpenError::Database { path, source } => OpenError::Upgrade { path, to, source: Box::new(source) },
+            other => other,
+        },
+        other => OpenError::Upgrade { path: path.to_owned(), to, source: Box::new(other) },
+    }
+}
+
+/// A file that may not be written, or is locked by another program, stops the start instead of the first job.
+async fn try_to_write(writer: &SqlitePool) -> Result<(), sqlx::Error> {
+    writer.begin_with("BEGIN IMMEDIATE").await?.rollback().await
 }

@@ -69,7 +69,8 @@ pub(super) async fn fail_in(
     let error = serde_json::to_string(failure)
         .map_err(|error| StoreError::Corrupt { what: "failure", detail: error.to_string() })?;
     let failed: Option<JobRecord> = sqlx::query_as(concat!(
-        "UPDATE jobs SET state = 'failed', revision = revision + 1, ended_at_us = $3, error = $4 \
+        "UPDATE jobs SET state = 'failed', revision = revision + 1, error = $4, \
+         ended_at_us = MAX($3, COALESCE(started_at_us, submitted_at_us)) \
          WHERE id = $1 AND attempt = $2 AND state = 'running' RETURNING ",
         job_columns!()
     ))
@@ -94,7 +95,8 @@ pub(super) async fn complete(
     now: Timestamp,
 ) -> Result<Option<JobRecord>, StoreError> {
     let done: Option<JobRecord> = sqlx::query_as(concat!(
-        "UPDATE jobs SET state = 'succeeded', revision = revision + 1, ended_at_us = $3, progress = 1, \
+        "UPDATE jobs SET state = 'succeeded', revision = revision + 1, progress = 1, \
+         ended_at_us = MAX($3, COALESCE(started_at_us, submitted_at_us)), \
          solver_version = $4, input_hash = $5, reused_from = $6 \
          WHERE id = $1 AND attempt = $2 AND state = 'running' RETURNING ",
         job_columns!()

@@ -95,7 +95,8 @@ fn decode(column: &'static str, detail: impl std::fmt::Display) -> sqlx::Error {
     sqlx::Error::ColumnDecode { index: column.to_owned(), source: detail.to_string().into() }
 }
 
-/// Writes the history row of a transition that was just made.
+/// Writes the history row of a transition that was just made. The clock may have been set back since the one before: the
+/// job's own times never run backwards (`MAX` in the statements), these tell what the clock said.
 pub(super) async fn record_event(
     transaction: &mut Transaction<'static, Sqlite>,
     job: &JobRecord,

@@ -63,7 +63,8 @@ impl Store {
     pub async fn claim_next(&self, class: WorkClass, now: Timestamp) -> Result<Option<Claim>, StoreError> {
         let mut transaction = self.write().await?;
         let row = sqlx::query(concat!(
-            "UPDATE jobs SET state = 'running', attempt = attempt + 1, revision = revision + 1, started_at_us = $1, \
+            "UPDATE jobs SET state = 'running', attempt = attempt + 1, revision = revision + 1, \
+             started_at_us = MAX($1, submitted_at_us), \
              progress = CASE kind WHEN 'sweep' THEN progress ELSE 0 END, stage = NULL WHERE state = 'queued' AND id = \
              (SELECT id FROM jobs WHERE state = 'queued' AND (kind = 'sweep') = $2 \
              ORDER BY priority DESC, turns, id LIMIT 1) RETURNING input, computed_us, ",
@@ -192,7 +193,8 @@ async fn release_in(
     let released: Option<JobRecord> = sqlx::query_as(concat!(
         "UPDATE jobs SET revision = revision + 1, \
          state = CASE WHEN cancel_requested_at_us IS NULL THEN 'queued' ELSE 'canceled' END, \
-         ended_at_us = CASE WHEN cancel_requested_at_us IS NULL THEN NULL ELSE $3 END, \
+         ended_at_us = CASE WHEN cancel_requested_at_us IS NULL THEN NULL \
+         ELSE MAX($3, COALESCE(started_at_us, submitted_at_us)) END, \
          started_at_us = CASE WHEN cancel_requested_at_us IS NULL THEN NULL ELSE started_at_us END, \
          progress = CASE WHEN cancel_requested_at_us IS NULL AND kind <> 'sweep' THEN 0 ELSE progress END, \
          stage = CASE WHEN cancel_requested_at_us IS NULL THEN NULL ELSE stage END \

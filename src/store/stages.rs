@@ -2,7 +2,7 @@
 
 use super::connect::{Store, StoreError};
 use jiff::Timestamp;
-use sqlx::Row;
+use sqlx::{Row, Sqlite, Transaction};
 
 impl Store {
     /// The bytes of a stage, if they are still there.
@@ -38,15 +38,28 @@ impl Store {
         .bind(now.as_microsecond())
         .execute(&mut *transaction)
         .await?;
-        // Everything older than the newest rows that fit together.
-        sqlx::query(
-            "DELETE FROM stages WHERE hash IN (SELECT hash FROM (SELECT hash, SUM(size_bytes) OVER \
-             (ORDER BY created_at_us DESC, hash) AS total FROM stages) WHERE total > $1)",
-        )
-        .bind(self.stage_cache_bytes)
-        .execute(&mut *transaction)
-        .await?;
+        trim(&mut transaction, self.stage_cache_bytes).await?;
         transaction.commit().await?;
         Ok(())
     }
+
+    /// Deletes the oldest stages until so many bytes are left.
+    pub(super) async fn trim_stages(&self, bytes: i64) -> Result<(), StoreError> {
+        let mut transaction = self.write().await?;
+        trim(&mut transaction, bytes).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+}
+
+/// Everything older than the newest rows that fit together.
+async fn trim(transaction: &mut Transaction<'static, Sqlite>, bytes: i64) -> Result<(), StoreError> {
+    sqlx::query(
+        "DELETE FROM stages WHERE hash IN (SELECT hash FROM (SELECT hash, SUM(size_bytes) OVER \
+         (ORDER BY created_at_us DESC, hash) AS total FROM stages) WHERE total > $1)",
+    )
+    .bind(bytes)
+    .execute(&mut **transaction)
+    .await?;
+    Ok(())
 }

@@ -131,7 +131,8 @@ async fn start(
     now: Timestamp,
 ) -> Result<JobRecord, StoreError> {
     let record: JobRecord = sqlx::query_as(concat!(
-        "UPDATE jobs SET state = 'running', attempt = attempt + 1, revision = revision + 1, started_at_us = $2 \
+        "UPDATE jobs SET state = 'running', attempt = attempt + 1, revision = revision + 1, \
+         started_at_us = MAX($2, submitted_at_us) \
          WHERE id = $1 AND state = 'queued' RETURNING ",
         job_columns!()
     ))

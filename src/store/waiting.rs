@@ -1,6 +1,6 @@
 //! How many jobs wait, known without counting them: this process is the only one that writes.
 
-use super::connect::{Store, StoreError};
+use super::connect::Store;
 use sqlx::{Row, SqlitePool};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
@@ -11,7 +11,7 @@ pub(super) struct Waiting(Arc<AtomicI64>);
 
 impl Waiting {
     /// Counts them, once.
-    pub async fn counted(pool: &SqlitePool) -> Result<Self, StoreError> {
+    pub async fn counted(pool: &SqlitePool) -> Result<Self, sqlx::Error> {
         let row = sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'").fetch_one(pool).await?;
         Ok(Self(Arc::new(AtomicI64::new(row.try_get("n")?))))
     }

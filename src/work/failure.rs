@@ -20,6 +20,7 @@ pub(super) fn internal(detail: &str) -> Failure {
 pub(super) fn panic_failure(panic: &(dyn std::any::Any + Send)) -> Failure {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+    super::measure::panicked();
     internal(&format!("panic: {}", text.unwrap_or_default()))
 }
 

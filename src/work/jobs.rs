@@ -3,6 +3,7 @@
 use super::config::WorkConfig;
 use super::hub::Subscription;
 use super::local::LocalQueue;
+use super::measure;
 use super::queue::{Queue, Workers};
 use super::recorder::{Clock, Recorder};
 use super::reuse::stored_completion;
@@ -139,6 +140,7 @@ impl Jobs {
         if self.is_closing() {
             return Err(SubmitError::Closing);
         }
+        self.store().admit().await?;
         let SubmitRequest { document, idempotency_key, request_id } = request;
         self.check(document.clone()).await?;
         let input = serde_json::to_string(&document)?;
@@ -160,6 +162,9 @@ impl Jobs {
         match self.store().submit(job, reuse, self.0.capacity, self.0.recorder.now()).await? {
             Submission::Accepted(job) => {
                 metrics::counter!("herringbone_jobs_submitted_total", "kind" => job.kind.clone()).increment(1);
+                if job.reused_from.is_some() {
+                    measure::result_reused();
+                }
                 if !job.state.is_ended() {
                     self.0.queue.announce(job.id, WorkClass::of_kind(&job.kind));
                 }

@@ -1,6 +1,7 @@
 //! The queue of this process: workers that take what waits in the store.
 
 use super::config::WorkConfig;
+use super::measure;
 use super::queue::{Pending, Queue, Workers};
 use super::recorder::Recorder;
 use super::run::Run;
@@ -13,6 +14,7 @@ use std::time::Duration;
 use tokio::sync::Notify;
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
+use tracing::Instrument;
 
 /// Stack of the pools' threads: deep enough for recursive numerics.
 const STACK_BYTES: usize = 8 << 20;
@@ -118,11 +120,13 @@ impl Shared {
                 Ok(Some(claim)) => {
                     // One announcement may have come for several jobs: whoever finds work wakes the next.
                     self.wake(class).notify_one();
-                    self.run(claim, class, &pool).await;
+                    let span = measure::span(&claim.job);
+                    self.run(claim, class, &pool).instrument(span).await;
                 }
                 Ok(None) => self.pause(self.wake(class).notified()).await,
                 Err(error) => {
                     tracing::error!(%error, "next job not read");
+                    measure::claim_retried();
                     self.pause(tokio::time::sleep(RETRY_AFTER)).await;
                 }
             }
@@ -145,6 +149,7 @@ impl Shared {
 
     async fn run(&self, claim: Claim, class: WorkClass, pool: &rayon::ThreadPool) {
         let id = claim.job.id;
+        tracing::info!("job started");
         let stop = Arc::new(Stop::default());
         self.running().insert(id, (class, Arc::clone(&stop)));
         self.stop_if_asked(id, &stop).await;

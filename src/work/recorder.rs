@@ -1,6 +1,7 @@
 //! Writes what becomes of a job and tells it to whoever waits; the only way in which a job's state changes.
 
 use super::hub::{Hub, Subscription};
+use super::measure;
 use crate::store::{
     Cancellation, Claim, Completion, Failure, JobId, JobRecord, Pause, PointBatch, State, Store, StoreError, WorkClass,
 };
@@ -41,6 +42,7 @@ impl Recorder {
     pub async fn claim_next(&self, class: WorkClass) -> Result<Option<Claim>, StoreError> {
         let claim = self.store.claim_next(class, self.now()).await?;
         if let Some(claim) = &claim {
+            measure::started(&claim.job);
             self.hub.publish(&claim.job);
         }
         Ok(claim)
@@ -61,6 +63,9 @@ impl Recorder {
     /// False when the job whose result was to be reused is gone, or the job is no longer this attempt's.
     pub async fn succeed(&self, job: &JobRecord, completion: &Completion) -> Result<bool, StoreError> {
         let done = self.store.succeed(job.id, job.attempt, completion, self.now()).await?;
+        if done.is_some() && completion.reused_from.is_some() {
+            measure::result_reused();
+        }
         Ok(self.ended(done))
     }
 
@@ -103,10 +108,11 @@ impl Recorder {
 
     fn ended(&self, job: Option<JobRecord>) -> bool {
         if let Some(job) = job.as_ref().filter(|job| job.state.is_ended()) {
+            tracing::info!(job = %job.id, state = job.state.word(), "job ended");
             let labels = [("kind", job.kind.clone()), ("state", job.state.word().to_owned())];
             metrics::counter!("herringbone_jobs_ended_total", &labels).increment(1);
             if let (Some(started_at), Some(ended_at)) = (job.started_at, job.ended_at) {
-                let seconds = ended_at.duration_since(started_at).as_secs_f64();
+                let seconds = ended_at.duration_since(started_at).as_secs_f64().max(0.0);
                 metrics::histogram!("herringbone_job_duration_seconds", &labels).record(seconds);
             }
         }

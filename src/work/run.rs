@@ -2,6 +2,7 @@
 
 use super::config::WorkConfig;
 use super::failure::{document_failure, failure_of, internal, panic_failure, public};
+use super::measure;
 use super::points::{RunningPoints, place_of_points};
 use super::recorder::Recorder;
 use super::reuse::stored_completion;
@@ -82,7 +83,7 @@ impl Run<'_> {
         match self.calculate(document, input_hash, &points, progress, &mut progressed, started).await {
             Ending::Solved(completion) => {
                 if self.patiently(|| self.recorder.succeed(&self.job, &completion)).await == Some(false) {
-                    tracing::warn!(job = %id, attempt, "a result came too late and was dropped");
+                    tracing::warn!("a result came too late and was dropped");
                 }
             }
             Ending::Failed(failure) => {
@@ -135,7 +136,7 @@ impl Run<'_> {
             if progressed.has_changed().unwrap_or(false) || !batch.is_empty() {
                 let (stage, fraction) = *progressed.borrow_and_update();
                 if let Err(error) = self.recorder.progress(&self.job, stage.word(), fraction, &batch).await {
-                    tracing::warn!(job = %self.job.id, %error, "progress not written");
+                    tracing::warn!(%error, "progress not written");
                     points.put_back(batch);
                 }
             }
@@ -173,7 +174,7 @@ impl Run<'_> {
         let released = self.patiently(|| self.recorder.release(&self.job, pause, computed)).await;
         if let Some(Some(State::Queued)) = released {
             let why = if pause == Pause::Turn { "others had waited" } else { "the service shuts down" };
-            tracing::info!(job = %self.job.id, why, "job stopped; it goes on later");
+            tracing::info!(why, "job stopped; it goes on later");
         }
     }
 
@@ -186,8 +187,7 @@ impl Run<'_> {
     }
 
     async fn fail(&self, failure: Failure) {
-        let request_id = self.job.request_id.as_deref().unwrap_or_default();
-        tracing::warn!(job = %self.job.id, request_id, code = failure.code, detail = failure.detail, "job failed");
+        tracing::warn!(code = failure.code, detail = failure.detail, "job failed");
         let failure = public(failure);
         self.patiently(|| self.recorder.fail(&self.job, &failure)).await;
     }
@@ -201,12 +201,12 @@ impl Run<'_> {
         loop {
             match attempt().await {
                 Ok(done) => return Some(done),
-                Err(error) => tracing::error!(job = %self.job.id, %error, "not written; it is tried again"),
+                Err(error) => tracing::error!(%error, "not written; it is tried again"),
             }
             tokio::select! {
                 () = tokio::time::sleep(pause) => pause = (2 * pause).min(RETRY_AFTER_AT_MOST),
                 () = self.closing.cancelled() => {
-                    tracing::error!(job = %self.job.id, "what became of the job is not written; it runs again after the restart");
+                    tracing::error!("what became of the job is not written; it runs again after the restart");
                     return None;
                 }
             }
@@ -243,6 +243,7 @@ impl Work<'_> {
 
     fn packed(&self, outcome: Outcome, input_hash: String) -> Result<Ending, String> {
         let Outcome { mut result, series } = outcome;
+        measure::computed(&result.numerics);
         let points = result.sweep.as_mut().map(|sweep| std::mem::take(&mut sweep.points));
         result.note_not_finite();
         let body = serde_json::to_string::<JobResult>(&result).map_err(|error| error.to_string())?;

@@ -2,6 +2,7 @@
 
 mod support;
 
+mod backup;
 mod cancel_job;
 mod connections;
 mod delete_job;
@@ -11,6 +12,8 @@ mod idempotency;
 mod kinds;
 mod lifecycle;
 mod list_jobs;
+mod log;
+mod metrics;
 mod openapi;
 mod operation;
 mod points;

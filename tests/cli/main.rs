@@ -1,5 +1,8 @@
 //! The command line as a user meets it: exit codes, what goes to which stream, every name of the result.
 
+mod backup;
+mod opening;
+
 use serde_json::Value;
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -3,7 +3,7 @@
 use super::{Problem, ProblemCode};
 use crate::api::config::{RETRY_FULL_S, RETRY_LIVE_S};
 use crate::job::DocumentError;
-use crate::store::StoreError;
+use crate::store::{StoreError, Unavailable};
 use crate::work::SubmitError;
 use axum::http::HeaderValue;
 use axum::http::header::RETRY_AFTER;
@@ -62,13 +62,21 @@ impl From<DocumentError> for Refusal {
 
 impl From<StoreError> for Refusal {
     fn from(error: StoreError) -> Self {
-        if !error.is_unavailable() {
-            return Self::internal(error);
-        }
-        let detail = "The database cannot be read or written at the moment.";
-        let mut refusal = Self::new(ProblemCode::StorageUnavailable, detail).retry_after(RETRY_FULL_S);
+        let Some(why) = error.unavailable() else { return Self::internal(error) };
+        let mut refusal = Self::new(ProblemCode::StorageUnavailable, reason(why)).retry_after(RETRY_FULL_S);
         refusal.0.cause = Some(error.to_string());
         refusal
+    }
+}
+
+/// What is said outside; the words of the database stay in the log.
+fn reason(why: Unavailable) -> &'static str {
+    match why {
+        Unavailable::Full => "There is no room for more data.",
+        Unavailable::Busy => "The database is held by another program.",
+        Unavailable::Disk => "The disk did not read or write.",
+        Unavailable::ReadOnly => "The database may not be written.",
+        Unavailable::Memory => "There is not enough memory.",
     }
 }
 

@@ -29,8 +29,8 @@ pub async fn read_liveness() -> Json<Health> {
 #[utoipa::path(
     get, path = "/readyz", tag = "operation",
     responses(
-        (status = 200, description = "The database answers and jobs are taken.", body = Health),
-        (status = 503, description = "The service is shutting down."),
+        (status = 200, description = "The database answers and can be written: jobs are taken.", body = Health),
+        (status = 503, description = "`shutting-down`, or `storage-unavailable`: the database is full, locked or failing."),
     )
 )]
 pub async fn read_readiness(State(state): State<AppState>) -> Result<Json<Health>, Refusal> {
@@ -39,5 +39,6 @@ pub async fn read_readiness(State(state): State<AppState>) -> Result<Json<Health
         return Err(Refusal::new(ProblemCode::ShuttingDown, detail).retry_after(RETRY_FULL_S));
     }
     state.jobs().store().ping().await?;
+    state.jobs().store().writable().await?;
     Ok(OK)
 }

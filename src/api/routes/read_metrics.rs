@@ -2,9 +2,11 @@
 
 use crate::api::problem::Refusal;
 use crate::api::state::AppState;
+use crate::api::telemetry;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
+use jiff::Timestamp;
 
 /// Metrics in the Prometheus text format.
 #[utoipa::path(
@@ -29,6 +31,8 @@ pub async fn read_metrics(State(state): State<AppState>) -> Result<Response, Ref
     metrics::gauge!("herringbone_queue_capacity").set(f64::from(jobs.capacity()));
     metrics::gauge!("herringbone_workers").set(workers.total as f64);
     metrics::gauge!("herringbone_workers_busy").set(workers.busy as f64);
+    telemetry::measure_database(&jobs.store().usage().await?);
+    telemetry::measure_process(state.started_at(), Timestamp::now(), jobs.solver_version());
     let handle = state.metrics();
     handle.run_upkeep();
     Ok(([(CONTENT_TYPE, "text/plain; version=0.0.4; charset=utf-8")], handle.render()).into_response())

@@ -34,7 +34,7 @@ use axum::response::{IntoResponse, Response};
         (status = 413, description = "The body is larger than 1 MiB."),
         (status = 415, description = "The body is not `application/json`."),
         (status = 422, description = "`invalid-design`, `unsupported-design` or `idempotency-key-reused`."),
-        (status = 503, description = "`queue-full` or `shutting-down`; `Retry-After` says when to try again."),
+        (status = 503, description = "`queue-full`, `shutting-down` or `storage-unavailable`; `Retry-After` says when to try again."),
     )
 )]
 pub async fn submit_job(

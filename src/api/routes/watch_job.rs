@@ -4,6 +4,7 @@ use crate::api::config::{KEEP_ALIVE, RETRY_FOLLOW_S};
 use crate::api::problem::{ProblemCode, Refusal};
 use crate::api::request::JobPath;
 use crate::api::state::AppState;
+use crate::api::telemetry::OpenStream;
 use crate::api::view::Job;
 use crate::store::{JobId, JobRecord};
 use crate::work::Subscription;
@@ -46,7 +47,7 @@ pub async fn watch_job(
     if job.state.is_ended() && last_event(&headers) == Some(job.revision) {
         return Ok(StatusCode::NO_CONTENT.into_response());
     }
-    let place = state.follow().ok_or_else(too_many)?;
+    let place = (state.follow().ok_or_else(too_many)?, OpenStream::new());
     let events = events(id, Arc::new(job), changes, state.jobs().closing().clone()).map(move |event| {
         let _ = &place;
         event

@@ -175,3 +175,43 @@ async fn a_result_deleted_before_it_is_reused_is_computed_again() {
     };
     assert_eq!((job.state, job.revision), (State::Queued, 1));
 }
+
+/// The clock is set back while a job waits, and again while it runs.
+#[tokio::test]
+async fn the_times_of_a_job_never_run_backwards() {
+    let Fixture { store, .. } = &fixture().await;
+    let ordered = |job: &JobRecord| {
+        let (started, ended) = (job.started_at.unwrap_or(job.submitted_at), job.ended_at.unwrap());
+        assert!(job.submitted_at <= started && started <= ended, "{job:?}");
+    };
+    for (hash, ends) in [("a", "succeeds"), ("b", "fails"), ("c", "is canceled"), ("d", "waits")] {
+        let job = match store.submit(new_job(hash), None, 100, at(1000)).await.unwrap() {
+            Submission::Accepted(job) => job,
+            other => panic!("{other:?}"),
+        };
+        if ends == "waits" {
+            let Cancellation::Canceled(job) = store.cancel(job.id, at(10)).await.unwrap() else {
+                panic!("not canceled")
+            };
+            ordered(&job);
+            continue;
+        }
+        let job = store.claim_next(WorkClass::Single, at(500)).await.unwrap().unwrap().job;
+        assert_eq!(job.started_at, Some(at(1000)));
+        let ended = match ends {
+            "succeeds" => store.succeed(job.id, 1, &completion(hash), at(20)).await.unwrap(),
+            "fails" => store.fail(job.id, 1, &Failure::new("diverged", ""), at(20)).await.unwrap(),
+            _ => {
+                store.cancel(job.id, at(20)).await.unwrap();
+                store.release(job.id, 1, Pause::Shutdown, Duration::ZERO, at(10)).await.unwrap()
+            }
+        };
+        ordered(&ended.unwrap());
+    }
+    let found = store.reusable("a", "test-1").await.unwrap().unwrap();
+    let reuse = Completion { reused_from: Some(found.job), ..completion("a") };
+    let Submission::Accepted(job) = store.submit(new_job("a"), Some(reuse), 0, at(5)).await.unwrap() else {
+        panic!("full")
+    };
+    ordered(&job);
+}

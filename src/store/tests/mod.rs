@@ -1,6 +1,8 @@
 mod history;
 mod lifecycle;
 mod listing;
+mod opening;
+mod retention;
 mod schema;
 mod series;
 mod stages;

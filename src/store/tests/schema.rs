@@ -21,6 +21,7 @@ async fn the_database_runs_as_configured() {
     assert_eq!(pragma("SELECT journal_mode FROM pragma_journal_mode").await, "wal");
     assert_eq!(pragma("SELECT CAST(synchronous AS TEXT) FROM pragma_synchronous").await, "2");
     assert_eq!(pragma("SELECT CAST(foreign_keys AS TEXT) FROM pragma_foreign_keys").await, "1");
+    assert_eq!(pragma("SELECT CAST(auto_vacuum AS TEXT) FROM pragma_auto_vacuum").await, "2", "deletes give room back");
     let refused = sqlx::query("DELETE FROM jobs").execute(&fixture.store.reader).await;
     assert!(refused.is_err(), "readers must not write");
 }
@@ -29,5 +30,5 @@ async fn the_database_runs_as_configured() {
 async fn a_second_process_is_refused() {
     let fixture = fixture().await;
     let second = Store::open(&StoreConfig::at(fixture.directory.path().join("jobs.db"))).await;
-    assert!(matches!(second, Err(StoreError::InUse(_))));
+    assert!(matches!(second, Err(OpenError::InUse(_))));
 }

@@ -4,12 +4,14 @@ mod answer;
 mod breakpoints;
 mod document;
 mod program;
+mod service;
 mod solver;
 
 pub use answer::{Answer, EventStream};
 pub use breakpoints::Breakpoints;
 pub use document::{document, scripted, sweep};
 pub use program::Program;
+pub use service::Service;
 pub use solver::ScriptedSolver;
 
 use axum::Router;

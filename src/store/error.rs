@@ -1,0 +1,98 @@
+//! What can go wrong while the database is in use.
+
+use std::fmt;
+
+/// Why the store could not answer.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    #[error("database: {0}")]
+    Database(sqlx::Error),
+    #[error("{why}: {detail}")]
+    Unavailable { why: Unavailable, detail: String },
+    #[error("the database has reached its size limit: {used_mb} MB used, new jobs up to {limit_mb} MB")]
+    LimitReached { used_mb: u64, limit_mb: u64 },
+    #[error("stored {what} cannot be read: {detail}")]
+    Corrupt { what: &'static str, detail: String },
+}
+
+/// Something outside the service stands in the way, and may go away again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Unavailable {
+    /// The disk is full, or the database's limit is reached.
+    Full,
+    /// Another program holds the database.
+    Busy,
+    /// The disk did not read or write.
+    Disk,
+    /// The file or its directory may not be written.
+    ReadOnly,
+    /// There was not enough memory.
+    Memory,
+}
+
+impl fmt::Display for Unavailable {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Unavailable::Full => "the disk or the database is full",
+            Unavailable::Busy => "the database is locked by another program",
+            Unavailable::Disk => "the disk failed to read or write",
+            Unavailable::ReadOnly => "the database may not be written",
+            Unavailable::Memory => "there is not enough memory",
+        })
+    }
+}
+
+impl StoreError {
+    /// What stands in the way, if it may go away again without a change of the service.
+    pub fn unavailable(&self) -> Option<Unavailable> {
+        match self {
+            StoreError::Unavailable { why, .. } => Some(*why),
+            StoreError::LimitReached { .. } => Some(Unavailable::Full),
+            StoreError::Database(_) | StoreError::Corrupt { .. } => None,
+        }
+    }
+}
+
+impl From<sqlx::Error> for StoreError {
+    fn from(source: sqlx::Error) -> Self {
+        match passing(&source) {
+            Some(why) => StoreError::Unavailable { why, detail: source.to_string() },
+            None => StoreError::Database(source),
+        }
+    }
+}
+
+fn passing(error: &sqlx::Error) -> Option<Unavailable> {
+    match error {
+        // Whoever has the one writer connection waits for somebody outside.
+        sqlx::Error::PoolTimedOut => return Some(Unavailable::Busy),
+        sqlx::Error::Io(_) => return Some(Unavailable::Disk),
+        _ => {}
+    }
+    match primary_code(error)? {
+        SQLITE_BUSY | SQLITE_LOCKED => Some(Unavailable::Busy),
+        SQLITE_NOMEM => Some(Unavailable::Memory),
+        SQLITE_READONLY => Some(Unavailable::ReadOnly),
+        SQLITE_IOERR | SQLITE_CANTOPEN => Some(Unavailable::Disk),
+        SQLITE_FULL => Some(Unavailable::Full),
+        _ => None,
+    }
+}
+
+// Primary result codes (sqlite.org/rescode.html).
+pub(super) const SQLITE_BUSY: i32 = 5;
+pub(super) const SQLITE_LOCKED: i32 = 6;
+const SQLITE_NOMEM: i32 = 7;
+pub(super) const SQLITE_READONLY: i32 = 8;
+pub(super) const SQLITE_INTERRUPT: i32 = 9;
+pub(super) const SQLITE_IOERR: i32 = 10;
+pub(super) const SQLITE_CORRUPT: i32 = 11;
+pub(super) const SQLITE_FULL: i32 = 13;
+pub(super) const SQLITE_CANTOPEN: i32 = 14;
+pub(super) const SQLITE_NOTADB: i32 = 26;
+
+/// SQLite's own code, without the details in its upper bits.
+pub(super) fn primary_code(error: &sqlx::Error) -> Option<i32> {
+    let code: i32 = error.as_database_error()?.code()?.parse().ok()?;
+    Some(code & 0xff)
+}
