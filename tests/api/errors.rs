@@ -147,7 +147,7 @@ async fn every_answer_carries_the_security_headers() {
     for path in ["/healthz", "/nothing", "/docs/", "/api/v1/jobs"] {
         let answer = app.get(path).await;
         assert_eq!(answer.header("x-content-type-options"), "nosniff");
-        assert!(answer.header("content-security-policy").contains("script-src 'self'"));
+        assert!(answer.header("content-security-policy").contains("default-src 'self'"));
         assert_eq!(answer.header("referrer-policy"), "no-referrer");
     }
 }

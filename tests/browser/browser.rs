@@ -1,7 +1,7 @@
 //! A headless Chromium for one flow.
 
 use crate::process::Process;
-use crate::server::Server;
+use crate::server::{NAME, Server};
 use futures_util::FutureExt;
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, resume_unwind};
@@ -26,8 +26,13 @@ pub struct Browser {
 
 /// Runs a flow in a fresh browser against a fresh server, then checks the console and where requests went.
 pub async fn flow(steps: impl AsyncFnOnce(&Browser)) {
+    flow_against(Server::start, steps).await;
+}
+
+/// The same against a particular server.
+pub async fn flow_against(server: impl FnOnce() -> Server, steps: impl AsyncFnOnce(&Browser)) {
     let _turn = ONE_AT_A_TIME.lock().await;
-    let server = Server::start();
+    let server = server();
     let mut command = Command::new(std::env::var("CHROMEDRIVER").unwrap_or_else(|_| "chromedriver".to_owned()));
     command.arg("--port=0");
     let process = Process::start(command, INSTALL);
@@ -67,8 +72,8 @@ fn capabilities(profile: &str) -> Capabilities {
         "--disable-component-update".to_owned(),
         "--disable-sync".to_owned(),
         "--window-size=1280,1000".to_owned(),
-        // No name resolves: whatever wanted to leave this machine fails, and shows in the request log.
-        "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1".to_owned(),
+        // One name resolves, to this machine, and no other: whatever wanted to leave this machine fails, and shows in the request log.
+        format!("--host-resolver-rules=MAP {NAME} 127.0.0.1 , MAP * ~NOTFOUND , EXCLUDE 127.0.0.1"),
         // Containers and continuous integration run as root, where Chromium's sandbox does not start.
         "--no-sandbox".to_owned(),
     ];
@@ -150,6 +155,8 @@ impl Browser {
             .iter()
             .filter(|entry| matches!(entry.level.as_str(), "SEVERE" | "WARNING"))
             .filter(|entry| !entry.message.contains("the server responded with a status of 4"))
+            // Said of every page that comes by plain HTTP under a name.
+            .filter(|entry| !entry.message.contains("Cross-Origin-Opener-Policy header has been ignored"))
             .map(|entry| entry.message.as_str())
             .collect();
         assert!(errors.is_empty(), "the console has {} errors:\n{}", errors.len(), errors.join("\n"));

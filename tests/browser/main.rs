@@ -8,6 +8,7 @@ mod browser;
 mod form;
 mod job;
 mod list;
+mod login;
 mod process;
 mod server;
 mod start;

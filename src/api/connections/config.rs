@@ -8,8 +8,6 @@ pub(super) const MAX_HEAD_BYTES: usize = 32 * 1024;
 pub(super) const MAX_BUFFER_BYTES: usize = 64 * 1024;
 /// How long a client that still sends is listened to after its last answer, so that the answer reaches it.
 pub(super) const LINGER: Duration = Duration::from_secs(1);
-/// Pause after a connection could not be accepted (no file descriptors, no memory).
-pub(super) const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
 /// How many connections, and how long each may keep the service waiting.
 #[derive(Debug, Clone, clap::Args)]

@@ -38,13 +38,15 @@ impl Crowd {
         place
     }
 
-    /// Sends away the connection that has waited longest, or the next one that begins to.
-    pub fn make_room(&self) {
+    /// Sends away the connection that has waited longest (true), or the next one that begins to (false).
+    pub fn make_room(&self) -> bool {
         let mut waiting = self.waiting();
-        match waiting.line.pop_first() {
+        let longest = waiting.line.pop_first();
+        match &longest {
             Some((_, leave)) => leave.cancel(),
             None => waiting.room_wanted = true,
         }
+        longest.is_some()
     }
 
     /// A connection begins to wait.

@@ -1,15 +1,22 @@
 //! Taking connections in.
 
-use super::config::{ACCEPT_PAUSE, ConnectionConfig};
+use super::config::ConnectionConfig;
 use super::connection;
 use super::crowd::Crowd;
 use super::pulse::Pulse;
 use axum::Router;
 use std::io;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 use tokio::net::{TcpListener, TcpStream};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
+
+/// Pauses after a connection could not be accepted: where another one made room, and where none could.
+const SHORT_PAUSE: Duration = Duration::from_millis(5);
+const PAUSE: Duration = Duration::from_millis(100);
+/// Time between two reports of it.
+const REPORT_PAUSE: Duration = Duration::from_secs(1);
 
 /// How connections are brought to an end.
 #[derive(Debug, Clone, Default)]
@@ -24,7 +31,8 @@ pub struct Endings {
 pub async fn listen(listener: TcpListener, app: Router, config: ConnectionConfig, endings: Endings) {
     let crowd = Arc::new(Crowd::new(config.max_connections));
     let tasks = TaskTracker::new();
-    while let Some(stream) = next(&listener, &crowd, &endings.stop).await {
+    let mut trouble = Trouble::default();
+    while let Some(stream) = next(&listener, &crowd, &mut trouble, &endings.stop).await {
         // The newcomer waits here when all places are taken by requests in progress, the ones after it in the system.
         let place = tokio::select! {
             place = crowd.place() => place,
@@ -45,7 +53,12 @@ pub async fn listen(listener: TcpListener, app: Router, config: ConnectionConfig
 }
 
 /// The next connection; `None` when it is time to stop.
-async fn next(listener: &TcpListener, crowd: &Crowd, stop: &CancellationToken) -> Option<TcpStream> {
+async fn next(
+    listener: &TcpListener,
+    crowd: &Crowd,
+    trouble: &mut Trouble,
+    stop: &CancellationToken,
+) -> Option<TcpStream> {
     loop {
         let accepted = stop.run_until_cancelled(listener.accept()).await?;
         match accepted {
@@ -59,10 +72,26 @@ async fn next(listener: &TcpListener, crowd: &Crowd, stop: &CancellationToken) -
             // The client was gone before it was its turn.
             Err(error) if is_of_client(&error) => {}
             Err(error) => {
-                tracing::warn!(%error, "a connection could not be accepted");
-                crowd.make_room();
-                stop.run_until_cancelled(tokio::time::sleep(ACCEPT_PAUSE)).await?;
+                trouble.report(&error);
+                let pause = if crowd.make_room() { SHORT_PAUSE } else { PAUSE };
+                stop.run_until_cancelled(tokio::time::sleep(pause)).await?;
             }
+        }
+    }
+}
+
+/// Connections that cannot be accepted (no file descriptors, no memory), reported now and then.
+#[derive(Default)]
+struct Trouble {
+    reported_at: Option<Instant>,
+}
+
+impl Trouble {
+    fn report(&mut self, error: &io::Error) {
+        let now = Instant::now();
+        if self.reported_at.is_none_or(|last| now - last >= REPORT_PAUSE) {
+            tracing::warn!(%error, "connections cannot be accepted");
+            self.reported_at = Some(now);
         }
     }
 }

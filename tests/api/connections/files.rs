@@ -16,6 +16,7 @@ fn running_out_of_files_ends_nothing() {
     assert_eq!(idle.len(), 200);
     assert_eq!(program.get("/api/v1/system").0, 200, "the longest waiting made room");
     let log = program.end();
-    assert!(log.contains("a connection could not be accepted"), "{log}");
-    assert!(log.lines().count() < 300, "it tries again after a pause, not without end:\n{log}");
+    assert!(log.contains("connections cannot be accepted"), "{log}");
+    let reports = log.matches("cannot be accepted").count();
+    assert!(reports < 50, "reported now and then, not each time: {reports}");
 }

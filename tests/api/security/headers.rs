@@ -25,8 +25,8 @@ fn with_common(own: &[&str]) -> Vec<String> {
     lines
 }
 
-const POLICY: &str = "content-security-policy: default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; \
-                      img-src 'self' data:; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
+const POLICY: &str = "content-security-policy: default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; \
+                      frame-ancestors 'none'";
 const PAGE_POLICY: &str = "content-security-policy: default-src 'self'; img-src 'self' data: blob:; object-src 'none'; \
                            base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
@@ -78,4 +78,14 @@ async fn of_a_file() {
         "vary: accept-encoding",
     ];
     assert_eq!(shown(&app.get("/assets/job.js").await), with_common(&own));
+}
+
+#[tokio::test]
+async fn inline_styles_are_for_the_documentation_page_only() {
+    let app = app().await;
+    for path in ["/", "/jobs", "/api/v1/jobs", "/assets/style.css", "/nothing", "/problems/internal", "/docs/"] {
+        let policy = app.get(path).await.header("content-security-policy").to_owned();
+        assert_eq!(policy.contains("unsafe"), path == "/docs/", "{path}: {policy}");
+        assert!(policy.contains("default-src 'self'") && policy.contains("frame-ancestors 'none'"), "{path}: {policy}");
+    }
 }
