@@ -23,6 +23,8 @@ pub(super) const MAX_POINTS: u64 = 100_000;
 pub(super) const MAX_RAW_POINTS: u64 = 1_000_000;
 /// Longest `Idempotency-Key`.
 pub(super) const MAX_KEY_CHARS: usize = 255;
+/// Longest `X-Request-Id` that is taken from a client.
+pub(super) const MAX_REQUEST_ID_CHARS: usize = 128;
 /// Seconds after which a client should look again.
 pub(super) const RETRY_LIVE_S: u64 = 1;
 pub(super) const RETRY_FULL_S: u64 = 5;

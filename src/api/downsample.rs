@@ -3,7 +3,8 @@
 use minmaxlttb::{LttbBuilder, LttbMethod, Point};
 
 /// How points are chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, utoipa::ToSchema)]
+#[schema(rename_all = "lowercase")]
 pub enum Method {
     /// Smallest and largest of each of equal stretches, and both ends: every spike stays.
     MinMax,

@@ -1,5 +1,6 @@
 //! What every exchange has: an id, a log line, metrics, security headers, and one form for all that goes wrong.
 
+use super::config::MAX_REQUEST_ID_CHARS;
 use super::problem::{Problem, ProblemCode, Refusal};
 use super::request::RequestId;
 use axum::body::Body;
@@ -16,7 +17,6 @@ use tracing::Instrument;
 use uuid::Uuid;
 
 const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
-const MAX_REQUEST_ID_CHARS: usize = 128;
 
 /// Nothing inline, nothing from elsewhere.
 const POLICY: &str =

@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 /// A job as it stands. Times are RFC 3339 in UTC.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 pub struct Job {
-    #[schema(example = "0199f3c4-6f0b-7c41-9d5e-2f1f0f6f3c11")]
+    #[schema(example = "0199f3c4-6f0b-7c41-9d5e-2f1f0f6f3c11", format = "uuid")]
     pub id: String,
     /// `mesh`, `response` or `sweep`.
     pub kind: String,
@@ -29,15 +29,20 @@ pub struct Job {
     pub progress: f64,
     /// Stage reported last; null once the job has ended (the `error` of a failed one names its stage).
     pub stage: Option<String>,
+    #[schema(format = DateTime)]
     pub submitted_at: String,
+    #[schema(format = DateTime)]
     pub started_at: Option<String>,
+    #[schema(format = DateTime)]
     pub ended_at: Option<String>,
     /// Set while a cancel is under way, and after it.
+    #[schema(format = DateTime)]
     pub cancel_requested_at: Option<String>,
     /// Content hash of everything that decides the result.
     pub input_hash: String,
     pub solver_version: String,
     /// Job whose result was taken because the input was the same.
+    #[schema(format = "uuid")]
     pub reused_from: Option<String>,
     /// Why the job failed; null in every other state.
     pub error: Option<Problem>,

@@ -3,6 +3,7 @@
 pub mod document;
 mod fields;
 mod finite;
+mod json;
 mod reader;
 pub mod result;
 pub mod schema;

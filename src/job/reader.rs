@@ -8,6 +8,9 @@ use super::violation::Violation;
 use serde_json::{Map, Value, json};
 use std::cell::RefCell;
 
+/// What [`char::is_control`] finds is not in a text.
+const NO_CONTROLS: &str = r"^[^\u0000-\u001f\u007f-\u009f]*$";
+
 /// Declaration of a number: permitted range, unit, default, and a line of help. No default: required.
 #[derive(Debug, Clone, Copy)]
 pub struct Number {
@@ -26,9 +29,13 @@ pub struct FieldDescription {
     pub required: bool,
 }
 
+/// Violations listed at most; further ones are counted. A megabyte can hold a hundred thousand.
+pub const MAX_VIOLATIONS: usize = 1000;
+
 #[derive(Default)]
 struct Collected {
     violations: Vec<Violation>,
+    further: usize,
     fields: Vec<FieldDescription>,
 }
 
@@ -66,13 +73,32 @@ impl Reading {
     }
 
     pub fn violate(&self, violation: Violation) {
-        if !self.describing {
-            self.collected.borrow_mut().violations.push(violation);
+        if self.describing {
+            return;
+        }
+        let mut collected = self.collected.borrow_mut();
+        match collected.violations.len() < MAX_VIOLATIONS {
+            true => collected.violations.push(violation),
+            false => collected.further += 1,
         }
     }
 
+    /// Whether further violations are only counted.
+    fn is_full(&self) -> bool {
+        self.collected.borrow().violations.len() >= MAX_VIOLATIONS
+    }
+
+    /// What was found wrong; the last entry says how many more there are than [`MAX_VIOLATIONS`].
     pub fn violations(self) -> Vec<Violation> {
-        self.collected.into_inner().violations
+        let Collected { mut violations, further, .. } = self.collected.into_inner();
+        if further > 0 {
+            violations.push(Violation::new(
+                "",
+                "further",
+                format!("has {further} further violations, not listed here"),
+            ));
+        }
+        violations
     }
 
     pub fn fields(self) -> Vec<FieldDescription> {
@@ -295,9 +321,27 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// A text of at most `max_chars` characters without control characters.
+    /// A text of at most `max_chars` characters without control characters; `None` when left out.
     pub fn text(&self, name: &'static str, max_chars: usize, help: &'static str) -> Option<String> {
-        self.declare(name, false, || json!({"type": "string", "maxLength": max_chars, "description": help}));
+        self.text_or(name, max_chars, false, help)
+    }
+
+    /// A text that has to be given.
+    pub fn required_text(&self, name: &'static str, max_chars: usize, help: &'static str) -> String {
+        self.text_or(name, max_chars, true, help).unwrap_or_else(|| {
+            if !self.has(name) {
+                self.missing(name, "a string");
+            }
+            String::new()
+        })
+    }
+
+    fn text_or(&self, name: &'static str, max_chars: usize, required: bool, help: &'static str) -> Option<String> {
+        self.declare(
+            name,
+            required,
+            || json!({"type": "string", "maxLength": max_chars, "pattern": NO_CONTROLS, "description": help}),
+        );
         match self.value(name)? {
             Value::String(text) if text.chars().count() > max_chars => {
                 let length = text.chars().count();
@@ -343,13 +387,22 @@ impl<'a> Object<'a> {
         )
     }
 
-    /// A list of texts; `None` when left out.
-    pub fn texts(&self, name: &'static str, max_items: usize, help: &'static str) -> Option<Vec<String>> {
-        self.declare(
-            name,
-            false,
-            || json!({"type": "array", "maxItems": max_items, "items": {"type": "string"}, "description": help}),
-        );
+    /// A list of words; `None` when left out. The declaration names the permitted words where the caller knows them; whether
+    /// each word is one of them is the caller's to check.
+    pub fn texts(
+        &self,
+        name: &'static str,
+        max_items: usize,
+        permitted: Option<&[&str]>,
+        help: &'static str,
+    ) -> Option<Vec<String>> {
+        self.declare(name, false, || {
+            let mut items = json!({"type": "string"});
+            if let Some(words) = permitted {
+                items["enum"] = json!(words);
+            }
+            json!({"type": "array", "maxItems": max_items, "items": items, "description": help})
+        });
         let values = self.array(name, 0, max_items)?;
         let pointer = self.pointer_to(name);
         let mut texts = Vec::with_capacity(values.len());
@@ -435,7 +488,7 @@ impl<'a> Object<'a> {
         let seen = self.seen.borrow();
         for name in map.keys() {
             if !seen.contains(&name.as_str()) {
-                let known = nearest(name, &seen);
+                let known = if self.reading.is_full() { None } else { nearest(name, &seen) };
                 let hint = known.map(|known| format!("; did you mean \"{known}\"?")).unwrap_or_default();
                 self.reading.violate(Violation::new(
                     format!("{}/{}", self.pointer, escape(name)),

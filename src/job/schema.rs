@@ -1,5 +1,6 @@
 //! The JSON Schema of the job document, from the same declarations that read it.
 
+use super::document::Kind;
 use super::fields;
 use super::reader::{FieldDescription, Reading};
 use serde_json::{Map, Value, json};
@@ -25,6 +26,35 @@ pub fn job_document_schema() -> Value {
         insert(&mut root, &field);
     }
     root
+}
+
+/// The same for one kind of job: `kind` fixed, and without the fields that only sweeps have.
+pub fn job_document_schema_of(kind: Kind) -> Value {
+    let mut schema = job_document_schema();
+    schema["title"] = json!(format!("JobDocument ({})", kind.word()));
+    if let Some(properties) = schema["properties"].as_object_mut() {
+        if kind != Kind::Sweep {
+            for name in ["axes", "continuation", "record"] {
+                properties.remove(name);
+            }
+        }
+        let help = properties.get("kind").and_then(|field| field.get("description")).cloned();
+        let mut field = json!({"const": kind.word(), "description": help});
+        if kind == Kind::Response {
+            // What a document without a kind means.
+            field = json!({"enum": [kind.word(), null], "default": kind.word(), "description": help});
+        }
+        properties.insert("kind".to_owned(), field);
+        if let Some(axes) = properties.get_mut("axes") {
+            // What is required is not null.
+            axes["type"] = json!("array");
+        }
+    }
+    let needs = |name: &str| (kind, name) == (Kind::Sweep, "axes") || (kind != Kind::Response && name == "kind");
+    for name in ["kind", "axes"].into_iter().filter(|name| needs(name)) {
+        push_required(&mut schema, name);
+    }
+    schema
 }
 
 fn insert(root: &mut Value, field: &FieldDescription) {

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Violation {
     /// JSON pointer (RFC 6901) into the submitted document; empty for the document as a whole.
     pub pointer: String,
-    /// Closed list: `missing`, `unknown-field`, `wrong-type`, `out-of-range`, `not-one-of`, `too-long`, `conflict`, or the code
-    /// of an infeasible geometry (`pointed-tip`, `tip-interference`, …).
+    /// Closed list: `missing`, `unknown-field`, `wrong-type`, `out-of-range`, `not-one-of`, `too-long`, `conflict`, `further`
+    /// (more than are listed), or the code of an infeasible geometry (`pointed-tip`, `tip-interference`, …).
     pub code: String,
     /// One sentence for a person, with the value found, the permitted range and its unit.
     pub detail: String,

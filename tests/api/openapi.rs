@@ -90,6 +90,55 @@ fn every_reference_leads_somewhere() {
     }
 }
 
+#[test]
+fn every_link_leads_to_an_operation() {
+    let document: Value = serde_json::from_str(&herringbone::api::openapi_json()).unwrap();
+    let operations = operations(&document);
+    let parameters = |id: &str| {
+        let (_, operation) = operations.iter().find(|(_, operation)| operation["operationId"] == id)?;
+        Some(operation["parameters"].as_array().unwrap().iter().map(|parameter| &parameter["name"]).collect::<Vec<_>>())
+    };
+    let mut seen = 0;
+    for (name, operation) in &operations {
+        for response in operation["responses"].as_object().unwrap().values() {
+            for link in response["links"].as_object().into_iter().flat_map(|links| links.values()) {
+                let known =
+                    parameters(link["operationId"].as_str().unwrap()).unwrap_or_else(|| panic!("{name}: {link}"));
+                for parameter in link["parameters"].as_object().unwrap().keys() {
+                    assert!(known.iter().any(|known| *known == parameter), "{name}: {link}");
+                }
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 0);
+}
+
+#[test]
+fn documents_are_told_apart_by_their_kind() {
+    let document: Value = serde_json::from_str(&herringbone::api::openapi_json()).unwrap();
+    let validator = |name: &str| {
+        let schema = serde_json::json!({
+            "$ref": format!("#/components/schemas/{name}"), "components": document["components"],
+        });
+        jsonschema::validator_for(&schema).unwrap()
+    };
+    let kinds = ["mesh", "response", "sweep"];
+    let names = ["MeshDocument", "ResponseDocument", "SweepDocument"];
+    let examples = &document["paths"]["/api/v1/jobs"]["post"]["requestBody"]["content"]["application/json"]["examples"];
+    for kind in kinds {
+        let example = &examples[kind]["value"];
+        assert!(validator("JobDocument").is_valid(example), "{kind}");
+        let fitting: Vec<_> = names.iter().filter(|name| validator(name).is_valid(example)).collect();
+        assert_eq!(fitting.len(), 1, "{kind}: {fitting:?}");
+        assert!(fitting[0].to_lowercase().starts_with(kind));
+    }
+    let mut without = examples["response"]["value"].clone();
+    without.as_object_mut().unwrap().remove("kind");
+    assert!(validator("JobDocument").is_valid(&without));
+    assert!(!validator("JobDocument").is_valid(&serde_json::json!({"kind": "mesh"})));
+}
+
 #[tokio::test]
 async fn real_answers_fit_their_schemas() {
     let app = app().await;

@@ -4,9 +4,7 @@ mod codes;
 mod convert;
 mod refusal;
 
-#[cfg(test)]
-pub use codes::CODES;
-pub use codes::{CodeEntry, ProblemCode};
+pub use codes::{CODES, CodeEntry, ProblemCode};
 pub use refusal::Refusal;
 
 use crate::job::Violation;

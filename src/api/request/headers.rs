@@ -52,8 +52,9 @@ impl<S: Send + Sync> FromRequestParts<S> for IdempotencyKey {
 
     async fn from_request_parts(parts: &mut Parts, _state: &S) -> Result<Self, Refusal> {
         let Some(value) = parts.headers.get("idempotency-key") else { return Ok(Self(None)) };
+        let is_printable = value.as_bytes().iter().all(|byte| matches!(byte, b' '..=b'~'));
         match value.to_str() {
-            Ok(key) if (1..=MAX_KEY_CHARS).contains(&key.len()) => Ok(Self(Some(key.to_owned()))),
+            Ok(key) if is_printable && (1..=MAX_KEY_CHARS).contains(&key.len()) => Ok(Self(Some(key.to_owned()))),
             _ => {
                 let detail = format!("must be 1 to {MAX_KEY_CHARS} printable ASCII characters");
                 let violation = Violation {

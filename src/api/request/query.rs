@@ -25,11 +25,16 @@ impl<S: Send + Sync> FromRequestParts<S> for Parameters {
 }
 
 impl Parameters {
-    /// The value of a parameter; an empty one counts as left out.
+    /// A text; an empty one counts as left out.
     pub fn text(&mut self, name: &'static str) -> Option<String> {
+        self.value(name).filter(|value| !value.is_empty())
+    }
+
+    /// The value of a parameter, which may be given once.
+    fn value(&mut self, name: &'static str) -> Option<String> {
         self.known.push(name);
         let mut values = self.pairs.iter().filter(|(key, _)| key == name).map(|(_, value)| value);
-        let value = values.next().filter(|value| !value.is_empty()).cloned();
+        let value = values.next().cloned();
         if values.next().is_some() {
             self.violations.push(Violation::new(format!("/{name}"), "conflict", "is given more than once"));
         }
@@ -38,8 +43,10 @@ impl Parameters {
 
     /// A whole number of at least `minimum`; what lies above `maximum` is taken for `maximum` or refused.
     pub fn whole(&mut self, name: &'static str, minimum: u64, maximum: u64, capped: bool) -> Option<u64> {
-        let text = self.text(name)?;
-        match u64::from_str(&text) {
+        let text = self.value(name)?;
+        // More digits than 64 bits hold are a large number all the same.
+        let is_whole = text.bytes().all(|byte| byte.is_ascii_digit());
+        match u64::from_str(&text).or(if is_whole { Ok(u64::MAX) } else { Err(()) }) {
             Ok(value) if value > maximum && capped => return Some(maximum),
             Ok(value) if (minimum..=maximum).contains(&value) => return Some(value),
             _ => {}
@@ -55,7 +62,7 @@ impl Parameters {
 
     /// A finite number.
     pub fn number(&mut self, name: &'static str, unit: &str) -> Option<f64> {
-        let text = self.text(name)?;
+        let text = self.value(name)?;
         let value = f64::from_str(&text).ok().filter(|value| value.is_finite());
         if value.is_none() {
             let detail = format!("is \"{}\"; a finite number is needed, in {unit}", clip(&text));
@@ -67,13 +74,13 @@ impl Parameters {
 
     /// One of a closed list of words.
     pub fn choice<T: Copy>(&mut self, name: &'static str, choices: &[(&'static str, T)]) -> Option<T> {
-        let text = self.text(name)?;
+        let text = self.value(name)?;
         self.word(name, &text, choices)
     }
 
     /// Any of a closed list of words, separated by commas.
     pub fn choices<T: Copy>(&mut self, name: &'static str, choices: &[(&'static str, T)]) -> Vec<T> {
-        let Some(text) = self.text(name) else { return Vec::new() };
+        let Some(text) = self.value(name) else { return Vec::new() };
         text.split(',').filter_map(|word| self.word(name, word, choices)).collect()
     }
 

@@ -14,7 +14,7 @@ use axum::response::Response;
 /// A job that waits is canceled at once, one that runs is asked to stop, one that ended stays as it is. May be repeated.
 #[utoipa::path(
     post, path = "/jobs/{id}/cancel", tag = "jobs",
-    params(("id" = String, Path, description = "Id of the job")),
+    params(("id" = String, Path, format = "uuid", description = "Id of the job")),
     responses(
         (status = 200, description = "The job has ended.", body = Job),
         (status = 202, description = "The job was asked to stop.", body = Job),

@@ -10,7 +10,7 @@ use axum::http::StatusCode;
 /// Delete an ended job with its result and series.
 #[utoipa::path(
     delete, path = "/jobs/{id}", tag = "jobs",
-    params(("id" = String, Path, description = "Id of the job")),
+    params(("id" = String, Path, format = "uuid", description = "Id of the job")),
     responses(
         (status = 204, description = "Deleted."),
         (status = 404, description = "No such job."),

@@ -24,13 +24,13 @@ pub struct JobList {
 #[utoipa::path(
     get, path = "/jobs", tag = "jobs",
     params(
-        ("state" = Option<String>, Query, description = "`queued`, `running`, `succeeded`, `failed` or `canceled`; several \
+        ("state" = Option<Vec<JobState>>, Query, style = Form, explode = false, min_items = 1, description = "Any of these states, \
             separated by commas."),
-        ("kind" = Option<String>, Query, description = "`mesh`, `response` or `sweep`."),
-        ("label" = Option<String>, Query, description = "Exactly this label."),
-        ("limit" = Option<u32>, Query, description = "Jobs per page, 1 to 200; more is taken for 200.", minimum = 1,
+        ("kind" = Option<Kind>, Query, description = "Jobs of this kind."),
+        ("label" = Option<String>, Query, description = "Exactly this label; an empty one counts as left out."),
+        ("limit" = Option<u64>, Query, description = "Jobs per page, 1 to 200; more is taken for 200.", minimum = 1,
             example = 50),
-        ("cursor" = Option<String>, Query, description = "`next_cursor` of the page before, with the same filters."),
+        ("cursor" = Option<String>, Query, description = "`next_cursor` of the page before, with the same filters; an empty one counts as left out."),
     ),
     responses(
         (status = 200, description = "A page of jobs.", body = JobList),
@@ -54,6 +54,6 @@ pub async fn list_jobs(State(state): State<AppState>, mut query: Parameters) -> 
 }
 
 fn decoded(text: &str, filter: &JobFilter) -> Result<Cursor, Refusal> {
-    let detail = "The cursor was not made by this list with the same filters.";
+    let detail = "The cursor was not made by this list with the same filters; an empty one counts as left out.";
     Cursor::decode(text, filter).ok_or_else(|| Refusal::new(ProblemCode::InvalidCursor, detail))
 }

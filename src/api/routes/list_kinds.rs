@@ -2,7 +2,7 @@
 
 use crate::api::config::MAX_BODY_BYTES;
 use crate::job::document::Kind;
-use crate::job::schema::job_document_schema;
+use crate::job::schema::job_document_schema_of;
 use crate::job::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS};
 use axum::Json;
 use serde::Serialize;
@@ -47,7 +47,7 @@ pub async fn list_kinds() -> Json<KindList> {
 }
 
 fn entry(kind: Kind) -> KindEntry {
-    let schema = schema_of(kind);
+    let schema = job_document_schema_of(kind);
     let defaults = defaults_of(&schema).unwrap_or_else(|| json!({}));
     let limits = KindLimits {
         max_body_bytes: MAX_BODY_BYTES,
@@ -63,27 +63,6 @@ fn description(kind: Kind) -> &'static str {
         Kind::Response => "Everything of a mesh job, and the vibration response at one operating point.",
         Kind::Sweep => "A response over the values of one or two inputs.",
     }
-}
-
-/// The document's schema with `kind` fixed, and without the fields that only sweeps have.
-fn schema_of(kind: Kind) -> Value {
-    let mut schema = job_document_schema();
-    schema["title"] = json!(format!("JobDocument ({})", kind.word()));
-    if let Some(properties) = schema["properties"].as_object_mut() {
-        if kind != Kind::Sweep {
-            properties.remove("axes");
-            properties.remove("continuation");
-            properties.remove("record");
-        }
-        let help = properties.get("kind").and_then(|field| field.get("description")).cloned();
-        properties.insert("kind".to_owned(), json!({"const": kind.word(), "description": help}));
-    }
-    // "response" is what a document without a kind means.
-    let needs = |name: &str| (kind, name) == (Kind::Sweep, "axes") || (kind != Kind::Response && name == "kind");
-    if let Some(required) = schema["required"].as_array_mut() {
-        required.extend(["kind", "axes"].into_iter().filter(|name| needs(name)).map(|name| json!(name)));
-    }
-    schema
 }
 
 /// The defaults within a schema, in the shape of what it describes.

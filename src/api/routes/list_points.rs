@@ -43,8 +43,9 @@ pub struct PointItem {
 #[utoipa::path(
     get, path = "/jobs/{id}/points", tag = "results",
     params(
-        ("id" = String, Path, description = "Id of the job"),
-        ("from" = Option<u64>, Query, description = "First position; 0 when left out.", minimum = 0),
+        ("id" = String, Path, format = "uuid", description = "Id of the job"),
+        ("from" = Option<u64>, Query, description = "First position; 0 when left out.", minimum = 0,
+            maximum = 200_000),
         ("limit" = Option<u64>, Query, description = "Points per page, 1 to 10000; 1000 when left out (CSV: all).",
             minimum = 1, maximum = 10_000, example = 1000),
     ),

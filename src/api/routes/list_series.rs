@@ -55,7 +55,7 @@ impl From<SeriesEntry> for Series {
 /// List the recorded channels of a job.
 #[utoipa::path(
     get, path = "/jobs/{id}/series", tag = "results",
-    params(("id" = String, Path, description = "Id of the job")),
+    params(("id" = String, Path, format = "uuid", description = "Id of the job")),
     responses(
         (status = 200, description = "The channels, in the order in which they were recorded.", body = SeriesList),
         (status = 404, description = "No such job."),

@@ -10,7 +10,7 @@ use axum::response::{IntoResponse, Response};
 /// Read the document of a job as it was accepted, with every default filled in.
 #[utoipa::path(
     get, path = "/jobs/{id}/input", tag = "jobs",
-    params(("id" = String, Path, description = "Id of the job")),
+    params(("id" = String, Path, format = "uuid", description = "Id of the job")),
     responses(
         (status = 200, description = "The job document.", body = serde_json::Value, content_type = "application/json"),
         (status = 404, description = "No such job."),

@@ -17,7 +17,7 @@ use axum::response::Response;
 #[utoipa::path(
     get, path = "/jobs/{id}", tag = "jobs",
     params(
-        ("id" = String, Path, description = "Id of the job"),
+        ("id" = String, Path, format = "uuid", description = "Id of the job"),
         ("Prefer" = Option<String>, Header, description = "`wait=N` (N up to 30 s)"),
         ("If-None-Match" = Option<String>, Header, description = "Entity tag of the job as the client has it"),
     ),

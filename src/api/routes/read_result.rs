@@ -17,7 +17,7 @@ use axum::response::{IntoResponse, Response};
 #[utoipa::path(
     get, path = "/jobs/{id}/result", tag = "results",
     params(
-        ("id" = String, Path, description = "Id of the job"),
+        ("id" = String, Path, format = "uuid", description = "Id of the job"),
         ("If-None-Match" = Option<String>, Header, description = "Entity tag of the result as the client has it"),
     ),
     responses(

@@ -37,13 +37,13 @@ pub struct SeriesData {
 #[utoipa::path(
     get, path = "/jobs/{id}/series/{channel}", tag = "results",
     params(
-        ("id" = String, Path, description = "Id of the job"),
+        ("id" = String, Path, format = "uuid", description = "Id of the job"),
         ("channel" = String, Path, description = "Name from the list of series"),
         ("from" = Option<f64>, Query, description = "First time, in seconds; the start when left out"),
         ("to" = Option<f64>, Query, description = "Last time, in seconds; the end when left out"),
         ("max_points" = Option<u64>, Query, description = "Points returned at most, 4 to 100000; 2000 when left out. Not \
             with `method=none`.", minimum = 4, maximum = 100_000, example = 2000),
-        ("method" = Option<String>, Query, description = "`minmax` (default): smallest and largest of equal stretches; \
+        ("method" = Option<Method>, Query, description = "`minmax` (default): smallest and largest of equal stretches; \
             `lttb`: largest triangle three buckets; `none`: every sample, up to 1000000"),
     ),
     responses(

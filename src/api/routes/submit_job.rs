@@ -17,8 +17,9 @@ use axum::response::{IntoResponse, Response};
 #[utoipa::path(
     post, path = "/jobs", tag = "jobs", request_body(content = serde_json::Value, content_type = "application/json"),
     params(
-        ("Idempotency-Key" = Option<String>, Header, description = "Names this submission (1 to 255 characters): \
-            repeating it answers the first job."),
+        ("Idempotency-Key" = Option<String>, Header, description = "Names this submission (1 to 255 printable \
+            ASCII characters): repeating it answers the first job.", min_length = 1, max_length = 255,
+            pattern = r"^[!-~]([ -~]*[!-~])?$"),
         ("Prefer" = Option<String>, Header, description = "`wait=N`: answer when the job has ended, after N seconds at \
             the latest (N up to 30)."),
     ),

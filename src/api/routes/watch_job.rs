@@ -25,7 +25,7 @@ use tokio_util::sync::CancellationToken;
 #[utoipa::path(
     get, path = "/jobs/{id}/events", tag = "jobs",
     params(
-        ("id" = String, Path, description = "Id of the job"),
+        ("id" = String, Path, format = "uuid", description = "Id of the job"),
         ("Last-Event-ID" = Option<String>, Header, description = "Revision last seen; sent by browsers that reconnect"),
     ),
     responses(

@@ -64,7 +64,7 @@ pub(super) fn analysis(object: Object) -> Analysis {
             Some(256),
             "Samples per mesh period of each series.",
         ) as u32,
-        channels: object.texts("channels", 64, "Channels to record as series, such as a_x_left; all when null."),
+        channels: object.texts("channels", 64, None, "Channels to record as series, such as a_x_left; all when null."),
         initial_state: object.numbers(
             "initial_state",
             24,

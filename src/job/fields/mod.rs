@@ -7,6 +7,7 @@ mod model;
 mod sweep;
 
 use super::document::*;
+use super::json;
 use super::reader::{Number, Object, Reading};
 use super::violation::{DocumentError, Violation};
 use serde_json::Value;
@@ -25,10 +26,10 @@ const fn number(min: f64, max: f64, unit: &'static str, default: Option<f64>, he
 /// Parses the bytes of a job document; finds every violation in one pass.
 ///
 /// # Errors
-/// [`DocumentError::Malformed`] when the bytes are not JSON, [`DocumentError::Invalid`] with all violations otherwise.
+/// [`DocumentError::Malformed`] when the bytes are not JSON or repeat a member, [`DocumentError::Invalid`] with all violations otherwise.
 /// Whether the gear can exist is not checked here (see `study::prepare`).
 pub fn parse(bytes: &[u8]) -> Result<JobDocument, DocumentError> {
-    let value: Value = serde_json::from_slice(bytes).map_err(|error| DocumentError::Malformed {
+    let value = json::read(bytes).map_err(|error| DocumentError::Malformed {
         detail: malformed_text(&error),
         line: error.line(),
         column: error.column(),

@@ -27,7 +27,7 @@ pub(super) fn axes(root: &Object, kind: Kind) -> Vec<Axis> {
 
 fn axis(object: Object) -> Axis {
     let any = |help| number(-1e12, 1e12, "unit of the input", None, help);
-    let pointer = object.text("pointer", 200, "JSON pointer of the input that varies.");
+    let pointer = object.required_text("pointer", 200, "JSON pointer of the input that varies.");
     let from = object.optional_number("from", any("First value."));
     let to = object.optional_number("to", any("Last value."));
     let points = object.integer("points", 1, MAX_SWEEP_POINTS as u64, Some(50), "Number of values.") as u32;
@@ -39,13 +39,6 @@ fn axis(object: Object) -> Axis {
         "Spacing of the values.",
     );
     let values = object.numbers("values", 1, MAX_SWEEP_POINTS, any("The values, instead of from, to and points."));
-    if pointer.is_none() && !object.has("pointer") {
-        object.reading().violate(Violation::new(
-            object.pointer_to("pointer"),
-            "missing",
-            "is required: a JSON pointer",
-        ));
-    }
     let points = match (values, from, to) {
         (Some(values), None, None) => AxisPoints::Values { values },
         (Some(values), ..) => {
@@ -71,7 +64,7 @@ fn axis(object: Object) -> Axis {
         }
     };
     object.finish();
-    Axis { pointer: pointer.unwrap_or_default(), points }
+    Axis { pointer, points }
 }
 
 pub(super) fn continuation(root: &Object, kind: Kind) -> Option<Continuation> {
@@ -98,7 +91,8 @@ pub(super) fn continuation(root: &Object, kind: Kind) -> Option<Continuation> {
 pub(super) fn record(root: &Object, kind: Kind, axes: &[Axis]) -> Vec<Recorded> {
     let help = "sweep: what every row carries beside its numbers: poincare (mesh displacement and velocity at the starts of the \
                 last mesh periods), spectrum (amplitudes at the mesh orders 1/4 to 20).";
-    let Some(words) = root.texts("record", Recorded::ALL.len(), help) else { return Vec::new() };
+    let permitted = Recorded::ALL.map(|(word, _)| word);
+    let Some(words) = root.texts("record", Recorded::ALL.len(), Some(&permitted), help) else { return Vec::new() };
     let mut record = Vec::new();
     for (index, word) in words.iter().enumerate() {
         match Recorded::ALL.iter().find(|(known, _)| known == word) {

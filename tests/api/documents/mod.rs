@@ -1,5 +1,7 @@
 //! Malformed job documents: each is refused with the status, code, pointer and range that are documented.
 
+mod sizes;
+
 use crate::support::*;
 use axum::http::Method;
 use rstest::rstest;

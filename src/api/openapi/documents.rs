@@ -1,0 +1,73 @@
+//! Schemas of the job document: one for each kind, sharing what they have in common.
+
+use crate::job::document::Kind;
+use crate::job::schema::job_document_schema_of;
+use serde_json::{Value, json};
+
+/// Blocks that documents of every kind have, and the names of their schemas.
+const SHARED: [(&str, &str); 4] =
+    [("design", "JobDesign"), ("operation", "JobOperation"), ("model", "JobModel"), ("analysis", "JobAnalysis")];
+
+/// Name of the schema of a kind's documents.
+fn schema_name(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Mesh => "MeshDocument",
+        Kind::Response => "ResponseDocument",
+        Kind::Sweep => "SweepDocument",
+    }
+}
+
+/// An example of a kind, as it can be submitted.
+fn example(kind: Kind) -> Value {
+    let text = match kind {
+        Kind::Mesh | Kind::Response => include_str!("../../../examples/table1.json"),
+        Kind::Sweep => include_str!("../../../examples/speed_sweep.json"),
+    };
+    let mut example: Value = serde_json::from_str(text).unwrap_or_default();
+    example["kind"] = json!(kind.word());
+    example
+}
+
+/// Adds the document's schemas to the components.
+pub(super) fn describe(description: &mut Value) {
+    let schemas = &mut description["components"]["schemas"];
+    let mut kinds = Vec::new();
+    for (_, kind) in Kind::ALL {
+        let mut schema = job_document_schema_of(kind);
+        for (field, name) in SHARED {
+            let reference = reference(name);
+            schemas[name] = std::mem::replace(&mut schema["properties"][field], reference);
+        }
+        if kind != Kind::Sweep {
+            // Null counts as left out here too.
+            schema["properties"]["axes"] = json!({"type": "null"});
+            schema["properties"]["continuation"] = json!({"type": "null"});
+            schema["properties"]["record"] = json!({"type": ["array", "null"], "maxItems": 0});
+        }
+        let name = schema_name(kind);
+        kinds.push(reference(name));
+        schemas[name] = schema;
+    }
+    schemas["JobDocument"] = json!({
+        "oneOf": kinds,
+        "description": "One document describes one job. Fields left out, or null, take their default. The schema has what can be \
+            said of single fields; rules between fields, and whether such a gear can exist, are answered with 422.",
+    });
+}
+
+fn reference(name: &str) -> Value {
+    json!({"$ref": format!("#/components/schemas/{name}")})
+}
+
+/// Names the document's schema where documents go in and out.
+pub(super) fn name(path: &str, operation: &mut Value) {
+    if let Some(body) = operation.pointer_mut("/requestBody/content/application~1json") {
+        body["schema"] = reference("JobDocument");
+        for (word, kind) in Kind::ALL {
+            body["examples"][word] = json!({"value": example(kind)});
+        }
+    }
+    if path.ends_with("/input") {
+        operation["responses"]["200"]["content"]["application/json"]["schema"] = reference("JobDocument");
+    }
+}

@@ -1,0 +1,36 @@
+//! Links: how what one answer says leads to the next request.
+
+use serde_json::{Value, json};
+
+/// Operations whose answer shows one job.
+const SHOW_A_JOB: [&str; 3] = ["submit_job", "read_job", "cancel_job"];
+
+/// Operations about one job.
+const ABOUT_A_JOB: [&str; 8] =
+    ["read_job", "watch_job", "cancel_job", "read_input", "read_result", "list_series", "list_points", "delete_job"];
+
+/// Adds the links that start from an operation's answers.
+pub(super) fn add(operation: &mut Value) {
+    let source = operation["operationId"].as_str().unwrap_or_default().to_owned();
+    let mut links: Vec<(&str, Value)> = Vec::new();
+    if SHOW_A_JOB.contains(&source.as_str()) {
+        links.extend(ABOUT_A_JOB.map(|target| (target, json!({"id": "$response.body#/id"}))));
+    }
+    match source.as_str() {
+        "list_jobs" => {
+            links.push(("read_job", json!({"id": "$response.body#/items/0/id"})));
+            links.push(("list_jobs", json!({"cursor": "$response.body#/next_cursor"})));
+        }
+        "list_series" => {
+            let parameters = json!({"id": "$request.path.id", "channel": "$response.body#/items/0/name"});
+            links.push(("read_series", parameters));
+        }
+        _ => {}
+    }
+    let Some(responses) = operation["responses"].as_object_mut() else { return };
+    for (_, response) in responses.iter_mut().filter(|(status, _)| ["200", "202"].contains(&status.as_str())) {
+        for (target, parameters) in &links {
+            response["links"][*target] = json!({"operationId": target, "parameters": parameters});
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! The description of the interface, generated from the endpoints.
+
+mod documents;
+mod links;
+mod responses;
+
+use super::routes;
+use super::state::AppState;
+use utoipa::OpenApi;
+use utoipa_axum::router::OpenApiRouter;
+
+/// What is said about the interface as a whole.
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "herringbone",
+        description = "Contact, mesh-in impact and nonlinear vibration of double-helical gear pairs. Submit a job document, \
+            wait for it, read its result and series. Every answer with a status of 400 or above is \
+            `application/problem+json` in one schema; codes are explained under `/problems/{code}`. Every answer carries \
+            `X-Request-Id`, the client's own where it sent one that is short and plain.",
+        license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
+    ),
+    components(schemas(super::problem::Problem, super::downsample::Method)),
+    tags(
+        (name = "jobs", description = "Submit, follow, cancel and delete jobs"),
+        (name = "results", description = "What succeeded jobs leave behind"),
+        (name = "service", description = "What can be asked for, and the state of the service"),
+        (name = "operation", description = "Health, metrics and the meaning of problem codes"),
+    )
+)]
+struct Interface;
+
+/// The endpoints with their descriptions.
+pub(super) fn described_routes() -> OpenApiRouter<AppState> {
+    OpenApiRouter::with_openapi(Interface::openapi()).nest("/api/v1", routes::versioned()).merge(routes::operational())
+}
+
+/// The OpenAPI document as JSON text.
+pub fn openapi_json() -> String {
+    let (_, document) = described_routes().split_for_parts();
+    let mut document = serde_json::to_value(document).unwrap_or_default();
+    documents::describe(&mut document);
+    responses::describe(&mut document);
+    if let Some(paths) = document["paths"].as_object_mut() {
+        for (path, operations) in paths {
+            let Some(operations) = operations.as_object_mut() else { continue };
+            for operation in operations.values_mut() {
+                documents::name(path, operation);
+                responses::complete(path, operation);
+                links::add(operation);
+            }
+        }
+    }
+    // Builds differ in whether maps keep the order of insertion; the text must not.
+    document.sort_all_objects();
+    let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
+    text.push('\n');
+    text
+}

@@ -1,0 +1,126 @@
+//! What every answer has, so that no endpoint has to repeat it.
+
+use crate::api::config::MAX_REQUEST_ID_CHARS;
+use crate::api::problem::CODES;
+use serde_json::{Value, json};
+
+/// What every endpoint may answer besides what it says itself.
+const COMMON: [(&str, &str); 3] = [
+    ("408", "The request took too long (`request-timeout`)."),
+    ("413", "The body is larger than 1 MiB (`payload-too-large`)."),
+    ("500", "The service failed (`internal`)."),
+];
+
+/// What every endpoint but the probes may answer before it is asked.
+const GUARDS: [(&str, &str); 4] = [
+    ("401", "The service has a token, and the request shows neither it nor a session (`unauthenticated`)."),
+    ("403", "A page of another site made a browser send the request (`cross-origin`)."),
+    ("421", "The header Host names another host (`misdirected-request`)."),
+    ("429", "Wrong tokens come too fast (`too-many-attempts`)."),
+];
+
+/// Endpoints that orchestrators ask: nobody is kept from them.
+const PROBES: [&str; 2] = ["/healthz", "/readyz"];
+
+/// What every endpoint with one representation (under `/api/v1`) may answer.
+const NOT_ACCEPTABLE: (&str, &str) = ("406", "No representation fits the header Accept (`not-acceptable`).");
+
+/// What every endpoint that reads or writes the database may answer.
+const STORED: (&str, &str) = ("503", "The database cannot be used for now (`storage-unavailable`).");
+
+/// Endpoints that answer without the database.
+const WITHOUT_DATABASE: [&str; 4] = ["/api/v1/kinds", "/api/v1/jobs/validate", "/healthz", "/problems/{code}"];
+
+/// Statuses of answers that may say when to try again.
+const RETRIED: [&str; 3] = ["409", "429", "503"];
+
+/// Adds headers, the event's schema and the token to the components.
+pub(super) fn describe(description: &mut Value) {
+    // A service without a token asks for none.
+    description["security"] = json!([{}, {"token": []}]);
+    let components = &mut description["components"];
+    components["headers"]["RequestId"] = json!({
+        "description": "Names the request in the log.",
+        "required": true,
+        "schema": {"type": "string", "minLength": 1, "maxLength": MAX_REQUEST_ID_CHARS},
+    });
+    components["headers"]["Credentials"] = json!({
+        "description": "How credentials are shown: `Bearer`.",
+        "required": true,
+        "schema": {"type": "string"},
+    });
+    components["headers"]["RetryAfter"] = json!({
+        "description": "Seconds after which to try again.",
+        "schema": {"type": "integer", "minimum": 0},
+    });
+    components["securitySchemes"]["token"] = json!({
+        "type": "http", "scheme": "bearer", "description": "The token of a service that was started with one.",
+    });
+    // The form in which OpenAPI 3.2 describes one event of a stream.
+    components["schemas"]["JobEvent"] = json!({
+        "type": "object",
+        "description": "One server-sent event about a job.",
+        "required": ["event", "id", "data"],
+        "properties": {
+            "event": {"type": "string", "enum": ["state", "progress", "done"]},
+            "id": {"type": "string", "pattern": "^[0-9]+$", "description": "The job's revision."},
+            "data": {
+                "type": "string",
+                "contentMediaType": "application/json",
+                "contentSchema": {"$ref": "#/components/schemas/Job"},
+            },
+        },
+    });
+}
+
+/// Adds to an operation what it has in common with others: refusals, the schema of everything that goes wrong, headers.
+pub(super) fn complete(path: &str, operation: &mut Value) {
+    if let Some(parameters) = operation.get_mut("parameters").and_then(Value::as_array_mut) {
+        parameters.iter_mut().for_each(|parameter| plain(&mut parameter["schema"]));
+        // The codes are a closed list.
+        for parameter in parameters.iter_mut().filter(|parameter| parameter["name"] == "code") {
+            parameter["schema"]["enum"] = json!(CODES.map(|entry| entry.word));
+        }
+    }
+    let Some(responses) = operation["responses"].as_object_mut() else { return };
+    let versioned = path.starts_with("/api/v1").then_some(NOT_ACCEPTABLE);
+    let guards = GUARDS.into_iter().filter(|_| !PROBES.contains(&path));
+    let stored = (!WITHOUT_DATABASE.contains(&path)).then_some(STORED);
+    for (status, description) in COMMON.into_iter().chain(versioned).chain(stored).chain(guards) {
+        responses.entry(status).or_insert_with(|| json!({"description": description}));
+    }
+    for (status, response) in responses {
+        if let Some(headers) = response.get_mut("headers").and_then(Value::as_object_mut) {
+            headers.values_mut().for_each(|header| plain(&mut header["schema"]));
+        }
+        response["headers"]["X-Request-Id"] = json!({"$ref": "#/components/headers/RequestId"});
+        if status.as_str() >= "400" {
+            response["content"] =
+                json!({"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}});
+            if status == "401" {
+                response["headers"]["WWW-Authenticate"] = json!({"$ref": "#/components/headers/Credentials"});
+            }
+            if RETRIED.contains(&status.as_str()) {
+                response["headers"]["Retry-After"] = json!({"$ref": "#/components/headers/RetryAfter"});
+            }
+        }
+        if let Some(stream) = response.pointer_mut("/content/text~1event-stream") {
+            stream["schema"] = json!({"$ref": "#/components/schemas/JobEvent"});
+        }
+    }
+}
+
+/// Parameters and headers are left out, not null; and how wide the service's integers are is not a client's concern.
+fn plain(schema: &mut Value) {
+    let Some(schema) = schema.as_object_mut() else { return };
+    if let Some(Value::Array(words)) = schema.get_mut("type") {
+        words.retain(|word| word != "null");
+        if let [word] = words.as_slice() {
+            let word = word.clone();
+            schema.insert("type".to_owned(), word);
+        }
+    }
+    if schema.get("format").and_then(Value::as_str).is_some_and(|format| format.starts_with("int")) {
+        schema.remove("format");
+    }
+}

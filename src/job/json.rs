@@ -1,0 +1,123 @@
+//! JSON in which no object says a thing twice. RFC 8259 leaves open what a repeated member means; a document that could be
+//! read in two ways is refused instead.
+
+use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Value};
+use std::fmt;
+
+/// Reads JSON text.
+///
+/// # Errors
+/// What is not JSON, is nested deeper than 127 levels, has numbers that 64-bit floats cannot hold, or repeats a member; each
+/// with line and column.
+pub fn read(bytes: &[u8]) -> Result<Value, serde_json::Error> {
+    let mut deserializer = serde_json::Deserializer::from_slice(bytes);
+    let value = Unambiguous.deserialize(&mut deserializer)?;
+    deserializer.end()?;
+    Ok(value)
+}
+
+/// Builds a value, looking at each member's name.
+struct Unambiguous;
+
+impl<'de> DeserializeSeed<'de> for Unambiguous {
+    type Value = Value;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Value, D::Error> {
+        deserializer.deserialize_any(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Unambiguous {
+    type Value = Value;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("a JSON value")
+    }
+
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_str<E>(self, text: &str) -> Result<Value, E> {
+        Ok(text.into())
+    }
+
+    fn visit_string<E>(self, text: String) -> Result<Value, E> {
+        Ok(text.into())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Value, A::Error> {
+        let mut values = Vec::new();
+        while let Some(value) = items.next_element_seed(Unambiguous)? {
+            values.push(value);
+        }
+        Ok(Value::Array(values))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Value, A::Error> {
+        let mut map = Map::new();
+        while let Some(name) = members.next_key::<String>()? {
+            if map.contains_key(&name) {
+                let shown: String = name.chars().take(60).collect();
+                return Err(A::Error::custom(format_args!("the member {shown:?} is given twice")));
+            }
+            map.insert(name, members.next_value_seed(Unambiguous)?);
+        }
+        Ok(Value::Object(map))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_read_is_what_serde_json_reads() {
+        for text in [
+            "null",
+            "true",
+            "-0.0",
+            "-1",
+            "18446744073709551615",
+            "-9223372036854775808",
+            "1e-400",
+            "0.1",
+            "123456789012345678901",
+            r#""\ud83d\ude00 \u0000""#,
+            "[]",
+            "[[1], {}]",
+            r#"{"b": 1, "a": [{"b": null}], "": 2}"#,
+            " 1 ",
+        ] {
+            let expected: Value = serde_json::from_str(text).expect("JSON");
+            assert_eq!(read(text.as_bytes()).expect("JSON"), expected, "{text}");
+        }
+        for text in ["", "1 2", "{", "[1,]", "1e400", "\u{feff}1", r#""\ud800""#, "nul", "{1: 2}"] {
+            assert!(read(text.as_bytes()).is_err(), "{text}");
+            assert!(serde_json::from_str::<Value>(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_member_given_twice_is_refused_with_its_place() {
+        let error = read(b"{\"a\": 1,\n \"b\": {\"a\": 2, \"a\": 2}}").expect_err("repeated");
+        assert_eq!((error.line(), error.to_string().contains("\"a\" is given twice")), (2, true), "{error}");
+    }
+}
