@@ -62,6 +62,11 @@ fn start_log(config: &LogConfig) {
         true => log.json().flatten_event(true).init(),
         false => log.init(),
     }
+    // A panic is a line of the log like others, not one of its own form.
+    std::panic::set_hook(Box::new(|panic| {
+        let place = panic.location().map(ToString::to_string).unwrap_or_default();
+        tracing::error!(place, message = panic.payload_as_str().unwrap_or_default(), "panic");
+    }));
 }
 
 #[tokio::main]

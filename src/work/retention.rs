@@ -83,14 +83,14 @@ pub async fn sweep(
         store.give_back().await?;
     }
     if done != Sweep::default() {
-        metrics::counter!("herringbone_retention_deleted_jobs_total", "reason" => "age").increment(done.by_age);
-        metrics::counter!("herringbone_retention_deleted_jobs_total", "reason" => "size").increment(done.by_size);
         let (by_age, by_size) = (done.by_age, done.by_size);
         let file = store.usage().await?.file_bytes;
         let megabytes = |bytes: u64| bytes as f64 / 1e6;
         let freed_mb = megabytes(before.used_bytes.saturating_sub(after.used_bytes));
         let (used_mb, file_mb) = (megabytes(after.used_bytes), megabytes(file));
         tracing::info!(by_age, by_size, freed_mb, used_mb, file_mb, "ended jobs deleted");
+        metrics::counter!("herringbone_retention_deleted_jobs_total", "reason" => "age").increment(done.by_age);
+        metrics::counter!("herringbone_retention_deleted_jobs_total", "reason" => "size").increment(done.by_size);
     }
     Ok(done)
 }

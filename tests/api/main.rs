@@ -21,6 +21,7 @@ mod process;
 mod read_job;
 mod restart;
 mod result;
+mod retention;
 mod reuse;
 mod security;
 mod series;

@@ -18,7 +18,7 @@ use axum::Router;
 use axum::body::Body;
 use axum::http::{Method, Request};
 use herringbone::api::{self, Access, AppState, HttpConfig, LoginPage, Pages};
-use herringbone::store::{Store, StoreConfig};
+use herringbone::store::{RetentionConfig, Store, StoreConfig};
 use herringbone::web;
 use herringbone::work::{Jobs, Solver, WorkConfig};
 use jiff::Timestamp;
@@ -59,9 +59,21 @@ pub async fn app_reached(http: HttpConfig) -> App {
     start(tempfile::tempdir().expect("temporary directory"), small(), http).await
 }
 
+/// A service whose database may not grow beyond so many megabytes.
+pub async fn limited_app(max_database_mb: u32) -> App {
+    let directory = tempfile::tempdir().expect("temporary directory");
+    let retention = RetentionConfig { keep_days: None, max_database_mb: Some(max_database_mb) };
+    let store = StoreConfig { retention, ..StoreConfig::at(directory.path().join("jobs.db")) };
+    start_over(&store, directory, small(), HttpConfig::default()).await
+}
+
 async fn start(directory: TempDir, work: WorkConfig, http: HttpConfig) -> App {
+    start_over(&StoreConfig::at(directory.path().join("jobs.db")), directory, work, http).await
+}
+
+async fn start_over(store: &StoreConfig, directory: TempDir, work: WorkConfig, http: HttpConfig) -> App {
     let solver = Arc::new(ScriptedSolver::default());
-    let store = Store::open(&StoreConfig::at(directory.path().join("jobs.db"))).await.expect("store opens");
+    let store = Store::open(store).await.expect("store opens");
     let dyn_solver: Arc<dyn Solver> = solver.clone();
     let jobs = Jobs::start(store, &work, dyn_solver, Arc::new(Timestamp::now)).await.expect("jobs start");
     let state = AppState::new(jobs.clone(), Timestamp::now());
