@@ -9,6 +9,8 @@ mod problem;
 mod serve;
 mod solve;
 mod table;
+#[cfg(test)]
+mod tests;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

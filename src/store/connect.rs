@@ -11,7 +11,7 @@ use sqlx::migrate::{MigrateError, Migrator};
 use sqlx::sqlite::{
     SqliteAutoVacuum, SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
 };
-use sqlx::{Sqlite, Transaction};
+use sqlx::{Connection, Sqlite, Transaction};
 use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -110,7 +110,12 @@ impl Store {
             options = options.pragma("max_page_count", limit.max_pages.to_string());
         }
         let lasting = || SqlitePoolOptions::new().idle_timeout(None).max_lifetime(None);
-        let writer = lasting().max_connections(1).acquire_timeout(WRITER_WAIT);
+        // Where SQLite rolls back by itself (a full disk at the commit), the driver goes on counting the transaction: such a
+        // connection would never write again.
+        let writer = lasting()
+            .max_connections(1)
+            .acquire_timeout(WRITER_WAIT)
+            .before_acquire(|connection, _| Box::pin(async { Ok(!connection.is_in_transaction()) }));
         let writer = writer.connect_with(options.clone()).await.map_err(wrong)?;
         try_to_write(&writer).await.map_err(wrong)?;
         let reader = lasting()

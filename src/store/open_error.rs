@@ -27,8 +27,7 @@ pub enum OpenError {
     #[error("{path} is a database of another program: name another file", path = .0.display())]
     Foreign(PathBuf),
     #[error(
-        "the database {path} is damaged ({finding}): restore a backup, or save what can be read with \
-         `sqlite3 {path} .recover`",
+        "the database {path} is damaged ({finding}): restore a backup, or save what can be read (docs/OPERATIONS.md)",
         path = .path.display()
     )]
     Damaged { path: PathBuf, finding: String },

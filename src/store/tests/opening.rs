@@ -229,3 +229,16 @@ async fn a_lock_of_another_program_while_serving_is_storage_unavailable() {
     sqlx::query("ROLLBACK").execute(&mut other).await.unwrap();
     queued(&store, "a").await;
 }
+
+/// What a full disk does at a commit: SQLite has rolled back by itself, and the driver's own rollback fails.
+#[tokio::test]
+async fn a_transaction_that_sqlite_ended_by_itself_spoils_no_later_one() {
+    let Fixture { store, directory: _directory } = fixture().await;
+    for _ in 0..3 {
+        let mut transaction = store.write().await.unwrap();
+        sqlx::query("ROLLBACK").execute(&mut *transaction).await.unwrap();
+        drop(transaction);
+        queued(&store, "a").await;
+    }
+    store.writable().await.unwrap();
+}
