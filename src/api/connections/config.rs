@@ -7,7 +7,7 @@ pub(super) const MAX_HEAD_BYTES: usize = 32 * 1024;
 /// Buffer of each direction of a connection; responses pass through it in pieces.
 pub(super) const MAX_BUFFER_BYTES: usize = 64 * 1024;
 /// How long a client that still sends is listened to after its last answer, so that the answer reaches it.
-pub(super) const LINGER: Duration = Duration::from_secs(1);
+pub(super) const LINGER: Duration = Duration::from_secs(2);
 
 /// How many connections, and how long each may keep the service waiting.
 #[derive(Debug, Clone, clap::Args)]
