@@ -10,6 +10,7 @@ mod connections;
 mod downsample;
 mod envelope;
 mod guard;
+mod held;
 mod openapi;
 mod points;
 mod problem;

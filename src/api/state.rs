@@ -1,5 +1,6 @@
 //! What handlers are given.
 
+use super::config::SERIES_AT_ONCE;
 use super::telemetry;
 use crate::work::Jobs;
 use jiff::Timestamp;
@@ -12,6 +13,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 pub struct AppState {
     inner: Arc<Inner>,
     followers: Arc<Semaphore>,
+    series: Arc<Semaphore>,
 }
 
 struct Inner {
@@ -24,7 +26,8 @@ impl AppState {
     /// The state of a service over these jobs, started now.
     pub fn new(jobs: Jobs, started_at: Timestamp) -> Self {
         let inner = Arc::new(Inner { jobs, metrics: telemetry::recorder(), started_at });
-        Self { inner, followers: Arc::new(Semaphore::new(Semaphore::MAX_PERMITS)) }
+        let semaphore = |permits| Arc::new(Semaphore::new(permits));
+        Self { inner, followers: semaphore(Semaphore::MAX_PERMITS), series: semaphore(SERIES_AT_ONCE) }
     }
 
     /// The same with a bound on clients that follow jobs.
@@ -48,5 +51,10 @@ impl AppState {
     /// connections; `None` when all are taken.
     pub(super) fn follow(&self) -> Option<OwnedSemaphorePermit> {
         self.followers.clone().try_acquire_owned().ok()
+    }
+
+    /// A place among the series in memory; waits for one. To be held until the answer was sent.
+    pub(super) async fn series_place(&self) -> Option<OwnedSemaphorePermit> {
+        self.series.clone().acquire_owned().await.ok()
     }
 }

@@ -42,6 +42,22 @@ impl Drop for OpenStream {
     }
 }
 
+/// A connection; counted as open as long as this lives.
+pub struct OpenConnection(());
+
+impl OpenConnection {
+    pub fn new() -> Self {
+        metrics::gauge!("herringbone_connections").increment(1.0);
+        Self(())
+    }
+}
+
+impl Drop for OpenConnection {
+    fn drop(&mut self) {
+        metrics::gauge!("herringbone_connections").decrement(1.0);
+    }
+}
+
 /// What is read when somebody asks.
 pub fn measure_process(started_at: Timestamp, now: Timestamp, solver_version: &'static str) {
     let uptime_s = now.duration_since(started_at).as_secs_f64().max(0.0);
@@ -87,6 +103,7 @@ fn describe() {
         "herringbone_retention_deleted_jobs_total",
         "Ended jobs deleted because of their age or to make room."
     );
+    metrics::describe_gauge!("herringbone_connections", "Open connections.");
     metrics::describe_gauge!("herringbone_event_streams", "Open event streams.");
     metrics::describe_gauge!(
         "herringbone_database_bytes",

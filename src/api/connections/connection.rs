@@ -1,18 +1,19 @@
 //! One connection, from its opening to its end.
 
 use super::config::{MAX_BUFFER_BYTES, MAX_HEAD_BYTES};
-use super::pulse::{Busy, Pulse};
+use super::pulse::Pulse;
 use super::stream::Watched;
+use crate::api::held::Held;
 use axum::Router;
-use axum::body::{Body, Bytes, HttpBody};
-use hyper::body::{Frame, Incoming, SizeHint};
+use axum::body::Body;
+use hyper::body::Incoming;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::TokioIo;
 use std::convert::Infallible;
 use std::future::{Future, poll_fn};
-use std::pin::{Pin, pin};
-use std::task::{Context, Poll};
+use std::pin::pin;
+use std::task::Poll;
 use tokio::net::TcpStream;
 use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
@@ -27,7 +28,8 @@ pub async fn run(stream: TcpStream, app: Router, pulse: Pulse, leave: Cancellati
             let answer = app.clone().oneshot(request.map(Body::new));
             async move {
                 let answer = answer.await?;
-                Ok::<_, Infallible>(answer.map(|body| Occupied { body, _busy: busy }))
+                // The end of the answer's body is the end of the request.
+                Ok::<_, Infallible>(answer.map(|body| Held::new(body, busy)))
             }
         })
     };
@@ -54,30 +56,4 @@ pub async fn run(stream: TcpStream, app: Router, pulse: Pulse, leave: Cancellati
         alarm.as_mut().poll(context)
     })
     .await;
-}
-
-/// The body of an answer; its end is the end of the request.
-struct Occupied {
-    body: Body,
-    _busy: Busy,
-}
-
-impl HttpBody for Occupied {
-    type Data = Bytes;
-    type Error = axum::Error;
-
-    fn poll_frame(
-        mut self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-    ) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
-        Pin::new(&mut self.body).poll_frame(context)
-    }
-
-    fn is_end_stream(&self) -> bool {
-        self.body.is_end_stream()
-    }
-
-    fn size_hint(&self) -> SizeHint {
-        self.body.size_hint()
-    }
 }

@@ -4,6 +4,7 @@ use super::config::ConnectionConfig;
 use super::connection;
 use super::crowd::Crowd;
 use super::pulse::Pulse;
+use crate::api::telemetry::OpenConnection;
 use axum::Router;
 use std::io;
 use std::sync::Arc;
@@ -42,7 +43,7 @@ pub async fn listen(listener: TcpListener, app: Router, config: ConnectionConfig
         let pulse = Pulse::new(crowd.clone(), leave.clone(), config.clone());
         let (app, cut) = (app.clone(), endings.cut.clone());
         tasks.spawn(async move {
-            let _place = place;
+            let _held = (place, OpenConnection::new());
             let connection = connection::run(stream, app, pulse, leave);
             let _ = cut.run_until_cancelled_owned(connection).await;
         });

@@ -2,12 +2,13 @@
 
 use crate::api::config::{DEFAULT_POINTS, MAX_POINTS, MAX_RAW_POINTS, MIN_POINTS};
 use crate::api::downsample::{Method, downsample};
+use crate::api::held::Held;
 use crate::api::problem::Refusal;
 use crate::api::request::{ChannelPath, Parameters, chosen};
 use crate::api::state::AppState;
 use crate::job::Violation;
 use crate::store::PackedSeries;
-use axum::Json;
+use axum::body::Body;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_TYPE, VARY};
@@ -64,14 +65,15 @@ pub async fn read_series(
     let media_type = chosen(&headers, &["application/json", "text/csv"])?;
     let request = SeriesRequest::read(query)?;
     super::succeeded(&state, id).await?;
+    let place = state.series_place().await;
     let packed = state.jobs().store().series(id, &channel).await?;
     let packed = packed.ok_or_else(|| Refusal::not_found("The job has no such channel."))?;
-    let data = tokio::task::spawn_blocking(move || request.answer(&packed)).await.map_err(Refusal::internal)??;
-    let vary = (VARY, "accept");
-    match media_type {
-        "text/csv" => Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], csv(&data)).into_response()),
-        _ => Ok(([vary], Json(data)).into_response()),
-    }
+    let is_csv = media_type == "text/csv";
+    let written = tokio::task::spawn_blocking(move || request.answer(&packed)?.written(is_csv));
+    let body = Body::from(written.await.map_err(Refusal::internal)??);
+    let content_type = if is_csv { "text/csv; charset=utf-8" } else { media_type };
+    let headers = [(CONTENT_TYPE, content_type), (VARY, "accept")];
+    Ok((headers, Body::new(Held::new(body, place))).into_response())
 }
 
 /// Which samples are wanted.
@@ -120,6 +122,15 @@ impl SeriesRequest {
             n_returned: chosen.len(),
             method: method.word().to_owned(),
         })
+    }
+}
+
+impl SeriesData {
+    fn written(&self, is_csv: bool) -> Result<Vec<u8>, Refusal> {
+        match is_csv {
+            true => Ok(csv(self).into_bytes()),
+            false => serde_json::to_vec(self).map_err(Refusal::internal),
+        }
     }
 }
 

@@ -6,6 +6,7 @@ mod deadlines;
 mod exchange;
 mod files;
 mod followers;
+mod memory;
 mod shutdown;
 
 use crate::support::*;
