@@ -37,7 +37,7 @@ pub use lifecycle::{JobId, State};
 pub use list::{JobFilter, JobPage};
 pub use lookup::Counts;
 pub use open_error::OpenError;
-pub use points::{LineEndRow, PointBatch, PointRow, PointsOfResult, digest_of_points};
+pub use points::{LineEndRow, PointBatch, PointRow, PointsDigest, PointsOfResult};
 pub use record::JobRecord;
 pub use result::{Reusable, StoredResult};
 pub use retention::RetentionConfig;

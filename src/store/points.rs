@@ -244,14 +244,19 @@ pub(super) async fn copy_points(
     Ok(())
 }
 
-/// Hash of the rows of a result, in the order of their positions.
-pub fn digest_of_points<'a>(bodies: impl Iterator<Item = &'a str>) -> String {
-    let mut hasher = Sha256::new();
-    for body in bodies {
-        hasher.update(body);
-        hasher.update([0]);
+/// Hash of the rows of a result, which are added in the order of their positions.
+#[derive(Default)]
+pub struct PointsDigest(Sha256);
+
+impl PointsDigest {
+    pub fn add(&mut self, body: &str) {
+        self.0.update(body);
+        self.0.update([0]);
     }
-    hasher.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+
+    pub fn finish(self) -> String {
+        self.0.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+    }
 }
 
 impl<'r> FromRow<'r, SqliteRow> for PointRow {

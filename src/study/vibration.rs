@@ -85,36 +85,37 @@ pub fn told(
     response: Result<response::Response, DynamicsError>,
     numerics: &mut Numerics,
 ) -> Result<Vibration, SolveError> {
-    let response = response.map_err(failed)?;
+    let mut response = response.map_err(failed)?;
     let summary = &response.summary;
     numerics.steps = summary.numerics.steps;
     numerics.rejected_steps = summary.numerics.rejected_steps;
     numerics.force_evaluations = summary.numerics.force_evaluations;
     numerics.degrees_of_freedom = summary.degrees_of_freedom;
-    let channel = |channel: &response::Channel| Channel {
-        name: channel.name.clone(),
-        quantity: answer::word(&channel.quantity),
-        unit: channel.unit.clone(),
-        t0_s: channel.t0_s,
-        dt_s: channel.dt_s,
-        rms: summary.rms.channels.get(&channel.name).copied().unwrap_or(0.0),
-        values: channel.values.clone(),
-    };
     let mut block = answer::block(document, parameters, &response);
     if wanted.whole {
         block.poincare = answer::poincare(&response, usize::MAX);
         block.spectrum = answer::spectrum(&response, parameters.mesh_frequency_hz);
         block.natural_modes = answer::natural_modes(parameters).map_err(failed)?;
     }
+    let poincare = wanted.records(Recorded::Poincare).then(|| answer::poincare(&response, POINCARE_POINTS));
+    let bands = wanted.records(Recorded::Spectrum).then(|| answer::bands(&response, parameters.mesh_frequency_hz));
+    // Moved, not copied: a long record is most of what a job holds.
+    let channels = std::mem::take(&mut response.channels);
+    let channel = |channel: response::Channel| Channel {
+        rms: response.summary.rms.channels.get(&channel.name).copied().unwrap_or(0.0),
+        quantity: answer::word(&channel.quantity),
+        name: channel.name,
+        unit: channel.unit,
+        t0_s: channel.t0_s,
+        dt_s: channel.dt_s,
+        values: channel.values,
+    };
     Ok(Vibration {
         summary: block,
-        poincare: wanted.records(Recorded::Poincare).then(|| answer::poincare(&response, POINCARE_POINTS)),
-        bands: wanted
-            .records(Recorded::Spectrum)
-            .then(|| answer::bands(&response, parameters.mesh_frequency_hz))
-            .flatten(),
-        series: if wanted.whole { response.channels.iter().map(channel).collect() } else { Vec::new() },
-        warnings: warnings(summary, document.analysis.accuracy),
+        poincare,
+        bands: bands.flatten(),
+        series: if wanted.whole { channels.into_iter().map(channel).collect() } else { Vec::new() },
+        warnings: warnings(&response.summary, document.analysis.accuracy),
         end_state: Some(response.final_state.to_vec()),
     })
 }

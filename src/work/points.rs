@@ -2,7 +2,7 @@
 
 use crate::job::not_finite;
 use crate::job::result::{NotFinite, SweepPoint};
-use crate::store::{LineEndRow, PointBatch, PointRow, PointsOfResult, digest_of_points};
+use crate::store::{LineEndRow, PointBatch, PointRow, PointsDigest, PointsOfResult};
 use crate::study::{KeptPoints, LineEnd, PointStore};
 use std::collections::HashSet;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -54,13 +54,17 @@ impl RunningPoints {
     /// Takes the rows out of a finished sweep: the batch that is still to be written, and what stands for the rows in the
     /// body, an empty list of points having been written at `at`.
     pub fn finished(&self, points: &[SweepPoint], at: usize) -> serde_json::Result<(PointBatch, PointsOfResult)> {
-        let bodies: Vec<String> = points.iter().map(written).collect::<Result<_, _>>()?;
-        let digest = digest_of_points(bodies.iter().map(String::as_str));
         let mut batch = self.take_unwritten();
         let known = std::mem::take(&mut self.lock().known);
-        let missing = (0u64..).zip(bodies).filter(|(position, _)| !known.contains(position));
-        batch.rows.extend(missing.map(|(position, body)| PointRow { position, body }));
-        Ok((batch, PointsOfResult { at, n: points.len() as u64, digest }))
+        let mut digest = PointsDigest::default();
+        for (position, point) in (0u64..).zip(points) {
+            let body = written(point)?;
+            digest.add(&body);
+            if !known.contains(&position) {
+                batch.rows.push(PointRow { position, body });
+            }
+        }
+        Ok((batch, PointsOfResult { at, n: points.len() as u64, digest: digest.finish() }))
     }
 
     fn lock(&self) -> MutexGuard<'_, Inner> {
