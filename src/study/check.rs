@@ -2,7 +2,7 @@
 
 use super::axes::check_axes;
 use super::prepare::{geometry, prepare};
-use super::{CheckReport, vibration};
+use super::{CheckReport, demand, vibration};
 use crate::job::DocumentError;
 use crate::job::document::{JobDocument, Kind};
 
@@ -17,5 +17,6 @@ pub fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
     if document.kind == Kind::Sweep {
         check_axes(document)?;
     }
-    Ok(CheckReport { geometry: geometry(&prepared), warnings: prepared.warnings })
+    let memory_mib = demand(document, 1).total_mib();
+    Ok(CheckReport { geometry: geometry(&prepared), memory_mib, warnings: prepared.warnings })
 }

@@ -7,6 +7,7 @@ mod branches;
 mod campbell;
 mod check;
 mod compliance;
+mod demand;
 mod equations;
 mod hash;
 mod impact;
@@ -29,6 +30,7 @@ use point::Wanted;
 use serde::{Deserialize, Serialize};
 
 pub use check::check;
+pub use demand::{Demand, demand};
 pub use hash::input_hash;
 pub use points::{KeptPoints, LineEnd, NoPointStore, PointStore};
 pub use vibration::is_channel;
@@ -146,6 +148,8 @@ pub enum SolveError {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct CheckReport {
     pub geometry: Geometry,
+    /// Memory that the calculation takes at most (an estimate).
+    pub memory_mib: f64,
     #[cfg_attr(feature = "server", schema(value_type = Vec<crate::job::result::WarningEntry>))]
     pub warnings: Vec<Warning>,
 }

@@ -31,6 +31,11 @@ pub struct WorkConfig {
           value_parser = clap::value_parser!(u32).range(1..=31_536_000))]
     pub sweep_time_limit_s: u32,
 
+    /// Memory that one job may take by the estimate made when it is submitted; a larger one is refused.
+    #[arg(long, env = "HERRINGBONE_JOB_MEMORY_MIB", value_name = "MIB", default_value_t = 4096,
+          value_parser = clap::value_parser!(u32).range(64..=16_777_216))]
+    pub job_memory_mib: u32,
+
     /// Threads that all running jobs of one operating point share, and threads of each sweep; the number of processors when
     /// not given.
     #[arg(long, env = "HERRINGBONE_THREADS", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
@@ -61,6 +66,7 @@ impl Default for WorkConfig {
             sweep_turn_s: 60,
             job_time_limit_s: 3600,
             sweep_time_limit_s: 604_800,
+            job_memory_mib: 4096,
             queue_capacity: 10_000,
             max_losses: 3,
             drain_s: 10,

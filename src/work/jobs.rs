@@ -4,6 +4,7 @@ use super::config::WorkConfig;
 use super::hub::Subscription;
 use super::local::LocalQueue;
 use super::measure;
+use super::memory::MemoryBound;
 use super::queue::{Queue, Workers};
 use super::recorder::{Clock, Recorder};
 use super::reuse::stored_completion;
@@ -56,6 +57,7 @@ struct Inner {
     queue: Arc<dyn Queue>,
     capacity: u32,
     drain: Duration,
+    memory: MemoryBound,
     closing: CancellationToken,
 }
 
@@ -89,7 +91,8 @@ impl Jobs {
     /// As [`Jobs::start`], over a queue that runs already.
     pub fn over(recorder: Recorder, solver: Arc<dyn Solver>, queue: Arc<dyn Queue>, config: &WorkConfig) -> Self {
         let (capacity, drain) = (config.queue_capacity, config.drain());
-        Self(Arc::new(Inner { recorder, solver, queue, capacity, drain, closing: CancellationToken::new() }))
+        let memory = MemoryBound::new(config);
+        Self(Arc::new(Inner { recorder, solver, queue, capacity, drain, memory, closing: CancellationToken::new() }))
     }
 
     pub fn store(&self) -> &Store {
@@ -126,10 +129,14 @@ impl Jobs {
     /// Geometry and warnings, without a job.
     ///
     /// # Errors
-    /// [`SubmitError::Document`] when the gear cannot exist or is not supported.
+    /// [`SubmitError::Document`] when the gear cannot exist, is not supported, or would take more memory than one job may.
     pub async fn check(&self, document: JobDocument) -> Result<CheckReport, SubmitError> {
-        let solver = Arc::clone(&self.0.solver);
-        Ok(tokio::task::spawn_blocking(move || solver.check(&document)).await??)
+        let (solver, memory) = (Arc::clone(&self.0.solver), self.0.memory);
+        let checked = tokio::task::spawn_blocking(move || {
+            let report = solver.check(&document)?;
+            memory.check(&document).map(|()| report)
+        });
+        Ok(checked.await??)
     }
 
     /// Accepts a job: checks it, writes it, and has it run; the job has ended already when its result was there.

@@ -9,6 +9,7 @@ mod hub;
 mod jobs;
 mod local;
 mod measure;
+mod memory;
 mod points;
 mod queue;
 mod recorder;

@@ -21,3 +21,22 @@ async fn a_gear_that_cannot_exist() {
     let answer = app.send(Method::POST, "/api/v1/jobs/validate", &json, pointed.to_string()).await;
     answer.assert_problem(422, "invalid-design");
 }
+
+#[tokio::test]
+async fn a_job_that_would_take_too_much_memory_is_refused_where_it_asks_for_it() {
+    let app = app_with(herringbone::work::WorkConfig { job_memory_mib: 100, ..small() }).await;
+    let json = [("content-type", "application/json")];
+    let mut document = document();
+    let ordinary = app.send(Method::POST, "/api/v1/jobs/validate", &json, document.to_string()).await;
+    assert!(ordinary.json["memory_mib"].as_f64().is_some_and(|mib| mib < 100.0), "{ordinary:?}");
+    document["analysis"] = serde_json::json!({"method": "integrate", "mesh_periods": 1000, "record_mesh_periods": 1000,
+        "samples_per_mesh_period": 400});
+    for path in ["/api/v1/jobs", "/api/v1/jobs/validate"] {
+        let answer = app.send(Method::POST, path, &json, document.to_string()).await;
+        answer.assert_problem(422, "invalid-design");
+        let detail = answer.violation("/analysis/samples_per_mesh_period")["detail"].as_str().unwrap();
+        assert!(detail.contains("permits 100 MiB"), "{detail}");
+    }
+    document["analysis"]["channels"] = serde_json::json!(["x_left"]);
+    app.run(&document).await;
+}

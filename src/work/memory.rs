@@ -1,0 +1,35 @@
+//! The memory that one job may take.
+
+use super::config::WorkConfig;
+use crate::job::document::JobDocument;
+use crate::job::{DocumentError, Violation};
+use crate::study::demand;
+
+/// The bound, and what the estimate needs to know of the machine.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MemoryBound {
+    limit_mib: u32,
+    threads: usize,
+}
+
+impl MemoryBound {
+    pub fn new(config: &WorkConfig) -> Self {
+        Self { limit_mib: config.job_memory_mib, threads: config.thread_count() }
+    }
+
+    /// Refuses a document whose calculation would take more.
+    ///
+    /// # Errors
+    /// [`DocumentError::Invalid`] that points to what asks for most of it.
+    pub fn check(&self, document: &JobDocument) -> Result<(), DocumentError> {
+        let (demand, limit_mib) = (demand(document, self.threads), self.limit_mib);
+        let total_mib = demand.total_mib();
+        if total_mib <= f64::from(limit_mib) {
+            return Ok(());
+        }
+        let detail =
+            format!("needs about {total_mib:.0} MiB of memory; this service permits {limit_mib} MiB for one job");
+        let violation = Violation::new(demand.largest(), "out-of-range", detail);
+        Err(DocumentError::Invalid(vec![violation]))
+    }
+}
