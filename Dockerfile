@@ -23,7 +23,7 @@ VOLUME /var/lib/herringbone
 # The container's address can be reached from other machines, so the service starts only with a token, or when told that
 # something else keeps strangers out:
 #   docker run -p 8080:8080 -v "$PWD/token:/run/secrets/token:ro" -e HERRINGBONE_TOKEN_FILE=/run/secrets/token herringbone
-#   docker run -p 127.0.0.1:8080:8080 -e HERRINGBONE_INSECURE=true herringbone
+#   docker run -p 127.0.0.1:8080:8080 -e HERRINGBONE_INSECURE=true -e HERRINGBONE_ALLOWED_HOSTS=localhost herringbone
 ENV HERRINGBONE_LISTEN=0.0.0.0:8080 \
     HERRINGBONE_DATABASE=/var/lib/herringbone/herringbone.db
 EXPOSE 8080
