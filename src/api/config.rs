@@ -21,7 +21,7 @@ pub(super) const MIN_POINTS: u64 = 4;
 pub(super) const MAX_POINTS: u64 = 100_000;
 /// Samples that one request for a series without downsampling may take.
 pub(super) const MAX_RAW_POINTS: u64 = 1_000_000;
-/// Series that are read, written and sent at once: each may take some 80 MB with all its samples.
+/// Series that are read, written and sent at once: each takes an estimated 80 MB with all its samples (1e6).
 pub(super) const SERIES_AT_ONCE: usize = 16;
 /// Longest `Idempotency-Key`.
 pub(super) const MAX_KEY_CHARS: usize = 255;
