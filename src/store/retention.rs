@@ -4,9 +4,6 @@ use super::connect::{Store, StoreError};
 use jiff::Timestamp;
 use tokio::sync::Notify;
 
-/// Jobs deleted in one transaction, so that nobody waits long for the next one.
-const BATCH: u32 = 8;
-
 /// How long ended jobs stay.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
 pub struct RetentionConfig {
@@ -76,23 +73,23 @@ impl Store {
         &self.pressed
     }
 
-    /// Deletes some of the jobs that ended before `keep_from`, oldest first, in one transaction; how many.
-    pub async fn delete_ended_before(&self, keep_from: Timestamp) -> Result<u64, StoreError> {
-        self.delete_oldest(keep_from.as_microsecond()).await
+    /// Deletes up to `limit` of the jobs that ended before `keep_from`, oldest first, in one transaction; how many.
+    pub async fn delete_ended_before(&self, keep_from: Timestamp, limit: u32) -> Result<u64, StoreError> {
+        self.delete_oldest(keep_from.as_microsecond(), limit).await
     }
 
-    /// Above the size limit, deletes some of the oldest ended jobs, in one transaction; how many. Call it until it
+    /// Above the size limit, deletes up to `limit` of the oldest ended jobs, in one transaction; how many. Call it until it
     /// says 0; `going_on` tells that it did not say 0 before.
-    pub async fn delete_for_room(&self, going_on: bool) -> Result<u64, StoreError> {
-        let Some(limit) = &self.limit else { return Ok(0) };
+    pub async fn delete_for_room(&self, going_on: bool, limit: u32) -> Result<u64, StoreError> {
+        let Some(room) = &self.limit else { return Ok(0) };
         let used = self.usage().await?.used_bytes;
-        if used <= if going_on { limit.goal() } else { limit.bytes } {
+        if used <= if going_on { room.goal() } else { room.bytes } {
             return Ok(0);
         }
         if !going_on {
             self.trim_stages(self.stage_cache_bytes).await?;
         }
-        let deleted = self.delete_oldest(i64::MAX).await?;
+        let deleted = self.delete_oldest(i64::MAX, limit).await?;
         if deleted == 0 {
             // Live jobs alone fill the database: what is kept for reuse is all that can go.
             self.trim_stages(0).await?;
@@ -100,14 +97,14 @@ impl Store {
         Ok(deleted)
     }
 
-    async fn delete_oldest(&self, ended_before_us: i64) -> Result<u64, StoreError> {
+    async fn delete_oldest(&self, ended_before_us: i64, limit: u32) -> Result<u64, StoreError> {
         let mut transaction = self.write().await?;
         let deleted = sqlx::query(
             "DELETE FROM jobs WHERE state IN ('succeeded', 'failed', 'canceled') AND id IN \
              (SELECT id FROM jobs WHERE ended_at_us IS NOT NULL AND ended_at_us < $1 ORDER BY ended_at_us, id LIMIT $2)",
         )
         .bind(ended_before_us)
-        .bind(BATCH)
+        .bind(limit)
         .execute(&mut *transaction)
         .await?;
         transaction.commit().await?;

@@ -6,6 +6,10 @@ use jiff::{SignedDuration, Timestamp};
 use std::time::{Duration, Instant};
 use tokio_util::sync::CancellationToken;
 
+/// A transaction that deletes takes about this long: nobody waits much longer for the next one.
+const TRANSACTION: Duration = Duration::from_millis(50);
+/// Jobs deleted in one transaction, at most.
+const LARGEST_BATCH: u32 = 64;
 /// Pause between two sweeps; a refused job ends it.
 const EVERY: Duration = Duration::from_secs(10);
 /// A clock that moves this much more or less than the process's own time was set.
@@ -63,16 +67,17 @@ pub async fn sweep(
 ) -> Result<Sweep, StoreError> {
     let before = store.usage().await?;
     let mut done = Sweep::default();
+    let mut batch = Batch::default();
     if let Some(keep_from) = keep_from {
         while !closing.is_cancelled() {
-            match store.delete_ended_before(keep_from).await? {
+            match batch.timed(|limit| store.delete_ended_before(keep_from, limit)).await? {
                 0 => break,
                 deleted => done.by_age += deleted,
             }
         }
     }
     while !closing.is_cancelled() {
-        match store.delete_for_room(done.by_size > 0).await? {
+        match batch.timed(|limit| store.delete_for_room(done.by_size > 0, limit)).await? {
             0 => break,
             deleted => done.by_size += deleted,
         }
@@ -93,6 +98,36 @@ pub async fn sweep(
         metrics::counter!("herringbone_retention_deleted_jobs_total", "reason" => "size").increment(done.by_size);
     }
     Ok(done)
+}
+
+/// How many jobs go in one transaction: one has a thousand bytes, another a hundred thousand points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Batch(u32);
+
+impl Default for Batch {
+    fn default() -> Self {
+        Self(1)
+    }
+}
+
+impl Batch {
+    async fn timed<F: Future<Output = Result<u64, StoreError>>>(
+        &mut self,
+        delete: impl FnOnce(u32) -> F,
+    ) -> Result<u64, StoreError> {
+        let started = Instant::now();
+        let deleted = delete(self.0).await;
+        *self = self.after(started.elapsed());
+        deleted
+    }
+
+    fn after(self, took: Duration) -> Self {
+        match took {
+            short if short < TRANSACTION / 2 => Self((2 * self.0).min(LARGEST_BATCH)),
+            long if long > TRANSACTION => Self((self.0 / 2).max(1)),
+            _ => self,
+        }
+    }
 }
 
 /// Whether the clock has run evenly for long enough to delete by it.
@@ -123,6 +158,14 @@ impl Settled {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn batches_grow_while_they_are_quick_and_shrink_when_they_are_not() {
+        let (quick, right, slow) = (Duration::from_millis(1), Duration::from_millis(40), Duration::from_secs(1));
+        assert_eq!(Batch::default().after(quick).after(quick).after(right), Batch(4));
+        assert_eq!(Batch(64).after(quick), Batch(64));
+        assert_eq!(Batch(4).after(slow).after(slow).after(slow), Batch(1));
+    }
 
     #[test]
     fn a_clock_is_trusted_after_it_ran_evenly_for_a_while() {

@@ -175,6 +175,28 @@ async fn every_line_fits_the_format_and_no_label_names_a_job() {
     }
 }
 
+/// docs/OPERATIONS.md lists what there is, and nothing else.
+#[tokio::test]
+async fn every_metric_is_documented() {
+    let app = app().await;
+    app.run(&document()).await;
+    let page = parsed(&app.get("/metrics").await.text());
+    let text = include_str!("../../docs/OPERATIONS.md");
+    let rows: Vec<_> = text.lines().filter(|line| line.starts_with("| `herringbone_")).collect();
+    let documented: BTreeSet<_> = rows
+        .iter()
+        .flat_map(|line| line.split(" | ").next().unwrap_or_default().split('`').filter(|word| is_name(word)))
+        .collect();
+    // A metric has its line from its first value on: some need an event that does not come here.
+    for family in page.types.keys() {
+        assert!(documented.contains(family.as_str()), "docs/OPERATIONS.md lacks {family}");
+    }
+    for family in documented {
+        let needs_an_event = family == "herringbone_stage_reuse_total";
+        assert!(needs_an_event || page.types.contains_key(family), "there is no {family}");
+    }
+}
+
 #[tokio::test]
 async fn what_happens_is_counted() {
     let app = app().await;

@@ -29,10 +29,10 @@ async fn what_ended_long_ago_goes_and_live_jobs_stay() {
     let young = ended(store, 100, 10).await.unwrap();
     let runs = running(store, "runs").await.id;
     let waits = queued(store, "waits").await.id;
-    assert_eq!(store.delete_ended_before(at(100)).await.unwrap(), 1);
-    assert_eq!(store.delete_ended_before(at(100)).await.unwrap(), 0);
+    assert_eq!(store.delete_ended_before(at(100), 8).await.unwrap(), 1);
+    assert_eq!(store.delete_ended_before(at(100), 8).await.unwrap(), 0);
     assert!(!exists(store, old).await && exists(store, young).await, "the one that ended at the bound stays");
-    assert_eq!(store.delete_ended_before(at(1_000_000)).await.unwrap(), 1);
+    assert_eq!(store.delete_ended_before(at(1_000_000), 8).await.unwrap(), 1);
     assert!(exists(store, runs).await && exists(store, waits).await);
 }
 
@@ -44,7 +44,7 @@ async fn ended_jobs_go_in_small_transactions() {
     }
     let mut batches = Vec::new();
     loop {
-        match store.delete_ended_before(at(1000)).await.unwrap() {
+        match store.delete_ended_before(at(1000), 8).await.unwrap() {
             0 => break,
             n => batches.push(n),
         }
@@ -59,10 +59,10 @@ async fn a_clock_behind_deletes_nothing_and_one_ahead_no_live_job() {
     let done = ended(store, 0, 10).await.unwrap();
     let runs = running(store, "runs").await.id;
     let behind = config.keep_from(at(-100 * 86_400)).unwrap();
-    assert_eq!(store.delete_ended_before(behind).await.unwrap(), 0);
+    assert_eq!(store.delete_ended_before(behind, 8).await.unwrap(), 0);
     assert!(exists(store, done).await);
     let ahead = config.keep_from(at(31 * 86_400)).unwrap();
-    assert_eq!(store.delete_ended_before(ahead).await.unwrap(), 1);
+    assert_eq!(store.delete_ended_before(ahead, 8).await.unwrap(), 1);
     assert!(exists(store, runs).await);
     assert_eq!(config.keep_from(jiff::Timestamp::MIN), None, "no time before all times");
 }
@@ -76,8 +76,8 @@ async fn the_oldest_make_room_down_to_nine_tenths_and_the_file_shrinks() {
     }
     let before = store.usage().await.unwrap();
     assert!(before.used_bytes > 10_000_000);
-    assert_eq!(store.delete_for_room(false).await.unwrap(), 8, "a batch");
-    assert_eq!(store.delete_for_room(true).await.unwrap(), 0, "that was enough");
+    assert_eq!(store.delete_for_room(false, 8).await.unwrap(), 8, "a batch");
+    assert_eq!(store.delete_for_room(true, 8).await.unwrap(), 0, "that was enough");
     assert!(!exists(store, ids[7]).await && exists(store, ids[8]).await, "the oldest went");
     store.give_back().await.unwrap();
     let after = store.usage().await.unwrap();
@@ -102,13 +102,13 @@ async fn a_database_full_of_live_jobs_takes_no_more_and_recovers() {
     };
     assert_eq!(refusal.unavailable(), Some(Unavailable::Full));
     assert_eq!(store.writable().await.err().and_then(|error| error.unavailable()), Some(Unavailable::Full));
-    assert_eq!(store.delete_for_room(false).await.unwrap(), 0);
+    assert_eq!(store.delete_for_room(false, 8).await.unwrap(), 0);
     for id in live {
         assert!(exists(store, id).await);
         store.cancel(id, at(1)).await.unwrap();
     }
-    assert!(store.delete_for_room(false).await.unwrap() > 0);
-    while store.delete_for_room(true).await.unwrap() > 0 {}
+    assert!(store.delete_for_room(false, 8).await.unwrap() > 0);
+    while store.delete_for_room(true, 8).await.unwrap() > 0 {}
     store.admit().await.unwrap();
     store.writable().await.unwrap();
     ended(store, 5, 100_000).await.unwrap();
@@ -129,10 +129,33 @@ async fn the_file_never_outgrows_its_limit_by_more_than_a_tenth() {
     let usage = store.usage().await.unwrap();
     assert!(usage.used_bytes > 8_000_000 && usage.file_bytes <= 8_800_000, "{usage:?}");
     // Nothing has ended: what is kept for reuse goes, so that live jobs can go on.
-    assert_eq!(store.delete_for_room(false).await.unwrap(), 0);
+    assert_eq!(store.delete_for_room(false, 8).await.unwrap(), 0);
     assert!(store.stage("a").await.unwrap().is_none());
     let waiting = store.claim_next(WorkClass::Single, at(1)).await.unwrap().expect("a job waits").job;
     store.cancel(waiting.id, at(2)).await.unwrap();
+}
+
+/// Where the file may not grow any more, ended jobs can still be deleted.
+#[tokio::test]
+async fn deleting_needs_no_room() {
+    let Fixture { store, .. } = &limited(8).await;
+    let mut second = 0;
+    let error = loop {
+        second += 1;
+        if let Err(error) = ended(store, second, 100_000).await {
+            break error;
+        }
+    };
+    assert_eq!(error.unavailable(), Some(Unavailable::Full), "{error}");
+    assert_eq!(store.delete_for_room(false, 8).await.unwrap(), 8);
+    while store.delete_for_room(true, 8).await.unwrap() > 0 {}
+    store.admit().await.unwrap();
+    store.give_back().await.unwrap();
+    // What could not be written is written now.
+    let left = store.claim_next(WorkClass::Single, at(second)).await.unwrap();
+    if left.is_none() {
+        ended(store, second + 1, 100_000).await.unwrap();
+    }
 }
 
 #[tokio::test]
