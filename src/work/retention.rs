@@ -8,8 +8,9 @@ use tokio_util::sync::CancellationToken;
 
 /// A transaction that deletes takes about this long: nobody waits much longer for the next one.
 const TRANSACTION: Duration = Duration::from_millis(50);
-/// Jobs deleted in one transaction, at most.
+/// Jobs deleted in one transaction, at most: by age, and for room, where no more should go than must.
 const LARGEST_BATCH: u32 = 64;
+const LARGEST_BATCH_FOR_ROOM: u32 = 8;
 /// Pause between two sweeps; a refused job ends it.
 const EVERY: Duration = Duration::from_secs(10);
 /// A clock that moves this much more or less than the process's own time was set.
@@ -67,8 +68,8 @@ pub async fn sweep(
 ) -> Result<Sweep, StoreError> {
     let before = store.usage().await?;
     let mut done = Sweep::default();
-    let mut batch = Batch::default();
     if let Some(keep_from) = keep_from {
+        let mut batch = Batch::up_to(LARGEST_BATCH);
         while !closing.is_cancelled() {
             match batch.timed(|limit| store.delete_ended_before(keep_from, limit)).await? {
                 0 => break,
@@ -76,6 +77,7 @@ pub async fn sweep(
             }
         }
     }
+    let mut batch = Batch::up_to(LARGEST_BATCH_FOR_ROOM);
     while !closing.is_cancelled() {
         match batch.timed(|limit| store.delete_for_room(done.by_size > 0, limit)).await? {
             0 => break,
@@ -102,29 +104,30 @@ pub async fn sweep(
 
 /// How many jobs go in one transaction: one has a thousand bytes, another a hundred thousand points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Batch(u32);
-
-impl Default for Batch {
-    fn default() -> Self {
-        Self(1)
-    }
+struct Batch {
+    jobs: u32,
+    most: u32,
 }
 
 impl Batch {
+    fn up_to(most: u32) -> Self {
+        Self { jobs: 1, most }
+    }
+
     async fn timed<F: Future<Output = Result<u64, StoreError>>>(
         &mut self,
         delete: impl FnOnce(u32) -> F,
     ) -> Result<u64, StoreError> {
         let started = Instant::now();
-        let deleted = delete(self.0).await;
+        let deleted = delete(self.jobs).await;
         *self = self.after(started.elapsed());
         deleted
     }
 
     fn after(self, took: Duration) -> Self {
         match took {
-            short if short < TRANSACTION / 2 => Self((2 * self.0).min(LARGEST_BATCH)),
-            long if long > TRANSACTION => Self((self.0 / 2).max(1)),
+            short if short < TRANSACTION / 2 => Self { jobs: (2 * self.jobs).min(self.most), ..self },
+            long if long > TRANSACTION => Self { jobs: (self.jobs / 2).max(1), ..self },
             _ => self,
         }
     }
@@ -162,9 +165,10 @@ mod tests {
     #[test]
     fn batches_grow_while_they_are_quick_and_shrink_when_they_are_not() {
         let (quick, right, slow) = (Duration::from_millis(1), Duration::from_millis(40), Duration::from_secs(1));
-        assert_eq!(Batch::default().after(quick).after(quick).after(right), Batch(4));
-        assert_eq!(Batch(64).after(quick), Batch(64));
-        assert_eq!(Batch(4).after(slow).after(slow).after(slow), Batch(1));
+        let four = Batch::up_to(6).after(quick).after(quick).after(right);
+        assert_eq!(four.jobs, 4);
+        assert_eq!(four.after(quick).jobs, 6, "no more than permitted");
+        assert_eq!(four.after(slow).after(slow).after(slow).jobs, 1);
     }
 
     #[test]
