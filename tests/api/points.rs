@@ -189,6 +189,11 @@ async fn numbers_that_are_not_finite_leave_as_null_with_a_reason() {
     let result = app.get(&format!("{path}/result")).await.json;
     assert!(result["numerics"]["wall_ms"]["mesh"].is_null());
     assert_eq!(result["numerics"]["not_finite"][0]["pointer"], "/numerics/wall_ms/mesh");
+    let series = format!("{path}/series/a_x_left?method=none");
+    let data = app.get(&series).await.json;
+    assert_eq!((data["y"][1].is_null(), data["n_not_finite"].as_u64()), (true, Some(1)));
+    let text = app.get_with(&series, &[("accept", "text/csv")]).await.text();
+    assert_eq!(text.lines().nth(2).map(|line| line.ends_with(',')), Some(true));
     let (path, _) = app.run(&sweep("not finite", 2)).await;
     let item = &page(&app, &path, "").await["items"][0];
     assert!(item["point"]["dynamic_factor"].is_null());

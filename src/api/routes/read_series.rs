@@ -30,6 +30,8 @@ pub struct SeriesData {
     /// Samples recorded between `from` and `to`.
     pub n_source: usize,
     pub n_returned: usize,
+    /// Returned values that are null because they are not finite: the motion left the range of a double.
+    pub n_not_finite: usize,
     /// How points were chosen; `none` when all of them are here.
     pub method: String,
 }
@@ -120,6 +122,7 @@ impl SeriesRequest {
             y: chosen.iter().map(|index| window[*index]).collect(),
             n_source: window.len(),
             n_returned: chosen.len(),
+            n_not_finite: chosen.iter().filter(|index| !window[**index].is_finite()).count(),
             method: method.word().to_owned(),
         })
     }
@@ -148,8 +151,8 @@ fn csv(data: &SeriesData) -> String {
     let mut text = String::with_capacity(data.t.len() * 40);
     text.push_str("t_s,value\n");
     for (t, y) in data.t.iter().zip(&data.y) {
-        // Writing to a string cannot fail; numbers are written so that they read back exactly.
-        let _ = writeln!(text, "{t:?},{y:?}");
+        // Writing to a string cannot fail; numbers are written so that they read back exactly, and what is none is empty.
+        let _ = if y.is_finite() { writeln!(text, "{t:?},{y:?}") } else { writeln!(text, "{t:?},") };
     }
     text
 }

@@ -52,6 +52,7 @@ impl Solver for ScriptedSolver {
             "not finite" if document.kind != Kind::Sweep => {
                 let mut outcome = outcome();
                 outcome.result.numerics.wall_ms.mesh = f64::NAN;
+                outcome.series[0].values[1] = f64::NAN;
                 Ok(outcome)
             }
             _ if document.kind == Kind::Sweep => self.sweep(document, surroundings),
