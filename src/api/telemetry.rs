@@ -121,6 +121,11 @@ fn describe() {
     }
     metrics::counter!("herringbone_claims_retried_total").absolute(0);
     metrics::gauge!("herringbone_event_streams").increment(0.0);
+    metrics::gauge!("herringbone_connections").increment(0.0);
+    metrics::describe_gauge!(
+        "herringbone_database_up",
+        "Whether the database answered; 0: its values are the last known."
+    );
     metrics::describe_gauge!("herringbone_jobs", "Stored jobs by state.");
     metrics::describe_gauge!("herringbone_queue_capacity", "Jobs that may wait.");
     metrics::describe_gauge!("herringbone_workers", "Jobs that can run at once.");
