@@ -111,12 +111,16 @@ async fn schema_of(database: &mut SqliteConnection, path: &Path, migrations: &Mi
     if tables.is_empty() {
         return Ok(Found::NOTHING);
     }
-    let ours = tables.iter().any(|row| row.try_get("name").is_ok_and(|name: String| name == "_sqlx_migrations"));
-    if !ours {
+    let has = |table: &str| tables.iter().any(|row| row.try_get("name").is_ok_and(|name: String| name == table));
+    if !has("_sqlx_migrations") {
         return Err(OpenError::Foreign(path.to_owned()));
     }
     let applied = sqlx::query("SELECT version, checksum, success FROM _sqlx_migrations ORDER BY version");
     let applied = applied.fetch_all(&mut *database).await.map_err(wrong)?;
+    // Other programs count their migrations in the same way. A file without any step is one whose making was interrupted.
+    if !applied.is_empty() && !has("jobs") {
+        return Err(OpenError::Foreign(path.to_owned()));
+    }
     let known = migrations.iter().map(|step| step.version).max().unwrap_or_default();
     let mut schema = None;
     for row in &applied {

@@ -102,6 +102,23 @@ async fn the_database_of_another_program_is_left_alone() {
     let path = directory.path().join("cookies.db");
     run(&path, "CREATE TABLE cookies (name TEXT)").await;
     assert!(matches!(refused_unchanged(&path).await, OpenError::Foreign(_)));
+    // One that counts its migrations in the same way.
+    run(&path, HISTORY).await;
+    run(&path, "INSERT INTO _sqlx_migrations VALUES (20240101, 'cookies', 0, TRUE, x'00', 0)").await;
+    assert!(matches!(refused_unchanged(&path).await, OpenError::Foreign(_)));
+}
+
+const HISTORY: &str = "CREATE TABLE _sqlx_migrations (version BIGINT PRIMARY KEY, description TEXT NOT NULL, \
+                       installed_on TIMESTAMP NOT NULL DEFAULT CURRENT_TIMESTAMP, success BOOLEAN NOT NULL, \
+                       checksum BLOB NOT NULL, execution_time BIGINT NOT NULL)";
+
+#[tokio::test]
+async fn a_database_whose_making_was_interrupted_is_made() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("jobs.db");
+    run(&path, HISTORY).await;
+    let store = Store::open(&StoreConfig::at(&path)).await.unwrap();
+    queued(&store, "a").await;
 }
 
 #[tokio::test]
