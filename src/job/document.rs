@@ -328,6 +328,7 @@ pub enum Integrator {
     /// Event-exact Taylor series on the piecewise-linear equations.
     Taylor,
     /// Variable-step fourth-order Runge–Kutta, as the source paper used.
+    #[serde(rename = "runge_kutta_4")]
     RungeKutta4,
 }
 

@@ -1,5 +1,7 @@
 //! A job: the document that goes in, and the result that comes out. No physics, no I/O.
 
+#[cfg(test)]
+pub(crate) mod arbitrary;
 pub mod document;
 mod fields;
 mod finite;

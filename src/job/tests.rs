@@ -48,6 +48,22 @@ fn a_document_written_out_reads_back_as_itself() {
 }
 
 #[test]
+fn every_word_of_a_choice_is_written_as_it_is_read() {
+    for (pointer, word) in [
+        ("/analysis/integrator", "runge_kutta_4"),
+        ("/model/impact/source", "zhou2008"),
+        ("/model/mesh_stiffness/source", "iso6336"),
+        ("/model/mesh_stiffness/law", "transmission_error"),
+        ("/model/impact/duration", "energy_balance"),
+        ("/operation/rotation", "apex_trailing"),
+    ] {
+        let written = serde_json::to_value(parse_value(&with(pointer, json!(word))).expect("valid")).expect("JSON");
+        assert_eq!(written.pointer(pointer), Some(&json!(word)));
+        assert!(parse_value(&written).is_ok(), "{pointer} {word}");
+    }
+}
+
+#[test]
 fn half_flanks_inherit_what_they_leave_out() {
     let mut document = table1();
     document["design"]["pinion"]["lead_crowning_um"] = json!(5.0);

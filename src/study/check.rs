@@ -20,3 +20,25 @@ pub fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
     let memory_mib = demand(document, 1).total_mib();
     Ok(CheckReport { geometry: geometry(&prepared), memory_mib, warnings: prepared.warnings })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::{arbitrary, parse_value};
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Values at the ends of every range together: a gear that can exist, or reasons why not.
+        #[test]
+        fn any_valid_document_is_answered(value in arbitrary::documents()) {
+            let document = parse_value(&value).expect("valid");
+            match check(&document) {
+                Ok(report) => prop_assert!(report.geometry.center_distance_mm.is_finite(), "{}", value),
+                Err(DocumentError::Invalid(found) | DocumentError::Unsupported(found)) => prop_assert!(!found.is_empty()),
+                Err(DocumentError::Malformed { detail, .. }) => prop_assert!(false, "{}", detail),
+            }
+        }
+    }
+}

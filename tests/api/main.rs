@@ -2,6 +2,7 @@
 
 mod support;
 
+mod any_request;
 mod backup;
 mod cancel_job;
 mod connections;

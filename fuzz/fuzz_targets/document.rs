@@ -1,0 +1,15 @@
+//! Bytes as a job document: reading never panics; what is read reads back as itself when written out; whether the gear can
+//! exist is answered without a panic.
+
+#![no_main]
+
+use herringbone::{job, study};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(document) = job::parse(bytes) else { return };
+    let written = serde_json::to_vec(&document).expect("a document holds numbers and texts");
+    let again = job::parse(&written).expect("a document written out is valid");
+    assert!(document == again, "{document:?}\nreads back as\n{again:?}");
+    let _ = study::check(&document);
+});

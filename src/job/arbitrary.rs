@@ -1,0 +1,206 @@
+//! Tests only: random documents that are valid, over the full range of every field, out of the declarations themselves.
+
+use super::schema::job_document_schema;
+use proptest::prelude::*;
+use proptest::sample::select;
+use serde_json::{Map, Value, json};
+
+/// JSON of a valid job document. Whether the gear can exist is another matter.
+pub fn documents() -> BoxedStrategy<Value> {
+    let any = of_schema(&job_document_schema()).prop_map(|mut document| {
+        reconcile(&mut document);
+        document
+    });
+    any.boxed()
+}
+
+/// What fits a schema, field by field: the ends of a range as often as what lies between.
+fn of_schema(schema: &Value) -> BoxedStrategy<Value> {
+    let word = schema["type"].as_str().or_else(|| schema["type"][0].as_str()).unwrap_or_default();
+    let bound = |name: &str| schema[name].as_f64().unwrap_or_default();
+    let (min, max) = (bound("minimum"), bound("maximum"));
+    if let Value::Array(words) = &schema["enum"] {
+        return select(words.clone()).boxed();
+    }
+    match word {
+        "object" => of_object(schema),
+        "number" => prop_oneof![
+            Just(min),
+            Just(max),
+            (0.0..=1.0f64).prop_map(move |part| (min + part * (max - min)).clamp(min, max)),
+            // As many small values as large ones.
+            (0.0..=1.0f64).prop_map(move |part| (min + (max - min) * 10f64.powf(-12.0 * part)).clamp(min, max)),
+        ]
+        .prop_map(|number| json!(number))
+        .boxed(),
+        "integer" => prop_oneof![Just(min as u64), Just(max as u64), min as u64..=max as u64]
+            .prop_map(|number| json!(number))
+            .boxed(),
+        "boolean" => any::<bool>().prop_map(Value::Bool).boxed(),
+        "string" => {
+            let most = schema["maxLength"].as_u64().unwrap_or(20) as usize;
+            let letter = any::<char>().prop_map(|letter| if letter.is_control() { '·' } else { letter });
+            let length = prop_oneof![5 => 0..=most.min(20), 1 => Just(most)];
+            length
+                .prop_flat_map(move |length| proptest::collection::vec(letter.clone(), length))
+                .prop_map(|letters| Value::String(letters.into_iter().collect()))
+                .boxed()
+        }
+        "array" => {
+            let least = schema["minItems"].as_u64().unwrap_or(0) as usize;
+            let most = (schema["maxItems"].as_u64().unwrap_or(8) as usize).min(least + 6);
+            proptest::collection::vec(of_schema(&schema["items"]), least..=most).prop_map(Value::Array).boxed()
+        }
+        other => panic!("fields of type {other:?} are not known here"),
+    }
+}
+
+/// Fields that have to be there are there; of the others half, and a few of those are null.
+fn of_object(schema: &Value) -> BoxedStrategy<Value> {
+    let required = schema["required"].as_array().cloned().unwrap_or_default();
+    let fields = schema["properties"].as_object().into_iter().flatten().map(|(name, field)| {
+        let value = of_schema(field);
+        let entry = match required.contains(&json!(name)) {
+            true => value.prop_map(Some).boxed(),
+            false => prop_oneof![8 => value.prop_map(Some), 1 => Just(Some(Value::Null)), 9 => Just(None)].boxed(),
+        };
+        (Just(name.clone()), entry)
+    });
+    fields
+        .collect::<Vec<_>>()
+        .prop_map(|fields| {
+            Value::Object(fields.into_iter().filter_map(|(name, value)| Some((name, value?))).collect::<Map<_, _>>())
+        })
+        .boxed()
+}
+
+/// Settles what rules between fields forbid.
+fn reconcile(document: &mut Value) {
+    let is_sweep = document["kind"] == "sweep";
+    axes(document, is_sweep);
+    for gear in ["pinion", "gear"] {
+        let gear = &mut document["design"][gear];
+        // Mating halves have opposite hands; left out, they do.
+        gear.as_object_mut().map(|gear| gear.remove("left_half_hand"));
+        reliefs(gear);
+        for half in ["left", "right"] {
+            if gear[half].is_object() {
+                reliefs(&mut gear[half]);
+            }
+        }
+    }
+    if let Some(analysis) = document.get_mut("analysis").filter(|analysis| analysis.is_object()) {
+        periods(analysis);
+    }
+    if let Some(model) = document.get_mut("model").filter(|model| model.is_object()) {
+        given(model);
+    }
+}
+
+fn axes(document: &mut Value, is_sweep: bool) {
+    let Some(fields) = document.as_object_mut() else { return };
+    if !is_sweep {
+        ["axes", "continuation", "record"].iter().for_each(|name| drop(fields.remove(*name)));
+        return;
+    }
+    let one = json!([{"pointer": "/operation/pinion_speed_rpm", "from": 300, "to": 6000}]);
+    let axes = fields.entry("axes").or_insert(Value::Null);
+    if !axes.is_array() {
+        *axes = one;
+    }
+    for axis in axes.as_array_mut().into_iter().flatten() {
+        // Few enough for two axes and for rows that carry more than numbers.
+        axis["points"] = json!(axis["points"].as_u64().unwrap_or(50).min(70));
+        if axis["values"].is_array() {
+            axis["from"] = Value::Null;
+            axis["to"] = Value::Null;
+        } else {
+            let or = |value: &Value, other: f64| json!(value.as_f64().unwrap_or(other));
+            (axis["from"], axis["to"]) = (or(&axis["from"], 1.0), or(&axis["to"], 2.0));
+            if [&axis["from"], &axis["to"]].iter().any(|end| end.as_f64().is_some_and(|end| end <= 0.0)) {
+                axis["spacing"] = json!("linear");
+            }
+        }
+    }
+}
+
+/// A relief has a length.
+fn reliefs(flank: &mut Value) {
+    for name in ["tip_relief", "end_relief"] {
+        if flank[name].is_object() {
+            let length_mm = flank[name]["length_mm"].as_f64().unwrap_or_default();
+            flank[name]["length_mm"] = json!(length_mm.max(1e-3));
+        }
+    }
+}
+
+fn periods(analysis: &mut Value) {
+    let of = |value: &Value, default: u64| value.as_u64().unwrap_or(default);
+    let recorded = of(&analysis["record_mesh_periods"], 100).min(of(&analysis["mesh_periods"], 300));
+    analysis["record_mesh_periods"] = json!(recorded);
+    let samples = of(&analysis["samples_per_mesh_period"], 256).min(4_000_000 / recorded);
+    analysis["samples_per_mesh_period"] = json!(samples);
+    if analysis["initial_state"].is_array() {
+        analysis["method"] = json!("integrate");
+    }
+}
+
+fn given(model: &mut Value) {
+    let stiffness = &mut model["mesh_stiffness"];
+    if stiffness["source"] == "given" {
+        match stiffness["samples_n_per_um"].is_array() {
+            true => stiffness["mean_n_per_um"] = Value::Null,
+            false => stiffness["mean_n_per_um"] = json!(stiffness["mean_n_per_um"].as_f64().unwrap_or(900.0)),
+        }
+        for harmonic in stiffness["harmonics"].as_array_mut().into_iter().flatten() {
+            harmonic["amplitude"] = json!(harmonic["amplitude"].as_f64().unwrap_or_default() / 65.0);
+        }
+    }
+    let impact = &mut model["impact"];
+    if impact["source"] == "given" {
+        for (name, default) in [("force_n", 3000.0), ("duration_mesh_periods", 0.1)] {
+            impact[name] = json!(impact[name].as_f64().unwrap_or(default));
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Parse, fill in, write out, parse: the same document, and the same text when written again.
+    #[test]
+    fn a_valid_document_written_out_reads_back_as_itself(value in documents()) {
+        let text = value.to_string();
+        let document = super::parse(text.as_bytes()).unwrap_or_else(|error| panic!("{error:?}: {text}"));
+        let written = serde_json::to_string(&document).expect("numbers and texts");
+        let again = super::parse(written.as_bytes()).unwrap_or_else(|error| panic!("{error:?}: {written}"));
+        prop_assert_eq!(&again, &document);
+        prop_assert_eq!(serde_json::to_string(&again).expect("numbers and texts"), written);
+    }
+
+    /// Reading fills in; it does not change what is given.
+    #[test]
+    fn what_is_given_is_kept(value in documents()) {
+        let written = serde_json::to_value(super::parse_value(&value).expect("valid")).expect("numbers and texts");
+        for pointer in ["/name", "/design/normal_module_mm", "/design/gear/tip_relief/amount_um", "/operation/pinion_torque_nm",
+                        "/design/supports/gear_axial_n_per_um", "/analysis/accuracy", "/axes/0/pointer"] {
+            if let Some(given) = value.pointer(pointer).filter(|given| !given.is_null()) {
+                prop_assert_eq!(written.pointer(pointer), Some(given), "{}", pointer);
+            }
+        }
+    }
+
+    /// Bytes that nearly are a document: refused or read, never a panic.
+    #[test]
+    fn a_document_with_one_byte_changed_is_read_or_refused(value in documents(), place in any::<prop::sample::Index>(), byte: u8) {
+        let mut bytes = value.to_string().into_bytes();
+        let index = place.index(bytes.len());
+        bytes[index] = byte;
+        let _ = super::parse(&bytes);
+    }
+
+    #[test]
+    fn bytes_of_any_kind_are_read_or_refused(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        let _ = super::parse(&bytes);
+    }
+}
