@@ -1,0 +1,63 @@
+//! Documents of jobs: cheap ones, and ones that compute until they are canceled.
+
+use serde_json::{Value, json};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A response with given stiffness and hardly a series; each differs in speed.
+pub fn response() -> Value {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let speed_rpm = 1000.0 + 0.001 * f64::from(COUNT.fetch_add(1, Ordering::Relaxed));
+    json!({
+        "kind": "response",
+        "design": {
+            "normal_module_mm": 6.0, "pressure_angle_deg": 20.0, "pressure_angle_plane": "transverse",
+            "helix_angle_deg": 24.43, "face_width_mm": 75.0,
+            "pinion": {"teeth": 17, "bore_diameter_mm": 50.0}, "gear": {"teeth": 44, "bore_diameter_mm": 120.0},
+        },
+        "operation": {"pinion_speed_rpm": speed_rpm, "pinion_torque_nm": 800.0},
+        "model": {
+            "mesh_stiffness": {"source": "given", "mean_n_per_um": 900.0, "harmonics": [{"amplitude": 0.1}]},
+            "impact": {"source": "none"},
+        },
+        "analysis": {"record_mesh_periods": 1, "samples_per_mesh_period": 8, "channels": ["a_x_left"]},
+    })
+}
+
+pub fn sweep(points: u32) -> Value {
+    let mut document = response();
+    document["kind"] = json!("sweep");
+    document["operation"]["pinion_torque_nm"] = document["operation"]["pinion_speed_rpm"].take();
+    document["operation"]["pinion_speed_rpm"] = json!(2000.0);
+    document["axes"] = json!([
+        {"pointer": "/operation/pinion_speed_rpm", "from": 1000.0, "to": 5000.0, "points": points}
+    ]);
+    document
+}
+
+pub fn integration(mesh_periods: u32) -> Value {
+    let mut document = response();
+    document["analysis"]["method"] = json!("integrate");
+    document["analysis"]["mesh_periods"] = json!(mesh_periods);
+    document
+}
+
+pub fn elements() -> Value {
+    let mut document = response();
+    document["kind"] = json!("mesh");
+    document["model"]["mesh_stiffness"] = json!({"source": "ltca", "fidelity": "fe", "elements": "fine"});
+    document
+}
+
+/// Many wide teeth in mesh, finely sliced.
+pub fn contact() -> Value {
+    let mut document = response();
+    document["kind"] = json!("mesh");
+    document["design"] = json!({
+        "normal_module_mm": 6.0, "pressure_angle_deg": 17.5, "helix_angle_deg": 35.0, "face_width_mm": 400.0,
+        "pinion": {"teeth": 100, "addendum": 1.2, "dedendum": 1.5, "bore_diameter_mm": 100.0},
+        "gear": {"teeth": 300, "addendum": 1.2, "dedendum": 1.5, "bore_diameter_mm": 300.0},
+    });
+    document["operation"]["pinion_torque_nm"] = json!(50_000.0);
+    document["model"]["mesh_stiffness"] = json!({"source": "ltca", "positions": 1024, "slices": 200});
+    document
+}

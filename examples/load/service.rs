@@ -1,0 +1,50 @@
+//! The release program beside this one, as a process.
+
+use crate::connection::Connection;
+use std::error::Error;
+use std::io::{BufRead, BufReader};
+use std::net::SocketAddr;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+
+pub struct Service {
+    process: Child,
+    pub address: SocketAddr,
+}
+
+impl Service {
+    pub fn start(database: &Path, options: &[&str]) -> Result<Self, Box<dyn Error>> {
+        // …/release/examples/load and …/release/herringbone
+        let here = std::env::current_exe()?;
+        let program = here.ancestors().nth(2).ok_or("no directory")?.join("herringbone");
+        let mut process = Command::new(program)
+            .args(["serve", "--listen", "127.0.0.1:0", "--log", "error", "--database"])
+            .arg(database)
+            .args(options)
+            .stdout(Stdio::piped())
+            .spawn()?;
+        let mut line = String::new();
+        BufReader::new(process.stdout.take().ok_or("no output")?).read_line(&mut line)?;
+        let address = line.trim_end().trim_end_matches('/').rsplit('/').next().unwrap_or_default().parse()?;
+        Ok(Self { process, address })
+    }
+
+    pub fn connect(&self) -> std::io::Result<Connection> {
+        Connection::to(self.address)
+    }
+
+    /// A line of `/proc/PID/status` in MB: `VmRSS` now, `VmHWM` at most so far.
+    pub fn memory_mb(&self, line: &str) -> f64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.process.id())).unwrap_or_default();
+        let found = status.lines().find_map(|text| text.strip_prefix(line)?.strip_prefix(':'));
+        let kb = found.and_then(|text| text.trim().trim_end_matches(" kB").parse::<f64>().ok());
+        kb.unwrap_or(f64::NAN) * 1024.0 / 1e6
+    }
+}
+
+impl Drop for Service {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}

@@ -1,0 +1,172 @@
+//! The database by itself: what a commit costs, and how claims, lists and submissions grow with the jobs that wait.
+
+use crate::documents;
+use crate::times::Times;
+use herringbone::store::{JobFilter, JobId, NewJob, State, Store, StoreConfig, Submission, WorkClass};
+use jiff::Timestamp;
+use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqliteSynchronous};
+use sqlx::{ConnectOptions, Connection, SqliteConnection};
+use std::error::Error;
+use std::path::Path;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+
+pub const MANY: u32 = 100_000;
+const CAPACITY: u32 = 1_000_000;
+
+#[tokio::main]
+pub async fn commits() -> Result<(), Box<dyn Error>> {
+    println!("| submission at the store, one after the other | per second | median / longest |\n|---|---|---|");
+    let directory = tempfile::tempdir_in(".")?;
+    let database = directory.path().join("store.db");
+    let store = Store::open(&StoreConfig::at(&database)).await?;
+    let mut times = Times::of(500, async || submit(&store).await).await;
+    store.close().await;
+    println!("| `Store::submit` (synchronous FULL) | {:.0} | {} |", 1e3 / times.mean_ms(), times.told());
+    for level in [SqliteSynchronous::Full, SqliteSynchronous::Normal, SqliteSynchronous::Off] {
+        let name = format!("{level:?}").to_uppercase();
+        let options = SqliteConnectOptions::new().filename(&database).journal_mode(SqliteJournalMode::Wal);
+        let mut connection = options.synchronous(level).busy_timeout(Duration::from_secs(5)).connect().await?;
+        let mut times = Times::default();
+        for _ in 0..500 {
+            let began = Instant::now();
+            insert(&mut connection).await?;
+            times.add(began.elapsed());
+        }
+        connection.close().await?;
+        println!("| the same rows, synchronous {name} | {:.0} | {} |", 1e3 / times.mean_ms(), times.told());
+    }
+    Ok(())
+}
+
+/// The two rows of a submission, without what `Store::submit` does around them.
+async fn insert(connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
+    let job = new_job();
+    let mut transaction = connection.begin_with("BEGIN IMMEDIATE").await?;
+    sqlx::query(
+        "INSERT INTO jobs (id, kind, state, revision, attempt, input, input_hash, solver_version, submitted_at_us) \
+         VALUES ($1, $2, 'queued', 1, 0, $3, $4, $5, 0)",
+    )
+    .bind(job.id.to_string())
+    .bind(job.kind)
+    .bind(job.input)
+    .bind(job.input_hash)
+    .bind(job.solver_version)
+    .execute(&mut *transaction)
+    .await?;
+    sqlx::query("INSERT INTO job_events (job_id, revision, at_us, state, attempt) VALUES ($1, 1, 0, 'queued', 0)")
+        .bind(job.id.to_string())
+        .execute(&mut *transaction)
+        .await?;
+    transaction.commit().await
+}
+
+/// Every hundredth is a sweep, every fiftieth has a rare label.
+fn new_job() -> NewJob {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let n = COUNT.fetch_add(1, Ordering::Relaxed);
+    let document = if n % 100 == 99 { documents::sweep(2) } else { documents::response() };
+    NewJob {
+        id: JobId::new(),
+        kind: if n % 100 == 99 { "sweep" } else { "response" },
+        name: None,
+        label: Some(if n % 50 == 49 { "rare" } else { "usual" }.to_owned()),
+        input: document.to_string(),
+        input_hash: format!("{n:064x}"),
+        solver_version: "load",
+        request_id: Some(JobId::new().to_string()),
+        idempotency: None,
+    }
+}
+
+async fn submit(store: &Store) {
+    let submission = store.submit(new_job(), None, CAPACITY, Timestamp::now()).await;
+    assert!(matches!(submission, Ok(Submission::Accepted(_))), "{submission:?}");
+}
+
+/// Writes so many jobs that wait; in memory, where a commit costs no wait, and then as a file at the path.
+pub async fn fill(database: &Path, jobs: u32) -> Result<Duration, Box<dyn Error>> {
+    let fast = tempfile::tempdir_in("/dev/shm")?;
+    let file = fast.path().join("fill.db");
+    let store = Store::open(&StoreConfig::at(&file)).await?;
+    let began = Instant::now();
+    for _ in 0..jobs {
+        submit(&store).await;
+    }
+    let took = began.elapsed();
+    store.close().await;
+    std::fs::copy(&file, database)?;
+    Ok(took)
+}
+
+#[tokio::main]
+pub async fn many_jobs() -> Result<(), Box<dyn Error>> {
+    println!("| with so many jobs waiting (median / longest of 50) | 100 | 100 000 |\n|---|---|---|");
+    let directory = tempfile::tempdir_in(".")?;
+    let mut columns = Vec::new();
+    for jobs in [100, MANY] {
+        let database = directory.path().join(format!("{jobs}.db"));
+        fill(&database, jobs).await?;
+        let store = Store::open(&StoreConfig::at(&database)).await?;
+        columns.push(rows(&store).await?);
+        store.close().await;
+    }
+    for (few, many) in columns[0].iter().zip(&columns[1]) {
+        println!("| {} | {} | {} |", few.0, few.1, many.1);
+    }
+    Ok(())
+}
+
+async fn rows(store: &Store) -> Result<Vec<(&'static str, String)>, Box<dyn Error>> {
+    let mut rows = Vec::new();
+    let everything = JobFilter::default();
+    let states = |states: &[State]| JobFilter { states: states.to_vec(), ..JobFilter::default() };
+    let live = states(&[State::Queued, State::Running]);
+    let kind = JobFilter { kind: Some("sweep".to_owned()), ..JobFilter::default() };
+    let usual = JobFilter { label: Some("usual".to_owned()), ..JobFilter::default() };
+    let rare = JobFilter { label: Some("rare".to_owned()), ..JobFilter::default() };
+    let several = JobFilter { label: Some("usual".to_owned()), kind: Some("response".to_owned()), ..live.clone() };
+    let newest = store.list(&everything, None, 50).await?;
+    let oldest = oldest(store, newest.jobs.last().map(|job| job.id)).await?;
+    for (name, filter, before) in [
+        ("page of the list, first", &everything, None),
+        ("… the last, by its cursor", &everything, oldest),
+        ("… of a state", &states(&[State::Queued]), None),
+        ("… of a state that no job has", &states(&[State::Failed]), None),
+        ("… of two states", &live, None),
+        ("… of a kind (1 of 100)", &kind, None),
+        ("… of a label (1 of 50)", &rare, None),
+        ("… of a label (49 of 50), last page", &usual, oldest),
+        ("… of states, kind and label", &several, None),
+    ] {
+        let mut times = Times::of(50, async || assert!(store.list(filter, before, 50).await.is_ok())).await;
+        rows.push((name, times.told()));
+    }
+    let mut counts = Times::of(50, async || assert!(store.counts().await.is_ok())).await;
+    rows.push(("jobs counted by state (`/metrics`)", counts.told()));
+    rows.push(("submission", Times::of(50, async || submit(store).await).await.told()));
+    for (name, class) in [("claim of a single job", WorkClass::Single), ("claim of a sweep", WorkClass::Sweep)] {
+        let mut times = Times::default();
+        for _ in 0..50 {
+            let began = Instant::now();
+            if store.claim_next(class, Timestamp::now()).await?.is_some() {
+                times.add(began.elapsed());
+            }
+        }
+        rows.push((name, times.told()));
+    }
+    Ok(rows)
+}
+
+/// An id with about fifty jobs older than it.
+async fn oldest(store: &Store, start: Option<JobId>) -> Result<Option<JobId>, Box<dyn Error>> {
+    let mut before = start;
+    loop {
+        let page = store.list(&JobFilter::default(), before, 200).await?;
+        match page.jobs.iter().nth_back(50.min(page.jobs.len().saturating_sub(1))) {
+            Some(job) if !page.more => return Ok(Some(job.id)),
+            Some(_) => before = page.jobs.last().map(|job| job.id),
+            None => return Ok(before),
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Documents of real jobs that cost little.
+
+use serde_json::{Value, json};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A response with given stiffness, directly periodic, hardly a series: milliseconds. Each one differs in speed, so that no
+/// result is reused by chance.
+pub fn response() -> Value {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let speed_rpm = 1000.0 + 0.01 * f64::from(COUNT.fetch_add(1, Ordering::Relaxed));
+    json!({
+        "kind": "response",
+        "design": {
+            "normal_module_mm": 6.0, "pressure_angle_deg": 20.0, "pressure_angle_plane": "transverse",
+            "helix_angle_deg": 24.43, "face_width_mm": 75.0,
+            "pinion": {"teeth": 17, "bore_diameter_mm": 50.0}, "gear": {"teeth": 44, "bore_diameter_mm": 120.0},
+        },
+        "operation": {"pinion_speed_rpm": speed_rpm, "pinion_torque_nm": 800.0},
+        "model": {
+            "mesh_stiffness": {"source": "given", "mean_n_per_um": 900.0, "harmonics": [{"amplitude": 0.1}]},
+            "impact": {"source": "none"},
+        },
+        "analysis": {"record_mesh_periods": 1, "samples_per_mesh_period": 8, "channels": ["a_x_left"]},
+    })
+}
+
+/// As [`response`], up to the mesh.
+pub fn mesh() -> Value {
+    let mut document = response();
+    document["kind"] = json!("mesh");
+    document
+}
+
+/// As [`response`], over so many speeds.
+pub fn sweep(points: u32) -> Value {
+    let mut document = response();
+    document["kind"] = json!("sweep");
+    document["operation"]["pinion_torque_nm"] = document["operation"]["pinion_speed_rpm"].take();
+    document["operation"]["pinion_speed_rpm"] = json!(2000.0);
+    document["axes"] = json!([
+        {"pointer": "/operation/pinion_speed_rpm", "from": 1000.0, "to": 5000.0, "points": points}
+    ]);
+    document
+}
+
+/// As [`response`], integrated over so many mesh periods.
+pub fn integration(mesh_periods: u32) -> Value {
+    let mut document = response();
+    document["analysis"]["method"] = json!("integrate");
+    document["analysis"]["mesh_periods"] = json!(mesh_periods);
+    document
+}
