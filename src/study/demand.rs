@@ -6,8 +6,12 @@
 use crate::job::document::{Axis, Elements, Fidelity, JobDocument, Kind, MeshStiffness};
 
 const MIB: f64 = 1_048_576.0;
-/// Held by a recorded sample: itself, and once more while the series are packed.
-const SAMPLE_BYTES: f64 = 2.0 * 8.0;
+/// A sample of a channel.
+const SAMPLE_BYTES: f64 = 8.0;
+/// Each channel is held as it is, and once more while it is packed.
+const PER_CHANNEL: f64 = 2.0;
+/// The spectrum's channel, its window, its transform and the plan of that, as so many channels.
+const SPECTRUM_CHANNELS: f64 = 5.0;
 /// Held by a row of a sweep, as numbers and as the text to be written.
 const ROW_BYTES: f64 = 2048.0;
 /// The same of a row that carries Poincaré points or a spectrum.
@@ -48,7 +52,7 @@ pub fn demand(document: &JobDocument, threads: usize) -> Demand {
             let channels = super::vibration::channels(document).map_or(0, |channels| channels.len());
             let analysis = &document.analysis;
             let samples = f64::from(analysis.record_mesh_periods) * f64::from(analysis.samples_per_mesh_period);
-            channels as f64 * samples * SAMPLE_BYTES / MIB
+            (PER_CHANNEL * channels as f64 + SPECTRUM_CHANNELS) * samples * SAMPLE_BYTES / MIB
         }
         Kind::Mesh | Kind::Sweep => 0.0,
     };
