@@ -3,6 +3,7 @@
 use super::backup;
 pub use super::error::StoreError;
 use super::examine::{OPEN_WAIT, beside, examine};
+use super::ids::Ids;
 use super::open_error::OpenError;
 use super::probe::Probe;
 use super::retention::{Limit, RetentionConfig};
@@ -63,6 +64,7 @@ pub struct Store {
     pub(super) reader: SqlitePool,
     pub(super) stage_cache_bytes: i64,
     pub(super) waiting: Waiting,
+    pub(super) ids: Ids,
     pub(super) limit: Option<Limit>,
     pub(super) path: Arc<Path>,
     pub(super) pressed: Arc<Notify>,
@@ -125,11 +127,13 @@ impl Store {
             .map_err(wrong)?;
         let stage_cache_bytes = (i64::from(config.stage_cache_mib) << 20).min(Limit::stages(limit.as_ref()));
         let waiting = Waiting::counted(&writer).await.map_err(wrong)?;
+        let ids = Ids::after_stored(&writer).await.map_err(wrong)?;
         Ok(Self {
             writer,
             reader,
             stage_cache_bytes,
             waiting,
+            ids,
             limit,
             path: path.into(),
             pressed: Arc::default(),

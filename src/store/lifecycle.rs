@@ -15,6 +15,11 @@ impl JobId {
         Self(Uuid::now_v7())
     }
 
+    /// The one after this: its random end counted up by one.
+    pub(super) fn next(self) -> Self {
+        Self(Uuid::from_u128(self.0.as_u128().saturating_add(1)))
+    }
+
     pub fn from_bytes(bytes: [u8; 16]) -> Self {
         Self(Uuid::from_bytes(bytes))
     }

@@ -11,6 +11,7 @@ mod error;
 mod examine;
 mod failure;
 mod finish;
+mod ids;
 mod lifecycle;
 mod list;
 mod lookup;

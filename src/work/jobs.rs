@@ -156,7 +156,7 @@ impl Jobs {
         let reuse = stored_completion(self.store(), &input_hash, solver_version).await?;
         let idempotency = idempotency_key.map(|key| (key, hash_of(&input)));
         let job = NewJob {
-            id: JobId::new(),
+            id: self.store().next_id(),
             kind: document.kind.word(),
             name: document.name,
             label: document.label,
