@@ -6,7 +6,7 @@
 use axum::Router;
 use axum::body::Body;
 use axum::http::{HeaderName, HeaderValue, Request, StatusCode, Uri};
-use herringbone::api::{self, Access, AppState, HttpConfig, Pages};
+use herringbone::api::{self, Access, AccessConfig, AppState, HttpConfig, Pages};
 use herringbone::job::DocumentError;
 use herringbone::job::document::JobDocument;
 use herringbone::job::result::JobResult;
@@ -62,8 +62,10 @@ impl Service {
             let jobs = Jobs::start(store, &WorkConfig::default(), Arc::new(AtOnce), Arc::new(Timestamp::now))
                 .await
                 .expect("the workers start");
+            let http = HttpConfig::default();
+            let access = Access::new(&AccessConfig::default(), http.listen).expect("access without a token");
             let state = AppState::new(jobs, Timestamp::now());
-            let router = api::router(state, &HttpConfig::default(), &Access::default(), Pages::default());
+            let router = api::router(state, &http, &access, Pages::default());
             let request = Request::post("/api/v1/jobs")
                 .header("content-type", "application/json")
                 .header("prefer", "wait=30")
@@ -114,7 +116,8 @@ fn request(job: &str, bytes: &[u8]) -> Option<Request<Body>> {
     for line in lines.take(8) {
         let colon = line.iter().position(|byte| *byte == b':')?;
         let (name, value) = line.split_at(colon);
-        request = request.header(HeaderName::from_bytes(name).ok()?, HeaderValue::from_bytes(value[1..].trim_ascii()).ok()?);
+        request =
+            request.header(HeaderName::from_bytes(name).ok()?, HeaderValue::from_bytes(value[1..].trim_ascii()).ok()?);
     }
     // A wait would be granted, and only make the run slow.
     request.body(Body::empty()).ok().filter(|request| !request.headers().contains_key("prefer"))

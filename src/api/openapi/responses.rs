@@ -29,7 +29,8 @@ const NOT_ACCEPTABLE: (&str, &str) = ("406", "No representation fits the header 
 const STORED: (&str, &str) = ("503", "The database cannot be used for now (`storage-unavailable`).");
 
 /// Endpoints that answer without the database.
-const WITHOUT_DATABASE: [&str; 4] = ["/api/v1/kinds", "/api/v1/jobs/validate", "/healthz", "/problems/{code}"];
+const WITHOUT_DATABASE: [&str; 5] =
+    ["/api/v1/kinds", "/api/v1/jobs/validate", "/healthz", "/metrics", "/problems/{code}"];
 
 /// Statuses of answers that may say when to try again.
 const RETRIED: [&str; 3] = ["409", "429", "503"];
