@@ -23,7 +23,7 @@ async fn a_full_database_refuses_jobs_keeps_those_it_has_and_recovers() {
     let live = app.submit(&document()).await;
     app.solver.breakpoints.reached("solve", 2).await;
     let mut database = by_hand(&app.database()).await;
-    let filling = "INSERT INTO stages VALUES ('ballast', 'mesh', '', 8500000, 0, zeroblob(8500000))";
+    let filling = "INSERT INTO stages VALUES ('ballast', 'mesh', '', 8400000, 0, zeroblob(8400000))";
     sqlx::query(filling).execute(&mut database).await.expect("filled");
     let answer = app.submit_with(&document(), &[]).await;
     answer.assert_problem(503, "storage-unavailable");
