@@ -35,11 +35,16 @@ impl Faces<'_> {
         solve_lower(h.as_ref(), y.as_mut(), checkpoint)?;
         let real = Mat::<f64>::from_fn(n, f.ncols(), |i, j| y[(i, j)].re);
         let imaginary = Mat::<f64>::from_fn(n, f.ncols(), |i, j| y[(i, j)].im);
+        // Each product takes long enough to be asked for anew whether it is still wanted.
+        checkpoint()?;
         let mut even = self.sector.compliance.clone();
         matmul(even.as_mut(), Accum::Add, real.transpose(), real.as_ref(), 1.0, Par::Seq);
+        checkpoint()?;
         matmul(even.as_mut(), Accum::Add, imaginary.transpose(), imaginary.as_ref(), 1.0, Par::Seq);
+        checkpoint()?;
         let mut odd = Mat::<f64>::zeros(f.ncols(), f.ncols());
         matmul(odd.as_mut(), Accum::Replace, real.transpose(), imaginary.as_ref(), 1.0, Par::Seq);
+        checkpoint()?;
         matmul(odd.as_mut(), Accum::Add, imaginary.transpose(), real.as_ref(), -1.0, Par::Seq);
         Ok((even, odd))
     }
