@@ -28,11 +28,7 @@ impl Store {
         let limit_and_one = i64::from(limit) + 1;
         // One walk along an index for each state, merged: a page takes as long whatever the number of jobs.
         // Each once, however often it is named.
-        let states: Vec<Option<State>> = State::ALL
-            .map(Some)
-            .into_iter()
-            .filter(|state| state.is_some_and(|state| filter.states.contains(&state)))
-            .collect();
+        let states: Vec<_> = State::ALL.into_iter().filter(|state| filter.states.contains(state)).map(Some).collect();
         let walks = if states.is_empty() { vec![None] } else { states };
         let mut query: QueryBuilder<Sqlite> = QueryBuilder::new("");
         for (index, state) in walks.into_iter().enumerate() {
