@@ -80,8 +80,14 @@ impl Program {
 
     /// The same with header lines.
     pub fn get_with(&self, path: &str, headers: &str) -> (u16, String) {
+        self.exchange("GET", path, headers, "")
+    }
+
+    /// Status and body of a request with header lines and a body.
+    pub fn exchange(&self, method: &str, path: &str, headers: &str, body: &str) -> (u16, String) {
         let mut stream = TcpStream::connect(self.address()).expect("a connection");
-        let request = format!("GET {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n{headers}\r\n");
+        let request =
+            format!("{method} {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n{headers}\r\n{body}");
         stream.write_all(request.as_bytes()).expect("sent");
         let mut answer = String::new();
         stream.read_to_string(&mut answer).expect("an answer");
@@ -93,6 +99,18 @@ impl Program {
     /// Ends it; what it has logged.
     pub fn end(mut self) -> String {
         let _ = self.process.kill();
+        self.logged()
+    }
+
+    /// Has it end itself, as an operator does; what it has logged.
+    pub fn stop(mut self) -> String {
+        let id = self.process.id().to_string();
+        assert!(Command::new("kill").args(["-TERM", &id]).status().expect("kill runs").success());
+        assert!(self.process.wait().expect("it ends").success());
+        self.logged()
+    }
+
+    fn logged(&mut self) -> String {
         let _ = self.process.wait();
         self.log.take().and_then(|log| log.join().ok()).unwrap_or_default()
     }

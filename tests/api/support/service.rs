@@ -1,19 +1,12 @@
-//! The real program as a process of its own.
+//! The real program over a database of its own, and its jobs.
 
+use super::Program;
 use serde_json::Value;
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Write};
-use std::net::TcpStream;
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// A service over `jobs.db` in a directory; killed when it is dropped.
-pub struct Service {
-    process: Child,
-    address: String,
-    log: PathBuf,
-}
+pub struct Service(Program);
 
 impl Service {
     pub fn start(directory: &Path) -> Self {
@@ -21,40 +14,18 @@ impl Service {
     }
 
     pub fn start_with(directory: &Path, arguments: &[&str]) -> Self {
-        let log = directory.join("log");
-        let mut process = Command::new(env!("CARGO_BIN_EXE_herringbone"))
-            .args(["serve", "--listen", "127.0.0.1:0"])
-            .args(arguments)
-            .arg("--database")
-            .arg(directory.join("jobs.db"))
-            .stdout(Stdio::piped())
-            .stderr(File::create(&log).expect("a file for the log"))
-            .spawn()
-            .expect("the program starts");
-        let mut line = String::new();
-        BufReader::new(process.stdout.take().expect("output")).read_line(&mut line).expect("a line");
-        let address = line.trim_end().trim_end_matches('/').rsplit('/').next().expect("an address").to_owned();
-        Self { process, address, log }
+        let database = directory.join("jobs.db");
+        let here = ["--listen", "127.0.0.1:0", "--database", database.to_str().expect("a path in UTF-8")];
+        Self(Program::start(&[&here, arguments].concat()))
     }
 
     /// Status and body.
     pub fn exchange(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &str) -> (u16, String) {
-        let mut stream = TcpStream::connect(&self.address).expect("a connection");
-        let mut head = format!(
-            "{method} {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\ncontent-type: application/json\r\n\
-             content-length: {}\r\n",
-            body.len()
-        );
+        let mut lines = format!("content-type: application/json\r\ncontent-length: {}\r\n", body.len());
         for (name, value) in headers {
-            head += &format!("{name}: {value}\r\n");
+            lines += &format!("{name}: {value}\r\n");
         }
-        head += "\r\n";
-        stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(body.as_bytes())).expect("sent");
-        let mut answer = String::new();
-        stream.read_to_string(&mut answer).expect("an answer");
-        let (head, body) = answer.split_once("\r\n\r\n").expect("head and body");
-        let status = head.split(' ').nth(1).and_then(|status| status.parse().ok()).expect("a status");
-        (status, body.to_owned())
+        self.0.exchange(method, path, &lines, body)
     }
 
     pub fn request(&self, method: &str, path: &str, body: &str) -> Value {
@@ -87,18 +58,7 @@ impl Service {
     }
 
     /// Stops as an operator does; the lines of the log.
-    pub fn stop(mut self) -> Vec<String> {
-        let id = self.process.id().to_string();
-        assert!(Command::new("kill").args(["-TERM", &id]).status().expect("kill runs").success());
-        assert!(self.process.wait().expect("it ends").success());
-        let log = std::fs::read_to_string(&self.log).expect("a log");
-        log.lines().map(str::to_owned).collect()
-    }
-}
-
-impl Drop for Service {
-    fn drop(&mut self) {
-        let _ = self.process.kill();
-        let _ = self.process.wait();
+    pub fn stop(self) -> Vec<String> {
+        self.0.stop().lines().map(str::to_owned).collect()
     }
 }
