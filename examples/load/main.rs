@@ -3,6 +3,7 @@
 
 mod cancel;
 mod connection;
+#[path = "../../tests/faults/documents.rs"]
 mod documents;
 mod memory;
 mod requests;

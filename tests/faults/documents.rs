@@ -1,4 +1,4 @@
-//! Documents of real jobs that cost little.
+//! Documents of real jobs: cheap ones, and ones that compute until they are canceled. `examples/load` submits them too.
 
 use serde_json::{Value, json};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -48,5 +48,25 @@ pub fn integration(mesh_periods: u32) -> Value {
     let mut document = response();
     document["analysis"]["method"] = json!("integrate");
     document["analysis"]["mesh_periods"] = json!(mesh_periods);
+    document
+}
+
+/// Finite elements of both gears, as fine as there are.
+pub fn elements() -> Value {
+    let mut document = mesh();
+    document["model"]["mesh_stiffness"] = json!({"source": "ltca", "fidelity": "fe", "elements": "fine"});
+    document
+}
+
+/// Many wide teeth in mesh, finely sliced.
+pub fn contact() -> Value {
+    let mut document = mesh();
+    document["design"] = json!({
+        "normal_module_mm": 6.0, "pressure_angle_deg": 17.5, "helix_angle_deg": 35.0, "face_width_mm": 400.0,
+        "pinion": {"teeth": 100, "addendum": 1.2, "dedendum": 1.5, "bore_diameter_mm": 100.0},
+        "gear": {"teeth": 300, "addendum": 1.2, "dedendum": 1.5, "bore_diameter_mm": 300.0},
+    });
+    document["operation"]["pinion_torque_nm"] = json!(50_000.0);
+    document["model"]["mesh_stiffness"] = json!({"source": "ltca", "positions": 1024, "slices": 200});
     document
 }

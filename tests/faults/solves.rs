@@ -23,28 +23,9 @@ fn a_motion_that_diverges_fails_its_own_job_only() {
     assert!(!program.log().contains("panicked"));
 }
 
-fn elements() -> Value {
-    let mut document = documents::mesh();
-    document["model"]["mesh_stiffness"] = json!({"source": "ltca", "fidelity": "fe", "elements": "fine"});
-    document
-}
-
-/// Many wide teeth in mesh, finely sliced.
-fn contact() -> Value {
-    let mut document = documents::mesh();
-    document["design"] = json!({
-        "normal_module_mm": 6.0, "pressure_angle_deg": 17.5, "helix_angle_deg": 35.0, "face_width_mm": 400.0,
-        "pinion": {"teeth": 100, "addendum": 1.2, "dedendum": 1.5, "bore_diameter_mm": 100.0},
-        "gear": {"teeth": 300, "addendum": 1.2, "dedendum": 1.5, "bore_diameter_mm": 300.0},
-    });
-    document["operation"]["pinion_torque_nm"] = json!(50_000.0);
-    document["model"]["mesh_stiffness"] = json!({"source": "ltca", "positions": 1024, "slices": 200});
-    document
-}
-
 #[rstest]
-#[case::finite_elements(elements(), "mesh")]
-#[case::contact(contact(), "mesh")]
+#[case::finite_elements(documents::elements(), "mesh")]
+#[case::contact(documents::contact(), "mesh")]
 #[case::a_million_periods(documents::integration(1_000_000), "response")]
 #[case::sweep(documents::sweep(100_000), "sweep")]
 fn a_running_job_of_each_stage_is_canceled(#[case] document: Value, #[case] stage: &str) {
