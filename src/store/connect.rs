@@ -107,10 +107,7 @@ impl Store {
             pool.close().await;
             applied.map_err(|error| not_upgraded(path, migrations, error))?;
         }
-        let mut options = options.busy_timeout(BUSY_WAIT);
-        if let Some(limit) = &limit {
-            options = options.pragma("max_page_count", limit.max_pages.to_string());
-        }
+        let options = options.busy_timeout(BUSY_WAIT);
         let lasting = || SqlitePoolOptions::new().idle_timeout(None).max_lifetime(None);
         // Where SQLite rolls back by itself (a full disk at the commit), the driver goes on counting the transaction: such a
         // connection would never write again.
@@ -142,9 +139,25 @@ impl Store {
         })
     }
 
-    /// Begins a transaction that writes.
+    /// Begins a transaction that changes what is there, and may do so when there is no room for [`Store::write_more`]:
+    /// nothing could be canceled or deleted otherwise.
     pub(super) async fn write(&self) -> Result<Transaction<'static, Sqlite>, StoreError> {
-        Ok(self.writer.begin_with("BEGIN IMMEDIATE").await?)
+        self.write_up_to(self.limit.as_ref().map(|limit| limit.max_pages_in_need)).await
+    }
+
+    /// Begins a transaction that adds documents, rows or results.
+    pub(super) async fn write_more(&self) -> Result<Transaction<'static, Sqlite>, StoreError> {
+        self.write_up_to(self.limit.as_ref().map(|limit| limit.max_pages)).await
+    }
+
+    async fn write_up_to(&self, max_pages: Option<u64>) -> Result<Transaction<'static, Sqlite>, StoreError> {
+        let mut transaction = self.writer.begin_with("BEGIN IMMEDIATE").await?;
+        if let Some(max_pages) = max_pages {
+            // The bound is the connection's and stays until the next transaction sets its own.
+            let pragma = format!("PRAGMA max_page_count = {max_pages}");
+            sqlx::query(sqlx::AssertSqlSafe(pragma)).execute(&mut *transaction).await?;
+        }
+        Ok(transaction)
     }
 
     /// Whether the database answers.

@@ -36,7 +36,7 @@ impl Store {
         completion: &Completion,
         now: Timestamp,
     ) -> Result<Option<JobRecord>, StoreError> {
-        let mut transaction = self.write().await?;
+        let mut transaction = self.write_more().await?;
         let done = complete(&mut transaction, id, attempt, completion, now).await?;
         if done.is_some() {
             transaction.commit().await?;

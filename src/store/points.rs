@@ -65,7 +65,7 @@ impl Store {
         input_hash: &str,
         solver_version: &str,
     ) -> Result<PointBatch, StoreError> {
-        let mut transaction = self.write().await?;
+        let mut transaction = self.write_more().await?;
         if is_current(&mut transaction, id, attempt).await? {
             drop_other_versions(&mut transaction, id, solver_version).await?;
             adopt(&mut transaction, id, input_hash, solver_version).await?;

@@ -37,7 +37,7 @@ impl Store {
 
     /// As much as a submission, and gone again in the same transaction; the commit goes to the disk.
     async fn write_something(&self) -> Result<(), StoreError> {
-        let mut transaction = self.write().await?;
+        let mut transaction = self.write_more().await?;
         sqlx::query(
             "INSERT INTO stages (hash, stage, solver_version, size_bytes, created_at_us, bytes) \
              VALUES ('probe', 'probe', '', 0, 0, zeroblob(65536)) ON CONFLICT (hash) DO NOTHING",

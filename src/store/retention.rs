@@ -26,16 +26,25 @@ impl RetentionConfig {
 
     pub(super) fn limit(&self, page_bytes: u64) -> Option<Limit> {
         let bytes = u64::from(self.max_database_mb?) * 1_000_000;
-        Some(Limit { bytes, max_pages: (bytes + bytes / 10) / page_bytes })
+        // What cancels, deletes or ends a job needs a page here and there, even when nothing else may grow.
+        let reserve = (bytes / 50).max(500_000);
+        let pages = |bytes: u64| bytes / page_bytes;
+        Some(Limit {
+            bytes,
+            max_pages: pages(bytes + bytes / 10),
+            max_pages_in_need: pages(bytes + bytes / 10 + reserve),
+        })
     }
 }
 
 /// The bound of the database's size and what happens around it: above `bytes` the oldest ended jobs go until 90 % are
-/// left; from 105 % on no job is taken; what runs may use up 110 %, where SQLite itself stops.
+/// left; from 105 % on no job is taken; what runs may use up 110 %, where SQLite itself stops. The last 2 % above that (at least
+/// 0.5 MB) are for what makes room or ends a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Limit {
     bytes: u64,
     pub max_pages: u64,
+    pub max_pages_in_need: u64,
 }
 
 impl Limit {

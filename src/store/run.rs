@@ -102,7 +102,7 @@ impl Store {
         fraction: f64,
         points: &PointBatch,
     ) -> Result<Option<JobRecord>, StoreError> {
-        let mut transaction = self.write().await?;
+        let mut transaction = self.write_more().await?;
         let job: Option<JobRecord> = sqlx::query_as(concat!(
             "UPDATE jobs SET progress = $3, stage = $4, revision = revision + 1 \
              WHERE id = $1 AND attempt = $2 AND state = 'running' RETURNING ",

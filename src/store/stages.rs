@@ -25,7 +25,7 @@ impl Store {
         if size > self.stage_cache_bytes {
             return Ok(());
         }
-        let mut transaction = self.write().await?;
+        let mut transaction = self.write_more().await?;
         sqlx::query(
             "INSERT INTO stages (hash, stage, solver_version, bytes, size_bytes, created_at_us) \
              VALUES ($1, $2, $3, $4, $5, $6) ON CONFLICT (hash) DO NOTHING",

@@ -46,7 +46,7 @@ impl Store {
         capacity: u32,
         now: Timestamp,
     ) -> Result<Submission, StoreError> {
-        let mut transaction = self.write().await?;
+        let mut transaction = self.write_more().await?;
         if let Some(earlier) = earlier_submission(&mut transaction, &job).await? {
             return Ok(earlier);
         }

@@ -135,6 +135,30 @@ async fn the_file_never_outgrows_its_limit_by_more_than_a_tenth() {
     store.cancel(waiting.id, at(2)).await.unwrap();
 }
 
+/// The room for jobs is used up to the last page; canceling writes an event and moves the job in every index.
+#[tokio::test]
+async fn canceling_and_failing_have_room_where_jobs_have_none() {
+    let Fixture { store, .. } = &limited(8).await;
+    let runs = running(store, "runs").await;
+    let mut waiting = Vec::new();
+    for length in [200_000, 20_000, 2_000, 1] {
+        loop {
+            let job = NewJob { input: format!("\"{}\"", "x".repeat(length)), ..new_job("live") };
+            let id = job.id;
+            match store.submit(job, None, 10_000, at(0)).await {
+                Ok(_) => waiting.push(id),
+                Err(error) => break assert_eq!(error.unavailable(), Some(Unavailable::Full), "{error}"),
+            }
+        }
+    }
+    assert!(waiting.len() > 50, "{}", waiting.len());
+    for id in waiting {
+        assert!(matches!(store.cancel(id, at(1)).await.unwrap(), Cancellation::Canceled(_)));
+    }
+    let failure = Failure::new("diverged", "");
+    assert_eq!(store.fail(runs.id, 1, &failure, at(2)).await.unwrap().map(|job| job.state), Some(State::Failed));
+}
+
 /// Where the file may not grow any more, ended jobs can still be deleted.
 #[tokio::test]
 async fn deleting_needs_no_room() {
