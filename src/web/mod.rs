@@ -32,7 +32,7 @@ pub fn routes(has_login: bool) -> Router {
         .route("/jobs/{id}", get(pages::job))
         .route("/assets/plotly.js", get(plotly::script))
         .route("/assets/plotly.css", get(plotly::stylesheet))
-        .route("/assets/{file}", get(assets::file))
+        .route("/assets/{*file}", get(assets::file))
         .layer(Extension(pages::HasLogin(has_login)))
 }
 

@@ -62,9 +62,10 @@ async fn an_identifier_is_escaped() {
 #[tokio::test]
 async fn assets_are_revalidated_by_entity_tag() {
     let server = server();
-    let first = server.get("/assets/style.css").await;
+    let first = server.get("/assets/common/style.css").await;
     first.assert_status_ok();
-    let again = server.get("/assets/style.css").add_header(header::IF_NONE_MATCH, first.header(header::ETAG)).await;
+    let again =
+        server.get("/assets/common/style.css").add_header(header::IF_NONE_MATCH, first.header(header::ETAG)).await;
     assert_eq!(again.status_code(), StatusCode::NOT_MODIFIED);
     assert!(again.text().is_empty());
 }
@@ -92,7 +93,7 @@ async fn the_login_page_works_without_scripts_and_escapes_what_it_is_given() {
     let mut files: Vec<_> = text.split("\"/assets/").skip(1).filter_map(|rest| rest.split('"').next()).collect();
     files.sort_unstable();
     files.dedup();
-    assert_eq!(files, ["icon.svg", "style.css"], "what is served without credentials");
+    assert_eq!(files, ["common/style.css", "icon.svg"], "what is served without credentials");
 }
 
 #[tokio::test]

@@ -49,7 +49,7 @@ async fn numbers_are_written_to_the_digits_asked_for() {
             [100, 5, "100"], [100.4, 3, "100"], [12800, 5, "12\u{202f}800"], [1234567.8, 5, "1\u{202f}234\u{202f}568"],
             [-0.05, 4, "−0.05"], [0.03089845, 5, "0.030898"], [0.00175, 3, "0.00175"], [3.2e-8, 3, "3.2·10⁻⁸"], [1e9, 4, "1·10⁹"], [0, 4, "0"], [null, 4, "–"],
         ]);
-        let script = "const done = arguments[1]; import('/assets/format.js').then(({number}) => \
+        let script = "const done = arguments[1]; import('/assets/common/format.js').then(({number}) => \
                       done(arguments[0].map(([value, digits]) => number(value, digits))), (error) => done(String(error)));";
         let written = browser.driver.execute_async(script, vec![cases.clone()]).await.unwrap().json().clone();
         let expected: Vec<_> = cases.as_array().unwrap().iter().map(|case| case[2].clone()).collect();

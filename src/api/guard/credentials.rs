@@ -13,7 +13,7 @@ use axum::response::{IntoResponse, Redirect, Response};
 use std::time::Instant;
 
 /// What needs no credentials: probes, and the login page with what it shows.
-const OPEN: [&str; 5] = ["/healthz", "/readyz", "/login", "/assets/style.css", "/assets/icon.svg"];
+const OPEN: [&str; 5] = ["/healthz", "/readyz", "/login", "/assets/common/style.css", "/assets/icon.svg"];
 
 /// Middleware: lets those in who have the token, or a session opened with it.
 pub async fn check_credentials(State(access): State<Access>, request: Request, next: Next) -> Response {

@@ -77,13 +77,13 @@ async fn of_a_file() {
         "referrer-policy: no-referrer",
         "vary: accept-encoding",
     ];
-    assert_eq!(shown(&app.get("/assets/job.js").await), with_common(&own));
+    assert_eq!(shown(&app.get("/assets/job/page.js").await), with_common(&own));
 }
 
 #[tokio::test]
 async fn inline_styles_are_for_the_documentation_page_only() {
     let app = app().await;
-    for path in ["/", "/jobs", "/api/v1/jobs", "/assets/style.css", "/nothing", "/problems/internal", "/docs/"] {
+    for path in ["/", "/jobs", "/api/v1/jobs", "/assets/common/style.css", "/nothing", "/problems/internal", "/docs/"] {
         let policy = app.get(path).await.header("content-security-policy").to_owned();
         assert_eq!(policy.contains("unsafe"), path == "/docs/", "{path}: {policy}");
         assert!(policy.contains("default-src 'self'") && policy.contains("frame-ancestors 'none'"), "{path}: {policy}");

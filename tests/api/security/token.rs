@@ -6,7 +6,7 @@ use super::*;
 async fn the_token_opens_every_path() {
     let app = guarded().await;
     for path in
-        ["/", "/jobs", "/api/v1/jobs", "/api/v1/system", "/metrics", "/openapi.json", "/docs/", "/assets/job.js"]
+        ["/", "/jobs", "/api/v1/jobs", "/api/v1/system", "/metrics", "/openapi.json", "/docs/", "/assets/job/page.js"]
     {
         for scheme in ["Bearer", "bearer", "BEARER"] {
             let header = format!("{scheme} {TOKEN}");
@@ -20,7 +20,7 @@ async fn the_token_opens_every_path() {
 #[tokio::test]
 async fn without_it_only_probes_and_the_login_page_are_open() {
     let app = guarded().await;
-    for open in ["/healthz", "/readyz", "/login", "/assets/style.css", "/assets/icon.svg"] {
+    for open in ["/healthz", "/readyz", "/login", "/assets/common/style.css", "/assets/icon.svg"] {
         assert_eq!(app.get(open).await.status, 200, "{open}");
     }
     for closed in [
@@ -34,7 +34,7 @@ async fn without_it_only_probes_and_the_login_page_are_open() {
         "/docs",
         "/docs/",
         "/problems/internal",
-        "/assets/job.js",
+        "/assets/job/page.js",
         "/assets/plotly.js",
         "/nothing",
         "/healthz/",

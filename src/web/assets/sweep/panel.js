@@ -1,8 +1,8 @@
 // A sweep: one quantity over one or two inputs, and the table of all points.
 
-import { byId, el, fillRows, show } from "./dom.js";
-import { labelOf, number, pointerLabel, unitOf } from "./format.js";
-import { draw, heatMap, line, points as dots } from "./plots.js";
+import { byId, el, fillRows, show } from "../common/dom.js";
+import { labelOf, number, pointerLabel, unitOf } from "../common/format.js";
+import { draw, heatMap, line, points as dots } from "../common/plots.js";
 
 /** Rows of the table; more would only slow the page down, and the result file has them all. */
 const MAX_ROWS = 2000;

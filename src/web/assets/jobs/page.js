@@ -1,10 +1,10 @@
 // The list of jobs. One request refreshes the whole page of it, often while something on it is live: a stream per job
 // would soon use up the few connections that a browser opens to one host.
 
-import * as api from "./api.js";
-import { byId, el, notify, show } from "./dom.js";
-import { age, instant } from "./format.js";
-import { describeState, stateBadge } from "./state.js";
+import * as api from "../common/api.js";
+import { byId, el, notify, show } from "../common/dom.js";
+import { age, instant } from "../common/format.js";
+import { describeState, stateBadge } from "../common/state.js";
 
 const LIMIT = 20;
 const LIVE_MS = 1000;

@@ -1,7 +1,7 @@
 // RMS tables and what the response is like.
 
-import { byId, fillRows, fillValues, show } from "./dom.js";
-import { number, rowsOf, sentence, shownUnit } from "./format.js";
+import { byId, fillRows, fillValues, show } from "../common/dom.js";
+import { number, rowsOf, sentence, shownUnit } from "../common/format.js";
 
 export function showResponse({ response }, catalogue) {
   if (!response) return;

@@ -1,8 +1,8 @@
 // Mesh stiffness, transmission error, load sharing and the load on the flank.
 
-import { byId, fillValues, show } from "./dom.js";
-import { number, rowsOf } from "./format.js";
-import { draw, heatMap, line } from "./plots.js";
+import { byId, fillValues, show } from "../common/dom.js";
+import { number, rowsOf } from "../common/format.js";
+import { draw, heatMap, line } from "../common/plots.js";
 
 export async function showMesh({ mesh }) {
   if (!mesh) return;

@@ -1,9 +1,9 @@
 // Time series with zoom, phase plane and spectrum.
 
-import * as api from "./api.js";
-import { byId, download, el, notify, show } from "./dom.js";
-import { number, sentence, shownUnit } from "./format.js";
-import { draw, line, onZoom, points, stems } from "./plots.js";
+import * as api from "../common/api.js";
+import { byId, download, el, notify, show } from "../common/dom.js";
+import { number, sentence, shownUnit } from "../common/format.js";
+import { draw, line, onZoom, points, stems } from "../common/plots.js";
 
 const MAX_POINTS = 2000;
 /** Most points of the phase plane: its two channels have to be complete over the time shown. */

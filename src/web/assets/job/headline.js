@@ -1,7 +1,7 @@
 // The few numbers that people look for first.
 
-import { byId, el, show } from "./dom.js";
-import { number } from "./format.js";
+import { byId, el, show } from "../common/dom.js";
+import { number } from "../common/format.js";
 
 export function showHeadline({ geometry, mesh, impact, response }) {
   const rms = response?.rms;

@@ -1,6 +1,6 @@
 // Shows the server's violations at the fields they are about.
 
-import { byId, el, show } from "./dom.js";
+import { byId, el, show } from "../common/dom.js";
 import { fieldAt, fieldsOf } from "./document.js";
 
 export function clearErrors(form) {

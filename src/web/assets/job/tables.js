@@ -1,7 +1,7 @@
 // Geometry, impact and numerics: tables and lists without plots.
 
-import { byId, fillRows, fillValues, show } from "./dom.js";
-import { labelOf, number, rowsOf, unitOf } from "./format.js";
+import { byId, fillRows, fillValues, show } from "../common/dom.js";
+import { labelOf, number, rowsOf, unitOf } from "../common/format.js";
 
 export function showGeometry({ geometry }) {
   if (!geometry) return;

@@ -1,16 +1,16 @@
 // The page of one job: follows it while it is live and shows its result when it has succeeded.
 
-import * as api from "./api.js";
-import { byId, el, fillValues, fillWarnings, notify, show } from "./dom.js";
-import { instant, number, seconds } from "./format.js";
-import { describeState } from "./state.js";
-import { watchJob } from "./watch.js";
-import { showHeadline } from "./job-headline.js";
-import { showGeometry, showImpact, showNumerics } from "./job-tables.js";
-import { showMesh } from "./job-mesh.js";
-import { showResponse } from "./job-response.js";
-import { showSeries } from "./job-series.js";
-import { showSweep } from "./job-sweep.js";
+import * as api from "../common/api.js";
+import { byId, el, fillValues, fillWarnings, notify, show } from "../common/dom.js";
+import { instant, number, seconds } from "../common/format.js";
+import { describeState } from "../common/state.js";
+import { watchJob } from "../common/watch.js";
+import { showHeadline } from "./headline.js";
+import { showGeometry, showImpact, showNumerics } from "./tables.js";
+import { showMesh } from "./mesh.js";
+import { showResponse } from "./response.js";
+import { showSeries } from "./series.js";
+import { showSweep } from "../sweep/panel.js";
 
 const { id } = byId("job").dataset;
 const notice = byId("notice");

@@ -1,10 +1,10 @@
 // The page with the design form: live check, errors at their fields, submission.
 
-import * as api from "./api.js";
-import { byId, download, fillValues, fillWarnings, show } from "./dom.js";
+import * as api from "../common/api.js";
+import { byId, download, fillValues, fillWarnings, show } from "../common/dom.js";
 import { applyConditions, readDocument, writeDocument } from "./document.js";
 import { clearErrors, showErrors } from "./errors.js";
-import { labelOf, number, unitOf } from "./format.js";
+import { labelOf, number, unitOf } from "../common/format.js";
 
 const CHECK_AFTER_MS = 400;
 const CHECKED = [
