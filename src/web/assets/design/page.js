@@ -5,6 +5,7 @@ import { byId, download, fillValues, fillWarnings, show } from "../common/dom.js
 import { applyConditions, readDocument, writeDocument } from "./document.js";
 import { clearErrors, showErrors } from "./errors.js";
 import { labelOf, number, unitOf } from "../common/format.js";
+import { initSweep } from "./sweep.js";
 
 const CHECK_AFTER_MS = 400;
 const CHECKED = [
@@ -125,4 +126,5 @@ byId("copy-curl").addEventListener("click", copyCurl);
 byId("download").addEventListener("click", () => download("job.json", JSON.stringify(readDocument(form), null, 2)));
 byId("reset").addEventListener("click", () => window.location.assign("/"));
 show(byId("problems"), false);
+initSweep(form, { readDocument: () => readDocument(form), changed });
 start();
