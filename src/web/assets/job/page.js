@@ -33,6 +33,7 @@ function showLife(job) {
   show(byId("cancel"), !api.isEnded(job));
   byId("cancel").disabled = Boolean(job.cancel_requested_at);
   byId("download-input").href = api.inputUrl(id);
+  byId("download-result").href = api.resultUrl(id);
   const solved = job.started_at && job.ended_at ? seconds(job.started_at, job.ended_at) : null;
   fillValues(byId("life-values"), [
     ["Kind", job.kind],
@@ -51,16 +52,23 @@ function follow(job) {
   revision = job.revision;
   showLife(job);
   if (job.state === "failed") notify(notice, { problem: { title: "The job failed", ...(job.error ?? {}) } });
-  if (job.state === "succeeded" && !shown) {
+  if (job.kind === "sweep") {
+    show(byId("download-result"), job.state === "succeeded");
+    showSweepOf(job).catch((error) => notify(notice, error));
+  } else if (job.state === "succeeded" && !shown) {
     shown = true;
     showResult(job).catch((error) => notify(notice, error));
   }
 }
 
+/** What a sweep shows is its own affair: its result may be large, and it can be watched while it grows. */
+async function showSweepOf(job) {
+  await showSweep({ id, job });
+  if (job.state === "succeeded") byId("job").dataset.ready = "true";
+}
+
 async function showResult(job) {
-  const link = byId("download-result");
-  link.href = api.resultUrl(id);
-  show(link);
+  show(byId("download-result"));
   const result = await api.result(id);
   fillWarnings(byId("warnings"), result.warnings);
   showHeadline(result);
@@ -69,7 +77,7 @@ async function showResult(job) {
   showNumerics(result);
   const catalogue = result.response ? (await api.catalogue(id)).items : [];
   showResponse(result, catalogue);
-  await Promise.all([showMesh(result), showSweep(result), catalogue.length ? showSeries(id, job, result, catalogue) : null]);
+  await Promise.all([showMesh(result), catalogue.length ? showSeries(id, job, result, catalogue) : null]);
   byId("job").dataset.ready = "true";
 }
 

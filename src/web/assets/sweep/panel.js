@@ -1,5 +1,6 @@
 // A sweep: one quantity over one or two inputs, and the table of all points.
 
+import * as api from "../common/api.js";
 import { byId, el, fillRows, show } from "../common/dom.js";
 import { labelOf, number, pointerLabel, unitOf } from "../common/format.js";
 import { draw, heatMap, line, points as dots } from "../common/plots.js";
@@ -7,8 +8,13 @@ import { draw, heatMap, line, points as dots } from "../common/plots.js";
 /** Rows of the table; more would only slow the page down, and the result file has them all. */
 const MAX_ROWS = 2000;
 const NOT_QUANTITIES = ["values", "regime", "contact", "error", "branch", "poincare", "acceleration_spectrum_m_s2"];
+let shown = false;
 
-export async function showSweep({ sweep }) {
+/** Called with every change of the job's state or progress. */
+export async function showSweep({ id, job }) {
+  if (job.state !== "succeeded" || shown) return;
+  shown = true;
+  const { sweep } = await api.result(id);
   if (!sweep?.points?.length) return;
   show(byId("sweep"));
   const { axes, points } = sweep;
