@@ -81,8 +81,7 @@ async fn serve(arguments: &Serve) -> anyhow::Result<()> {
     let jobs = Jobs::start(store, work, Arc::new(StudySolver), Arc::new(Timestamp::now))
         .await
         .map_err(anyhow::Error::from_boxed)?;
-    let housekeeper =
-        work::tend(jobs.store().clone(), arguments.store.retention, Arc::new(Timestamp::now), jobs.closing().clone());
+    let housekeeper = work::tend(jobs.clone(), arguments.store.retention, Arc::new(Timestamp::now));
     tokio::spawn(housekeeper);
     let state = AppState::new(jobs.clone(), Timestamp::now());
     let app = api::router(state, http, &access, pages(access.has_token()));

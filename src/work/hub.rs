@@ -1,21 +1,77 @@
-//! Who waits for which job: the newest state of a job is told to its subscribers, without touching the database.
+//! Who waits for which job, or for any: the newest state of a job is told to its subscribers, every change to those who
+//! listen to all, without touching the database.
 
 use crate::store::{JobId, JobRecord};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
-use tokio::sync::watch;
+use tokio::sync::broadcast::error::RecvError;
+use tokio::sync::{broadcast, watch};
 
 type Latest = Option<Arc<JobRecord>>;
 
-/// One channel per job that somebody waits for.
-#[derive(Default)]
+/// Changes that are kept for those who listen to all jobs and are slow; older ones they miss.
+const BACKLOG: usize = 256;
+
+/// One channel per job that somebody waits for, and one for all jobs.
 pub(super) struct Hub {
     channels: Mutex<HashMap<JobId, watch::Sender<Latest>>>,
+    all: broadcast::Sender<News>,
+}
+
+impl Default for Hub {
+    fn default() -> Self {
+        Self { channels: Mutex::default(), all: broadcast::channel(BACKLOG).0 }
+    }
+}
+
+/// What happened to some job.
+#[derive(Debug, Clone, PartialEq)]
+pub enum News {
+    /// It is further on.
+    Progress(Arc<JobRecord>),
+    /// Anything else about it changed; it may be new.
+    State(Arc<JobRecord>),
+    Deleted(JobId),
+    /// Several jobs were deleted at once, or this listener was too slow: what it knows is no longer true.
+    Several,
 }
 
 impl Hub {
     /// Tells the subscribers of a job its new state; older news than the last is dropped.
     pub fn publish(&self, job: &JobRecord) {
+        self.tell(|| News::State(Arc::new(job.clone())));
+        self.publish_to_subscribers(job);
+    }
+
+    /// The same when nothing but the progress changed.
+    pub fn publish_progress(&self, job: &JobRecord) {
+        self.tell(|| News::Progress(Arc::new(job.clone())));
+        self.publish_to_subscribers(job);
+    }
+
+    /// Tells those who listen to all jobs that a job is gone.
+    pub fn publish_deletion(&self, id: JobId) {
+        self.tell(|| News::Deleted(id));
+    }
+
+    /// Tells them that what they know is no longer true.
+    pub fn publish_upheaval(&self) {
+        self.tell(|| News::Several);
+    }
+
+    /// Hears of every later change of any job. Listen first, then list the jobs: nothing is missed then.
+    pub fn listen(&self) -> Listener {
+        Listener(self.all.subscribe())
+    }
+
+    fn tell(&self, news: impl FnOnce() -> News) {
+        if self.all.receiver_count() > 0 {
+            // Whoever listened may have left in between.
+            let _ = self.all.send(news());
+        }
+    }
+
+    fn publish_to_subscribers(&self, job: &JobRecord) {
         let channels = self.channels.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(channel) = channels.get(&job.id) {
             channel.send_if_modified(|latest| {
@@ -79,6 +135,21 @@ impl Drop for Subscription {
     }
 }
 
+/// Hears of every change of any job, in the order in which they were told: news of one job may overtake each other, the
+/// greater revision counts. One that is too slow hears [`News::Several`] in place of what it missed.
+pub struct Listener(broadcast::Receiver<News>);
+
+impl Listener {
+    /// The next change. Never ends while the hub lives.
+    pub async fn next(&mut self) -> News {
+        match self.0.recv().await {
+            Ok(news) => news,
+            Err(RecvError::Lagged(_)) => News::Several,
+            Err(RecvError::Closed) => std::future::pending().await,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,5 +194,25 @@ mod tests {
         assert_eq!(hub.len(), 1);
         drop(first);
         assert_eq!(hub.len(), 0);
+    }
+    #[tokio::test]
+    async fn who_listens_to_all_hears_each_change_and_one_that_is_slow_that_it_missed_some() {
+        let hub = Hub::default();
+        let id = JobId::new();
+        hub.publish(&job(id, 1));
+        let mut listener = hub.listen();
+        hub.publish(&job(id, 2));
+        hub.publish_progress(&job(id, 3));
+        hub.publish_deletion(id);
+        hub.publish_upheaval();
+        assert_eq!(listener.next().await, News::State(Arc::new(job(id, 2))), "not what was before");
+        assert_eq!(listener.next().await, News::Progress(Arc::new(job(id, 3))));
+        assert_eq!(listener.next().await, News::Deleted(id));
+        assert_eq!(listener.next().await, News::Several);
+        let many = i64::try_from(2 * BACKLOG).unwrap();
+        (0..many).for_each(|revision| hub.publish_progress(&job(id, revision)));
+        assert_eq!(listener.next().await, News::Several);
+        let News::Progress(oldest) = listener.next().await else { panic!("no progress") };
+        assert_eq!(oldest.revision, many / 2, "as many are kept as permitted");
     }
 }

@@ -1,7 +1,7 @@
 //! What one can do with jobs: submit, wait for, cancel.
 
 use super::config::WorkConfig;
-use super::hub::Subscription;
+use super::hub::{Listener, Subscription};
 use super::local::LocalQueue;
 use super::measure;
 use super::memory::MemoryBound;
@@ -11,7 +11,7 @@ use super::reuse::stored_completion;
 use super::solver::Solver;
 use crate::job::DocumentError;
 use crate::job::document::JobDocument;
-use crate::store::{Cancellation, JobId, JobRecord, NewJob, Store, StoreError, Submission, WorkClass};
+use crate::store::{Cancellation, Deletion, JobId, JobRecord, NewJob, Store, StoreError, Submission, WorkClass};
 use crate::study::CheckReport;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
@@ -172,6 +172,7 @@ impl Jobs {
                 if job.reused_from.is_some() {
                     measure::result_reused();
                 }
+                self.0.recorder.submitted(&job);
                 if !job.state.is_ended() {
                     self.0.queue.announce(job.id, WorkClass::of_kind(&job.kind));
                 }
@@ -211,6 +212,11 @@ impl Jobs {
         self.0.recorder.subscribe(id)
     }
 
+    /// Hears of every later change of any job.
+    pub fn listen(&self) -> Listener {
+        self.0.recorder.listen()
+    }
+
     /// Cancels a job that waits, asks one that runs to stop.
     ///
     /// # Errors
@@ -221,6 +227,19 @@ impl Jobs {
             self.0.queue.stop(id);
         }
         Ok(cancellation)
+    }
+
+    /// Deletes an ended job with everything it left.
+    ///
+    /// # Errors
+    /// When the store does not answer.
+    pub async fn delete(&self, id: JobId) -> Result<Deletion, StoreError> {
+        self.0.recorder.delete(id).await
+    }
+
+    /// Tells those who listen that many jobs were deleted at once.
+    pub(super) fn deleted_several(&self) {
+        self.0.recorder.deleted_several();
     }
 
     /// Takes no more jobs, stops the running ones (they run again after the restart) and waits for them within the

@@ -21,7 +21,7 @@ mod stages;
 mod stop;
 
 pub use config::WorkConfig;
-pub use hub::Subscription;
+pub use hub::{Listener, News, Subscription};
 pub use jobs::{Jobs, SubmitError, SubmitRequest, Submitted};
 pub use local::LocalQueue;
 pub use queue::{Pending, Queue, Workers};

@@ -1,9 +1,10 @@
 //! Writes what becomes of a job and tells it to whoever waits; the only way in which a job's state changes.
 
-use super::hub::{Hub, Subscription};
+use super::hub::{Hub, Listener, Subscription};
 use super::measure;
 use crate::store::{
-    Cancellation, Claim, Completion, Failure, JobId, JobRecord, Pause, PointBatch, State, Store, StoreError, WorkClass,
+    Cancellation, Claim, Completion, Deletion, Failure, JobId, JobRecord, Pause, PointBatch, State, Store, StoreError,
+    WorkClass,
 };
 use jiff::Timestamp;
 use std::sync::Arc;
@@ -38,6 +39,30 @@ impl Recorder {
         self.hub.subscribe(job)
     }
 
+    /// Hears of every later change of any job.
+    pub fn listen(&self) -> Listener {
+        self.hub.listen()
+    }
+
+    /// A job was submitted; it may have ended already.
+    pub fn submitted(&self, job: &JobRecord) {
+        self.hub.publish(job);
+    }
+
+    /// Deletes an ended job.
+    pub async fn delete(&self, id: JobId) -> Result<Deletion, StoreError> {
+        let deletion = self.store.delete(id).await?;
+        if deletion == Deletion::Deleted {
+            self.hub.publish_deletion(id);
+        }
+        Ok(deletion)
+    }
+
+    /// Many jobs were deleted at once.
+    pub fn deleted_several(&self) {
+        self.hub.publish_upheaval();
+    }
+
     /// Takes the next job of this class in line.
     pub async fn claim_next(&self, class: WorkClass) -> Result<Option<Claim>, StoreError> {
         let claim = self.store.claim_next(class, self.now()).await?;
@@ -56,7 +81,9 @@ impl Recorder {
         fraction: f64,
         points: &PointBatch,
     ) -> Result<(), StoreError> {
-        self.told(self.store.progress(job.id, job.attempt, stage, fraction, points).await?);
+        if let Some(job) = self.store.progress(job.id, job.attempt, stage, fraction, points).await? {
+            self.hub.publish_progress(&job);
+        }
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! The housekeeper: deletes ended jobs as configured, and gives room back to the disk.
 
+use super::jobs::Jobs;
 use super::recorder::Clock;
 use crate::store::{RetentionConfig, Store, StoreError};
 use jiff::{SignedDuration, Timestamp};
@@ -31,8 +32,9 @@ pub struct Sweep {
     pub by_size: u64,
 }
 
-/// Sweeps until `closing`. Errors are logged, and tried again at the next sweep.
-pub async fn tend(store: Store, config: RetentionConfig, clock: Clock, closing: CancellationToken) {
+/// Sweeps until the jobs are closed. Errors are logged, and tried again at the next sweep.
+pub async fn tend(jobs: Jobs, config: RetentionConfig, clock: Clock) {
+    let (store, closing) = (jobs.store(), jobs.closing());
     let mut settled = Settled::since(clock(), Instant::now());
     loop {
         tokio::select! {
@@ -42,7 +44,7 @@ pub async fn tend(store: Store, config: RetentionConfig, clock: Clock, closing: 
         }
         let now = clock();
         let keep_from = if settled.still(now, Instant::now()) { config.keep_from(now) } else { None };
-        match sweep(&store, keep_from, &closing).await {
+        match told(sweep(store, keep_from, closing).await, &jobs) {
             Ok(_) => {}
             Err(_) if closing.is_cancelled() => return,
             Err(error) => {
@@ -55,6 +57,14 @@ pub async fn tend(store: Store, config: RetentionConfig, clock: Clock, closing: 
             }
         }
     }
+}
+
+/// Tells whoever listens when jobs went, or may have gone before an error.
+fn told(swept: Result<Sweep, StoreError>, jobs: &Jobs) -> Result<Sweep, StoreError> {
+    if !matches!(swept, Ok(done) if done == Sweep::default()) {
+        jobs.deleted_several();
+    }
+    swept
 }
 
 /// One sweep: what ended before `keep_from` goes, then the oldest while room is short; then room is given back.

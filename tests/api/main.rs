@@ -29,3 +29,4 @@ mod series;
 mod submit_job;
 mod validate_job;
 mod watch_job;
+mod watch_jobs;

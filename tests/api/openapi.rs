@@ -51,6 +51,7 @@ fn every_endpoint_is_described() {
     let expected = [
         "delete /api/v1/jobs/{id}",
         "get /api/v1/jobs",
+        "get /api/v1/jobs/events",
         "get /api/v1/jobs/{id}",
         "get /api/v1/jobs/{id}/events",
         "get /api/v1/jobs/{id}/input",

@@ -1,8 +1,8 @@
 //! Room for the database: what clients see when it runs short, and how it comes back.
 
 use crate::support::*;
-use herringbone::store::{Completion, JobId, NewJob, PointBatch, Store, StoreConfig};
-use herringbone::work::{Sweep, sweep};
+use herringbone::store::{Completion, JobId, NewJob, PointBatch, RetentionConfig, Store, StoreConfig};
+use herringbone::work::{Sweep, sweep, tend};
 use jiff::Timestamp;
 use serde_json::json;
 use sqlx::sqlite::SqliteConnectOptions;
@@ -98,7 +98,7 @@ async fn a_sweep_deletes_by_age_then_for_room_and_gives_the_room_back() {
     let database = directory.path().join("jobs.db");
     let now = Timestamp::from_second(1_800_000_000).expect("a time");
     let ids = filled(&database, 40, now).await;
-    let retention = herringbone::store::RetentionConfig { keep_days: Some(1), max_database_mb: Some(10) };
+    let retention = RetentionConfig { keep_days: Some(1), max_database_mb: Some(10) };
     let store = Store::open(&StoreConfig { retention, ..StoreConfig::at(&database) }).await.expect("opens");
     let open = CancellationToken::new();
     let keep_from = Timestamp::from_second(now.as_second() - 30).expect("a time");
@@ -115,6 +115,25 @@ async fn a_sweep_deletes_by_age_then_for_room_and_gives_the_room_back() {
     let usage = store.usage().await.expect("usage");
     assert!(usage.file_bytes < 9_000_000 && usage.log_bytes == 0, "{usage:?}");
     assert_eq!(sweep(&store, Some(keep_from), &open).await.expect("sweeps"), Sweep::default());
+}
+
+/// What the housekeeper deletes is told, at once, to whoever follows all jobs.
+#[tokio::test]
+async fn who_follows_all_jobs_hears_that_the_list_is_to_be_read_again() {
+    let app = limited_app(8).await;
+    let (done, _) = app.run(&document()).await;
+    let mut events = app.stream("/api/v1/jobs/events", &[]).await;
+    assert_eq!(events.next().await.expect("an event").name, "reload");
+    let housekeeper = tend(app.jobs.clone(), RetentionConfig::default(), std::sync::Arc::new(Timestamp::now));
+    let housekeeper = tokio::spawn(housekeeper);
+    let mut database = by_hand(&app.database()).await;
+    let filling = "INSERT INTO stages VALUES ('ballast', 'mesh', '', 0, 0, zeroblob(8600000))";
+    sqlx::query(filling).execute(&mut database).await.expect("filled");
+    app.submit_with(&document(), &[]).await.assert_problem(503, "storage-unavailable");
+    assert_eq!(events.next().await.expect("an event").name, "reload");
+    assert_eq!(app.get(&done).await.status, 404);
+    app.jobs.close().await;
+    housekeeper.await.expect("ends with the jobs");
 }
 
 /// The real program: a refused job wakes the housekeeper, and soon there is room.

@@ -58,6 +58,30 @@ pub(super) fn describe(description: &mut Value) {
         "type": "http", "scheme": "bearer", "description": "The token of a service that was started with one.",
     });
     // The form in which OpenAPI 3.2 describes one event of a stream.
+    components["schemas"]["JobsEvent"] = json!({
+        "type": "object",
+        "description": "One server-sent event about any job.",
+        "required": ["event", "data"],
+        "properties": {
+            "event": {"type": "string", "enum": ["reload", "state", "progress", "done", "deleted"]},
+            "data": {
+                "type": "string",
+                "contentMediaType": "application/json",
+                "contentSchema": {"anyOf": [
+                    {"$ref": "#/components/schemas/Job"},
+                    {"$ref": "#/components/schemas/DeletedJob"},
+                    {"type": "object", "description": "Of `reload`: empty.", "additionalProperties": false},
+                ]},
+            },
+        },
+    });
+    components["schemas"]["DeletedJob"] = json!({
+        "type": "object",
+        "description": "Of `deleted`: which job is gone.",
+        "required": ["id"],
+        "properties": {"id": {"type": "string", "format": "uuid"}},
+        "additionalProperties": false,
+    });
     components["schemas"]["JobEvent"] = json!({
         "type": "object",
         "description": "One server-sent event about a job.",
@@ -106,7 +130,8 @@ pub(super) fn complete(path: &str, operation: &mut Value) {
             }
         }
         if let Some(stream) = response.pointer_mut("/content/text~1event-stream") {
-            stream["schema"] = json!({"$ref": "#/components/schemas/JobEvent"});
+            let name = if path == "/api/v1/jobs/events" { "JobsEvent" } else { "JobEvent" };
+            stream["schema"] = json!({"$ref": format!("#/components/schemas/{name}")});
         }
     }
 }

@@ -18,7 +18,7 @@ use axum::http::StatusCode;
     )
 )]
 pub async fn delete_job(State(state): State<AppState>, JobPath(id): JobPath) -> Result<StatusCode, Refusal> {
-    match state.jobs().store().delete(id).await? {
+    match state.jobs().delete(id).await? {
         Deletion::Deleted => Ok(StatusCode::NO_CONTENT),
         Deletion::Live => Err(Refusal::new(ProblemCode::JobNotEnded, "The job has not ended; cancel it first.")),
         Deletion::NotFound => Err(super::no_job()),

@@ -18,7 +18,9 @@ mod read_system;
 mod submit_job;
 mod validate_job;
 mod watch_job;
+mod watch_jobs;
 
+use super::config::RETRY_FOLLOW_S;
 use super::problem::{ProblemCode, Refusal};
 use super::request::{event_stream_only, json_only};
 use super::state::AppState;
@@ -42,7 +44,10 @@ pub fn versioned() -> OpenApiRouter<AppState> {
         .routes(routes!(list_kinds::list_kinds))
         .routes(routes!(read_system::read_system))
         .route_layer(from_fn(json_only));
-    let stream = OpenApiRouter::new().routes(routes!(watch_job::watch_job)).route_layer(from_fn(event_stream_only));
+    let stream = OpenApiRouter::new()
+        .routes(routes!(watch_jobs::watch_jobs))
+        .routes(routes!(watch_job::watch_job))
+        .route_layer(from_fn(event_stream_only));
     let chosen =
         OpenApiRouter::new().routes(routes!(read_series::read_series)).routes(routes!(list_points::list_points));
     json.merge(stream).merge(chosen)
@@ -79,6 +84,11 @@ async fn succeeded(state: &AppState, id: JobId) -> Result<JobRecord, Refusal> {
             Err(Refusal::new(ProblemCode::JobNotSucceeded, format!("The job is {}.", job.state.word())))
         }
     }
+}
+
+fn too_many_followers() -> Refusal {
+    let detail = "As many clients follow jobs as the service allows.";
+    Refusal::new(ProblemCode::TooManyStreams, detail).retry_after(RETRY_FOLLOW_S)
 }
 
 fn no_job() -> Refusal {

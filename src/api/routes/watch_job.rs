@@ -1,7 +1,7 @@
 //! `GET /api/v1/jobs/{id}/events`
 
-use crate::api::config::{KEEP_ALIVE, RETRY_FOLLOW_S};
-use crate::api::problem::{ProblemCode, Refusal};
+use crate::api::config::KEEP_ALIVE;
+use crate::api::problem::Refusal;
 use crate::api::request::JobPath;
 use crate::api::state::AppState;
 use crate::api::telemetry::OpenStream;
@@ -47,17 +47,12 @@ pub async fn watch_job(
     if job.state.is_ended() && last_event(&headers) == Some(job.revision) {
         return Ok(StatusCode::NO_CONTENT.into_response());
     }
-    let place = (state.follow().ok_or_else(too_many)?, OpenStream::new());
+    let place = (state.follow().ok_or_else(super::too_many_followers)?, OpenStream::new());
     let events = events(id, Arc::new(job), changes, state.jobs().closing().clone()).map(move |event| {
         let _ = &place;
         event
     });
     Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE)).into_response())
-}
-
-fn too_many() -> Refusal {
-    let detail = "As many clients follow jobs as the service allows.";
-    Refusal::new(ProblemCode::TooManyStreams, detail).retry_after(RETRY_FOLLOW_S)
 }
 
 fn last_event(headers: &HeaderMap) -> Option<i64> {

@@ -67,6 +67,7 @@ impl std::fmt::Debug for Answer {
 #[derive(Debug, PartialEq)]
 pub struct Event {
     pub name: String,
+    /// 0 when it has none.
     pub id: i64,
     pub data: Value,
 }
@@ -122,5 +123,5 @@ impl EventStream {
 fn parsed(block: &str) -> Option<Event> {
     let field = |name: &str| block.lines().find_map(|line| line.strip_prefix(name)).map(str::trim_start);
     let data = serde_json::from_str(field("data:")?).expect("data is JSON");
-    Some(Event { name: field("event:")?.to_owned(), id: field("id:")?.parse().ok()?, data })
+    Some(Event { name: field("event:")?.to_owned(), id: field("id:").map_or(Some(0), |id| id.parse().ok())?, data })
 }

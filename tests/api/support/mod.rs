@@ -7,7 +7,7 @@ mod program;
 mod service;
 mod solver;
 
-pub use answer::{Answer, EventStream};
+pub use answer::{Answer, Event, EventStream};
 pub use breakpoints::Breakpoints;
 pub use document::{document, scripted, sweep};
 pub use program::Program;
@@ -148,7 +148,12 @@ impl App {
 
     /// Events of a job, read one by one.
     pub async fn events(&self, path: &str, headers: &[(&str, &str)]) -> EventStream {
-        let mut request = Request::builder().uri(format!("{path}/events"));
+        self.stream(&format!("{path}/events"), headers).await
+    }
+
+    /// Events from this path, read one by one.
+    pub async fn stream(&self, path: &str, headers: &[(&str, &str)]) -> EventStream {
+        let mut request = Request::builder().uri(path);
         for (name, value) in headers {
             request = request.header(*name, *value);
         }
