@@ -54,8 +54,9 @@ async fn the_example_goes_from_the_form_to_its_result() {
         assert_eq!(browser.value("!document.querySelector('#spectrum').hidden").await, json!(spectrum));
         let plots = ["stiffness", "error", "share", "series", "phase", "spectrum"];
         for plot in plots.into_iter().filter(|plot| spectrum || *plot != "spectrum") {
-            let lines = format!("document.querySelectorAll('#{plot}-plot .scatterlayer .trace').length");
-            assert!(browser.value(&lines).await.as_i64().unwrap() >= 1, "{plot}");
+            // Plots are drawn when they are scrolled near.
+            browser.value(&format!("document.querySelector('#{plot}-plot').scrollIntoView()")).await;
+            browser.until(&format!("document.querySelectorAll('#{plot}-plot .scatterlayer .trace').length >= 1")).await;
         }
 
         // On a telephone nothing sticks out, the plots included.

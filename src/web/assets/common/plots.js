@@ -1,9 +1,30 @@
-// Plots with Plotly: loaded on first use, coloured by the stylesheet, redrawn when light turns dark.
+// Plots with Plotly: loaded on first use, drawn when scrolled near, coloured by the stylesheet.
+//
+// `draw(node, traces, axes)` draws into a box of class `plot`; traces come from `line`, `points`, `stems`, `bars`, `heatMap`. `axes`:
+//   x, y, y2   titles with their unit after the last comma ("Time, s"), or { label, unit }
+//   name       what the plot is called, for people who do not see it and for file names; the figure's caption or heading if left out
+//   csvName    name of its files without ending
+//   range      [from, to] of x if it is not all of it;  yRange the same of y
+//   log        y is logarithmic
+//   bands      [{ x, low, high, name }]: filled between two curves
+//   marks      [{ x, text }]: vertical lines;  levels [{ y, text }]: horizontal ones
+//   top        { title, factor }: a second x axis above, `factor` times the first
+//   fromZero   both axes start at zero;  equal: a unit is as long on both axes
+//   zoomX      dragging zooms x only;  link: plots with the same word zoom x together
+//   hover      "closest" or "x unified"; chosen by the traces if left out
+//   shapes, annotations, layout   passed on to Plotly
 
-import { byId, el } from "./dom.js";
+import { el } from "./dom.js";
+import { layoutOf, palette, styled } from "./plot_style.js";
+import { describe, toolsOf } from "./plot_tools.js";
 
-const CONFIG = { displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d"], toImageButtonOptions: { scale: 2 } };
-const drawn = new Map();
+export { bars, heatMap, line, points, stems } from "./plot_traces.js";
+
+const CONFIG = { displaylogo: false, displayModeBar: true, doubleClick: "autosize", modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "toImage"] };
+/** What is this near to the window is drawn, px. */
+const NEAR = 400;
+/** Of every box: what is to be drawn, and what was. */
+const figures = new Map();
 let loading = null;
 
 /** Plots follow the width of their boxes. */
@@ -13,6 +34,17 @@ const fit = new ResizeObserver((changes) => {
     if (contentRect.width > 0 && width && Math.abs(width - contentRect.width) > 1) window.Plotly.Plots.resize(target);
   }
 });
+
+const nearby = new IntersectionObserver(
+  (changes) => {
+    for (const { target, isIntersecting } of changes) {
+      if (!isIntersecting) continue;
+      nearby.unobserve(target);
+      render(figures.get(target));
+    }
+  },
+  { rootMargin: `${NEAR}px 0px` },
+);
 
 /**
  * Plotly writes some style attributes as text, which the content security policy forbids; through the style object
@@ -29,7 +61,7 @@ function allowStyleAttributes() {
 function load() {
   loading ??= new Promise((resolve, reject) => {
     allowStyleAttributes();
-    const script = el("script", { src: byId("job").dataset.plotly, async: true });
+    const script = el("script", { src: document.querySelector("[data-plotly]").dataset.plotly, async: true });
     script.addEventListener("load", () => resolve(window.Plotly));
     script.addEventListener("error", () => reject(new Error("The plotting script could not be loaded")));
     document.head.append(script);
@@ -37,82 +69,119 @@ function load() {
   return loading;
 }
 
-export const line = (x, y, name) => ({ type: "scatter", mode: "lines", x, y, name, line: { width: 1.6 }, showlegend: Boolean(name) });
-
-export const points = (x, y, name) => ({ type: "scatter", mode: "markers", x, y, name, marker: { size: 7, symbol: "circle-open", line: { width: 2 } } });
-
-/** Vertical lines from zero with a point at their ends. */
-export function stems(x, y, name) {
-  const ends = points(x, y, name);
-  const lengths = { type: "data", symmetric: false, array: x.map(() => 0), arrayminus: y, width: 0, thickness: 1.6 };
-  return { ...ends, showlegend: false, marker: { size: 5 }, error_y: lengths };
-}
-
-export const heatMap = (x, y, z, unit) => ({ type: "heatmap", x, y, z, colorbar: { title: { text: unit }, thickness: 14, outlinewidth: 0 }, colorscale: "Viridis", hoverongaps: false });
-
-/** Draws traces into a box; `axes` has the titles `x`, `y` (and `y2`), and the `range` of x if it is not all of it. */
+/**
+ * Draws traces into a box, at once when it is near the window and otherwise when it comes near. Below the box stand the plot's tools: its
+ * data as a table and as files.
+ */
 export async function draw(node, traces, axes) {
-  const plotly = await load();
-  if (!drawn.has(node)) fit.observe(node);
-  drawn.set(node, { traces, axes });
-  const colours = palette();
-  const coloured = traces.map((trace, index) => withColour(trace, colours.lines[index % colours.lines.length]));
-  await plotly.react(node, coloured, layoutOf(axes, colours, node), CONFIG);
-  node.setAttribute("role", "img");
-  node.setAttribute("aria-label", `Plot: ${axes.title ?? axes.y} over ${axes.x}`);
+  let figure = figures.get(node);
+  if (!figure) {
+    figure = { node, tools: toolsOf(node, () => figure, (format) => picture(figure.traces, figure.axes, { format })) };
+    figures.set(node, figure);
+    makeOperable(figure);
+  }
+  figure.traces = traces;
+  figure.axes = axes;
+  describe(figure);
+  if (figure.drawn || isNear(node)) await render(figure);
+  else nearby.observe(node);
   return node;
 }
 
 /** Calls `zoomed` with [from, to] when the user changes the range of x, and with null when it is set free. */
 export function onZoom(node, zoomed) {
-  node.removeAllListeners?.("plotly_relayout");
-  node.on("plotly_relayout", (change) => {
-    const range = change["xaxis.range"] ?? [change["xaxis.range[0]"], change["xaxis.range[1]"]];
-    if (range[0] !== undefined && range[1] !== undefined) zoomed(range.map(Number));
-    else if (change["xaxis.autorange"]) zoomed(null);
-  });
+  const figure = figures.get(node);
+  if (figure) figure.zoomed = zoomed;
 }
 
-function withColour(trace, colour) {
-  if (trace.type === "heatmap") return trace;
-  if (trace.error_y) return { ...trace, marker: { ...trace.marker, color: colour }, error_y: { ...trace.error_y, color: colour } };
-  return { ...trace, line: { ...trace.line, color: colour }, marker: { ...trace.marker, color: colour } };
+/** A figure with its box: `{ figure, plot }`. Its height is reserved from the start. */
+export function figure({ id, title, height }) {
+  const plot = el("div", { class: "plot", id });
+  if (height) plot.style.height = `${height}px`;
+  return { figure: el("figure", {}, el("figcaption", {}, title), plot), plot };
 }
 
-function layoutOf({ x, y, y2, range, title, fromZero }, colours, node) {
-  const axis = (text) => ({
-    title: { text, standoff: 8 }, gridcolor: colours.grid, zerolinecolor: colours.grid, linecolor: colours.grid, automargin: true, exponentformat: "power", separatethousands: true,
-  });
-  const layout = {
-    autosize: true,
-    height: node.clientHeight || 320,
-    margin: { l: 56, r: 16, t: title ? 36 : 16, b: 44 },
-    paper_bgcolor: "rgba(0,0,0,0)",
-    plot_bgcolor: "rgba(0,0,0,0)",
-    font: { color: colours.text, family: "system-ui, sans-serif", size: 12 },
-    xaxis: { ...axis(x), exponentformat: "none" },
-    yaxis: axis(y),
-    legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
-    separators: ".\u202f",
-    hovermode: "closest",
-    modebar: { bgcolor: "rgba(0,0,0,0)", color: colours.muted, activecolor: colours.text },
-  };
-  if (title) layout.title = { text: title, font: { size: 13 } };
-  if (range) layout.xaxis.range = range;
-  if (fromZero) {
-    layout.xaxis.rangemode = "tozero";
-    layout.yaxis.rangemode = "tozero";
+/** Everything that waits to be scrolled near. */
+export async function drawAll() {
+  for (const waiting of figures.values()) if (!waiting.drawn) await render(waiting);
+}
+
+/** The plot as an image, in the colours of paper: `format` `svg` (text) or `png` (base64). */
+export async function picture(traces, axes, { format = "svg", width = 900, height = 480 } = {}) {
+  const plotly = await load();
+  const colours = palette(true);
+  const layout = layoutOf(axes, traces, colours, { width, height });
+  const data = styled(traces, axes, colours);
+  return plotly.toImage({ data, layout: { ...layout, width, height, paper_bgcolor: "#ffffff" } }, { format, width, height, scale: format === "png" ? 2 : 1, imageDataOnly: true });
+}
+
+const isNear = (node) => {
+  const { top, bottom, width } = node.getBoundingClientRect();
+  return width > 0 && top < window.innerHeight + NEAR && bottom > -NEAR;
+};
+
+async function render(figure) {
+  const plotly = await load();
+  const { node, traces, axes } = figure;
+  const colours = palette();
+  const size = { width: node.clientWidth || 600, height: node.clientHeight || 320 };
+  await plotly.react(node, styled(traces, axes, colours), layoutOf(axes, traces, colours, size), CONFIG);
+  if (figure.drawn) return;
+  figure.drawn = true;
+  fit.observe(node);
+  node.on("plotly_relayout", (change) => relayed(figure, change));
+}
+
+function relayed(figure, change) {
+  const range = change["xaxis.range"] ?? [change["xaxis.range[0]"], change["xaxis.range[1]"]];
+  const chosen = range[0] !== undefined && range[1] !== undefined;
+  if (!chosen && !change["xaxis.autorange"]) return;
+  const wanted = chosen ? range.map(Number) : null;
+  const { axes } = figure;
+  if (axes.top) {
+    const of = wanted ?? figure.node._fullLayout.xaxis.range;
+    window.Plotly.relayout(figure.node, { "xaxis2.range": of.map((end) => end * axes.top.factor) });
   }
-  if (y2) layout.yaxis2 = { ...axis(y2), overlaying: "y", side: "right", showgrid: false };
-  return layout;
+  if (axes.link && !figure.following) {
+    for (const other of figures.values()) if (other !== figure && other.drawn && other.axes.link === axes.link) follow(other, wanted);
+  }
+  figure.zoomed?.(wanted);
 }
 
-function palette() {
-  const style = getComputedStyle(document.documentElement);
-  const value = (name) => style.getPropertyValue(name).trim();
-  return { text: value("--text"), muted: value("--muted"), grid: value("--line"), lines: ["--plot-1", "--plot-2", "--plot-3", "--plot-4"].map(value) };
+/** A linked plot takes another one's range, without passing it on. */
+async function follow(figure, range) {
+  figure.following = true;
+  await window.Plotly.relayout(figure.node, range ? { "xaxis.range": range } : { "xaxis.autorange": true });
+  figure.following = false;
 }
 
-window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-  for (const [node, { traces, axes }] of drawn) draw(node, traces, axes);
-});
+/** By keyboard: arrows move, plus and minus zoom, 0 shows all. */
+function makeOperable(figure) {
+  const { node } = figure;
+  node.tabIndex = 0;
+  node.setAttribute("role", "group");
+  node.setAttribute("aria-roledescription", "plot");
+  node.setAttribute("aria-keyshortcuts", "ArrowLeft ArrowRight + - 0");
+  node.addEventListener("keydown", (event) => {
+    const axis = node._fullLayout?.xaxis;
+    if (!axis || event.target !== node || event.ctrlKey || event.altKey || event.metaKey) return;
+    const [from, to] = axis.range;
+    const span = to - from;
+    const moves = { ArrowLeft: [from - span / 5, to - span / 5], ArrowRight: [from + span / 5, to + span / 5], "+": [from + span / 4, to - span / 4], "=": [from + span / 4, to - span / 4], "-": [from - span / 2, to + span / 2] };
+    const range = moves[event.key];
+    if (!range && event.key !== "0") return;
+    event.preventDefault();
+    window.Plotly.relayout(node, range ? { "xaxis.range": range } : { "xaxis.autorange": true, "yaxis.autorange": true });
+  });
+}
+
+function recolour() {
+  for (const figure of figures.values()) if (figure.drawn) render(figure);
+}
+
+window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolour);
+new MutationObserver(recolour).observe(document.documentElement, { attributeFilter: ["class", "data-theme"] });
+window.addEventListener("beforeprint", drawAll);
+
+// Pages that link the stylesheet themselves show it sooner.
+if (!document.querySelector('link[href="/assets/common/plots.css"]')) document.head.append(el("link", { rel: "stylesheet", href: "/assets/common/plots.css" }));

@@ -1,0 +1,148 @@
+// How plots look: colours of the stylesheet, layout, what hovering shows.
+
+import { el } from "./dom.js";
+import { shownUnit } from "./format.js";
+
+const DASHES = ["solid", "dash", "dot", "dashdot", "longdash"];
+const UNITS = ["N/µm", "N/mm", "kg·m²", "m/s²", "m/s", "µm", "mm", "m", "N", "N·m", "MPa", "Hz", "s", "ms", "%", "°", "rad", "rad/s", "rad/s²", "r/min", "dB", "W", "kg"];
+
+/** Colours of the page, or those of paper. */
+export function palette(paper = false) {
+  const source = paper ? el("div", { class: "paper", hidden: true }) : document.documentElement;
+  if (paper) document.body.append(source);
+  const style = getComputedStyle(source);
+  const value = (name) => style.getPropertyValue(name).trim();
+  const lines = ["--plot-1", "--plot-2", "--plot-3", "--plot-4", "--plot-5", "--plot-6"].map(value).filter(Boolean);
+  const colours = { text: value("--text"), muted: value("--muted"), grid: value("--line"), surface: value("--surface"), lines };
+  if (paper) source.remove();
+  return colours;
+}
+
+/** Label and unit of an axis given as text: "Time, s", a bare unit, a bare label; or { label, unit }. */
+export function parts(axis) {
+  if (!axis) return { label: "", unit: "" };
+  if (typeof axis === "object") return { label: axis.label ?? "", unit: shownUnit(axis.unit) };
+  if (UNITS.includes(axis)) return { label: "", unit: axis };
+  const comma = axis.lastIndexOf(", ");
+  const unit = axis.slice(comma + 2);
+  return comma > 0 && (UNITS.includes(unit) || unit.length <= 8) ? { label: axis.slice(0, comma), unit } : { label: axis, unit: "" };
+}
+
+export const titleOf = (axis) => {
+  const { label, unit } = parts(axis);
+  return [label, unit].filter(Boolean).join(", ");
+};
+
+/** The traces in the page's colours and dashes, with what hovering shows; bands first, so that lines lie above them. */
+export function styled(traces, axes, colours) {
+  const unified = hoverMode(traces, axes) === "x unified";
+  let place = 0;
+  const drawn = traces.map((trace) => {
+    const at = trace.colour ?? (trace.tone === "muted" ? 0 : place++);
+    const colour = trace.tone === "muted" ? colours.muted : colours.lines[at % colours.lines.length];
+    const { tone, colour: own, aside, unit, ...rest } = trace;
+    return { ...inColour(rest, colour, DASHES[at % DASHES.length], colours), hovertemplate: trace.hovertemplate ?? hoverText(trace, axes, unified) };
+  });
+  // An axis is only drawn with a trace on it.
+  const above = axes.top ? [{ type: "scatter", mode: "markers", x: [null], y: [null], xaxis: "x2", showlegend: false, hoverinfo: "skip" }] : [];
+  return [...above, ...(axes.bands ?? []).flatMap((band, index) => filled(band, colours.lines[(band.colour ?? index) % colours.lines.length])), ...drawn];
+}
+
+function filled({ x, low, high, name = "" }, colour) {
+  const edge = { type: "scatter", mode: "lines", x, line: { width: 0, color: colour }, hoverinfo: "skip", showlegend: false };
+  return [{ ...edge, y: low }, { ...edge, y: high, name, showlegend: Boolean(name), fill: "tonexty", ...fillOf(colour) }];
+}
+
+/** Plotly reads no colour functions but `rgba`. */
+function fillOf(colour) {
+  const hex = /^#([0-9a-f]{6})$/i.exec(colour)?.[1];
+  if (!hex) return { fillcolor: colour, opacity: .25 };
+  const [red, green, blue] = [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16));
+  return { fillcolor: `rgba(${red},${green},${blue},.22)` };
+}
+
+function inColour(trace, colour, dash, colours) {
+  if (trace.type === "heatmap") return { ...trace, colorbar: { ...trace.colorbar, tickfont: { color: colours.text } } };
+  if (trace.type === "bar") return { ...trace, marker: { color: colour, ...trace.marker } };
+  if (trace.error_y) return { ...trace, marker: { ...trace.marker, color: colour }, error_y: { ...trace.error_y, color: colour } };
+  return { ...trace, line: { dash, color: colour, ...trace.line }, marker: { color: colour, ...trace.marker } };
+}
+
+function hoverText(trace, axes, unified) {
+  const [x, y] = [parts(axes.x), parts(trace.yaxis === "y2" ? axes.y2 : axes.y)];
+  const at = typeof trace.x?.[0] === "string" ? "%{x}" : "%{x:.5~g}";
+  const value = typeof trace.y?.[0] === "string" ? "%{y}" : "%{y:.5~g}";
+  const with_ = (text, unit) => (unit ? `${text} ${unit}` : text);
+  const lines = [x.label ? `${x.label}: ${with_(at, x.unit)}` : with_(at, x.unit), y.label && trace.type === "heatmap" ? `${y.label}: ${with_(value, y.unit)}` : with_(value, y.unit)];
+  if (trace.type === "heatmap") return `${lines.join("<br>")}<br><b>${with_("%{z:.5~g}", trace.unit)}</b><extra></extra>`;
+  return `${unified ? lines[1] : lines.join("<br>")}<extra>${trace.name ?? ""}</extra>`;
+}
+
+/** All values at one place where several curves have the same direction; else those of the nearest point. */
+function hoverMode(traces, axes) {
+  if (axes.hover) return axes.hover;
+  const curves = traces.filter((trace) => !trace.aside);
+  const rising = ({ type, mode, x = [] }) => type === "scatter" && mode === "lines" && x.every((value, index) => index === 0 || value >= x[index - 1]);
+  return curves.length > 1 && curves.every(rising) ? "x unified" : "closest";
+}
+
+export function layoutOf(axes, traces, colours, { width, height }) {
+  const { range, yRange, title, fromZero, equal, log, top, zoomX, marks = [], levels = [] } = axes;
+  const axis = (text) => ({
+    title: { text, standoff: 8 }, gridcolor: colours.grid, zerolinecolor: colours.grid, linecolor: colours.grid, automargin: true, exponentformat: "power", separatethousands: true,
+  });
+  const named = traces.some((trace) => trace.showlegend);
+  const layout = {
+    autosize: true,
+    height,
+    margin: { l: 56, r: 16, t: (title ? 36 : 14) + (top ? 34 : 0), b: 44 },
+    paper_bgcolor: "rgba(0,0,0,0)",
+    plot_bgcolor: "rgba(0,0,0,0)",
+    font: { color: colours.text, family: "system-ui, sans-serif", size: width < 480 ? 11 : 12 },
+    xaxis: { ...axis(titleOf(axes.x)), exponentformat: "none", hoverformat: ".5~g" },
+    yaxis: { ...axis(titleOf(axes.y)), type: log ? "log" : undefined },
+    legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+    showlegend: named,
+    separators: ".\u202f",
+    hovermode: hoverMode(traces, axes),
+    hoverlabel: { bgcolor: colours.surface, bordercolor: colours.grid, font: { color: colours.text }, align: "left" },
+    dragmode: "zoom",
+    modebar: { bgcolor: "rgba(0,0,0,0)", color: colours.muted, activecolor: colours.text, orientation: "h" },
+    shapes: [...marks.map((mark) => markLine(mark, colours)), ...levels.map((level) => levelLine(level, colours)), ...(axes.shapes ?? [])],
+    annotations: [...marks.map((mark) => markText(mark, colours)), ...levels.map((level) => levelText(level, colours)), ...(axes.annotations ?? [])].filter(Boolean),
+  };
+  if (title) layout.title = { text: title, font: { size: 13 } };
+  if (range) layout.xaxis.range = [...range];
+  if (yRange) layout.yaxis.range = [...yRange];
+  if (zoomX) layout.yaxis.fixedrange = true;
+  if (fromZero) {
+    layout.xaxis.rangemode = "tozero";
+    if (!log) layout.yaxis.rangemode = "tozero";
+  }
+  if (equal) {
+    layout.yaxis.scaleanchor = "x";
+    layout.yaxis.constrain = "domain";
+    layout.xaxis.constrain = "domain";
+  }
+  if (axes.y2) layout.yaxis2 = { ...axis(titleOf(axes.y2)), overlaying: "y", side: "right", showgrid: false, fixedrange: Boolean(zoomX) };
+  if (top) layout.xaxis2 = { ...axis(titleOf(top.title)), overlaying: "x", side: "top", showgrid: false, fixedrange: true, exponentformat: "none", range: range?.map((end) => end * top.factor) };
+  return { ...layout, ...axes.layout };
+}
+
+function markLine({ x, dash = "dot", colour }, colours) {
+  return { type: "line", x0: x, x1: x, y0: 0, y1: 1, yref: "paper", layer: "below", line: { color: colour ?? colours.muted, width: 1, dash } };
+}
+
+function markText({ x, text, at = 1 }, colours) {
+  if (!text) return null;
+  return { x, y: at, yref: "paper", yanchor: "top", xanchor: "left", text, showarrow: false, font: { size: 11, color: colours.muted } };
+}
+
+function levelLine({ y, dash = "dash" }, colours) {
+  return { type: "line", x0: 0, x1: 1, xref: "paper", y0: y, y1: y, layer: "below", line: { color: colours.muted, width: 1, dash } };
+}
+
+function levelText({ y, text }, colours) {
+  if (!text) return null;
+  return { x: 1, xref: "paper", xanchor: "right", y, yanchor: "bottom", text, showarrow: false, font: { size: 11, color: colours.muted } };
+}

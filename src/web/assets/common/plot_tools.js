@@ -1,0 +1,124 @@
+// What stands below a plot: its data in words and as a table, and as files.
+
+import { download, el, fillRows } from "./dom.js";
+import { number } from "./format.js";
+import { parts } from "./plot_style.js";
+
+/** Rows of the table below a plot; the file has all. */
+const MAX_ROWS = 500;
+
+/** Puts the tools below the box. `current` tells what is drawn, `picture` makes an image of it. */
+export function toolsOf(node, current, picture) {
+  const table = el("table", { class: "numbers" }, el("caption", { class: "visually-hidden" }), el("thead"), el("tbody"));
+  const sentence = el("p", { class: "help" });
+  const details = el("details", {}, el("summary", {}, "Data"), sentence, el("div", { class: "scroll", tabIndex: 0, role: "region" }, table));
+  details.addEventListener("toggle", () => details.open && fill());
+  const button = (text, title, act) => {
+    const made = el("button", { type: "button", class: "quiet", title }, text);
+    made.addEventListener("click", act);
+    return made;
+  };
+  const save = async (format, type, decode) => download(`${fileName(current())}.${format}`, decode(await picture(format)), type);
+  const buttons = [
+    button("CSV", "Save the numbers of this plot", () => download(`${fileName(current())}.csv`, csv(current()), "text/csv;charset=utf-8")),
+    button("PNG", "Save this plot as an image", () => save("png", "image/png", bytes)),
+    button("SVG", "Save this plot as a drawing", () => save("svg", "image/svg+xml", (text) => text)),
+  ];
+  const bar = el("div", { class: "plot-tools" }, details, el("div", { class: "plot-files", role: "group" }, ...buttons));
+  node.after(bar);
+  const fill = () => {
+    const { names, rows } = tableOf(current());
+    table.tHead.replaceChildren(el("tr", {}, ...names.map((name) => el("th", { scope: "col" }, name))));
+    fillRows(table.tBodies[0], rows.slice(0, MAX_ROWS).map((row) => row.map((value) => (value === null || value === undefined ? "" : number(value, 6)))));
+    const more = rows.length > MAX_ROWS ? ` The first ${MAX_ROWS} of ${number(rows.length)} rows; the CSV file has all.` : "";
+    sentence.textContent = summary(current()) + more;
+  };
+  return { bar, details, buttons, table, fill };
+}
+
+/** Gives the plot and its tools their names, and the table its new content. */
+export function describe(figure) {
+  const { node, axes, tools } = figure;
+  const name = nameOf(figure);
+  const text = summary(figure);
+  node.setAttribute("aria-label", `${name}: ${parts(axes.y).label || parts(axes.y).unit} over ${parts(axes.x).label || parts(axes.x).unit}. ${text}`);
+  tools.table.caption.textContent = name;
+  tools.table.parentElement.setAttribute("aria-label", `Data of: ${name}`);
+  tools.bar.lastElementChild.setAttribute("aria-label", `Save: ${name}`);
+  for (const button of tools.buttons) button.setAttribute("aria-label", `${button.textContent} of: ${name}`);
+  if (tools.details.open) tools.fill();
+}
+
+function nameOf({ node, axes }) {
+  const caption = node.closest("figure")?.querySelector("figcaption") ?? node.closest("section")?.querySelector("h2");
+  return axes.name ?? axes.title ?? caption?.textContent ?? "Plot";
+}
+
+function fileName(figure) {
+  const words = (figure.axes.csvName ?? nameOf(figure)).toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");
+  const job = document.querySelector("[data-id]")?.dataset.id;
+  return job ? `${words}-${job.slice(-8)}` : words;
+}
+
+const shownTraces = ({ traces }) => traces.filter((trace) => !trace.aside);
+
+/** Least and greatest value of each trace, and where they are. */
+function summary(figure) {
+  const { axes } = figure;
+  const x = parts(axes.x);
+  return shownTraces(figure)
+    .map((trace) => {
+      const { unit } = trace.type === "heatmap" ? trace : parts(trace.yaxis === "y2" ? axes.y2 : axes.y);
+      const values = (trace.type === "heatmap" ? trace.z.flat() : trace.y ?? []).map((value, index) => [value, index]).filter(([value]) => typeof value === "number");
+      if (!values.length) return "";
+      const [low, high] = [values.reduce((a, b) => (b[0] < a[0] ? b : a)), values.reduce((a, b) => (b[0] > a[0] ? b : a))];
+      const at = ([, index]) => (trace.type === "heatmap" ? "" : ` at ${shown(trace.x[index])}${x.unit ? ` ${x.unit}` : ""}`);
+      const name = trace.name ? `${trace.name}: ` : "";
+      return `${name}from ${number(low[0], 4)}${at(low)} to ${number(high[0], 4)} ${unit ?? ""}${at(high)}.`.replace(" .", ".");
+    })
+    .filter(Boolean)
+    .join(" ");
+}
+
+const shown = (value) => (typeof value === "number" ? number(value, 4) : String(value));
+
+/** Columns of what is drawn: traces over the same places share the first, others have their own. A heat map is a list of its cells. */
+function tableOf(figure) {
+  const { axes } = figure;
+  const [x, y] = [parts(axes.x), parts(axes.y)];
+  const head = ({ label, unit }, name = "") => [[label, name].filter(Boolean).join(" ") || nameOf(figure), unit ? `[${unit}]` : ""].filter(Boolean).join(" ");
+  const traces = shownTraces(figure);
+  const map = traces.find((trace) => trace.type === "heatmap");
+  if (map) {
+    const rows = map.z.flatMap((row, at) => row.map((value, column) => [map.x[column], map.y[at], value]));
+    return { names: [head(x), head(y), head({ label: axes.z ?? nameOf(figure), unit: map.unit })], rows };
+  }
+  const columns = [];
+  let places = null;
+  for (const band of axes.bands ?? []) {
+    columns.push([head(x, band.name), band.x], [head(y, `${band.name ?? ""} least`.trim()), band.low], [head(y, `${band.name ?? ""} greatest`.trim()), band.high]);
+  }
+  for (const trace of traces) {
+    if (!places || !same(places, trace.x)) columns.push([head(x, places ? trace.name : ""), trace.x]);
+    places ??= trace.x;
+    columns.push([head(trace.yaxis === "y2" ? parts(axes.y2) : y, trace.name), trace.y]);
+  }
+  const length = Math.max(0, ...columns.map(([, values]) => values.length));
+  return { names: columns.map(([name]) => name), rows: Array.from({ length }, (_, row) => columns.map(([, values]) => values[row])) };
+}
+
+const same = (a, b) => a === b || (a.length === b.length && a.every((value, index) => value === b[index]));
+
+/** The numbers as RFC 4180 writes them, each so that it reads back exactly. */
+export function csv(figure) {
+  const { names, rows } = tableOf(figure);
+  const field = (value) => {
+    const text = value === null || value === undefined ? "" : String(value);
+    return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+  };
+  return [names, ...rows].map((row) => `${row.map(field).join(",")}\r\n`).join("");
+}
+
+function bytes(base64) {
+  return Uint8Array.from(atob(base64), (sign) => sign.charCodeAt(0));
+}
