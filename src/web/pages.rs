@@ -39,7 +39,6 @@ struct NotFoundPage {
 #[derive(Template)]
 #[template(path = "login.html")]
 struct LoginPage<'a> {
-    has_login: bool,
     next: &'a str,
     trouble: &'a str,
 }
@@ -72,7 +71,7 @@ pub async fn not_found() -> Response {
 
 /// The page that asks for the token. It works without scripts, and shows nothing of the service.
 pub fn login(status: StatusCode, next: &str, trouble: Option<&str>) -> Response {
-    page(status, &LoginPage { has_login: false, next, trouble: trouble.unwrap_or_default() })
+    page(status, &LoginPage { next, trouble: trouble.unwrap_or_default() })
 }
 
 fn page(status: StatusCode, template: &impl Template) -> Response {

@@ -103,3 +103,12 @@ async fn people_can_log_out_where_they_can_log_in() {
         assert_eq!(text.contains("action=\"/logout\""), has_login);
     }
 }
+
+#[tokio::test]
+async fn the_version_is_for_those_who_are_let_in() {
+    let version = env!("CARGO_PKG_VERSION");
+    assert!(server().get("/jobs").await.text().contains(version));
+    let shown = login(StatusCode::UNAUTHORIZED, "/", None);
+    let body = axum::body::to_bytes(shown.into_body(), 1 << 20).await.unwrap();
+    assert!(!String::from_utf8(body.to_vec()).unwrap().contains(version));
+}

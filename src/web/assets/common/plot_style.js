@@ -53,13 +53,8 @@ function filled({ x, low, high, name = "" }, colour) {
   return [{ ...edge, y: low }, { ...edge, y: high, name, showlegend: Boolean(name), fill: "tonexty", ...fillOf(colour) }];
 }
 
-/** Plotly reads no colour functions but `rgba`. */
-function fillOf(colour) {
-  const hex = /^#([0-9a-f]{6})$/i.exec(colour)?.[1];
-  if (!hex) return { fillcolor: colour, opacity: .25 };
-  const [red, green, blue] = [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16));
-  return { fillcolor: `rgba(${red},${green},${blue},.22)` };
-}
+/** A colour of the stylesheet ("rgb(0, 103, 165)"), seen through. */
+const fillOf = (colour) => ({ fillcolor: colour.replace("rgb(", "rgba(").replace(")", ", .22)") });
 
 function inColour(trace, colour, dash, colours) {
   if (trace.type === "heatmap") return { ...trace, colorbar: { ...trace.colorbar, tickfont: { color: colours.text } } };

@@ -179,8 +179,8 @@ function recolour() {
   for (const figure of figures.values()) if (figure.drawn) render(figure);
 }
 
-window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", recolour);
-new MutationObserver(recolour).observe(document.documentElement, { attributeFilter: ["class", "data-theme"] });
+window.addEventListener("schemechange", recolour);
+new MutationObserver(recolour).observe(document.documentElement, { attributeFilter: ["class"] });
 window.addEventListener("beforeprint", drawAll);
 
 // Pages that link the stylesheet themselves show it sooner.
