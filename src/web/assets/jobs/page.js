@@ -1,101 +1,274 @@
-// The list of jobs. One request refreshes the whole page of it, often while something on it is live: a stream per job
-// would soon use up the few connections that a browser opens to one host.
+// The list of jobs: one page of it, filtered by the address, kept up to date by the stream of all jobs' events.
 
 import * as api from "../common/api.js";
 import { byId, el, notify, show } from "../common/dom.js";
-import { age, instant } from "../common/format.js";
-import { describeState, stateBadge } from "../common/state.js";
+import { followJobs } from "../common/follow.js";
+import * as address from "./address.js";
+import { Row } from "./rows.js";
+import { Selection } from "./selection.js";
+import { count, nameOf } from "./words.js";
 
-const LIMIT = 20;
-const LIVE_MS = 1000;
-const QUIET_MS = 5000;
+const LIMIT = 25;
+const LABELS_FROM = 200;
+const TICK_MS = 1000;
+const TYPING_MS = 300;
 
-const filters = byId("filters");
 const body = byId("jobs").tBodies[0];
-let cursor = null;
+const notice = byId("notice");
+const rows = new Map();
+/** Ids of deleted jobs: what is told of them later is old. */
+const gone = new Set();
+/** Jobs heard of since the list was asked for. */
+let heard = new Map();
+const labels = new Set();
+let view = address.read();
 let nextCursor = null;
-let timer = null;
+let newer = new Set();
 let asking = null;
+let stopFollowing = () => {};
 
+const shown = () => [...body.rows].map((node) => rows.get(node.dataset.id));
+const selection = new Selection(shown, failed);
+
+function failed(errors) {
+  if (errors.length === 0) return notify(notice, null);
+  const [first] = errors;
+  const problem = first.problem ?? { title: String(first.message ?? first) };
+  notify(notice, { problem: { ...problem, title: errors.length > 1 ? `${count(errors.length)} could not be changed. ${problem.title}` : problem.title } });
+}
+
+/** Reads this page of the list. */
 async function refresh() {
-  clearTimeout(timer);
   asking?.abort();
   asking = new AbortController();
   const { signal } = asking;
-  let live = false;
+  heard = new Map();
+  const { states, kind, label, cursor } = view;
   try {
-    const parameters = { limit: LIMIT, cursor, ...Object.fromEntries(new FormData(filters)) };
-    const page = await api.jobs(parameters, signal);
-    notify(byId("notice"), null);
+    const page = await api.jobs({ limit: LIMIT, state: states.join(","), kind, label, cursor }, signal);
+    if (signal.aborted) return;
+    notify(notice, null);
     nextCursor = page.next_cursor ?? null;
-    fill(page.items);
-    live = page.items.some((job) => !api.isEnded(job));
+    fill(page.items.filter((job) => !gone.has(job.id)));
+    newer = new Set();
+    for (const job of heard.values()) take(job);
   } catch (error) {
     if (signal.aborted) return;
-    notify(byId("notice"), error);
+    // A cursor that came with a shared address may belong to other filters: the first page is what is left.
+    if (error.problem?.code === "invalid-cursor") return step({ ...view, cursor: "", trail: [] }, false);
+    notify(notice, error);
   }
-  byId("older").disabled = nextCursor === null;
-  byId("newest").disabled = cursor === null;
-  timer = setTimeout(() => (document.hidden ? later() : refresh()), live ? LIVE_MS : QUIET_MS);
+  settle();
 }
 
-/** Nobody looks: wait until somebody does. */
-function later() {
-  document.addEventListener("visibilitychange", refresh, { once: true });
-}
-
+/** Puts the rows in order: those that stay keep their places in the document, and with them the focus. */
 function fill(jobs) {
-  show(byId("empty"), jobs.length === 0);
-  show(byId("jobs"), jobs.length > 0);
-  const focused = document.activeElement?.dataset?.action;
-  body.replaceChildren(...jobs.map(row));
-  if (focused) body.querySelector(`[data-action="${CSS.escape(focused)}"]`)?.focus();
+  const wanted = new Set(jobs.map((job) => job.id));
+  for (const id of [...rows.keys()].filter((id) => !wanted.has(id))) drop(id);
+  let at = body.firstElementChild;
+  for (const job of jobs) {
+    const row = known(job);
+    if (row.node === at) at = at.nextElementSibling;
+    else body.insertBefore(row.node, at);
+  }
 }
 
-function row(job) {
-  const link = el("a", { href: `/jobs/${encodeURIComponent(job.id)}` }, job.name ?? job.id);
-  return el(
-    "tr",
-    { "data-id": job.id },
-    el("th", { scope: "row" }, link, job.label ? el("span", { class: "label" }, job.label) : null),
-    el("td", {}, job.kind),
-    el("td", {}, stateBadge(job), " ", describeState(job), progressBar(job)),
-    el("td", { title: instant(job.submitted_at) }, age(job.submitted_at)),
-    el("td", { class: "actions" }, api.isEnded(job) ? action(job, "Delete", api.remove) : action(job, "Cancel", api.cancel)),
-  );
-}
-
-function progressBar(job) {
-  if (job.state !== "running") return null;
-  return el("progress", { max: 1, value: job.progress ?? 0, "aria-label": "Progress" });
-}
-
-function action(job, text, run) {
-  const button = el("button", { type: "button", class: "quiet", "aria-label": `${text} ${job.name ?? job.id}`, "data-action": `${text} ${job.id}` }, text);
-  if (text === "Cancel" && job.cancel_requested_at) button.disabled = true;
-  button.addEventListener("click", async () => {
-    button.disabled = true;
-    try {
-      await run(job.id);
-    } catch (error) {
-      notify(byId("notice"), error);
-    }
-    refresh();
+/** The row of a job, up to date. */
+function known(job) {
+  const present = rows.get(job.id);
+  if (present) {
+    if (present.update(job)) announce(present.job);
+    selection.know(present.job);
+    return present;
+  }
+  const row = new Row(job, {
+    select: (picked, isRange) => selection.pick(picked, isRange),
+    filter: (label) => step({ ...view, label, cursor: "", trail: [] }, true),
+    cancel: (asked) => selection.each([asked], async () => take(await api.cancel(asked.id))),
+    remove: (asked) => selection.remove([asked]),
   });
-  return button;
+  rows.set(job.id, row);
+  selection.know(job);
+  if (job.label) labels.add(job.label);
+  return row;
 }
 
-filters.addEventListener("input", () => {
-  cursor = null;
+function drop(id) {
+  const row = rows.get(id);
+  if (!row) return;
+  const next = row.node.nextElementSibling ?? row.node.previousElementSibling;
+  const handOn = row.held;
+  row.node.remove();
+  rows.delete(id);
+  if (handOn) (next ? rows.get(next.dataset.id).link : byId("select-all")).focus();
+}
+
+/** A job has changed, or is new. Ids sort by the time of submission. */
+function take(job) {
+  if (gone.has(job.id)) return;
+  heard.set(job.id, job);
+  selection.know(job);
+  const row = rows.get(job.id);
+  const fits = address.fits(job, view);
+  if (row) {
+    known(job);
+    row.node.classList.toggle("past", !fits);
+    if (!fits && !row.held && !row.box.checked) drop(job.id);
+  } else if (fits) {
+    add(job);
+  }
+  settle();
+}
+
+function add(job) {
+  const present = shown();
+  const isFirst = view.cursor === "";
+  if (!isFirst && (present.length === 0 || job.id > present[0].job.id)) {
+    newer.add(job.id);
+    return;
+  }
+  // It belongs to a later page.
+  if (nextCursor !== null && present.length > 0 && job.id < present.at(-1).job.id) return;
+  const after = present.find((row) => row.job.id < job.id);
+  body.insertBefore(known(job).node, after?.node ?? null);
+  if (isFirst && job.state === "queued" && !after?.node.previousElementSibling?.previousElementSibling) say(`New job: ${nameOf(job)}`);
+}
+
+function remove(id) {
+  gone.add(id);
+  newer.delete(id);
+  selection.forget(id);
+  drop(id);
+  settle();
+}
+
+/** What follows from the rows. */
+function settle() {
+  const empty = rows.size === 0;
+  show(byId("empty"), empty);
+  show(byId("jobs"), !empty);
+  if (empty) byId("empty").replaceChildren(...nothing());
+  byId("jobs").setAttribute("aria-busy", "false");
+  byId("older").disabled = nextCursor === null;
+  byId("newer").disabled = view.cursor === "";
+  byId("place").textContent = view.cursor === "" ? "" : view.trail ? `Page ${view.trail.length + 1}` : "Older jobs";
+  const button = byId("new-jobs");
+  show(button, newer.size > 0);
+  button.textContent = `${count(newer.size, "new job")}: to the newest`;
+  const filtered = address.isFiltered(view);
+  byId("clear-filters").disabled = !filtered;
+  selection.show();
+}
+
+function nothing() {
+  if (view.cursor !== "") return [el("strong", {}, "No older jobs."), " They may have been deleted meanwhile."];
+  if (!address.isFiltered(view)) return [el("strong", {}, "No jobs yet."), " ", el("a", { href: "/" }, "Describe a gear pair"), " and submit it: it appears here, and its result stays until it is deleted."];
+  const clear = el("button", { type: "button", class: "quiet" }, "Clear filters");
+  clear.addEventListener("click", () => byId("filters").reset());
+  return [el("strong", {}, "No job fits these filters."), " Jobs that come to fit appear here. ", clear];
+}
+
+/** Ends of jobs, for those who listen: collected, so that a batch is one sentence. */
+const ends = [];
+let saying = null;
+
+function announce(job) {
+  ends.push(job);
+  saying ??= setTimeout(() => {
+    const [only] = ends;
+    say(ends.length === 1 ? `${nameOf(only)} ${only.state}` : `${ends.length} jobs ended`);
+    ends.length = 0;
+    saying = null;
+  }, 1000);
+}
+
+function say(text) {
+  byId("announcement").textContent = text;
+}
+
+const MODES = { live: "Live", polling: "Asked every 2 s", lost: "Connection lost, trying again …" };
+
+function follow() {
+  stopFollowing();
+  stopFollowing = followJobs(view, {
+    onReload: refresh,
+    onJob: take,
+    onDeleted: remove,
+    onMode: (mode) => {
+      const node = byId("mode");
+      node.dataset.mode = mode;
+      if (node.textContent !== MODES[mode]) node.textContent = MODES[mode];
+    },
+  });
+}
+
+/** Another view of the list, as a step that leads back, or in place of the present one. */
+function step(next, isStep) {
+  address.write(next, isStep);
+  turn(next);
+}
+
+function turn(next) {
+  const other = next.kind !== view.kind || next.label !== view.label;
+  view = next;
+  newer = new Set();
+  address.fillForm(view);
+  if (other) follow();
   refresh();
+}
+
+const filters = byId("filters");
+let typing = null;
+filters.addEventListener("input", (event) => {
+  clearTimeout(typing);
+  // Letter by letter is one step.
+  if (event.target.name === "label") typing = setTimeout(() => step(address.readForm(), false), TYPING_MS);
+});
+filters.addEventListener("change", () => {
+  clearTimeout(typing);
+  step(address.readForm(), true);
+});
+filters.addEventListener("reset", (event) => {
+  event.preventDefault();
+  step({ states: [], kind: "", label: "", cursor: "", trail: [] }, true);
 });
 filters.addEventListener("submit", (event) => event.preventDefault());
+
+/** Labels to choose from: of the jobs seen, and of the newest ones. */
+filters.elements.label.addEventListener("focus", async () => {
+  try {
+    for (const { label } of (await api.jobs({ limit: LABELS_FROM })).items) if (label) labels.add(label);
+  } catch {
+    // Suggestions are a help, no need.
+  }
+  byId("labels").replaceChildren(...[...labels].sort().map((value) => el("option", { value })));
+}, { once: true });
+
 byId("older").addEventListener("click", () => {
-  cursor = nextCursor;
-  refresh();
+  step({ ...view, cursor: nextCursor, trail: [...(view.trail ?? []), view.cursor] }, true);
+  top();
 });
-byId("newest").addEventListener("click", () => {
-  cursor = null;
-  refresh();
+byId("newer").addEventListener("click", () => {
+  const trail = view.trail ?? [];
+  step({ ...view, cursor: trail.at(-1) ?? "", trail: trail.slice(0, -1) }, true);
+  top();
 });
+byId("new-jobs").addEventListener("click", () => {
+  step({ ...view, cursor: "", trail: [] }, true);
+  top();
+});
+
+function top() {
+  byId("main").scrollIntoView({ block: "start" });
+}
+
+window.addEventListener("popstate", () => turn(address.read()));
+setInterval(() => {
+  if (document.hidden) return;
+  const now = Date.now();
+  for (const row of rows.values()) row.tick(now);
+}, TICK_MS);
+
+address.fillForm(view);
+follow();
 refresh();

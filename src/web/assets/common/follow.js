@@ -1,0 +1,77 @@
+// Follows all jobs: one stream of server-sent events (a stream per job would soon use up the few connections that a
+// browser opens to one host), and reading again and again where that is refused or does not come through. Nothing is
+// followed while nobody looks.
+
+const POLL_MS = 2000;
+/** A stream that says nothing for so long is held back on its way. */
+const PATIENCE_MS = 4000;
+/** One that was refused is asked for again after so long. */
+const AGAIN_MS = 30_000;
+
+/**
+ * Calls `onReload` when everything is to be read (at first, after each gap, and again and again without a stream),
+ * `onJob` with each job that changed, `onDeleted` with the id of one that is gone, `onMode` with "live", "polling" or
+ * "lost". Returns a function that stops it.
+ */
+export function followJobs({ kind, label }, { onReload, onJob, onDeleted, onMode = () => {} }) {
+  const given = Object.entries({ kind, label }).filter(([, value]) => value);
+  const url = `/api/v1/jobs/events${given.length ? `?${new URLSearchParams(given)}` : ""}`;
+  let stopped = false;
+  let source = null;
+  const timers = { poll: null, patience: null, again: null };
+
+  function close() {
+    source?.close();
+    source = null;
+    Object.values(timers).forEach(clearTimeout);
+  }
+
+  function poll() {
+    clearTimeout(timers.poll);
+    onMode("polling");
+    onReload();
+    timers.poll = setTimeout(poll, POLL_MS);
+  }
+
+  function open() {
+    close();
+    if (stopped || document.hidden) return;
+    if (!window.EventSource) {
+      poll();
+      return;
+    }
+    const stream = new EventSource(url);
+    source = stream;
+    timers.patience = setTimeout(poll, PATIENCE_MS);
+    stream.addEventListener("reload", () => {
+      clearTimeout(timers.patience);
+      clearTimeout(timers.poll);
+      onMode("live");
+      onReload();
+    });
+    for (const name of ["state", "progress", "done"]) stream.addEventListener(name, (event) => onJob(JSON.parse(event.data)));
+    stream.addEventListener("deleted", (event) => onDeleted(JSON.parse(event.data).id));
+    stream.addEventListener("error", () => {
+      if (source !== stream) return;
+      if (stream.readyState === EventSource.CLOSED) {
+        close();
+        poll();
+        timers.again = setTimeout(open, AGAIN_MS);
+      } else {
+        // The browser connects again by itself.
+        clearTimeout(timers.patience);
+        onMode("lost");
+      }
+    });
+  }
+
+  document.addEventListener("visibilitychange", open);
+  window.addEventListener("pagehide", close);
+  window.addEventListener("pageshow", (event) => event.persisted && open());
+  open();
+  return () => {
+    stopped = true;
+    close();
+    document.removeEventListener("visibilitychange", open);
+  };
+}

@@ -1,0 +1,106 @@
+// The rows of the list: made once per job, then changed in place, so that focus and selection stay where they are.
+
+import * as api from "../common/api.js";
+import { el, show } from "../common/dom.js";
+import { age, instant, percent } from "../common/format.js";
+import { duration, durationOf, nameOf } from "./words.js";
+
+/** One row. `actions` has what its buttons do: `select`, `filter`, `cancel`, `remove`. */
+export class Row {
+  constructor(job, actions) {
+    this.link = el("a", {});
+    this.label = el("button", { type: "button", class: "label" });
+    this.kind = el("td", { class: "kind" });
+    this.badge = el("span", { class: "badge" });
+    this.stage = el("span", { class: "stage" });
+    this.bar = el("progress", { max: 1 });
+    this.age = el("td", { class: "age" });
+    this.duration = el("td", { class: "duration" });
+    this.box = el("input", { type: "checkbox" });
+    this.clone = el("a", { class: "button quiet" }, "Clone");
+    this.cancel = el("button", { type: "button", class: "quiet" }, "Cancel");
+    this.remove = el("button", { type: "button", class: "quiet" }, "Delete");
+    this.node = el(
+      "tr",
+      { "data-id": job.id },
+      el("td", { class: "pick" }, el("label", { class: "hit" }, this.box)),
+      el("th", { scope: "row" }, this.link, this.label),
+      this.kind,
+      el("td", { class: "state" }, el("span", { class: "words" }, this.badge, this.stage), this.bar),
+      this.age,
+      this.duration,
+      el("td", { class: "row-actions" }, this.clone, this.cancel, this.remove),
+    );
+    this.box.addEventListener("click", (event) => actions.select(this, event.shiftKey));
+    this.label.addEventListener("click", () => actions.filter(this.job.label));
+    this.cancel.addEventListener("click", () => actions.cancel(this.job));
+    this.remove.addEventListener("click", () => actions.remove(this.job));
+    this.update(job);
+  }
+
+  /** Shows a newer state of the job; an older one changes nothing. True when it has ended just now. */
+  update(job) {
+    if (this.job && job.revision < this.job.revision) return false;
+    const ended = Boolean(this.job) && !api.isEnded(this.job) && api.isEnded(job);
+    this.job = job;
+    const name = nameOf(job);
+    write(this.link, name);
+    this.link.href = `/jobs/${encodeURIComponent(job.id)}`;
+    this.link.classList.toggle("unnamed", !job.name);
+    write(this.label, job.label ?? "");
+    this.label.title = "Only jobs with this label";
+    this.label.setAttribute("aria-label", `Label ${job.label}: show only these jobs`);
+    show(this.label, Boolean(job.label));
+    write(this.kind, job.kind);
+    write(this.badge, job.state);
+    this.badge.className = `badge ${job.state}`;
+    const [words, title] = stageOf(job);
+    write(this.stage, words);
+    this.stage.title = title;
+    this.stage.classList.toggle("reason", job.state === "failed");
+    show(this.bar, job.state === "running");
+    this.bar.value = job.progress ?? 0;
+    this.bar.setAttribute("aria-label", `Progress of ${name}`);
+    this.age.title = instant(job.submitted_at);
+    this.clone.href = `/?from=${encodeURIComponent(job.id)}`;
+    this.clone.title = "Open its document in the form, as a new job";
+    const live = !api.isEnded(job);
+    // A button that goes while it has the focus hands it on.
+    if (!live && document.activeElement === this.cancel) this.link.focus();
+    show(this.cancel, live);
+    show(this.remove, !live);
+    this.cancel.disabled = Boolean(job.cancel_requested_at);
+    for (const [node, verb] of [[this.clone, "Clone"], [this.cancel, "Cancel"], [this.remove, "Delete"]]) node.setAttribute("aria-label", `${verb} ${name}`);
+    this.box.setAttribute("aria-label", `Select ${name}`);
+    this.tick();
+    return ended;
+  }
+
+  /** What changes with time alone. */
+  tick(now = Date.now()) {
+    const { job } = this;
+    write(this.age, age(job.submitted_at, now));
+    const span = durationOf(job, now);
+    write(this.duration, span === null ? "" : duration(span));
+  }
+
+  /** Whether somebody is at this row: it does not go away under their hands. */
+  get held() {
+    return this.node.contains(document.activeElement);
+  }
+}
+
+/** What goes on, or what became of the job, and its full text. */
+function stageOf(job) {
+  if (!api.isEnded(job) && job.cancel_requested_at) return ["canceling …", ""];
+  if (job.state === "running") return [[percent(job.progress), job.stage].filter(Boolean).join(" · "), ""];
+  if (job.state === "queued" && job.attempt > 0) return ["waits to go on", "It was interrupted, and goes on when a worker is free"];
+  if (job.state === "failed") return [job.error?.title ?? "", job.error?.detail ?? ""];
+  if (job.reused_from) return ["result of an equal job", "The input was the same: the stored result was taken"];
+  return ["", ""];
+}
+
+/** Changes a text only when it differs: selections in the page stay. */
+function write(node, text) {
+  if (node.textContent !== text) node.textContent = text;
+}

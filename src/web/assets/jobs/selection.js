@@ -1,0 +1,153 @@
+// The selected jobs, over the pages of the list, and what can be done with them together.
+
+import * as api from "../common/api.js";
+import { byId, el, show } from "../common/dom.js";
+import { count, nameOf } from "./words.js";
+
+const MIN_COMPARED = 2;
+const MAX_COMPARED = 5;
+/** Names that a question lists; requests at once. */
+const MAX_NAMES = 8;
+const AT_ONCE = 4;
+
+export class Selection {
+  /** `rows` gives the rows shown, in order; `failed` is told of errors. */
+  constructor(rows, failed) {
+    this.rows = rows;
+    this.failed = failed;
+    this.jobs = new Map();
+    this.last = null;
+    byId("select-all").addEventListener("click", (event) => this.all(event.target.checked));
+    byId("clear-selection").addEventListener("click", () => {
+      this.jobs.clear();
+      this.show();
+      byId("select-all").focus();
+    });
+    byId("compare").addEventListener("click", () => {
+      window.location.assign(`/compare?jobs=${[...this.jobs.keys()].join(",")}`);
+    });
+    byId("cancel-selected").addEventListener("click", () => this.cancel());
+    byId("delete-selected").addEventListener("click", () => this.remove([...this.jobs.values()]));
+  }
+
+  /** A click on the box of a row; with Shift, on all boxes since the last click. */
+  pick(row, isRange) {
+    const rows = this.rows();
+    const [from, to] = [rows.indexOf(this.last), rows.indexOf(row)].sort((a, b) => a - b);
+    const picked = isRange && from >= 0 ? rows.slice(from, to + 1) : [row];
+    for (const { job } of picked) this.set(job, row.box.checked);
+    this.last = row;
+    this.show();
+  }
+
+  all(isSelected) {
+    for (const { job } of this.rows()) this.set(job, isSelected);
+    this.show();
+  }
+
+  set(job, isSelected) {
+    if (isSelected) this.jobs.set(job.id, job);
+    else this.jobs.delete(job.id);
+  }
+
+  /** A selected job has changed. */
+  know(job) {
+    const known = this.jobs.get(job.id);
+    if (known && known.revision <= job.revision) this.jobs.set(job.id, job);
+  }
+
+  forget(id) {
+    this.jobs.delete(id);
+  }
+
+  show() {
+    const rows = this.rows();
+    for (const row of rows) {
+      row.box.checked = this.jobs.has(row.job.id);
+      row.node.classList.toggle("selected", row.box.checked);
+    }
+    const here = rows.filter((row) => row.box.checked).length;
+    const total = this.jobs.size;
+    const all = byId("select-all");
+    all.checked = here > 0 && here === rows.length;
+    all.indeterminate = here > 0 && here < rows.length;
+    all.disabled = rows.length === 0;
+    const elsewhere = total > here ? `, ${total - here} of them not on this page` : "";
+    byId("selected").textContent = total ? `${total} selected${elsewhere}` : "None selected";
+    const live = [...this.jobs.values()].filter((job) => !api.isEnded(job)).length;
+    byId("cancel-selected").disabled = live === 0;
+    byId("delete-selected").disabled = total - live === 0;
+    byId("compare").disabled = total < MIN_COMPARED || total > MAX_COMPARED;
+    byId("compare-hint").textContent = hint(total);
+    show(byId("clear-selection"), total > 0);
+  }
+
+  async cancel() {
+    const live = [...this.jobs.values()].filter((job) => !api.isEnded(job));
+    const question = {
+      title: `Cancel ${count(live.length)}?`,
+      jobs: live,
+      text: "What they have computed so far is lost, but for the points of a sweep.",
+      yes: `Cancel ${count(live.length)}`,
+    };
+    if (live.length && (await confirmed(question))) await this.each(live, (job) => api.cancel(job.id));
+  }
+
+  /** Deletes those that have ended, after a question. True when somebody said yes. */
+  async remove(jobs) {
+    const ended = jobs.filter(api.isEnded);
+    const left = jobs.length - ended.length;
+    const question = {
+      title: ended.length === 1 ? "Delete this job?" : `Delete ${count(ended.length)}?`,
+      jobs: ended,
+      text: [
+        `${ended.length === 1 ? "Its document, result and series go" : "Their documents, results and series go"} with it: there is no way back.`.replace("with it", ended.length === 1 ? "with it" : "with them"),
+        left ? `${count(left)} of the selection ${left === 1 ? "has" : "have"} not ended and ${left === 1 ? "stays" : "stay"}: cancel first.` : "",
+      ].join(" "),
+      yes: ended.length === 1 ? "Delete" : `Delete ${count(ended.length)}`,
+    };
+    if (!ended.length || !(await confirmed(question))) return false;
+    await this.each(ended, (job) => api.remove(job.id));
+    return true;
+  }
+
+  /** Does the same with many jobs, a few at a time; the first error is told with how many failed. */
+  async each(jobs, run) {
+    const waiting = [...jobs];
+    const errors = [];
+    const work = async () => {
+      for (let job = waiting.shift(); job; job = waiting.shift()) {
+        try {
+          await run(job);
+        } catch (error) {
+          // Gone already, by somebody else's hand.
+          if (error.status !== 404) errors.push(error);
+        }
+      }
+    };
+    await Promise.all(Array.from({ length: AT_ONCE }, work));
+    this.failed(errors);
+  }
+}
+
+function hint(total) {
+  if (total > MAX_COMPARED) return `At most five jobs can be compared; clear ${total - MAX_COMPARED} of them.`;
+  if (total === 1) return "Select one more job to compare.";
+  return total === 0 ? "Select two to five jobs to compare." : "";
+}
+
+/** Asks in a dialog; Escape and the other button mean no. */
+export function confirmed({ title, jobs, text, yes }) {
+  const dialog = byId("confirm");
+  const names = jobs.slice(0, MAX_NAMES).map((job) => el("li", {}, nameOf(job)));
+  if (jobs.length > MAX_NAMES) names.push(el("li", {}, `and ${jobs.length - MAX_NAMES} more`));
+  byId("confirm-title").textContent = title;
+  byId("confirm-jobs").replaceChildren(...names);
+  byId("confirm-text").textContent = text;
+  byId("confirm-yes").textContent = yes;
+  dialog.returnValue = "no";
+  dialog.showModal();
+  return new Promise((resolve) => {
+    dialog.addEventListener("close", () => resolve(dialog.returnValue === "yes"), { once: true });
+  });
+}
