@@ -28,7 +28,7 @@ let asking = null;
 let stopFollowing = () => {};
 
 const shown = () => [...body.rows].map((node) => rows.get(node.dataset.id));
-const selection = new Selection(shown, failed);
+const selection = new Selection({ rows: shown, changed: take, removed: remove, failed });
 
 function failed(errors) {
   if (errors.length === 0) return notify(notice, null);
@@ -84,7 +84,7 @@ function known(job) {
   const row = new Row(job, {
     select: (picked, isRange) => selection.pick(picked, isRange),
     filter: (label) => step({ ...view, label, cursor: "", trail: [] }, true),
-    cancel: (asked) => selection.each([asked], async () => take(await api.cancel(asked.id))),
+    cancel: (asked) => selection.each([asked], (job) => selection.stop(job)),
     remove: (asked) => selection.remove([asked]),
   });
   rows.set(job.id, row);
@@ -124,14 +124,16 @@ function add(job) {
   const present = shown();
   const isFirst = view.cursor === "";
   if (!isFirst && (present.length === 0 || job.id > present[0].job.id)) {
-    newer.add(job.id);
+    // Those on the pages before this one change, too: new is what has just been submitted.
+    const endedAtOnce = job.ended_at === job.submitted_at;
+    if (endedAtOnce || (job.state === "queued" && job.attempt === 0)) newer.add(job.id);
     return;
   }
   // It belongs to a later page.
   if (nextCursor !== null && present.length > 0 && job.id < present.at(-1).job.id) return;
   const after = present.find((row) => row.job.id < job.id);
   body.insertBefore(known(job).node, after?.node ?? null);
-  if (isFirst && job.state === "queued" && !after?.node.previousElementSibling?.previousElementSibling) say(`New job: ${nameOf(job)}`);
+  if (isFirst && job.id > (present[0]?.job.id ?? "")) say(`New job: ${nameOf(job)}`);
 }
 
 function remove(id) {

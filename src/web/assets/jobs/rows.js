@@ -24,7 +24,7 @@ export class Row {
       "tr",
       { "data-id": job.id },
       el("td", { class: "pick" }, el("label", { class: "hit" }, this.box)),
-      el("th", { scope: "row" }, this.link, this.label),
+      el("th", { scope: "row" }, el("span", { class: "title" }, this.link, this.label)),
       this.kind,
       el("td", { class: "state" }, el("span", { class: "words" }, this.badge, this.stage), this.bar),
       this.age,

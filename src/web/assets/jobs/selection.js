@@ -11,10 +11,9 @@ const MAX_NAMES = 8;
 const AT_ONCE = 4;
 
 export class Selection {
-  /** `rows` gives the rows shown, in order; `failed` is told of errors. */
-  constructor(rows, failed) {
-    this.rows = rows;
-    this.failed = failed;
+  /** `rows` gives the rows shown, in order; `changed` is told of jobs, `removed` of ids, `failed` of errors. */
+  constructor({ rows, changed, removed, failed }) {
+    Object.assign(this, { rows, changed, removed, failed });
     this.jobs = new Map();
     this.last = null;
     byId("select-all").addEventListener("click", (event) => this.all(event.target.checked));
@@ -82,6 +81,7 @@ export class Selection {
     show(byId("clear-selection"), total > 0);
   }
 
+  /** Cancels those that have not ended, after a question. */
   async cancel() {
     const live = [...this.jobs.values()].filter((job) => !api.isEnded(job));
     const question = {
@@ -89,11 +89,16 @@ export class Selection {
       jobs: live,
       text: "What they have computed so far is lost, but for the points of a sweep.",
       yes: `Cancel ${count(live.length)}`,
+      no: "Let run",
     };
-    if (live.length && (await confirmed(question))) await this.each(live, (job) => api.cancel(job.id));
+    if (live.length && (await confirmed(question))) await this.each(live, (job) => this.stop(job));
   }
 
-  /** Deletes those that have ended, after a question. True when somebody said yes. */
+  async stop(job) {
+    this.changed(await api.cancel(job.id));
+  }
+
+  /** Deletes those that have ended, after a question. */
   async remove(jobs) {
     const ended = jobs.filter(api.isEnded);
     const left = jobs.length - ended.length;
@@ -101,14 +106,22 @@ export class Selection {
       title: ended.length === 1 ? "Delete this job?" : `Delete ${count(ended.length)}?`,
       jobs: ended,
       text: [
-        `${ended.length === 1 ? "Its document, result and series go" : "Their documents, results and series go"} with it: there is no way back.`.replace("with it", ended.length === 1 ? "with it" : "with them"),
+        ended.length === 1 ? "Its document, result and series go with it: there is no way back." : "Their documents, results and series go with them: there is no way back.",
         left ? `${count(left)} of the selection ${left === 1 ? "has" : "have"} not ended and ${left === 1 ? "stays" : "stay"}: cancel first.` : "",
       ].join(" "),
       yes: ended.length === 1 ? "Delete" : `Delete ${count(ended.length)}`,
     };
-    if (!ended.length || !(await confirmed(question))) return false;
-    await this.each(ended, (job) => api.remove(job.id));
-    return true;
+    if (ended.length && (await confirmed(question))) await this.each(ended, (job) => this.drop(job));
+  }
+
+  async drop({ id }) {
+    try {
+      await api.remove(id);
+    } catch (error) {
+      // Gone already, by somebody else's hand.
+      if (error.status !== 404) throw error;
+    }
+    this.removed(id);
   }
 
   /** Does the same with many jobs, a few at a time; the first error is told with how many failed. */
@@ -120,8 +133,7 @@ export class Selection {
         try {
           await run(job);
         } catch (error) {
-          // Gone already, by somebody else's hand.
-          if (error.status !== 404) errors.push(error);
+          errors.push(error);
         }
       }
     };
@@ -136,8 +148,8 @@ function hint(total) {
   return total === 0 ? "Select two to five jobs to compare." : "";
 }
 
-/** Asks in a dialog; Escape and the other button mean no. */
-export function confirmed({ title, jobs, text, yes }) {
+/** Asks in a dialog; Escape and the button that has the focus mean no. */
+function confirmed({ title, jobs, text, yes, no = "Keep" }) {
   const dialog = byId("confirm");
   const names = jobs.slice(0, MAX_NAMES).map((job) => el("li", {}, nameOf(job)));
   if (jobs.length > MAX_NAMES) names.push(el("li", {}, `and ${jobs.length - MAX_NAMES} more`));
@@ -145,6 +157,7 @@ export function confirmed({ title, jobs, text, yes }) {
   byId("confirm-jobs").replaceChildren(...names);
   byId("confirm-text").textContent = text;
   byId("confirm-yes").textContent = yes;
+  byId("confirm-no").textContent = no;
   dialog.returnValue = "no";
   dialog.showModal();
   return new Promise((resolve) => {
