@@ -64,7 +64,7 @@ async fn the_example_goes_from_the_form_to_its_result() {
         browser.driver.refresh().await.unwrap();
         succeeded(browser).await;
         let sticking = "[...document.querySelectorAll('main *')].filter((node) => node.getBoundingClientRect().right > \
-                        window.innerWidth && !node.closest('.scroll, .visually-hidden, defs, clipPath')).map((node) => \
+                        window.innerWidth && !node.closest('.scroll, .visually-hidden, defs, clipPath, dialog:not([open])')).map((node) => \
                         `${node.tagName} ${node.id} ${node.getAttribute('class')}`)";
         assert_eq!(browser.value(sticking).await, json!([]));
         browser.driver.set_window_rect(0, 0, 1280, 1000).await.unwrap();

@@ -45,7 +45,7 @@ export function styled(traces, axes, colours) {
   });
   // An axis is only drawn with a trace on it.
   const above = axes.top ? [{ type: "scatter", mode: "markers", x: [null], y: [null], xaxis: "x2", showlegend: false, hoverinfo: "skip" }] : [];
-  return [...above, ...(axes.bands ?? []).flatMap((band, index) => filled(band, colours.lines[(band.colour ?? index) % colours.lines.length])), ...drawn];
+  return [...(axes.bands ?? []).flatMap((band, index) => filled(band, colours.lines[(band.colour ?? index) % colours.lines.length])), ...drawn, ...above];
 }
 
 function filled({ x, low, high, name = "" }, colour) {
@@ -90,13 +90,13 @@ export function layoutOf(axes, traces, colours, { width, height }) {
   const layout = {
     autosize: true,
     height,
-    margin: { l: 56, r: 16, t: (title ? 36 : 14) + (top ? 34 : 0), b: 44 },
+    margin: { l: 56, r: 16, t: (title ? 36 : 14) + (top ? 38 : 0) + (top && named ? 20 : 0), b: 44 },
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "rgba(0,0,0,0)",
     font: { color: colours.text, family: "system-ui, sans-serif", size: width < 480 ? 11 : 12 },
     xaxis: { ...axis(titleOf(axes.x)), exponentformat: "none", hoverformat: ".5~g" },
     yaxis: { ...axis(titleOf(axes.y)), type: log ? "log" : undefined },
-    legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+    legend: { orientation: "h", y: top ? 1 + 46 / Math.max(100, height - 130) : 1.02, yanchor: "bottom", x: 0 },
     showlegend: named,
     separators: ".\u202f",
     hovermode: hoverMode(traces, axes),

@@ -88,10 +88,10 @@ function tableOf(figure) {
   const [x, y] = [parts(axes.x), parts(axes.y)];
   const head = ({ label, unit }, name = "") => [[label, name].filter(Boolean).join(" ") || nameOf(figure), unit ? `[${unit}]` : ""].filter(Boolean).join(" ");
   const traces = shownTraces(figure);
-  const map = traces.find((trace) => trace.type === "heatmap");
-  if (map) {
-    const rows = map.z.flatMap((row, at) => row.map((value, column) => [map.x[column], map.y[at], value]));
-    return { names: [head(x), head(y), head({ label: axes.z ?? nameOf(figure), unit: map.unit })], rows };
+  const maps = traces.filter((trace) => trace.type === "heatmap");
+  if (maps.length) {
+    const rows = maps.flatMap((map) => map.z.flatMap((row, at) => row.map((value, column) => [map.x[column], map.y[at], value])));
+    return { names: [head(x), head(y), head({ label: axes.z ?? nameOf(figure), unit: maps[0].unit })], rows };
   }
   const columns = [];
   let places = null;

@@ -1,28 +1,89 @@
-// The few numbers that people look for first.
+// The few numbers that people look for first, each with what it means.
 
 import { byId, el, show } from "../common/dom.js";
 import { number } from "../common/format.js";
+import { nearestResonance } from "./motion_plots.js";
+import { IMPACTS, STIFFNESS, contactWords, regimeWords } from "./words.js";
 
-export function showHeadline({ geometry, mesh, impact, response }) {
-  const rms = response?.rms;
-  const tiles = [
-    ["Circumferential acceleration, RMS", pair(rms?.mesh_circumferential_acceleration_m_s2), "m/s²", "left / right"],
-    ["Axial acceleration of the pinion, RMS", pair(rms?.pinion_axial_acceleration_m_s2), "m/s²", "left / right"],
-    ["Dynamic factor", value(response?.dynamic_factor, 4), "", [response?.regime, response?.contact].filter(Boolean).join(", ")],
-    ["Impact force", value(impact?.force_n, 4), "N", impactNote(impact)],
-    ["Mean mesh stiffness of a half", value(mesh?.stiffness_mean_n_per_um, 4), "N/µm", mesh?.source ?? ""],
-    ["Transmission error, peak to peak", value(mesh?.transmission_error_pp_um, 3), "µm", ""],
-    ["Total contact ratio", value(geometry?.total_contact_ratio, 4), "", geometry ? `transverse ${number(geometry.transverse_contact_ratio, 4)}, overlap ${number(geometry.overlap_ratio, 4)}` : ""],
-  ].filter(([, shown]) => shown !== null);
+/** Standard gravity, m/s². */
+const GRAVITY = 9.80665;
+
+/** [name, number, unit, note, explanation] of each; what a result does not have is left out. */
+export function headlines({ geometry, mesh, impact, response, numerics }) {
+  const tiles = [];
+  const add = (...tile) => tiles.push(tile);
+  if (response) {
+    const { rms } = response;
+    const [contact, contactNote] = contactWords(response);
+    const [regime, regimeNote] = regimeWords(response);
+    add("Contact", contact, "", contactNote, "Whether the working flanks keep touching while the pair vibrates. Separation makes the system nonlinear: several motions may be possible at one speed, and impacts load the teeth.");
+    add("Motion", regime, "", regimeNote, "How the steady motion repeats. Period 1 follows the mesh; longer periods, quasi-periodic and chaotic motions come with separation.");
+    if (typeof response.dynamic_factor === "number") add("Dynamic factor", number(response.dynamic_factor, 4), "", "largest mesh force over the static one", "Greatest normal force between the flanks over one period (or the record), divided by the force that the torque alone needs; that of the half where it is larger.");
+    add("Circumferential acceleration, RMS", pair(rms.mesh_circumferential_acceleration_m_s2), "m/s²", sidesNote(rms.mesh_circumferential_acceleration_m_s2), "Root mean square of the relative acceleration of pinion and gear at the mesh, along the circumference, mean removed; exact over a whole number of periods.");
+    add("Axial acceleration of the pinion, RMS", pair(rms.pinion_axial_acceleration_m_s2), "m/s²", sidesNote(rms.pinion_axial_acceleration_m_s2), "Root mean square of the axial acceleration of each half of the pinion. Equal halves move against each other, so that their axial forces cancel on the shaft.");
+  }
+  if (impact) add("Mesh-in impact force", number(impact.force_n, 4), "N", impactNote(impact), "Peak of the half-sine pulse when the loaded teeth already in mesh let the next pair touch too early, at its tip corner. The pairs in mesh buffer it; Zhou's law of 2008 leaves that out.");
+  if (mesh) {
+    const { transmission_error_pp_um: span, transmission_error_mean_um: mean } = mesh;
+    add("Transmission error, peak to peak", number(span, 3), "µm", mean ? `${number((100 * span) / mean, 3)} % of the mean of ${number(mean, 3)} µm` : "", "How much the loaded deflection along the base tangent varies over a mesh period: what excites the vibration of a pair whose teeth stay in contact.");
+  }
+  if (geometry) {
+    const loaded = mesh?.loaded_contact_ratio;
+    const parts = ["ε", el("sub", {}, "α"), ` ${number(geometry.transverse_contact_ratio, 4)} + ε`, el("sub", {}, "β"), ` ${number(geometry.overlap_ratio, 4)}`, loaded ? `; loaded ${number(loaded, 4)}` : ""];
+    add("Total contact ratio", number(geometry.total_contact_ratio, 4), "", parts, "Transverse contact ratio plus overlap ratio of one half, from the geometry. The loaded one counts the contact that deflection adds before and after the theoretical path, and what modifications take away.");
+  }
+  if (mesh) {
+    const { stiffness_mean_n_per_um: mean, stiffness_min_n_per_um: low, stiffness_max_n_per_um: high } = mesh;
+    add("Mesh stiffness of a half, mean", number(mean, 4), "N/µm", `${number(low, 4)} to ${number(high, 4)}, ${STIFFNESS[mesh.source] ?? mesh.source}`, "Change of the tooth force with the deflection along the transverse base tangent (the tangent at the working load), mean over the mesh period.");
+  }
+  const nearest = response && nearestResonance(response, numerics);
+  if (nearest) {
+    const { order, ratio, mode } = nearest;
+    add("Nearest resonance", number(ratio, 3), "", `order ${order} at ${number(ratio, 3)} of mode ${mode.index} (${number(mode.frequency_hz, 4)} Hz)`, "The mesh order that lies closest to a natural frequency which the mesh excites: the order's frequency over the natural frequency. Close to 1 the vibration grows until damping holds it.");
+  }
+  return tiles;
+}
+
+export function showHeadline(result) {
+  const tiles = headlines(result);
   const box = byId("headline");
   box.replaceChildren(
-    ...tiles.map(([name, shown, unit, note]) =>
-      el("div", { class: "tile" }, el("span", { class: "name" }, name), el("span", { class: "number" }, shown, unit ? el("span", { class: "unit" }, ` ${unit}`) : null), el("span", { class: "note" }, note)),
+    ...tiles.map(([name, shown, unit, note, meaning]) =>
+      el(
+        "div",
+        { class: "tile" },
+        el("div", { class: "tile-head" }, el("span", { class: "name" }, name), tip(name, meaning)),
+        el("span", { class: "number" }, shown, unit ? el("span", { class: "unit" }, ` ${unit}`) : null),
+        el("span", { class: "note" }, ...[note].flat()),
+      ),
     ),
   );
   show(box, tiles.length > 0);
 }
 
-const value = (shown, digits) => (shown === null || shown === undefined ? null : number(shown, digits));
-const impactNote = (impact) => (typeof impact?.zhou2008_force_n === "number" ? `Zhou 2008: ${number(impact.zhou2008_force_n, 4)} N` : impact?.source ?? "");
-const pair = (sides) => (sides ? `${number(sides.left, 4)} / ${number(sides.right, 4)}` : null);
+function tip(name, meaning) {
+  const summary = el("summary", { title: meaning }, "?");
+  summary.setAttribute("aria-label", `What is: ${name}?`);
+  const details = el("details", { class: "tip" }, summary, el("p", {}, meaning));
+  details.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") details.open = false;
+  });
+  details.addEventListener("focusout", (event) => {
+    if (!details.contains(event.relatedTarget)) details.open = false;
+  });
+  return details;
+}
+
+function impactNote({ source, zhou2008_force_n: zhou, reduction_percent: reduction }) {
+  if (typeof zhou !== "number" || zhou <= 0) return IMPACTS[source] ?? source ?? "";
+  const used = source === "zhou2008" ? "; Zhou's excites the response" : "";
+  return `${number(reduction, 3)} % below Zhou 2008 (${number(zhou, 4)} N)${used}`;
+}
+
+const alike = ({ left, right }) => Math.abs(left - right) <= 1e-9 * Math.max(Math.abs(left), Math.abs(right));
+/** One number where both halves have the same. */
+const pair = (sides) => (alike(sides) ? number(sides.left, 4) : `${number(sides.left, 4)} / ${number(sides.right, 4)}`);
+const sidesNote = (sides) => {
+  const most = number(Math.max(sides.left, sides.right) / GRAVITY, 3);
+  return alike(sides) ? `each half, left and right alike; ${most} g` : `left / right; at most ${most} g`;
+};

@@ -1,38 +1,63 @@
 // Mesh stiffness, transmission error, load sharing and the load on the flank.
 
 import { byId, fillValues, show } from "../common/dom.js";
-import { number, rowsOf } from "../common/format.js";
-import { draw, heatMap, line } from "../common/plots.js";
+import { number } from "../common/format.js";
+import { draw } from "../common/plots.js";
+import { errorPlot, flankPlot, harmonicsPlot, sharePlot, sharingPlot, stiffnessPlot } from "./mesh_plots.js";
+import { STIFFNESS } from "./words.js";
 
-export async function showMesh({ mesh }) {
+const LAWS = { transmission_error: "equivalent to the transmission error", secant: "secant", tangent: "tangent" };
+
+export async function showMesh({ result: { mesh, geometry }, input }) {
   if (!mesh) return;
-  const { axial_force_n: axial } = mesh;
-  fillValues(byId("mesh-values"), [
-    ...rowsOf(mesh),
-    ["Axial force left / right", axial ? `${number(axial.left)} / ${number(axial.right)}` : null, "N"],
-  ]);
+  fillValues(byId("mesh-values"), meshValues(mesh, input));
   show(byId("mesh"));
-  const { curve, right_curve: right } = mesh;
-  if (!curve?.phase?.length) {
-    for (const figure of byId("mesh").querySelectorAll("figure")) show(figure, false);
-    return;
+  await Promise.all([
+    plot("stiffness-plot", stiffnessPlot(mesh)),
+    plot("error-plot", errorPlot(mesh)),
+    plot("harmonics-plot", harmonicsPlot(mesh)),
+    plot("share-plot", sharePlot(mesh, geometry)),
+    plot("sharing-plot", sharingPlot(mesh)),
+    plot("flank-plot", flankPlot(mesh, geometry, input)),
+  ]);
+  if (typeof mesh.max_line_load_n_per_mm === "number") {
+    byId("flank-note").textContent = [
+      `Mean over the mesh period in each cell. Greatest at any position: ${number(mesh.max_line_load_n_per_mm, 4)} N/mm`,
+      typeof mesh.max_line_load_interior_n_per_mm === "number" ? `, away from the ends of the lines ${number(mesh.max_line_load_interior_n_per_mm, 4)} N/mm` : "",
+      ". Dashed: lines of contact when a pair enters.",
+    ].join("");
   }
-  const phase = "Position in the mesh period";
-  const both = (pick) => [line(curve.phase, pick(curve), right ? "left" : ""), ...(right ? [line(right.phase, pick(right), "right")] : [])];
-  await plotOrHide("stiffness-plot", both((half) => half.stiffness_n_per_um), { x: phase, y: "N/µm" });
-  await plotOrHide("error-plot", both((half) => half.transmission_error_um), { x: phase, y: "µm" });
-  const shares = (curve.load_share ?? []).map((share, index, all) =>
-    line(curve.load_share_phase, share, all.length > 1 ? (["left", "right"][index] ?? `half ${index + 1}`) : ""));
-  await plotOrHide("share-plot", shares, { x: "Base pitches from the theoretical start of contact", y: "Share" });
-  if (curve.flank?.line_load_n_per_mm?.length) {
-    const { roll_mm: roll, face_mm: face, line_load_n_per_mm: load } = curve.flank;
-    show(byId("flank"));
-    await draw(byId("flank-plot"), [heatMap(roll, face, load, "N/mm")], { x: "Roll path, mm", y: "Face width, mm" });
-  }
+  byId("share-note").textContent = `A to E: theoretical start, inner and outer limits of single contact and end at the end of the face where teeth enter.`;
+  show(byId("share-note"), Boolean(geometry?.transverse_contact_ratio));
 }
 
-async function plotOrHide(id, traces, axes) {
-  const drawn = traces.some((trace) => trace.y?.length);
-  show(byId(id).closest("figure"), drawn);
-  if (drawn) await draw(byId(id), traces, axes);
+const range = (low, high, digits) => (typeof low === "number" && typeof high === "number" ? (low === high ? number(low, digits) : `${number(low, digits)} to ${number(high, digits)}`) : null);
+const value = (shown, digits = 5) => (typeof shown === "number" ? number(shown, digits) : null);
+
+export function meshValues(mesh, input) {
+  const { axial_force_n: axial, apex_sensitivity: apex } = mesh;
+  const law = mesh.source === "ltca" ? LAWS[input?.model?.mesh_stiffness?.law] : null;
+  return [
+    ["From", STIFFNESS[mesh.source] ?? mesh.source],
+    ["Stiffness in the equations", law],
+    ["Tangent stiffness, mean", value(mesh.stiffness_mean_n_per_um), "N/µm"],
+    ["Tangent stiffness, range", range(mesh.stiffness_min_n_per_um, mesh.stiffness_max_n_per_um, 4), "N/µm"],
+    ["Secant stiffness, mean", value(mesh.secant_stiffness_mean_n_per_um), "N/µm"],
+    ["Transmission error, mean", value(mesh.transmission_error_mean_um, 4), "µm"],
+    ["Transmission error, peak to peak", value(mesh.transmission_error_pp_um, 4), "µm"],
+    ["Load share at mesh-in", typeof mesh.load_share_at_mesh_in === "number" ? number(100 * mesh.load_share_at_mesh_in, 3) : null, "%"],
+    ["Loaded contact ratio", value(mesh.loaded_contact_ratio)],
+    ["Pairs in contact", range(mesh.pairs_in_contact_min, mesh.pairs_in_contact_max)],
+    ["Line load, greatest", value(mesh.max_line_load_n_per_mm, 4), "N/mm"],
+    ["Contact pressure, greatest", value(mesh.max_contact_pressure_mpa, 4), "MPa"],
+    ["Force of a half along the base tangent", value(mesh.force_n), "N"],
+    ["Axial force, left / right", axial ? `${number(axial.left, 4)} / ${number(axial.right, 4)}` : null, "N"],
+    ["Axial shift of the floating pinion", value(mesh.pinion_axial_shift_um, 3), "µm"],
+    ["Load moved by an apex offset", apex ? number(apex.load_split_percent_per_um, 3) : null, "% per µm"],
+  ];
+}
+
+async function plot(id, picture) {
+  show(byId(id).closest("figure"), Boolean(picture));
+  if (picture) await draw(byId(id), picture.traces, picture.axes);
 }

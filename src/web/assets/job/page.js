@@ -1,59 +1,33 @@
 // The page of one job: follows it while it is live and shows its result when it has succeeded.
 
 import * as api from "../common/api.js";
-import { byId, el, fillValues, fillWarnings, notify, show } from "../common/dom.js";
-import { instant, number, seconds } from "../common/format.js";
-import { describeState } from "../common/state.js";
+import { byId, el, fillWarnings, notify, show } from "../common/dom.js";
 import { watchJob } from "../common/watch.js";
+import { showSweep } from "../sweep/panel.js";
 import { showHeadline } from "./headline.js";
-import { showGeometry, showImpact, showNumerics } from "./tables.js";
+import { showImpact } from "./impact.js";
+import { Life } from "./life.js";
 import { showMesh } from "./mesh.js";
+import { showModes } from "./modes.js";
+import { showNumerics } from "./numerics.js";
+import { showPhase } from "./phase.js";
 import { showResponse } from "./response.js";
 import { showSeries } from "./series.js";
-import { showSweep } from "../sweep/panel.js";
+import { showSpectrum } from "./spectrum.js";
+import { showGeometry } from "./tables.js";
 
 const { id } = byId("job").dataset;
 const notice = byId("notice");
+const life = new Life(id, follow);
 let shown = false;
 let revision = -1;
-
-function showLife(job) {
-  const title = job.name ?? `Job ${job.id}`;
-  byId("title").textContent = title;
-  document.title = `${title} · herringbone`;
-  show(byId("life"));
-  const badge = byId("state");
-  if (badge.textContent !== job.state) badge.textContent = job.state;
-  badge.className = `badge ${job.state}`;
-  byId("stage").textContent = describeState(job);
-  const progress = byId("progress");
-  show(progress, !api.isEnded(job));
-  if (job.state === "queued") progress.removeAttribute("value");
-  else progress.value = job.progress ?? 0;
-  show(byId("cancel"), !api.isEnded(job));
-  byId("cancel").disabled = Boolean(job.cancel_requested_at);
-  byId("download-input").href = api.inputUrl(id);
-  byId("download-result").href = api.resultUrl(id);
-  const solved = job.started_at && job.ended_at ? seconds(job.started_at, job.ended_at) : null;
-  fillValues(byId("life-values"), [
-    ["Kind", job.kind],
-    ["Label", job.label],
-    ["Submitted", instant(job.submitted_at)],
-    ["Ended", job.ended_at ? instant(job.ended_at) : null],
-    ["Attempt", job.attempt > 1 ? String(job.attempt) : null],
-    ["Result taken from", job.reused_from ? el("a", { href: `/jobs/${encodeURIComponent(job.reused_from)}` }, "an equal job") : null],
-    ["Solved in", solved === null ? null : number(solved, 3), "s"],
-  ]);
-}
 
 function follow(job) {
   // Events and answers may overtake each other; what is older than what is shown does not count.
   if (job.revision < revision) return;
   revision = job.revision;
-  showLife(job);
-  if (job.state === "failed") notify(notice, { problem: { title: "The job failed", ...(job.error ?? {}) } });
+  life.show(job);
   if (job.kind === "sweep") {
-    show(byId("download-result"), job.state === "succeeded");
     showSweepOf(job).catch((error) => notify(notice, error));
   } else if (job.state === "succeeded" && !shown) {
     shown = true;
@@ -68,27 +42,25 @@ async function showSweepOf(job) {
 }
 
 async function showResult(job) {
-  show(byId("download-result"));
-  const result = await api.result(id);
+  const [result, input] = await Promise.all([api.result(id), api.input(id)]);
+  const catalogue = result.response ? (await api.catalogue(id)).items : [];
+  const all = { id, job, result, input, catalogue };
   fillWarnings(byId("warnings"), result.warnings);
   showHeadline(result);
-  showGeometry(result);
-  showImpact(result);
-  showNumerics(result);
-  const catalogue = result.response ? (await api.catalogue(id)).items : [];
-  showResponse(result, catalogue);
-  await Promise.all([showMesh(result), catalogue.length ? showSeries(id, job, result, catalogue) : null]);
+  showResponse(all);
+  showGeometry(all);
+  showNumerics(all);
+  await Promise.all([showSeries(all), showPhase(all), showSpectrum(all), showModes(all), showMesh(all), showImpact(all)]);
+  showContents();
   byId("job").dataset.ready = "true";
 }
 
-byId("cancel").addEventListener("click", async () => {
-  byId("cancel").disabled = true;
-  try {
-    follow(await api.cancel(id));
-  } catch (error) {
-    notify(notice, error);
-  }
-});
+/** Links to the sections that there are. */
+function showContents() {
+  const sections = [...document.querySelectorAll("#job section[aria-labelledby]")].filter((section) => !section.hidden);
+  byId("contents").replaceChildren(...sections.map((section) => el("a", { href: `#${section.id}` }, section.dataset.short ?? section.querySelector("h2").textContent)));
+  show(byId("contents"), sections.length > 1);
+}
 
 try {
   const job = await api.job(id);

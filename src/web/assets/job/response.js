@@ -1,24 +1,41 @@
 // RMS tables and what the response is like.
 
 import { byId, fillRows, fillValues, show } from "../common/dom.js";
-import { number, rowsOf, sentence, shownUnit } from "../common/format.js";
+import { number, sentence, shownUnit } from "../common/format.js";
+import { channelWords, contactWords, regimeWords } from "./words.js";
 
-export function showResponse({ response }, catalogue) {
+export function showResponse({ result: { response }, catalogue, input }) {
   if (!response) return;
-  const { rms } = response;
-  const row = (name, sides) => [name, number(sides?.left), number(sides?.right), "m/s²"];
-  fillRows(byId("rms").tBodies[0], [
-    row("Circumferential, mesh", rms.mesh_circumferential_acceleration_m_s2),
-    row("Axial, pinion", rms.pinion_axial_acceleration_m_s2),
-  ]);
-  fillValues(byId("response-values"), [
-    ...rowsOf(response).map(([label, value, unit]) => [label, sentence(value), unit]),
-    ["Natural frequencies", (response.natural_frequencies_hz ?? []).map((hertz) => number(hertz, 4)).join(", "), "Hz"],
-  ]);
+  const { rms, confidence_interval_95: intervals } = response;
+  const unsure = ({ low, high } = {}) => (typeof low === "number" ? ` (${number(low, 4)} to ${number(high, 4)})` : "");
+  const row = (name, quantity) => [name, ...["left", "right"].map((half) => number(rms[quantity]?.[half]) + unsure(intervals?.[quantity]?.[half])), "m/s²"];
+  fillRows(byId("rms").tBodies[0], [row("Circumferential, mesh", "mesh_circumferential_acceleration_m_s2"), row("Axial, pinion", "pinion_axial_acceleration_m_s2")]);
+  byId("rms-note").textContent = intervals ? "In brackets: where the true values lie with 95 % probability; the motion does not repeat, and the record is finite." : "";
+  fillValues(byId("response-values"), responseValues(response, input));
   const known = new Map(catalogue.map((channel) => [channel.name, channel]));
   fillRows(byId("channels-rms").tBodies[0], Object.entries(rms.channels ?? {}).map(([name, value]) => {
     const channel = known.get(name);
-    return [name, number(value), shownUnit(channel?.unit), channel ? number(channel.n) : "–"];
+    return [name, sentence(channelWords(name)), number(value), shownUnit(channel?.unit)];
   }));
   show(byId("response"));
+}
+
+export function responseValues(response, input) {
+  const value = (shown, digits = 4) => (typeof shown === "number" ? number(shown, digits) : null);
+  const share = response.contact_share;
+  const gap = input?.design?.backlash_um;
+  return [
+    ["Motion", regimeWords(response)[0]],
+    ["Contact", contactWords(response)[0]],
+    ["Dynamic factor", value(response.dynamic_factor, 5)],
+    ["Least displacement s", value(response.min_displacement_um), "µm"],
+    ["Flanks touch from s = b on", typeof gap === "number" ? number(gap / 2, 4) : null, "µm"],
+    ["In contact, left / right", share ? `${number(100 * share.left, 4)} / ${number(100 * share.right, 4)}` : null, "% of the time"],
+    ["Mesh frequency", value(response.mesh_frequency_hz, 5), "Hz"],
+    ["Repeats after", response.period_mesh_periods ? number(response.period_mesh_periods) : null, response.period_mesh_periods === 1 ? "mesh period" : "mesh periods"],
+    ["Stability (largest Floquet multiplier per mesh period)", value(response.floquet_modulus_per_mesh_period)],
+    ["Lyapunov exponent per mesh period", value(response.lyapunov_per_mesh_period, 3)],
+    ["Plane of the equations", response.plane],
+    ["Mesh damper in the gap", response.damping_in_gap ? "acts (the source's law)" : "does not act"],
+  ];
 }

@@ -1,20 +1,22 @@
-// Time series with zoom, phase plane and spectrum.
+// Time series of one or two channels. Zooming in fetches finer data; the record of a periodic motion is shown several times.
 
 import * as api from "../common/api.js";
 import { byId, download, el, notify, show } from "../common/dom.js";
-import { number, sentence, shownUnit } from "../common/format.js";
-import { draw, line, onZoom, points, stems } from "../common/plots.js";
+import { number, sentence } from "../common/format.js";
+import { draw, line, onZoom } from "../common/plots.js";
+import { channelScale, channelWords } from "./words.js";
 
 const MAX_POINTS = 2000;
-/** Most points of the phase plane: its two channels have to be complete over the time shown. */
-const PHASE_POINTS = 20_000;
+/** Mesh periods shown at least. */
+const PERIODS = 3;
+/** More lines of mesh periods would hide the curve. */
+const MAX_LINES = 40;
+const QUANTITIES = ["displacement", "velocity", "acceleration", "force", "rotation", "angular_velocity", "angular_acceleration"];
 
-export async function showSeries(id, job, { response }, catalogue) {
+export async function showSeries({ id, result: { response }, catalogue }) {
+  if (!catalogue.length) return;
   show(byId("series"));
-  const panel = new SeriesPanel(id, catalogue, response);
-  await panel.load();
-  await showPhase(id, response, catalogue);
-  await showSpectrum(response);
+  await new SeriesPanel(id, catalogue, response).load();
 }
 
 class SeriesPanel {
@@ -26,18 +28,27 @@ class SeriesPanel {
     this.plot = byId("series-plot");
     this.first = byId("channel");
     this.second = byId("second-channel");
-    this.first.append(...catalogue.map(({ name, quantity, unit }) => el("option", { value: name }, optionText(name, quantity, unit))));
-    this.second.append(el("option", { value: "" }, "no other"), ...catalogue.map(({ name }) => el("option", { value: name }, name)));
-    this.first.value = this.channels.has("x_left") ? "x_left" : catalogue[0].name;
-    if (this.channels.has("x_right")) this.second.value = "x_right";
+    this.first.append(...groups(catalogue));
+    this.second.append(el("option", { value: "" }, "no other"), ...groups(catalogue));
+    this.first.value = ["x_left", "s_left"].find((name) => this.channels.has(name)) ?? catalogue[0].name;
+    const partner = this.first.value.replace(/left$/, "right");
+    if (partner !== this.first.value && this.channels.has(partner)) this.second.value = partner;
     this.first.addEventListener("change", () => this.load());
     this.second.addEventListener("change", () => this.load());
     byId("whole").addEventListener("click", () => this.zoom(null));
     byId("series-csv").addEventListener("click", (event) => this.save(event));
-    this.meshPeriod = response?.mesh_frequency_hz > 0 ? 1 / response.mesh_frequency_hz : null;
+    const { mesh_frequency_hz: frequency } = response ?? {};
+    this.meshPeriod = frequency > 0 ? 1 / frequency : null;
+    const { n, dt, t0 } = catalogue[0];
+    this.start = t0;
+    this.length = n * dt;
+    // What repeats is shown often enough to see how it goes on.
+    const repeats = response?.method === "periodic" && this.meshPeriod;
+    this.copies = repeats ? Math.max(1, Math.ceil(PERIODS / Math.max(1, response.period_mesh_periods ?? 1))) : 1;
+    this.whole = [t0, t0 + this.copies * this.length];
   }
 
-  /** Shows a window [from, to] in seconds, or the whole record. */
+  /** Shows a window [from, to] in seconds, or all. */
   zoom(window) {
     this.window = window;
     return this.load();
@@ -48,37 +59,75 @@ class SeriesPanel {
     this.asking = new AbortController();
     const { signal } = this.asking;
     const names = [...new Set([this.first.value, this.second.value].filter(Boolean))];
-    const [from, to] = this.window ?? [];
     byId("series-csv").href = api.seriesUrl(this.id, names[0]);
     this.plot.dataset.state = "loading";
     try {
-      const parameters = { from, to, max_points: MAX_POINTS };
-      const answers = await Promise.all(names.map((name) => api.series(this.id, name, parameters, signal)));
+      const answers = await Promise.all(names.map((name) => this.fetch(name, signal)));
       if (signal.aborted) return;
-      const unit = shownUnit(this.channels.get(names[0]).unit);
-      const traces = answers.map(({ t, y }, index) => ({ ...line(t, y, names[index]), yaxis: this.axisOf(names, index) }));
-      const other = traces.some((trace) => trace.yaxis === "y2") ? shownUnit(this.channels.get(names[1]).unit) : null;
-      await draw(this.plot, traces, { x: "Time, s", y: `${names[0]}, ${unit}`, y2: other && `${names[1]}, ${other}`, range: this.window });
-      onZoom(this.plot, (window) => this.zoom(window));
-      this.note(answers[0]);
+      await this.show(names, answers);
       this.plot.dataset.state = "ready";
     } catch (error) {
       if (!signal.aborted) notify(byId("notice"), error);
     }
   }
 
-  /** A second channel of another unit has an axis of its own. */
-  axisOf(names, index) {
-    return index === 0 || this.channels.get(names[0]).unit === this.channels.get(names[1]).unit ? "y" : "y2";
+  /** The part of the record that the window needs, put where it is shown: { t, y, source, returned, method }. */
+  async fetch(name, signal) {
+    const [from, to] = this.window ?? [];
+    const copy = this.window ? Math.floor((from - this.start) / this.length) : 0;
+    const shift = copy * this.length;
+    const within = this.window && (this.copies === 1 || to <= this.start + shift + this.length);
+    const parameters = within ? { from: from - (this.copies === 1 ? 0 : shift), to: to - (this.copies === 1 ? 0 : shift) } : {};
+    const { t, y, n_source: source, n_returned: returned, method } = await api.series(this.id, name, { ...parameters, max_points: MAX_POINTS }, signal);
+    const told = { source, returned, method };
+    if (this.copies === 1) return { t, y, ...told };
+    if (within) return { t: t.map((time) => time + shift), y, ...told };
+    // A periodic record ends one sample before it begins again.
+    const copies = Array.from({ length: this.copies }, (_, index) => index);
+    return { t: [...copies.flatMap((index) => t.map((time) => time + index * this.length)), this.whole[1]], y: [...copies.flatMap(() => y), y[0]], ...told };
   }
 
-  note({ n_source: source, n_returned: returned, method, t }) {
-    const span = t.length > 1 ? t.at(-1) - t[0] : 0;
-    const periods = this.meshPeriod ? `, ${number(span / this.meshPeriod, 3)} mesh periods` : "";
+  async show(names, answers) {
+    const scales = names.map((name) => channelScale(this.channels.get(name).unit));
+    const traces = answers.map(({ t, y }, index) => ({
+      ...line(t.map((time) => time * 1e3), y.map((value) => (value === null ? null : value * scales[index].factor)), channelWords(names[index])),
+      yaxis: scales[index].unit === scales[0].unit ? "y" : "y2",
+    }));
+    const [from, to] = this.window ?? (this.copies > 1 ? this.whole : [answers[0].t[0], answers[0].t.at(-1)]);
+    const axes = {
+      x: "Time, ms",
+      y: { label: this.quantityOf(names[0]), unit: scales[0].unit },
+      y2: traces.some(({ yaxis }) => yaxis === "y2") ? { label: this.quantityOf(names[1]), unit: scales[1].unit } : undefined,
+      range: [from * 1e3, to * 1e3],
+      zoomX: true,
+      marks: this.periodsBetween(from, to),
+      csvName: `series-${names.join("-")}`,
+    };
+    if (this.meshPeriod) axes.top = { title: "Mesh periods", factor: 1e-3 / this.meshPeriod };
+    await draw(this.plot, traces, axes);
+    onZoom(this.plot, (window) => this.zoom(window && window.map((time) => time / 1e3)));
+    this.note(answers[0], to - from);
+  }
+
+  quantityOf(name) {
+    return sentence((this.channels.get(name).quantity ?? "").replaceAll("_", " "));
+  }
+
+  periodsBetween(from, to) {
+    if (!this.meshPeriod) return [];
+    const first = Math.ceil((from - this.start) / this.meshPeriod - 1e-9);
+    const last = Math.floor((to - this.start) / this.meshPeriod + 1e-9);
+    if (last - first > MAX_LINES) return [];
+    return Array.from({ length: Math.max(0, last - first + 1) }, (_, index) => ({ x: (this.start + (first + index) * this.meshPeriod) * 1e3 }));
+  }
+
+  note({ source, returned, method }, span) {
     const complete = returned >= source;
-    const how = complete ? `all ${number(source)} samples` : `${number(returned)} of ${number(source)} samples (${method})`;
+    const how = complete ? `All ${number(source)} samples` : `${number(returned)} of ${number(source)} samples (${method})`;
+    const periods = this.meshPeriod ? `, ${number(span / this.meshPeriod, 3)} mesh periods` : "";
+    const repeated = this.copies > 1 ? ` The record is one period of the motion; it is shown ${this.copies} times.` : "";
     const hint = complete ? "" : " Zoom in for more detail.";
-    byId("series-note").textContent = `${sentence(how)}, ${number(span, 3)} s${periods}.${hint}`;
+    byId("series-note").textContent = `${how}, ${number(span * 1e3, 4)} ms${periods}.${repeated}${hint} Dotted: starts of mesh periods. Double-click or “Whole record” shows all again.`;
     this.plot.dataset.samples = String(source);
     this.plot.dataset.points = String(returned);
   }
@@ -93,33 +142,15 @@ class SeriesPanel {
   }
 }
 
-function optionText(name, quantity, unit) {
-  return `${name} – ${quantity ? `${quantity.replaceAll("_", " ")}, ` : ""}${shownUnit(unit)}`;
-}
-
-async function showPhase(id, response, catalogue) {
-  const names = ["x_left", "v_x_left"];
-  const channel = catalogue.find(({ name }) => name === names[0]);
-  if (!channel || !catalogue.some(({ name }) => name === names[1])) return;
-  show(byId("phase"));
-  const { t0, t_end: end, n, dt } = channel;
-  const from = n > PHASE_POINTS ? end - PHASE_POINTS * dt : t0;
-  const [x, v] = await Promise.all(names.map((name) => api.series(id, name, { from, to: end, method: "none" })));
-  const micrometres = (values) => values.map((value) => value * 1e6);
-  // A periodic record ends one sample before it begins again.
-  const closed = (values) => (response?.method === "periodic" ? [...values, values[0]] : values);
-  const traces = [line(closed(micrometres(x.y)), closed(v.y), "path")];
-  const { x_left_m: px = [], v_x_left_m_s: pv = [] } = response?.poincare ?? {};
-  if (px.length) traces.push(points(micrometres(px), pv, "once per mesh period"));
-  await draw(byId("phase-plot"), traces, { x: "x_left, µm", y: "v_x_left, m/s" });
-  byId("phase-note").textContent = `${number(x.n_returned)} samples of the record's end${px.length ? `; ${number(px.length)} ${px.length === 1 ? "point" : "points"}, one per mesh period` : ""}.`;
-}
-
-async function showSpectrum(response) {
-  const spectrum = response?.spectrum;
-  if (!spectrum?.frequency_hz?.length) return;
-  show(byId("spectrum"));
-  await draw(byId("spectrum-plot"), [stems(spectrum.frequency_hz, spectrum.amplitude_m_s2, "amplitude")], { x: "Frequency, Hz", y: "m/s²", fromZero: true });
-  const mesh = response.mesh_frequency_hz;
-  byId("spectrum-note").textContent = mesh ? `Mesh frequency ${number(mesh)} Hz.` : "";
+/** Options by quantity, in the units in which they are shown. */
+function groups(catalogue) {
+  const rank = ({ quantity }) => (QUANTITIES.indexOf(quantity) + 1 || QUANTITIES.length + 1);
+  const quantities = [...new Set([...catalogue].sort((a, b) => rank(a) - rank(b)).map(({ quantity }) => quantity))];
+  return quantities.map((quantity) => {
+    const channels = catalogue.filter((channel) => channel.quantity === quantity);
+    const label = `${sentence(quantity.replaceAll("_", " "))}, ${channelScale(channels[0].unit).unit}`;
+    const group = el("optgroup", {}, ...channels.map(({ name }) => el("option", { value: name }, `${channelWords(name)}${/^[va]_/.test(name) ? `: ${name}` : ""}`)));
+    group.label = label;
+    return group;
+  });
 }

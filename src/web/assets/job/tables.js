@@ -1,41 +1,16 @@
-// Geometry, impact and numerics: tables and lists without plots.
+// The geometry of the pair and of its members.
 
-import { byId, fillRows, fillValues, show } from "../common/dom.js";
-import { labelOf, number, rowsOf, unitOf } from "../common/format.js";
+import { byId, el, fillRows, fillValues, show } from "../common/dom.js";
+import { number } from "../common/format.js";
+import { gearData, symbolOf } from "../report/iso21771.js";
 
-export function showGeometry({ geometry }) {
+export function showGeometry({ result: { geometry }, input }) {
   if (!geometry) return;
-  fillValues(byId("geometry-values"), rowsOf(geometry, { digits: 6 }));
-  const { pinion = {}, gear = {} } = geometry;
-  const names = Object.keys({ ...pinion, ...gear });
-  fillRows(byId("gears").tBodies[0], names.map((name) => [labelOf(name), number(pinion[name], 6), number(gear[name], 6), unitOf(name)]));
-  show(byId("gears"), names.length > 0);
+  const { pair, members } = gearData({ geometry, input });
+  fillValues(byId("geometry-values"), pair.filter(({ value }) => value !== null).map(({ symbol, name, value, unit }) => [named(symbol, name), number(value, 6), unit]));
+  const rows = members.filter(({ pinion, gear }) => pinion !== null && gear !== null);
+  fillRows(byId("gears").tBodies[0], rows.map(({ symbol, name, pinion, gear, unit }) => [named(symbol, name), number(pinion, 6), number(gear, 6), unit]));
   show(byId("geometry"));
 }
 
-export function showImpact({ impact }) {
-  if (!impact) return;
-  const buffered = impact.source === "given" ? "Given" : "Corner contact, buffered by the pairs in mesh";
-  const calculated = typeof impact.zhou2008_force_n === "number";
-  fillRows(byId("impact-table").tBodies[0], [
-    [buffered, `${number(impact.force_n)} N`],
-    ...(calculated ? [["Zhou 2008, unbuffered", `${number(impact.zhou2008_force_n)} N`], ["Reduction", `${number(impact.reduction_percent, 4)} %`]] : []),
-  ]);
-  const { source, ...rest } = impact;
-  fillValues(byId("impact-values"), [
-    ["Excites the response", source?.replaceAll("_", " ")],
-    ...rowsOf(rest, { skip: ["force_n", "zhou2008_force_n", "reduction_percent"] }),
-  ]);
-  show(byId("impact"));
-}
-
-export function showNumerics({ numerics }) {
-  if (!numerics) return;
-  const { wall_ms: wall = {}, reused = [], ...rest } = numerics;
-  fillValues(byId("numerics-values"), [
-    ...Object.entries(wall).map(([stage, ms]) => [`Time of ${stage}`, number(ms, 3), "ms"]),
-    ["Reused", reused.length ? reused.join(", ") : "nothing"],
-    ...rowsOf(rest, { digits: 9 }),
-  ]);
-  show(byId("numerics"));
-}
+const named = (symbol, name) => el("span", {}, name, symbol[0] ? " " : "", symbolOf(symbol) ?? "");

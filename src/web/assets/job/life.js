@@ -1,0 +1,168 @@
+// The life of a job: its state, the stages on the way, why it failed, and what can be done with it.
+
+import * as api from "../common/api.js";
+import { byId, el, fillValues, notify, show } from "../common/dom.js";
+import { instant, number, percent, seconds } from "../common/format.js";
+
+const STAGES = { geometry: "Geometry", mesh: "Tooth contact", impact: "Mesh-in impact", response: "Vibration" };
+const STAGES_OF = { mesh: ["geometry", "mesh", "impact"], response: ["geometry", "mesh", "impact", "response"] };
+const STATES = { queued: "Waiting for a worker", canceled: "Canceled" };
+
+export class Life {
+  constructor(id, onChange) {
+    this.id = id;
+    this.notice = byId("notice");
+    this.onChange = onChange;
+    byId("cancel").addEventListener("click", () => this.cancel());
+    byId("copy-link").addEventListener("click", () => this.copyLink());
+    byId("delete").addEventListener("click", () => byId("delete-dialog").showModal());
+    byId("delete-dialog").addEventListener("close", () => byId("delete-dialog").returnValue === "delete" && this.remove());
+    setInterval(() => this.tick(), 1000);
+  }
+
+  show(job) {
+    const before = this.job;
+    this.job = job;
+    const ended = api.isEnded(job);
+    const title = job.name ?? `Job ${job.id.slice(-8)}`;
+    byId("title").textContent = title;
+    document.title = `${title} · herringbone`;
+    show(byId("life"));
+    const badge = byId("state");
+    if (badge.textContent !== job.state) badge.textContent = job.state;
+    badge.className = `badge ${job.state}`;
+    byId("stage").textContent = describe(job);
+    this.showProgress(job);
+    show(byId("cancel"), !ended);
+    byId("cancel").disabled = Boolean(job.cancel_requested_at);
+    show(byId("delete"), ended);
+    for (const name of ["report", "compare", "download-result"]) show(byId(name), job.state === "succeeded");
+    byId("download-input").href = api.inputUrl(this.id);
+    byId("download-result").href = api.resultUrl(this.id);
+    this.showValues(job);
+    if (job.state === "failed") showFailure(job);
+    if (job.state === "queued" && before?.state !== "queued") this.askPlace();
+    this.tick();
+  }
+
+  showValues(job) {
+    const solved = job.started_at && job.ended_at && !job.reused_from ? seconds(job.started_at, job.ended_at) : null;
+    fillValues(byId("life-values"), [
+      ["Kind", { mesh: "Mesh", response: "Response", sweep: "Sweep" }[job.kind] ?? job.kind],
+      ["Label", job.label],
+      ["Submitted", instant(job.submitted_at)],
+      ["Ended", job.ended_at ? instant(job.ended_at) : null],
+      ["Attempt", job.attempt > 1 ? String(job.attempt) : null],
+      ["Result taken from", job.reused_from ? el("a", { href: `/jobs/${encodeURIComponent(job.reused_from)}` }, "an equal job") : null],
+      ["Solved in", solved === null ? null : number(solved, 3), "s"],
+    ]);
+  }
+
+  showProgress(job) {
+    const progress = byId("progress");
+    show(byId("live"), !api.isEnded(job));
+    if (job.state === "queued") progress.removeAttribute("value");
+    else progress.value = job.progress ?? 0;
+    const stages = STAGES_OF[job.kind] ?? [];
+    const at = stages.indexOf(job.stage);
+    byId("stages").replaceChildren(
+      ...stages.map((stage, index) => {
+        const state = index < at ? "done" : index === at ? "current" : "ahead";
+        const item = el("li", { class: state }, STAGES[stage]);
+        if (state === "current") item.setAttribute("aria-current", "step");
+        return item;
+      }),
+    );
+  }
+
+  /** How long it has been going on. */
+  tick() {
+    const { job } = this;
+    if (!job || api.isEnded(job)) {
+      byId("elapsed").textContent = "";
+      return;
+    }
+    const since = job.state === "running" ? job.started_at : job.submitted_at;
+    const span = Math.max(0, Math.round((Date.now() - Date.parse(since)) / 1000));
+    byId("elapsed").textContent = `${job.state === "running" ? "for" : "waiting for"} ${span < 90 ? `${span} s` : `${Math.floor(span / 60)} min ${span % 60} s`}`;
+  }
+
+  /** How many jobs of its class come before it; single jobs and sweeps have workers of their own. */
+  async askPlace() {
+    try {
+      const { items } = await api.jobs({ state: "queued", limit: 200 });
+      if (this.job.state !== "queued") return;
+      const sweep = (job) => job.kind === "sweep";
+      const before = items.filter((other) => sweep(other) === sweep(this.job) && other.submitted_at < this.job.submitted_at).length;
+      byId("stage").textContent = before ? `${before === 1 ? "1 job is" : `${before} jobs are`} before this one` : "next in the queue";
+      setTimeout(() => this.job.state === "queued" && this.askPlace(), 3000);
+    } catch {
+      // It is only said where it is known.
+    }
+  }
+
+  async cancel() {
+    byId("cancel").disabled = true;
+    try {
+      this.onChange(await api.cancel(this.id));
+    } catch (error) {
+      notify(this.notice, error);
+    }
+  }
+
+  async remove() {
+    try {
+      await api.remove(this.id);
+      window.location.assign("/jobs");
+    } catch (error) {
+      notify(this.notice, error);
+    }
+  }
+
+  async copyLink() {
+    const link = window.location.origin + window.location.pathname;
+    const note = byId("life-note");
+    try {
+      await navigator.clipboard.writeText(link);
+      note.textContent = "The link is on the clipboard.";
+    } catch {
+      note.textContent = link;
+      window.getSelection().selectAllChildren(note);
+    }
+  }
+}
+
+function describe(job) {
+  if (job.cancel_requested_at && !api.isEnded(job)) return "canceling …";
+  if (job.state === "running") return [STAGES[job.stage] ?? job.stage, percent(job.progress)].filter(Boolean).join(", ");
+  if (job.state === "failed") return job.error?.title ?? "";
+  return STATES[job.state] ?? "";
+}
+
+/** Why a job failed: where, when, and what helps. */
+function showFailure({ error }) {
+  const box = byId("failure");
+  if (!error || !box.hidden) return;
+  show(box);
+  byId("failure-title").textContent = error.title;
+  byId("failure-detail").textContent = error.detail;
+  fillValues(byId("failure-values"), [
+    ["Stage", STAGES[error.stage] ?? error.stage],
+    ["Simulated time", typeof error.sim_time_s === "number" ? number(error.sim_time_s, 4) : null, "s"],
+    ["Time step", typeof error.step === "number" ? number(error.step) : null],
+    ["Code", el("a", { href: error.type }, error.code)],
+    ["Request", error.request_id],
+  ]);
+  byId("failure-errors").replaceChildren(...(error.errors ?? []).map((entry) => el("li", {}, [entry.pointer, entry.detail].filter(Boolean).join(" "))));
+  explain(error);
+}
+
+async function explain({ type }) {
+  try {
+    const answer = await fetch(type, { headers: { Accept: "application/json" } });
+    const { explanation } = await answer.json();
+    byId("failure-advice").textContent = explanation.replace("Error of a failed job: ", "").replace(/^./, (first) => first.toUpperCase());
+  } catch {
+    // The title and the detail stand for themselves.
+  }
+}

@@ -1,0 +1,133 @@
+// Plots of the mesh, from the result: stiffness, transmission error, load sharing, load on the flank. Each is { traces, axes }, or null where the
+// result has nothing for it.
+
+import { number } from "../common/format.js";
+import { bars, heatMap, line, points } from "../common/plot_traces.js";
+
+const PHASE = "Position in the mesh period";
+/** A pair is looked at so far after its start, in base pitches, for its share at mesh-in. */
+const MESH_IN = 0.05;
+
+const halves = ({ curve, right_curve: right }) => (right ? [["left", curve], ["right", right]] : [["", curve]]);
+/** The first value again at 1: a mesh period begins where the last one ended. */
+const closed = (values) => [...values, values[0]];
+const phaseOf = ({ phase }) => [...phase, phase[0] + 1];
+const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
+
+export function stiffnessPlot(mesh) {
+  if (!mesh?.curve?.stiffness_n_per_um?.length) return null;
+  const solved = mesh.source === "ltca";
+  const traces = halves(mesh).map(([half, curve]) => line(phaseOf(curve), closed(curve.stiffness_n_per_um), [solved ? "tangent dF/dδ" : "", half].filter(Boolean).join(", ")));
+  // Where both halves carry half of the load, the secant follows from the deflection.
+  const secant = mesh.right_curve ? [] : mesh.curve.transmission_error_um.map((error) => mesh.force_n / error);
+  if (solved && secant.length && Math.abs(mean(secant) / mesh.secant_stiffness_mean_n_per_um - 1) < 0.01) traces.push(line(phaseOf(mesh.curve), closed(secant), `secant F/δ, mean ${number(mesh.secant_stiffness_mean_n_per_um, 4)}`));
+  const levels = [{ y: mesh.stiffness_mean_n_per_um, text: `mean ${number(mesh.stiffness_mean_n_per_um, 4)}` }];
+  if (solved && mesh.right_curve) levels.push({ y: mesh.secant_stiffness_mean_n_per_um, text: `mean secant ${number(mesh.secant_stiffness_mean_n_per_um, 4)}` });
+  return { traces, axes: { x: PHASE, y: "Mesh stiffness, N/µm", csvName: "mesh-stiffness", range: [0, 1], levels, link: "mesh" } };
+}
+
+export function errorPlot(mesh) {
+  if (!mesh?.curve?.transmission_error_um?.length) return null;
+  const traces = halves(mesh).map(([half, curve]) => line(phaseOf(curve), closed(curve.transmission_error_um), half));
+  // In the places of the stiffness's curves: left and right look the same in both.
+  const axes = { x: PHASE, y: "Transmission error, µm", csvName: "transmission-error", range: [0, 1], link: "mesh" };
+  if (!mesh.right_curve) axes.levels = [{ y: mesh.transmission_error_mean_um, text: `mean ${number(mesh.transmission_error_mean_um, 4)}` }];
+  return { traces, axes };
+}
+
+export function harmonicsPlot(mesh) {
+  const amplitudes = mesh?.transmission_error_harmonics_um;
+  if (!amplitudes?.length) return null;
+  const orders = amplitudes.map((_, index) => index + 1);
+  return { traces: [bars(orders, amplitudes)], axes: { x: "Mesh order", y: "Amplitude, µm", csvName: "transmission-error-harmonics", layout: { bargap: .5 } } };
+}
+
+export function sharePlot(mesh, geometry) {
+  if (!mesh?.curve?.load_share?.[0]?.length) return null;
+  const traces = halves(mesh).map(([half, curve]) => line(curve.load_share_phase, positive(curve.load_share[0]), half));
+  const { transverse_contact_ratio: alpha, total_contact_ratio: gamma, overlap_ratio: beta } = geometry ?? {};
+  const places = alpha > 1 ? [[0, "A"], [alpha - 1, "B"], [1, "D"], [alpha, "E"], ...(beta > 0.01 ? [[gamma, "end"]] : [])] : [];
+  const marks = places.map(([x, text]) => ({ x, text }));
+  if (typeof mesh.load_share_at_mesh_in === "number") traces.push({ ...points([MESH_IN], [mesh.load_share_at_mesh_in], "mesh-in"), colour: 3 });
+  return { traces, axes: { x: "Base pitches since the theoretical start of contact", y: "Share of the load", csvName: "load-share", marks, hover: "closest" } };
+}
+
+/** Values where nothing touches are zeros, some of them negative ones. */
+const positive = (values) => values.map((value) => (value > 0 ? value : 0));
+
+/** Every pair in mesh over one mesh period: one pair's path, cut into base pitches. */
+export function sharingPlot(mesh) {
+  const { load_share: shares, load_share_phase: phase } = mesh?.curve ?? {};
+  if (!shares?.[0]?.length) return null;
+  const at = (place) => {
+    const next = phase.findIndex((x) => x >= place);
+    if (next < 0) return 0;
+    if (next === 0) return place < phase[0] ? 0 : shares[0][0];
+    const part = (place - phase[next - 1]) / (phase[next] - phase[next - 1]);
+    return shares[0][next - 1] * (1 - part) + shares[0][next] * part;
+  };
+  const steps = Array.from({ length: 101 }, (_, index) => index / 100);
+  const traces = [];
+  for (let pair = Math.floor(phase[0]); pair < phase.at(-1); pair += 1) {
+    const values = positive(steps.map((step) => at(step + pair)));
+    if (Math.max(...values) > 1e-4) traces.push({ ...line(steps, values, `${ordinal(traces.length)} pair`), stackgroup: "pairs" });
+  }
+  const half = mesh.right_curve ? " of the left half" : "";
+  return { traces: traces.reverse(), axes: { x: PHASE, y: "Share of the load", name: `Sharing of the load between all pairs${half}`, csvName: "load-sharing", range: [0, 1], yRange: [0, 1.001], link: "mesh", hover: "x unified" } };
+}
+
+const ordinal = (index) => ["entering", "2nd", "3rd"][index] ?? `${index + 1}th`;
+
+/** The flanks of one tooth of the pinion, both halves, true to scale: along the axis and along the path of contact. */
+export function flankPlot(mesh, geometry, input) {
+  const left = mesh?.curve?.flank;
+  if (!left?.line_load_n_per_mm?.length) return null;
+  const right = mesh.right_curve?.flank ?? left;
+  const { face_width_mm: width, gap_width_mm: gap = 0 } = input?.design ?? { face_width_mm: left.face_mm.at(-1) + left.face_mm[0] };
+  const most = Math.max(...[left, right].flatMap(({ line_load_n_per_mm: load }) => load.flat()));
+  const place = (side, face) => side * (gap / 2 + face);
+  const map = (side, flank, name) => {
+    const faces = side < 0 ? [...flank.face_mm].reverse() : flank.face_mm;
+    const rows = flank.line_load_n_per_mm.map((row) => (side < 0 ? [...row].reverse() : row));
+    return { ...heatMap(faces.map((face) => place(side, face)), flank.roll_mm, rows, "N/mm"), name, zmin: 0, zmax: most, showscale: side > 0 };
+  };
+  const traces = [map(-1, left, "left half"), map(1, right, "right half")];
+  traces.push(...contactLines(left, geometry, input, width, place));
+  const [side, flank, row, column] = greatest(left, right, most);
+  traces.push({ ...points([place(side, flank.face_mm[column])], [flank.roll_mm[row]], ""), aside: true, hovertemplate: `greatest: ${number(most, 4)} N/mm<extra></extra>`, marker: { size: 12, symbol: "circle-open", color: "#ffffff", line: { width: 2, color: "#ffffff" } } });
+  const axes = { x: "Along the axis, mm", y: "Roll path of the pinion, mm", z: "Line load", csvName: "line-load", equal: true, hover: "closest",
+    annotations: [-1, 1].map((side) => ({ x: side * (gap + width) / 2, y: 1, yref: "paper", yanchor: "bottom", text: side < 0 ? "left half" : "right half", showarrow: false })) };
+  return { traces, axes, most };
+}
+
+function greatest(left, right, most) {
+  for (const [side, flank] of [[-1, left], [1, right]]) {
+    for (const [row, loads] of flank.line_load_n_per_mm.entries()) {
+      const column = loads.indexOf(most);
+      if (column >= 0) return [side, flank, row, column];
+    }
+  }
+  return [-1, left, 0, 0];
+}
+
+/** The lines of contact of all pairs when a pair enters, in both halves. */
+function contactLines({ roll_mm: roll }, geometry, input, width, place) {
+  const { base_helix_angle_deg: helix, transverse_base_pitch_mm: pitch } = geometry ?? {};
+  if (!pitch || !input?.operation) return [];
+  const step = roll[1] - roll[0];
+  const [start, end] = [roll[0] - step / 2, roll.at(-1) + step / 2];
+  const slope = Math.tan((helix * Math.PI) / 180);
+  const entry = (face) => (input.operation.rotation === "apex_trailing" ? face : width - face);
+  const lines = [];
+  for (let foot = start - width * slope; foot < end; foot += pitch) {
+    // Distances from the end where teeth leave at which the line lies on the path of contact.
+    const from = slope > 0 ? Math.max(0, (start - foot) / slope) : 0;
+    const to = slope > 0 ? Math.min(width, (end - foot) / slope) : width;
+    if (to - from < 1e-6 || (slope === 0 && foot < start)) continue;
+    for (const side of [-1, 1]) {
+      const ends = [from, to].map((distance) => [place(side, entry(distance)), foot + distance * slope]);
+      lines.push({ ...line(ends.map(([x]) => x), ends.map(([, y]) => y)), aside: true, hoverinfo: "skip", line: { width: 1.2, color: "#ffffff", dash: "dash" } });
+    }
+  }
+  return lines;
+}

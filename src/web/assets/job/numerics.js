@@ -1,0 +1,71 @@
+// How the result was computed: method, accuracy reached, time of the stages, what was reused.
+
+import { byId, el, fillValues, show } from "../common/dom.js";
+import { number } from "../common/format.js";
+import { METHODS } from "./words.js";
+
+const STAGES = [["geometry", "Geometry"], ["mesh", "Tooth contact"], ["impact", "Mesh-in impact"], ["response", "Vibration"]];
+const REUSED = { result: "the whole result of an equal job", mesh: "tooth contact", finite_elements: "finite elements", points: "points of a sweep" };
+/** Shares of the time too small to be seen in the bar. */
+const VISIBLE = 0.004;
+
+export function showNumerics({ job, input, result: { numerics, response, mesh } }) {
+  if (!numerics) return;
+  showAccuracy(response, input);
+  showTimes(numerics.wall_ms ?? {});
+  fillValues(byId("numerics-values"), numericsValues({ job, numerics, response, mesh }));
+  show(byId("numerics"));
+}
+
+function showAccuracy(response, input) {
+  const [reached, asked] = [response?.error_estimate, input?.analysis?.accuracy];
+  const line = byId("accuracy");
+  show(line, typeof reached === "number" && typeof asked === "number");
+  if (line.hidden) return;
+  const good = reached <= asked;
+  line.replaceChildren(
+    el("strong", { class: good ? "better" : "worse" }, good ? "✓ Accuracy reached: " : "✗ Accuracy not reached: "),
+    `estimated relative error of the RMS values ${number(reached, 2)}, asked for ${number(asked, 2)}.`,
+  );
+}
+
+function showTimes(wall) {
+  const total = STAGES.reduce((sum, [name]) => sum + (wall[name] ?? 0), 0);
+  const box = byId("times");
+  show(box, total > 0);
+  if (box.hidden) return;
+  const bar = el("div", { class: "times-bar" });
+  bar.setAttribute("aria-hidden", "true");
+  const keys = STAGES.filter(([name]) => wall[name] > 0).map(([name, label], index) => {
+    const part = el("span", { class: `stage-${index + 1}` });
+    part.style.flexGrow = String(Math.max(wall[name] / total, VISIBLE));
+    bar.append(part);
+    return el("li", { class: "key" }, el("span", { class: `swatch stage-${index + 1}` }), `${label} ${number(wall[name], 3)} ms`);
+  });
+  box.replaceChildren(bar, el("ul", { class: "times-keys" }, ...keys, el("li", { class: "muted" }, `${number(total, 3)} ms in all`)));
+}
+
+export function numericsValues({ job, numerics, response, mesh }) {
+  const convergence = mesh?.convergence;
+  const { reused = [], degrees_of_freedom: freedom } = numerics;
+  const halves = freedom === 6 ? "6 of 12 (the halves mirror each other)" : freedom === 12 ? "12 of 12" : freedom > 0 ? number(freedom) : null;
+  const states = freedom > 0 ? `${number(2 * freedom)} of 24` : null;
+  const count = (shown) => (shown > 0 ? number(shown, 9) : null);
+  return [
+    ["Method", response ? (METHODS[response.method] ?? response.method) : null],
+    ["Degrees of freedom solved", halves],
+    ["States of the equations", states],
+    ["Mesh periods in the means", count(response?.averaged_mesh_periods)],
+    ["Steps", count(numerics.steps)],
+    ["Rejected steps", count(numerics.rejected_steps)],
+    ["Evaluations of the forces", count(numerics.force_evaluations)],
+    ["Contact: positions per mesh period, slices", convergence ? `${number(convergence.positions)}, ${number(convergence.slices)}` : null],
+    ["Contact: change with finer positions", typeof convergence?.position_error_percent === "number" ? number(convergence.position_error_percent, 2) : null, "%"],
+    ["Contact: change with half the slices", convergence ? number(convergence.slice_error_percent, 2) : null, "%"],
+    ["Balance of work and energy, residual", typeof response?.energy_balance_residual === "number" ? number(response.energy_balance_residual, 2) : null],
+    ["Reused", reused.length ? reused.map((name) => REUSED[name] ?? name).join(", ") : "nothing"],
+    ["Solver version", numerics.solver_version],
+    ["Input hash", job?.input_hash ? el("code", { class: "hash" }, job.input_hash) : null],
+    ...(numerics.not_finite ?? []).map(({ pointer, reason }) => [`Not finite: ${pointer}`, reason]),
+  ];
+}

@@ -1,0 +1,21 @@
+// The spectrum of the left circumferential acceleration, in mesh orders.
+
+import { byId, show } from "../common/dom.js";
+import { number } from "../common/format.js";
+import { draw } from "../common/plots.js";
+import { orderWords, spectrumPlot, strongestLines } from "./motion_plots.js";
+
+export async function showSpectrum({ result: { response, numerics } }) {
+  if (!spectrumPlot(response)) return;
+  show(byId("spectrum"));
+  const choices = [...byId("spectrum-scale").querySelectorAll("input")];
+  const update = () => {
+    const { traces, axes } = spectrumPlot(response, numerics, { decibel: byId("scale-db").checked });
+    return draw(byId("spectrum-plot"), traces, axes);
+  };
+  for (const choice of choices) choice.addEventListener("change", update);
+  const { mesh_frequency_hz: mesh, period_mesh_periods: periods } = response;
+  const lines = strongestLines(response, 5).map(({ order, hertz, amplitude }) => `order ${orderWords(order, periods)} (${number(hertz, 4)} Hz) ${number(amplitude, 3)} m/s²`);
+  byId("spectrum-note").textContent = `Mesh frequency ${number(mesh)} Hz = order 1. Strongest: ${lines.join("; ")}. Dotted: natural frequencies of modes that the mesh excites.`;
+  await update();
+}
