@@ -70,13 +70,14 @@ export function sharingPlot(mesh) {
   const traces = [];
   for (let pair = Math.floor(phase[0]); pair < phase.at(-1); pair += 1) {
     const values = positive(steps.map((step) => at(step + pair)));
-    if (Math.max(...values) > 1e-4) traces.push({ ...line(steps, values, `${ordinal(traces.length)} pair`), stackgroup: "pairs" });
+    if (Math.max(...values) > 1e-4) traces.push({ ...line(steps, values, nameOfPair(pair)), stackgroup: "pairs" });
   }
   const half = mesh.right_curve ? " of the left half" : "";
   return { traces: traces.reverse(), axes: { x: PHASE, y: "Share of the load", name: `Sharing of the load between all pairs${half}`, csvName: "load-sharing", range: [0, 1], yRange: [0, 1.001], link: "mesh", hover: "x unified" } };
 }
 
-const ordinal = (index) => ["entering", "2nd", "3rd"][index] ?? `${index + 1}th`;
+/** Pairs by when they entered; the next one touches early, at its corner. */
+const nameOfPair = (pair) => (pair < 0 ? "next pair" : ["entering pair", "2nd", "3rd"][pair] ?? `${pair + 1}th`);
 
 /** The flanks of one tooth of the pinion, both halves, true to scale: along the axis and along the path of contact. */
 export function flankPlot(mesh, geometry, input) {
