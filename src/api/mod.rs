@@ -5,6 +5,7 @@
 //! closed list; the envelope turns what the framework itself refuses into the same form. (A request whose head cannot be
 //! read never gets there: see [`connections`].)
 
+mod columns;
 mod config;
 mod connections;
 mod downsample;

@@ -1,7 +1,8 @@
 //! Rows of sweeps on their way out: a page of the table at a time, so that a large sweep takes no memory.
 
+use super::columns::{Cell, NUMBERS, WORDS};
 use super::config::MAX_ROWS;
-use crate::job::result::{PerHalf, SweepPoint};
+use crate::job::result::SweepPoint;
 use crate::store::{JobId, PointRow, PointsOfResult, Store, StoreError};
 use axum::body::{Body, Bytes};
 use futures_util::stream::{self, Stream, StreamExt};
@@ -56,67 +57,32 @@ fn pages(store: Store, id: JobId, from: u64) -> impl Stream<Item = Result<Vec<Po
         let store = store.clone();
         async move {
             let Some(from) = from else { return Ok(None) };
-            let rows = store.points(id, from, MAX_ROWS).await?;
+            let rows = store.points(id, from, u64::MAX, MAX_ROWS).await?;
             let next = rows.last().filter(|_| rows.len() as u64 == u64::from(MAX_ROWS)).map(|row| row.position + 1);
             Ok(Some((rows, next)))
         }
     })
 }
 
-const NUMBERS: [&str; 11] = [
-    "mesh_circumferential_acceleration_rms_left_m_s2",
-    "mesh_circumferential_acceleration_rms_right_m_s2",
-    "pinion_axial_acceleration_rms_left_m_s2",
-    "pinion_axial_acceleration_rms_right_m_s2",
-    "dynamic_factor",
-    "min_displacement_um",
-    "stiffness_mean_n_per_um",
-    "impact_force_n",
-    "total_contact_ratio",
-    "loaded_contact_ratio",
-    "error_estimate",
-];
-
 fn header(axes: &[String]) -> String {
     let axes = axes.iter().map(|pointer| quoted(pointer));
-    let words = ["regime", "contact", "error"].map(str::to_owned);
-    let columns: Vec<String> = ["position", "branch"]
-        .map(str::to_owned)
-        .into_iter()
-        .chain(axes)
-        .chain(NUMBERS.map(str::to_owned))
-        .chain(words)
-        .collect();
+    let names = NUMBERS.iter().chain(&WORDS).map(|column| column.0.to_owned());
+    let columns: Vec<String> = ["position", "branch"].map(str::to_owned).into_iter().chain(axes).chain(names).collect();
     columns.join(",") + "\n"
 }
 
 /// Numbers are written so that they read back exactly; what is not there is empty.
 fn push_line(text: &mut String, position: u64, point: &SweepPoint) {
-    let half = |halves: Option<PerHalf>, pick: fn(PerHalf) -> f64| halves.map(pick);
-    let (mesh, axial) = (point.mesh_circumferential_acceleration_rms_m_s2, point.pinion_axial_acceleration_rms_m_s2);
-    let numbers: [Option<f64>; NUMBERS.len()] = [
-        half(mesh, |halves| halves.left),
-        half(mesh, |halves| halves.right),
-        half(axial, |halves| halves.left),
-        half(axial, |halves| halves.right),
-        point.dynamic_factor,
-        point.min_displacement_um,
-        point.stiffness_mean_n_per_um,
-        point.impact_force_n,
-        point.total_contact_ratio,
-        point.loaded_contact_ratio,
-        point.error_estimate,
-    ];
     // Writing to a string cannot fail.
     let _ = write!(text, "{position},{}", point.branch.as_deref().unwrap_or_default());
-    for number in point.values.iter().copied().map(Some).chain(numbers) {
-        let _ = match number {
-            Some(number) => write!(text, ",{number:?}"),
-            None => write!(text, ","),
+    let values = point.values.iter().map(|value| Cell::Number(Some(*value)));
+    let cells = NUMBERS.iter().chain(&WORDS).map(|column| (column.1)(point));
+    for cell in values.chain(cells) {
+        let _ = match cell {
+            Cell::Number(Some(number)) => write!(text, ",{number:?}"),
+            Cell::Word(Some(word)) => write!(text, ",{}", quoted(word)),
+            _ => write!(text, ","),
         };
-    }
-    for word in [&point.regime, &point.contact, &point.error] {
-        let _ = write!(text, ",{}", quoted(word.as_deref().unwrap_or_default()));
     }
     text.push('\n');
 }

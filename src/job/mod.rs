@@ -9,10 +9,12 @@ mod json;
 mod reader;
 pub mod result;
 pub mod schema;
+mod shape;
 #[cfg(test)]
 mod tests;
 mod violation;
 
 pub use fields::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_value};
 pub use finite::not_finite;
+pub use shape::SweepShape;
 pub use violation::{DocumentError, Violation};

@@ -82,13 +82,15 @@ impl Store {
         Ok(PointBatch { solver_version: solver_version.to_owned(), rows, ends })
     }
 
-    /// Up to `limit` rows of a job from position `from` on, in their order.
-    pub async fn points(&self, id: JobId, from: u64, limit: u32) -> Result<Vec<PointRow>, StoreError> {
+    /// Up to `limit` rows of a job from position `from` on and before `to`, in their order.
+    pub async fn points(&self, id: JobId, from: u64, to: u64, limit: u32) -> Result<Vec<PointRow>, StoreError> {
         Ok(sqlx::query_as(
-            "SELECT position, body FROM sweep_points WHERE job_id = $1 AND position >= $2 ORDER BY position LIMIT $3",
+            "SELECT position, body FROM sweep_points WHERE job_id = $1 AND position >= $2 AND position < $3 \
+             ORDER BY position LIMIT $4",
         )
         .bind(id.to_string())
         .bind(i64::try_from(from).unwrap_or(i64::MAX))
+        .bind(i64::try_from(to).unwrap_or(i64::MAX))
         .bind(limit)
         .fetch_all(&self.reader)
         .await?)

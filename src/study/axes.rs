@@ -84,6 +84,23 @@ pub fn base(document: &JobDocument) -> Value {
     value
 }
 
+/// The document of the point at a position of a sweep's rows, for a job of its own: a response with the values of the axes put in.
+/// None where the sweep has no such row.
+pub fn point_document(sweep: &JobDocument, position: usize) -> Option<Value> {
+    if position >= sweep.sweep_points() {
+        return None;
+    }
+    let mut value = base(sweep);
+    // On its own it keeps the series that were asked for.
+    value["analysis"]["channels"] = serde_json::to_value(&sweep.analysis.channels).unwrap_or_default();
+    let mut place = position;
+    for axis in &sweep.axes {
+        set(&mut value, &axis.pointer, axis.value(place % axis.len()));
+        place /= axis.len();
+    }
+    Some(value)
+}
+
 /// Puts one swept value in.
 pub fn set(value: &mut Value, pointer: &str, number: f64) {
     if let Some(slot) = value.pointer_mut(pointer) {

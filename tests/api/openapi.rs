@@ -56,6 +56,8 @@ fn every_endpoint_is_described() {
         "get /api/v1/jobs/{id}/events",
         "get /api/v1/jobs/{id}/input",
         "get /api/v1/jobs/{id}/points",
+        "get /api/v1/jobs/{id}/points/columns",
+        "get /api/v1/jobs/{id}/points/{position}/input",
         "get /api/v1/jobs/{id}/result",
         "get /api/v1/jobs/{id}/series",
         "get /api/v1/jobs/{id}/series/{channel}",

@@ -199,3 +199,75 @@ async fn numbers_that_are_not_finite_leave_as_null_with_a_reason() {
     assert!(item["point"]["dynamic_factor"].is_null());
     assert!(item["point"]["error"].as_str().is_some_and(|error| error.starts_with("/dynamic_factor")), "{item}");
 }
+
+#[tokio::test]
+async fn columns_of_the_points_come_a_page_at_a_time() {
+    let app = app().await;
+    let (path, _) = app.run(&sweep("all", 7)).await;
+    let read = async |query: &str| app.get(&format!("{path}/points/columns{query}")).await;
+    let whole = read("").await.json;
+    assert_eq!(whole["positions"], json!([0, 1, 2, 3, 4, 5, 6]));
+    assert_eq!((whole["n_solved"].as_u64(), whole["n_points"].as_u64()), (Some(7), Some(7)));
+    assert!(whole["next_position"].is_null() && whole["columns"]["regime"].is_array());
+    // Each column agrees with the rows.
+    let items = page(&app, &path, "").await["items"].clone();
+    for (at, item) in items.as_array().unwrap().iter().enumerate() {
+        assert_eq!(whole["columns"]["error"][at], item["point"]["error"]);
+        assert_eq!(whole["columns"]["dynamic_factor"][at], item["point"]["dynamic_factor"]);
+    }
+    let some = read("?names=error,branch,error&from=2&to=6&limit=3").await.json;
+    assert_eq!((&some["positions"], &some["next_position"]), (&json!([2, 3, 4]), &json!(5)));
+    assert_eq!(some["columns"].as_object().unwrap().keys().collect::<Vec<_>>(), ["error", "branch"]);
+    assert!(read("?from=5&to=5").await.json["positions"].as_array().unwrap().is_empty());
+    for wrong in ["?names=nothing", "?limit=0", "?column=error", "?to=200001"] {
+        read(wrong).await.assert_problem(400, "invalid-parameter");
+    }
+    let (other, _) = app.run(&document()).await;
+    app.get(&format!("{other}/points/columns")).await.assert_problem(404, "not-found");
+}
+
+#[tokio::test]
+async fn the_document_of_a_point_is_a_response_at_its_values() {
+    let app = app().await;
+    let mut document = sweep("all", 3);
+    document["axes"] = json!([
+        {"pointer": "/operation/pinion_speed_rpm", "values": [1000.0, 2000.0, 3000.0]},
+        {"pointer": "/design/backlash_um", "values": [10.0, 40.0]},
+    ]);
+    document["continuation"] = json!("both");
+    document["record"] = json!(["spectrum"]);
+    document["analysis"]["channels"] = json!(["a_x_left"]);
+    let (path, _) = app.run(&document).await;
+    let read = async |position: &str| app.get(&format!("{path}/points/{position}/input")).await;
+    // The fifth of the second direction: second speed, second backlash.
+    let point = read("10").await.json;
+    assert_eq!((point["kind"].as_str(), point["name"].as_str()), (Some("response"), document["name"].as_str()));
+    assert_eq!(point["operation"]["pinion_speed_rpm"], 2000.0);
+    assert_eq!(point["design"]["backlash_um"], 40.0);
+    assert_eq!(point["analysis"]["channels"], json!(["a_x_left"]));
+    for gone in ["axes", "continuation", "record"] {
+        assert!(point.get(gone).is_none(), "{gone}: {point}");
+    }
+    let job = app.get(&app.submit(&point).await).await;
+    assert_eq!(job.json["kind"], "response");
+    for nowhere in ["12", "-1", "first"] {
+        read(nowhere).await.assert_problem(404, "not-found");
+    }
+    let (other, _) = app.run(&super::support::document()).await;
+    app.get(&format!("{other}/points/0/input")).await.assert_problem(404, "not-found");
+}
+
+#[tokio::test]
+async fn the_result_of_a_sweep_can_be_read_without_its_rows() {
+    let app = app().await;
+    let (path, _) = app.run(&sweep("all", 5)).await;
+    let whole = app.get(&format!("{path}/result")).await;
+    let rest = app.get(&format!("{path}/result?rows=false")).await;
+    let mut expected = whole.json.clone();
+    expected["sweep"]["points"] = json!([]);
+    assert_eq!(rest.json, expected);
+    assert_ne!(whole.header("etag"), rest.header("etag"));
+    assert_eq!(app.get(&format!("{path}/result?rows=true")).await.json, whole.json);
+    app.get(&format!("{path}/result?rows=no")).await.assert_problem(400, "invalid-parameter");
+    app.get(&format!("{path}/result?row=true")).await.assert_problem(400, "invalid-parameter");
+}

@@ -11,5 +11,5 @@ pub use accept::{chosen, event_stream_only, json_only};
 pub use body::DocumentBody;
 pub use cursor::Cursor;
 pub use headers::{IdempotencyKey, IfNoneMatch, Prefer, RequestId};
-pub use path::{ChannelPath, JobPath};
+pub use path::{ChannelPath, JobPath, PointPath};
 pub use query::Parameters;

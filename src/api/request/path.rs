@@ -13,6 +13,10 @@ pub struct JobPath(pub JobId);
 #[derive(Debug, Clone)]
 pub struct ChannelPath(pub JobId, pub String);
 
+/// `{id}` and `{position}`.
+#[derive(Debug, Clone, Copy)]
+pub struct PointPath(pub JobId, pub usize);
+
 impl<S: Send + Sync> FromRequestParts<S> for JobPath {
     type Rejection = Refusal;
 
@@ -28,6 +32,17 @@ impl<S: Send + Sync> FromRequestParts<S> for ChannelPath {
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Refusal> {
         let JobPath(id) = JobPath::from_request_parts(parts, state).await?;
         Ok(Self(id, named(parts, state, "channel").await?))
+    }
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for PointPath {
+    type Rejection = Refusal;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Refusal> {
+        let JobPath(id) = JobPath::from_request_parts(parts, state).await?;
+        let word = named(parts, state, "position").await?;
+        let position = word.parse().map_err(|_| Refusal::not_found("There is no such point."))?;
+        Ok(Self(id, position))
     }
 }
 

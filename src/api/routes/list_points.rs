@@ -5,9 +5,8 @@ use crate::api::points;
 use crate::api::problem::Refusal;
 use crate::api::request::{JobPath, Parameters, chosen};
 use crate::api::state::AppState;
-use crate::job::document::Kind;
 use crate::job::result::SweepPoint;
-use crate::job::{MAX_SWEEP_POINTS, parse};
+use crate::job::{MAX_SWEEP_POINTS, SweepShape};
 use axum::Json;
 use axum::extract::State;
 use axum::http::HeaderMap;
@@ -68,22 +67,17 @@ pub async fn list_points(
     let from = query.whole("from", 0, MAX_SWEEP_POINTS as u64 * 2, false).unwrap_or(0);
     let limit = query.whole("limit", 1, MAX_ROWS.into(), false);
     query.finish()?;
-    let job = super::existing(&state, id).await?;
-    if job.kind != Kind::Sweep.word() {
-        return Err(Refusal::not_found("The job is not a sweep."));
-    }
+    let input = super::sweep_input(&state, id).await?;
+    let shape = SweepShape::of_stored(&input).map_err(Refusal::internal)?;
     let store = state.jobs().store();
-    let input = store.input(id).await?.ok_or_else(super::no_job)?;
-    let document = parse(input.as_bytes()).map_err(Refusal::internal)?;
     let vary = (VARY, "accept");
     if media_type == "text/csv" {
-        let axes: Vec<String> = document.axes.iter().map(|axis| axis.pointer.clone()).collect();
-        let body = points::csv(store.clone(), id, &axes, from, limit.unwrap_or(u64::MAX));
+        let body = points::csv(store.clone(), id, &shape.pointers(), from, limit.unwrap_or(u64::MAX));
         return Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response());
     }
     let limit = limit.map_or(DEFAULT_ROWS, |limit| limit as u32);
     // One more tells whether something follows.
-    let mut rows = store.points(id, from, limit + 1).await?;
+    let mut rows = store.points(id, from, u64::MAX, limit + 1).await?;
     let next_position = rows.get(limit as usize).map(|row| row.position);
     rows.truncate(limit as usize);
     let items: Result<Vec<_>, _> = rows
@@ -92,6 +86,6 @@ pub async fn list_points(
         .collect();
     let items = items.map_err(|error: serde_json::Error| Refusal::internal(error))?;
     let n_solved = store.point_count(id).await?;
-    let list = PointList { items, next_position, n_solved, n_points: document.sweep_points() as u64 };
+    let list = PointList { items, next_position, n_solved, n_points: shape.rows() as u64 };
     Ok(([vary], Json(list)).into_response())
 }

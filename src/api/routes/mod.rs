@@ -12,6 +12,8 @@ mod read_input;
 mod read_job;
 mod read_metrics;
 mod read_openapi;
+mod read_point_columns;
+mod read_point_input;
 mod read_result;
 mod read_series;
 mod read_system;
@@ -24,6 +26,7 @@ use super::config::RETRY_FOLLOW_S;
 use super::problem::{ProblemCode, Refusal};
 use super::request::{event_stream_only, json_only};
 use super::state::AppState;
+use crate::job::document::Kind;
 use crate::store::{JobId, JobRecord, State};
 use axum::Router;
 use axum::middleware::from_fn;
@@ -40,6 +43,8 @@ pub fn versioned() -> OpenApiRouter<AppState> {
         .routes(routes!(cancel_job::cancel_job))
         .routes(routes!(read_input::read_input))
         .routes(routes!(read_result::read_result))
+        .routes(routes!(read_point_columns::read_point_columns))
+        .routes(routes!(read_point_input::read_point_input))
         .routes(routes!(list_series::list_series))
         .routes(routes!(list_kinds::list_kinds))
         .routes(routes!(read_system::read_system))
@@ -89,6 +94,15 @@ async fn succeeded(state: &AppState, id: JobId) -> Result<JobRecord, Refusal> {
 fn too_many_followers() -> Refusal {
     let detail = "As many clients follow jobs as the service allows.";
     Refusal::new(ProblemCode::TooManyStreams, detail).retry_after(RETRY_FOLLOW_S)
+}
+
+/// The stored document of a sweep, or 404.
+async fn sweep_input(state: &AppState, id: JobId) -> Result<String, Refusal> {
+    let job = existing(state, id).await?;
+    if job.kind != Kind::Sweep.word() {
+        return Err(Refusal::not_found("The job is not a sweep."));
+    }
+    state.jobs().store().input(id).await?.ok_or_else(no_job)
 }
 
 fn no_job() -> Refusal {
