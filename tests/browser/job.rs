@@ -136,30 +136,6 @@ async fn zooming_in_fetches_finer_data() {
 }
 
 #[tokio::test]
-async fn a_sweep_is_plotted_and_listed() {
-    flow(async |browser| {
-        browser.open("/").await;
-        browser.choose("[data-pointer='/kind'] select", "sweep").await;
-        browser.fill("/axes/0/pointer", "/operation/pinion_speed_rpm").await;
-        browser.fill("/axes/0/from", "1000").await;
-        browser.fill("/axes/0/to", "3000").await;
-        browser.fill("/axes/0/points", "5").await;
-        browser.until("document.querySelector('#check-state').classList.contains('good')").await;
-        let id = submit(browser).await;
-        succeeded(browser).await;
-        let result = browser.fetch(&format!("/api/v1/jobs/{id}/result")).await;
-        assert_eq!(result["sweep"]["points"].as_array().map(Vec::len), Some(5));
-        assert_eq!(
-            browser.value("document.querySelectorAll('#sweep-plot .scatterlayer .trace').length").await,
-            json!(2)
-        );
-        browser.element("#sweep-details summary").await.click().await.unwrap();
-        browser.until("document.querySelectorAll('#sweep-table tbody tr').length === 5").await;
-    })
-    .await;
-}
-
-#[tokio::test]
 async fn a_mesh_job_has_no_response() {
     flow(async |browser| {
         browser.open("/").await;

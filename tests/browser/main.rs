@@ -12,3 +12,4 @@ mod login;
 mod process;
 mod server;
 mod start;
+mod sweep;

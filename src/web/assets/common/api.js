@@ -62,6 +62,12 @@ export const catalogue = (id) => request("GET", `${at(id)}/series`);
 export const series = (id, channel, parameters, signal) =>
   request("GET", `${at(id)}/series/${encodeURIComponent(channel)}${query(parameters)}`, { signal });
 
+/** The result of a sweep without its rows, which may be many megabytes. */
+export const resultWithoutRows = (id) => request("GET", `${at(id)}/result?rows=false`);
+export const points = (id, parameters, signal) => request("GET", `${at(id)}/points${query(parameters)}`, { signal });
+export const pointColumns = (id, parameters, signal) => request("GET", `${at(id)}/points/columns${query(parameters)}`, { signal });
+export const pointInput = (id, position) => request("GET", `${at(id)}/points/${position}/input`);
+
 export const inputUrl = (id) => `${BASE}${at(id)}/input`;
 export const resultUrl = (id) => `${BASE}${at(id)}/result`;
 export const seriesUrl = (id, channel) => `${BASE}${at(id)}/series/${encodeURIComponent(channel)}`;
@@ -69,9 +75,20 @@ export const submitUrl = () => `${window.location.origin}${BASE}/jobs`;
 
 export const isEnded = (job) => ["succeeded", "failed", "canceled"].includes(job.state);
 
+/** A new idempotency key; `crypto.randomUUID` exists only on secure origins. */
+export function newKey() {
+  const bytes = crypto.getRandomValues(new Uint8Array(16));
+  return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
+}
+
 /** The CSV text of a whole channel. */
-export async function seriesCsv(id, channel) {
-  const response = await fetch(`${seriesUrl(id, channel)}?method=none`, { headers: { Accept: "text/csv" } });
+export const seriesCsv = (id, channel) => csv(`${seriesUrl(id, channel)}?method=none`);
+
+/** The CSV text of all points of a sweep, as far as they are solved. */
+export const pointsCsv = (id) => csv(`${BASE}${at(id)}/points`);
+
+async function csv(address) {
+  const response = await fetch(address, { headers: { Accept: "text/csv" } });
   if (response.status === 401) logIn();
   if (!response.ok) throw new Problem({ title: `The server answered with status ${response.status}`, status: response.status });
   return response.text();

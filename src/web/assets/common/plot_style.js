@@ -6,6 +6,9 @@ import { shownUnit } from "./format.js";
 const DASHES = ["solid", "dash", "dot", "dashdot", "longdash"];
 const UNITS = ["N/µm", "N/mm", "kg·m²", "m/s²", "m/s", "µm", "mm", "m", "N", "N·m", "MPa", "Hz", "s", "ms", "%", "°", "rad", "rad/s", "rad/s²", "r/min", "dB", "W", "kg"];
 
+/** Colours that plots have asked for by name. */
+const NAMED = new Set();
+
 /** Colours of the page, or those of paper. */
 export function palette(paper = false) {
   const source = paper ? el("div", { class: "paper", hidden: true }) : document.documentElement;
@@ -14,6 +17,12 @@ export function palette(paper = false) {
   const value = (name) => style.getPropertyValue(name).trim();
   const lines = ["--plot-1", "--plot-2", "--plot-3", "--plot-4", "--plot-5", "--plot-6"].map(value).filter(Boolean);
   const colours = { text: value("--text"), muted: value("--muted"), grid: value("--line"), surface: value("--surface"), lines };
+  // Any other colour of the stylesheets by its name. What is read from paper is read now.
+  const known = paper ? new Map([...NAMED].map((name) => [name, value(name)])) : null;
+  colours.of = (name) => {
+    NAMED.add(name);
+    return known?.get(name) ?? value(name);
+  };
   if (paper) source.remove();
   return colours;
 }
@@ -40,7 +49,8 @@ export function styled(traces, axes, colours) {
   const drawn = traces.map((trace) => {
     const at = trace.colour ?? (trace.tone === "muted" ? 0 : place++);
     const colour = trace.tone === "muted" ? colours.muted : colours.lines[at % colours.lines.length];
-    const { tone, colour: own, aside, unit, ...rest } = trace;
+    const { tone, colour: own, aside, unit, paint, ...rest } = trace;
+    if (paint) return { ...rest, ...paint(colours.of), ...(rest.colorbar ? { colorbar: { ...rest.colorbar, tickfont: { color: colours.text } } } : {}) };
     return { ...inColour(rest, colour, DASHES[at % DASHES.length], colours), hovertemplate: trace.hovertemplate ?? hoverText(trace, axes, unified) };
   });
   // An axis is only drawn with a trace on it.
@@ -121,7 +131,9 @@ export function layoutOf(axes, traces, colours, { width, height }) {
   }
   if (axes.y2) layout.yaxis2 = { ...axis(titleOf(axes.y2)), overlaying: "y", side: "right", showgrid: false, fixedrange: Boolean(zoomX) };
   if (top) layout.xaxis2 = { ...axis(titleOf(top.title)), overlaying: "x", side: "top", showgrid: false, fixedrange: true, exponentformat: "none", range: range?.map((end) => end * top.factor) };
-  return { ...layout, ...axes.layout };
+  const whole = { ...layout, ...axes.layout };
+  axes.more?.(whole, colours.of);
+  return whole;
 }
 
 function markLine({ x, dash = "dot", colour }, colours) {

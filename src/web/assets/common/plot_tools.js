@@ -60,6 +60,8 @@ function fileName(figure) {
   return job ? `${words}-${job.slice(-8)}` : words;
 }
 
+const isMap = ({ type }) => type === "heatmap" || type === "contour";
+
 const shownTraces = ({ traces }) => traces.filter((trace) => !trace.aside);
 
 /** Least and greatest value of each trace, and where they are. */
@@ -68,11 +70,11 @@ function summary(figure) {
   const x = parts(axes.x);
   return shownTraces(figure)
     .map((trace) => {
-      const { unit } = trace.type === "heatmap" ? trace : parts(trace.yaxis === "y2" ? axes.y2 : axes.y);
-      const values = (trace.type === "heatmap" ? trace.z.flat() : trace.y ?? []).map((value, index) => [value, index]).filter(([value]) => typeof value === "number");
+      const { unit } = isMap(trace) ? trace : parts(trace.yaxis === "y2" ? axes.y2 : axes.y);
+      const values = (isMap(trace) ? trace.z.flat() : trace.y ?? []).map((value, index) => [value, index]).filter(([value]) => typeof value === "number");
       if (!values.length) return "";
       const [low, high] = [values.reduce((a, b) => (b[0] < a[0] ? b : a)), values.reduce((a, b) => (b[0] > a[0] ? b : a))];
-      const at = ([, index]) => (trace.type === "heatmap" ? "" : ` at ${shown(trace.x[index])}${x.unit ? ` ${x.unit}` : ""}`);
+      const at = ([, index]) => (isMap(trace) ? "" : ` at ${shown(trace.x[index])}${x.unit ? ` ${x.unit}` : ""}`);
       const name = trace.name ? `${trace.name}: ` : "";
       return `${name}from ${number(low[0], 4)}${at(low)} to ${number(high[0], 4)} ${unit ?? ""}${at(high)}.`.replace(" .", ".");
     })
@@ -88,7 +90,7 @@ function tableOf(figure) {
   const [x, y] = [parts(axes.x), parts(axes.y)];
   const head = ({ label, unit }, name = "") => [[label, name].filter(Boolean).join(" ") || nameOf(figure), unit ? `[${unit}]` : ""].filter(Boolean).join(" ");
   const traces = shownTraces(figure);
-  const maps = traces.filter((trace) => trace.type === "heatmap");
+  const maps = traces.filter(isMap);
   if (maps.length) {
     const rows = maps.flatMap((map) => map.z.flatMap((row, at) => row.map((value, column) => [map.x[column], map.y[at], value])));
     return { names: [head(x), head(y), head({ label: axes.z ?? nameOf(figure), unit: maps[0].unit })], rows };

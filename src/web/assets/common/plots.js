@@ -12,7 +12,8 @@
 //   fromZero   both axes start at zero;  equal: a unit is as long on both axes
 //   zoomX      dragging zooms x only;  link: plots with the same word zoom x together
 //   hover      "closest" or "x unified"; chosen by the traces if left out
-//   shapes, annotations, layout   passed on to Plotly
+//   shapes, annotations, layout   passed on to Plotly;  more(layout, colour) has the last word on the layout
+//   click      called with Plotly's event when a point is clicked
 
 import { el } from "./dom.js";
 import { layoutOf, palette, styled } from "./plot_style.js";
@@ -130,6 +131,7 @@ async function render(figure) {
   figure.drawn = true;
   fit.observe(node);
   node.on("plotly_relayout", (change) => relayed(figure, change));
+  node.on("plotly_click", (event) => figure.axes.click?.(event));
 }
 
 function relayed(figure, change) {

@@ -1,143 +1,286 @@
-// A sweep: one quantity over one or two inputs, and the table of all points.
+// The panel of a sweep: reads its rows while they are solved, and draws the view that is chosen.
 
 import * as api from "../common/api.js";
-import { byId, el, fillRows, show } from "../common/dom.js";
-import { labelOf, number, pointerLabel, unitOf } from "../common/format.js";
-import { draw, heatMap, line, points as dots } from "../common/plots.js";
+import { byId, el, fillWarnings, notify, show } from "../common/dom.js";
+import { number } from "../common/format.js";
+import { draw, onZoom } from "../common/plots.js";
+import { Grid, valueText } from "./axes.js";
+import { SPECTRUM, STATES, bifurcation, spectra } from "./clouds.js";
+import { curves } from "./curves.js";
+import { SweepData } from "./data.js";
+import { progressText, showFindings } from "./findings.js";
+import { KINDS, map, section } from "./maps.js";
+import { PointPanel, showLegend } from "./point.js";
+import { ALWAYS, CONTACTS, FAILED, QUANTITIES, REGIMES, columnsOf } from "./quantities.js";
+import { SPEED, campbell, campbellAt } from "./resonances.js";
+import { PointTable } from "./table.js";
 
-/** Rows of the table; more would only slow the page down, and the result file has them all. */
-const MAX_ROWS = 2000;
-const NOT_QUANTITIES = ["values", "regime", "contact", "error", "branch", "poincare", "acceleration_spectrum_m_s2"];
-let shown = false;
+/** Between two readings of a running sweep: at least so long, and so many times as long as the last took. */
+const PAUSE_MS = 600;
+const PAUSE_FACTOR = 4;
 
-/** Called with every change of the job's state or progress. */
+/** Views with the controls that they use. */
+const VIEWS = {
+  curves: { label: "Curves", controls: ["quantity", "line", "halves", "log", "resonances"] },
+  map: { label: "Map", controls: ["quantity", "branch", "halves", "log", "contours"] },
+  bifurcation: { label: "Bifurcation", controls: ["state", "line"] },
+  spectra: { label: "Spectra", controls: ["line", "branch", "log", "hertz", "resonances"] },
+  campbell: { label: "Campbell diagram", controls: ["line"] },
+};
+const CONTROLS = ["quantity", "state", "line", "branch", "halves", "log", "contours", "hertz", "resonances"];
+
+let panel = null;
+
+/** Shows a sweep as far as it is solved; called at each change of the job. Resolves when everything that is there is drawn. */
 export async function showSweep({ id, job }) {
-  if (job.state !== "succeeded" || shown) return;
-  shown = true;
-  const { sweep } = await api.result(id);
-  if (!sweep?.points?.length) return;
-  show(byId("sweep"));
-  const { axes, points } = sweep;
-  const quantities = quantitiesOf(points);
-  const pictures = [
-    ...quantities.map((quantity) => ({ label: withUnit(quantity.label, quantity.unit), show: () => plot(axes, points, quantity) })),
-    ...(axes.length === 1 ? picturesOf(sweep) : []),
-  ];
-  const choice = byId("sweep-quantity");
-  choice.append(...pictures.map(({ label }, index) => el("option", { value: String(index) }, label)));
-  const update = () => pictures[Number(choice.value)].show();
-  choice.addEventListener("change", update);
-  fillTable(axes, points, quantities);
-  const failed = points.filter((point) => point.error).length;
-  byId("sweep-note").textContent = [
-    ...(sweep.hysteresis ?? []).map(({ from, to }) => `Two motions between ${number(from)} and ${number(to)}.`),
-    ...(sweep.jumps ?? []).map(({ branch, from, to }) => `Jump on the way ${branch} from ${number(from)} to ${number(to)}.`),
-    failed ? `${failed} of ${points.length} points have no response; the table says why.` : "",
-    points.length > MAX_ROWS ? `The table shows the first ${MAX_ROWS} of ${points.length} points; the result file has all.` : "",
-  ].join(" ");
-  if (pictures.length) await update();
+  panel ??= Panel.open(id, job);
+  await (await panel).follow(job);
 }
 
-/** Every number that some point has; a value per half counts as two. */
-function quantitiesOf(points) {
-  const quantities = [];
-  for (const name of Object.keys(points[0]).filter((name) => !NOT_QUANTITIES.includes(name))) {
-    const sample = points.find((point) => point[name] !== null && point[name] !== undefined)?.[name];
-    if (sample === undefined) continue;
-    const label = labelOf(name).replace(" rms", ", RMS");
-    const unit = unitOf(name);
-    if (typeof sample === "object") {
-      quantities.push({ label: `${label}, left`, unit, pick: (point) => point[name]?.left, partner: (point) => point[name]?.right });
-      quantities.push({ label: `${label}, right`, unit, pick: (point) => point[name]?.right });
-    } else if (typeof sample === "number") {
-      quantities.push({ label, unit, pick: (point) => point[name] });
-    }
+class Panel {
+  static async open(id, job) {
+    const document = await api.input(id);
+    return new Panel(id, job, document);
   }
-  return quantities;
-}
 
-async function plot(axes, points, quantity) {
-  const labels = axes.map((axis) => pointerLabel(axis.pointer)).map(({ label, unit }) => withUnit(label, unit));
-  const y = withUnit(quantity.label, quantity.unit);
-  if (axes.length === 1) {
-    const traces = branchesOf(points).flatMap(({ branch, sorted }) => {
-      const x = sorted.map((point) => point.values[0]);
-      const name = (half) => [half, branch].filter(Boolean).join(", ");
-      const left = line(x, sorted.map(quantity.pick), name(quantity.partner ? "left" : ""));
-      return quantity.partner ? [left, line(x, sorted.map(quantity.partner), name("right"))] : [left];
-    });
-    await draw(byId("sweep-plot"), traces, { x: labels[0], y: quantity.unit || quantity.label });
-  } else {
-    const [columns, rows] = axes.map((_, index) => [...new Set(points.map((point) => point.values[index]))].sort((a, b) => a - b));
-    // Of two directions of continuation the first is shown.
-    const [{ branch, sorted }] = branchesOf(points);
-    const byPlace = new Map(sorted.map((point) => [point.values.join(), quantity.pick(point)]));
-    const grid = rows.map((row) => columns.map((column) => byPlace.get([column, row].join()) ?? null));
-    await draw(byId("sweep-plot"), [heatMap(columns, rows, grid, quantity.unit)], { x: labels[0], y: labels[1], title: [y, branch].filter(Boolean).join(", ") });
-  }
-}
-
-/** The points in the order of the axis, one list per direction of continuation. */
-function branchesOf(points) {
-  const branches = [...new Set(points.map((point) => point.branch ?? ""))];
-  return branches.map((branch) => ({
-    branch,
-    sorted: points.filter((point) => (point.branch ?? "") === branch).sort((a, b) => a.values[0] - b.values[0]),
-  }));
-}
-
-/** Bifurcation diagram, waterfall and Campbell diagram, as far as the sweep has them. */
-function picturesOf({ axes, points, spectrum_mesh_orders: orders, campbell }) {
-  const { label, unit } = pointerLabel(axes[0].pointer);
-  const x = withUnit(label, unit);
-  const pictures = [];
-  if (points.some((point) => point.poincare)) {
-    const show = () => {
-      const traces = branchesOf(points).map(({ branch, sorted }) => {
-        const all = sorted.flatMap((point) => (point.poincare?.x_left_m ?? []).map((place) => [point.values[0], place * 1e6]));
-        return { ...dots(all.map(([at]) => at), all.map(([, place]) => place), branch), marker: { size: 3 } };
-      });
-      return draw(byId("sweep-plot"), traces, { x, y: "µm", title: "x left at the starts of mesh periods, µm" });
+  constructor(id, job, document) {
+    this.grid = new Grid(document);
+    this.sweep = { id, name: job.name ?? "Sweep", data: new SweepData(id, this.grid.total), rest: null, orders: null };
+    this.record = document.record ?? [];
+    this.document = document;
+    this.job = job;
+    this.view = {
+      grid: this.grid, name: this.grid.axes.length === 2 ? "map" : "curves", quantity: QUANTITIES[0], kind: null, state: STATES[0], line: 0, branch: 0, halves: "both",
+      log: false, contours: false, hertz: false, resonances: true, range: null, selected: null, click: (event) => this.clicked(event),
     };
-    pictures.push({ label: "Bifurcation: x left at the starts of mesh periods, µm", show });
+    this.plot = byId("sweep-plot");
+    this.reading = null;
+    this.drawing = Promise.resolve();
+    const select = (position) => this.select(position);
+    this.table = new PointTable(this.sweep, this.grid, select);
+    this.point = new PointPanel(this.sweep, this.grid, select);
+    this.fillControls();
+    byId("sweep-resume").addEventListener("click", () => this.resume());
+    byId("sweep-axes").textContent = this.describeAxes();
+    show(byId("sweep"));
   }
-  if (orders) {
-    for (const { branch, sorted } of branchesOf(points)) {
-      const rows = sorted.filter((point) => point.acceleration_spectrum_m_s2);
-      const values = rows.map((point) => point.values[0]);
-      const grid = orders.map((_, at) => rows.map((point) => point.acceleration_spectrum_m_s2[at]));
-      const title = ["Waterfall: circumferential acceleration, m/s²", branch].filter(Boolean).join(", ");
-      pictures.push({ label: title, show: () => draw(byId("sweep-plot"), [heatMap(values, orders, grid, "m/s²")], { x, y: "mesh order", title }) });
+
+  describeAxes() {
+    const told = this.grid.axes.map((axis) => {
+      const n = axis.values.length;
+      const [least, greatest] = axis.values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+      return n === 1 ? `${axis.label} ${valueText(axis, least)}` : `${axis.label} from ${number(least, 7)} to ${valueText(axis, greatest)} in ${number(n)} values`;
+    });
+    const [branch] = this.grid.branches;
+    const ways = this.grid.branches.length === 2 ? "followed up and down" : branch ? `followed ${branch}` : "each point for itself";
+    return `${told.join("; ")}; ${ways}.`;
+  }
+
+  fillControls() {
+    const options = (id, list) => byId(id).replaceChildren(...list.map(([value, text]) => el("option", { value }, text)));
+    const { axes, branches } = this.grid;
+    const title = ({ label, unit }) => [label, unit].filter(Boolean).join(", ");
+    const kinds = axes.length === 2 ? KINDS.map(({ name, label }) => [name, label]) : [];
+    options("sweep-quantity", [...QUANTITIES.map((quantity) => [quantity.name, title(quantity)]), ...kinds]);
+    options("sweep-state", STATES.map((state) => [state.name, title(state)]));
+    if (axes[1]) {
+      options("sweep-line", this.grid.secondOrder.map((index) => [String(index), valueText(axes[1], axes[1].values[index])]));
+      byId("sweep-line-label").textContent = axes[1].label;
+      this.view.line = this.grid.secondOrder[0];
+    }
+    options("sweep-branch", branches.map((branch, index) => [String(index), branch]));
+    byId("sweep-views").append(...Object.entries(VIEWS).map(([name, { label }]) => {
+      const input = el("input", { type: "radio", name: "sweep-view", value: name, id: `sweep-view-${name}` });
+      input.addEventListener("change", () => this.change(() => { this.view.name = name; this.view.range = null; }));
+      return el("label", { hidden: true }, input, label);
+    }));
+    const changes = {
+      quantity: (view, { value }) => {
+        view.quantity = QUANTITIES.find(({ name }) => name === value) ?? view.quantity;
+        view.kind = KINDS.some(({ name }) => name === value) ? value : null;
+      },
+      state: (view, { value }) => { view.state = STATES.find(({ name }) => name === value); },
+      line: (view, { value }) => { view.line = Number(value); },
+      branch: (view, { value }) => { view.branch = Number(value); },
+      halves: (view, { value }) => { view.halves = value; },
+      log: (view, { checked }) => { view.log = checked; },
+      contours: (view, { checked }) => { view.contours = checked; },
+      hertz: (view, { checked }) => { view.hertz = checked; },
+      resonances: (view, { checked }) => { view.resonances = checked; },
+    };
+    for (const [name, apply] of Object.entries(changes)) {
+      byId(`sweep-${name}`).addEventListener("change", (event) => this.change(() => apply(this.view, event.target)));
     }
   }
-  for (const diagram of campbell ?? []) {
-    const speeds = diagram.pinion_speed_rpm;
-    const modes = diagram.natural_modes.filter((mode) => mode.frequency_hz > 0);
-    const top = 1.1 * Math.max(...modes.map((mode) => mode.frequency_hz));
-    const ordersBelow = diagram.mesh_orders.filter((order) => order * diagram.mesh_frequency_hz[0] < top);
-    const cut = (order) => Math.min(1, top / (order * diagram.mesh_frequency_hz[1]));
-    const traces = [
-      ...ordersBelow.map((order) => {
-        const ends = [0, cut(order)];
-        return line(ends.map((end) => end * speeds[1]), ends.map((end) => end * order * diagram.mesh_frequency_hz[1]), `order ${order}`);
-      }),
-      ...modes.map((mode) => line([0, speeds[1]], [mode.frequency_hz, mode.frequency_hz], mode.name)),
-      dots(diagram.crossings.map((crossing) => crossing.pinion_speed_rpm), diagram.crossings.map((crossing) => crossing.frequency_hz), "crossings"),
-    ];
-    pictures.push({ label: "Campbell diagram", show: () => draw(byId("sweep-plot"), traces, { x: "Pinion speed, r/min", y: "Hz" }) });
+
+  /** Shows the controls of the view, and those views that have something to show. */
+  arrange() {
+    const { view, grid, sweep } = this;
+    const there = {
+      curves: true, map: grid.axes.length === 2, bifurcation: this.record.includes("poincare"), spectra: this.record.includes("spectrum") && Boolean(sweep.orders),
+      campbell: Boolean(campbellAt(sweep.rest, { ...view, line: view.line })),
+    };
+    for (const [name, is] of Object.entries(there)) {
+      const input = byId(`sweep-view-${name}`);
+      show(input.parentElement, is);
+      input.checked = view.name === name;
+    }
+    show(byId("sweep-views"), Object.values(there).filter(Boolean).length > 1);
+    const uses = new Set(VIEWS[view.name].controls);
+    if (grid.axes.length < 2) uses.delete("line");
+    if (grid.branches.length < 2) uses.delete("branch");
+    if (view.kind || view.quantity.columns.both) uses.delete("halves");
+    if (view.kind && view.name === "map") ["log", "contours"].forEach((name) => uses.delete(name));
+    if (view.name === "spectra" && !campbellAt(sweep.rest, view)) uses.delete("hertz");
+    if (grid.axes[0].pointer !== SPEED || !campbellAt(sweep.rest, view)) uses.delete("resonances");
+    for (const name of CONTROLS) show(byId(`sweep-${name}`).closest(".control"), uses.has(name));
+    byId("sweep-quantity").value = view.kind ?? view.quantity.name;
+    byId("sweep-line").value = String(view.line);
+    byId("sweep-branch").value = String(view.branch);
   }
-  return pictures;
-}
 
-function fillTable(axes, points, quantities) {
-  const table = byId("sweep-table");
-  const names = [...axes.map((axis) => pointerLabel(axis.pointer)).map(({ label, unit }) => withUnit(label, unit)), ...quantities.map(({ label, unit }) => withUnit(label, unit)), "Regime", "Contact", "Error"];
-  table.tHead.replaceChildren(el("tr", {}, ...names.map((name) => el("th", { scope: "col" }, name))));
-  const fill = () =>
-    fillRows(table.tBodies[0], points.slice(0, MAX_ROWS).map((point) => [
-      ...point.values.map((value) => number(value)), ...quantities.map(({ pick }) => number(pick(point))), point.regime ?? "–", point.contact ?? "–", point.error ?? "",
-    ]));
-  byId("sweep-details").addEventListener("toggle", fill, { once: true });
-}
+  columns() {
+    const { view } = this;
+    if (view.name === "bifurcation") return [...ALWAYS, view.state.name];
+    if (view.name === "spectra") return [...ALWAYS, SPECTRUM];
+    return [...ALWAYS, ...columnsOf(view.quantity)];
+  }
 
-const withUnit = (label, unit) => (unit ? `${label}, ${unit}` : label);
+  /** Something was chosen. */
+  async change(apply) {
+    apply();
+    try {
+      await this.redraw();
+    } catch (error) {
+      notify(byId("notice"), error);
+    }
+  }
+
+  async select(position) {
+    const { view, grid } = this;
+    const { second, branch } = grid.placeOf(position);
+    await this.change(() => { Object.assign(view, { selected: position, line: second, branch }); });
+    this.table.turnTo(position);
+    await this.point.show(position, view);
+  }
+
+  /** Takes up a new state of the job; readings do not overlap. */
+  async follow(job) {
+    this.job = job;
+    this.stale = true;
+    this.reading ??= this.read().finally(() => { this.reading = null; });
+    await this.reading;
+  }
+
+  async read() {
+    while (this.stale) {
+      this.stale = false;
+      const { job } = this;
+      const started = performance.now();
+      await this.sweep.data.require(this.columns());
+      let drawn = performance.now();
+      await this.sweep.data.refresh(() => {
+        // The first page at once, then now and then.
+        if (performance.now() - drawn < 500 && this.plot.dataset.points) return;
+        drawn = performance.now();
+        this.redraw().catch(() => {});
+      });
+      if (job.state === "succeeded" && !this.sweep.rest) {
+        this.sweep.rest = await api.resultWithoutRows(this.sweep.id);
+        this.sweep.orders = this.sweep.rest.sweep.spectrum_mesh_orders ?? null;
+        fillWarnings(byId("warnings"), this.sweep.rest.warnings);
+      }
+      await this.redraw();
+      await this.table.update();
+      if (api.isEnded(job)) continue;
+      const pause = Math.max(PAUSE_MS, PAUSE_FACTOR * (performance.now() - started));
+      await new Promise((resolve) => { setTimeout(resolve, pause); });
+    }
+  }
+
+  /** One drawing after the other, and not more than one waiting. */
+  redraw() {
+    this.next ??= this.drawing.then(() => {
+      this.next = null;
+      return this.drawNow();
+    });
+    this.drawing = this.next.catch(() => {});
+    return this.next;
+  }
+
+  async drawNow() {
+    const { view, sweep, plot } = this;
+    await sweep.data.require(this.columns());
+    this.arrange();
+    byId("sweep-count").textContent = progressText(sweep, this.job);
+    const resumable = ["canceled", "failed"].includes(this.job.state) && sweep.data.n < sweep.data.total;
+    show(byId("sweep-resume-box"), resumable);
+    showFindings(sweep, view, (position) => this.select(position));
+    // Axes without a point have no range.
+    if (!sweep.data.n) return;
+    const picture = { curves, map, bifurcation, spectra, campbell }[view.name](sweep, view);
+    await draw(plot, picture.traces, picture.axes);
+    onZoom(plot, (range) => this.zoomed(range));
+    plot.dataset.points = String(sweep.data.n);
+    plot.dataset.view = view.name;
+    this.showKinds();
+    await this.drawSections();
+  }
+
+  showKinds() {
+    const { view, sweep } = this;
+    const all = { regime: [...REGIMES, FAILED], contact: CONTACTS };
+    const words = { regime: sweep.data.column("regime"), contact: sweep.data.column("contact") };
+    const errors = sweep.data.column("error");
+    for (const name of ["regime", "contact"]) {
+      const node = byId(`sweep-${name}-legend`);
+      const wanted = view.name === "curves" || (view.name === "map" && view.kind === name);
+      show(node, wanted);
+      if (!wanted) continue;
+      const seen = new Set();
+      for (let at = 0; at < words[name].length; at += 1) {
+        if (errors[at]) seen.add(REGIMES.length + (name === "regime" ? 0 : 100));
+        else if (words[name][at]) seen.add(all[name].findIndex((kind) => kind.is?.(words[name][at])));
+      }
+      showLegend(node, all[name], seen);
+    }
+  }
+
+  async drawSections() {
+    const { view, sweep, grid } = this;
+    const wanted = view.name === "map" && view.selected !== null && !view.kind && grid.axes.length === 2;
+    show(byId("sweep-sections"), wanted);
+    if (!wanted) return;
+    for (const along of [0, 1]) {
+      const { traces, axes, title } = section(sweep, view, along);
+      byId(`sweep-section-title-${along}`).textContent = title;
+      await draw(byId(`sweep-section-${along}`), traces, axes);
+    }
+  }
+
+  /** A point of a plot was clicked. */
+  clicked({ points }) {
+    const position = points.map(({ customdata }) => customdata).find((value) => Number.isInteger(value));
+    if (position !== undefined) this.select(position);
+  }
+
+  /** Finer lines after zooming in. */
+  zoomed(range) {
+    if (this.view.name !== "curves") return;
+    const wanted = range && this.grid.axes[0].logarithmic ? range.map((end) => 10 ** end) : range;
+    this.change(() => { this.view.range = wanted; });
+  }
+
+  /** The same document once more: the new job goes on from the points that are here. */
+  async resume() {
+    const button = byId("sweep-resume");
+    button.disabled = true;
+    try {
+      const job = await api.submit(this.document, api.newKey());
+      window.location.assign(`/jobs/${encodeURIComponent(job.id)}`);
+    } catch (error) {
+      notify(byId("notice"), error);
+      button.disabled = false;
+    }
+  }
+}

@@ -1,0 +1,114 @@
+// The rows of a sweep, column by column: fetched as they are needed and as they are solved, at most once each.
+
+import * as api from "../common/api.js";
+
+/** Rows asked for at once; fewer where a row carries a list. */
+const PAGE = 10_000;
+const PAGE_OF_LISTS = 500;
+/** Stretches of missing rows that are asked for one by one; more than these are joined over what lies between. */
+const MOST_GAPS = 8;
+
+const WORDS = new Set(["regime", "contact", "error"]);
+const LISTS = new Set(["poincare_x_left_m", "poincare_v_x_left_m_s", "acceleration_spectrum_m_s2"]);
+
+export class SweepData {
+  constructor(id, total) {
+    this.id = id;
+    this.total = total;
+    /** Number of rows that are here. */
+    this.n = 0;
+    this.here = new Uint8Array(total);
+    this.columns = new Map();
+    this.last = Promise.resolve();
+  }
+
+  /** The values of a column by position: NaN (numbers) or null (words, lists) where there is none. */
+  column(name) {
+    return this.columns.get(name);
+  }
+
+  has(names) {
+    return names.every((name) => this.columns.has(name));
+  }
+
+  /** Fetches columns for the rows that are here. `onPage` is called after each page. */
+  require(names, onPage) {
+    return this.after(async () => {
+      const missing = names.filter((name) => !this.columns.has(name));
+      if (!missing.length) return;
+      const fresh = new Map(missing.map((name) => [name, empty(name, this.total)]));
+      if (this.n) await this.fetch([0, this.total], fresh, () => {}, (position) => this.here[position]);
+      for (const [name, values] of fresh) this.columns.set(name, values);
+      onPage?.();
+    });
+  }
+
+  /** Fetches what was solved since the last time, in all columns that are here. */
+  refresh(onPage) {
+    return this.after(async () => {
+      for (const gap of this.gaps()) await this.fetch(gap, this.columns, onPage);
+    });
+  }
+
+  /** One fetch after the other. */
+  after(task) {
+    const result = this.last.then(task);
+    this.last = result.catch(() => {});
+    return result;
+  }
+
+  async fetch([from, to], columns, onPage, wanted = () => true) {
+    const names = [...columns.keys()];
+    const limit = names.some((name) => LISTS.has(name)) ? PAGE_OF_LISTS : PAGE;
+    for (let next = from; next !== null && next < to; ) {
+      const page = await api.pointColumns(this.id, { names: names.join(), from: next, to, limit });
+      page.positions.forEach((position, row) => {
+        if (!wanted(position)) return;
+        for (const name of names) {
+          const value = page.columns[name][row];
+          if (value !== null) columns.get(name)[position] = value;
+        }
+      });
+      if (columns === this.columns) {
+        for (const position of page.positions) {
+          if (!this.here[position]) this.n += 1;
+          this.here[position] = 1;
+        }
+      }
+      next = page.next_position;
+      onPage?.();
+    }
+  }
+
+  /** Stretches [from, to) without rows. */
+  gaps() {
+    const gaps = [];
+    for (let at = 0; at < this.total; at += 1) {
+      if (this.here[at]) continue;
+      const last = gaps.at(-1);
+      if (last && last[1] === at) last[1] = at + 1;
+      else gaps.push([at, at + 1]);
+    }
+    if (gaps.length <= MOST_GAPS) return gaps;
+    // The widest stretches of known rows are left out, the others asked for again.
+    const between = gaps.slice(1).map((gap, index) => ({ index, width: gap[0] - gaps[index][1] }));
+    const cuts = new Set(between.sort((a, b) => b.width - a.width).slice(0, MOST_GAPS - 1).map(({ index }) => index));
+    return gaps.reduce((joined, gap, index) => {
+      if (index === 0 || cuts.has(index - 1)) joined.push([...gap]);
+      else joined.at(-1)[1] = gap[1];
+      return joined;
+    }, []);
+  }
+
+  /** Positions of the rows that have no response. */
+  failed() {
+    const errors = this.column("error") ?? [];
+    const found = [];
+    for (let at = 0; at < this.total; at += 1) if (errors[at]) found.push(at);
+    return found;
+  }
+}
+
+function empty(name, total) {
+  return WORDS.has(name) || LISTS.has(name) ? new Array(total).fill(null) : new Float64Array(total).fill(NaN);
+}

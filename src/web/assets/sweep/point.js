@@ -1,0 +1,92 @@
+// One point of a sweep: its values, and its response as a job of its own.
+
+import * as api from "../common/api.js";
+import { byId, el, fillValues, notify, show } from "../common/dom.js";
+import { number, sentence } from "../common/format.js";
+import { hysteresisAt } from "./curves.js";
+import { CONTACTS, QUANTITIES, REGIMES } from "./quantities.js";
+
+/** Longest name that a document may have. */
+const NAME_LENGTH = 200;
+
+export class PointPanel {
+  constructor(sweep, grid, select) {
+    Object.assign(this, { sweep, grid, select, position: null, asked: 0 });
+    byId("sweep-open").addEventListener("click", () => this.open());
+    byId("sweep-point-back").addEventListener("click", () => this.step(-1));
+    byId("sweep-point-next").addEventListener("click", () => this.step(1));
+  }
+
+  /** To the neighbour along the first axis. */
+  step(by) {
+    const { first, second, branch } = this.grid.placeOf(this.position);
+    const next = this.grid.order[this.grid.order.indexOf(first) + by];
+    if (next !== undefined) this.select(this.grid.at(next, second, branch));
+  }
+
+  async show(position, view) {
+    this.position = position;
+    const { first, second, branch } = this.grid.placeOf(position);
+    byId("sweep-point-title").textContent = sentence(this.grid.describe(position));
+    byId("sweep-point-back").disabled = this.grid.order[0] === first;
+    byId("sweep-point-next").disabled = this.grid.order.at(-1) === first;
+    byId("sweep-point-note").textContent = this.grid.branches[branch] ? this.noteOf(first, second, view) : "";
+    show(byId("sweep-point"));
+    this.asked += 1;
+    const asked = this.asked;
+    try {
+      const { positions, columns } = await api.pointColumns(this.sweep.id, { from: position, to: position + 1, limit: 1 });
+      if (asked === this.asked) this.fill((name) => (positions.length ? columns[name][0] : undefined));
+    } catch (error) {
+      notify(byId("notice"), error);
+    }
+  }
+
+  noteOf(first, second, view) {
+    const value = this.grid.axes[0].values[first];
+    const twofold = hysteresisAt(this.sweep, { ...view, line: second }).some(({ from, to }) => value >= from && value <= to);
+    const told = "This point was reached by following the motion from its neighbour; opened on its own it is solved from rest.";
+    return twofold ? `${told} Two motions exist here, so that it may show the other one.` : `${told} Where two motions exist it may show the other one.`;
+  }
+
+  fill(value) {
+    const error = value("error");
+    const solved = error !== undefined;
+    const kind = (kinds, word) => (word ? `${word}: ${kinds.find(({ is }) => is(word))?.detail ?? ""}` : null);
+    const rows = QUANTITIES.flatMap(({ label, unit, columns }) => {
+      const values = Object.values(columns).map(value);
+      if (values.every((one) => one === null || one === undefined)) return [];
+      return [[values.length > 1 ? `${label}, left / right` : label, values.map((one) => number(one)).join(" / "), unit]];
+    });
+    fillValues(byId("sweep-point-values"), [["Motion", kind(REGIMES, value("regime"))], ["Contact", kind(CONTACTS, value("contact"))], ...rows]);
+    const trouble = byId("sweep-point-error");
+    show(trouble, Boolean(error) || !solved);
+    trouble.textContent = solved ? (error ? `No response: ${error}` : "") : "This point is not solved yet.";
+    byId("sweep-open").disabled = Boolean(error);
+  }
+
+  /** Submits the point's document and goes to its job. */
+  async open() {
+    const button = byId("sweep-open");
+    button.disabled = true;
+    try {
+      const document = await api.pointInput(this.sweep.id, this.position);
+      document.name = `${this.sweep.name}: ${this.grid.describe(this.position)}`.slice(0, NAME_LENGTH);
+      const job = await api.submit(document, api.newKey());
+      window.location.assign(`/jobs/${encodeURIComponent(job.id)}`);
+    } catch (error) {
+      notify(byId("notice"), error);
+      byId("notice").scrollIntoView({ block: "center" });
+      button.disabled = false;
+    }
+  }
+}
+
+/** Legend of the strip: the kinds that occur, with their colours and what they mean. */
+export function showLegend(node, kinds, seen) {
+  node.replaceChildren(...kinds.filter((_, index) => seen.has(index)).map(({ label, detail, colour }) => {
+    const swatch = el("span", { class: "swatch" });
+    swatch.style.background = `var(${colour})`;
+    return el("li", { title: detail }, swatch, `${label}: `, el("span", { class: "detail" }, detail));
+  }));
+}
