@@ -1,7 +1,31 @@
-//! The shape of a stored sweep: its axes and how many rows it has, without reading the rest of its document.
+//! What sweeps consist of: the axes and rows of a stored one without reading the rest of its document, and the document of a row.
 
+use super::document::{JobDocument, Kind};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
+use serde_json::{Value, json};
+
+impl JobDocument {
+    /// A response with the inputs of this sweep as they stand, without axes.
+    pub fn without_sweep(&self) -> JobDocument {
+        JobDocument { kind: Kind::Response, axes: Vec::new(), continuation: None, record: Vec::new(), ..self.clone() }
+    }
+
+    /// The document of a row of this sweep as a job of its own: a response with the values of the axes put in. None where the sweep
+    /// has no such row.
+    pub fn of_row(&self, position: usize) -> Option<Value> {
+        if position >= self.sweep_points() {
+            return None;
+        }
+        let mut value = serde_json::to_value(self.without_sweep()).ok()?;
+        let mut place = position;
+        for axis in &self.axes {
+            *value.pointer_mut(&axis.pointer)? = json!(axis.value(place % axis.len()));
+            place /= axis.len();
+        }
+        Some(value)
+    }
+}
 
 /// What a document as it was accepted says of its rows.
 #[derive(Debug, Clone, Deserialize)]

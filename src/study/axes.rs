@@ -1,6 +1,6 @@
 //! The inputs of a sweep: what may vary, and the documents it varies.
 
-use crate::job::document::{JobDocument, Kind};
+use crate::job::document::JobDocument;
 use crate::job::{DocumentError, Violation, parse_value};
 use serde_json::Value;
 
@@ -70,35 +70,11 @@ fn field_type(pointer: &str) -> Option<String> {
 
 /// The document of one point, before the swept values are put in.
 pub fn base(document: &JobDocument) -> Value {
-    let plain = JobDocument {
-        kind: Kind::Response,
-        axes: Vec::new(),
-        continuation: None,
-        record: Vec::new(),
-        ..document.clone()
-    };
     // A document holds finite numbers and strings only, so writing it cannot fail.
-    let mut value = serde_json::to_value(plain).unwrap_or_default();
+    let mut value = serde_json::to_value(document.without_sweep()).unwrap_or_default();
     // Series are not kept for the points of a sweep.
     value["analysis"]["channels"] = Value::Array(Vec::new());
     value
-}
-
-/// The document of the point at a position of a sweep's rows, for a job of its own: a response with the values of the axes put in.
-/// None where the sweep has no such row.
-pub fn point_document(sweep: &JobDocument, position: usize) -> Option<Value> {
-    if position >= sweep.sweep_points() {
-        return None;
-    }
-    let mut value = base(sweep);
-    // On its own it keeps the series that were asked for.
-    value["analysis"]["channels"] = serde_json::to_value(&sweep.analysis.channels).unwrap_or_default();
-    let mut place = position;
-    for axis in &sweep.axes {
-        set(&mut value, &axis.pointer, axis.value(place % axis.len()));
-        place /= axis.len();
-    }
-    Some(value)
 }
 
 /// Puts one swept value in.

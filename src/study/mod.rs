@@ -29,7 +29,6 @@ use mesh::MeshMemo;
 use point::Wanted;
 use serde::{Deserialize, Serialize};
 
-pub use axes::point_document;
 pub use check::check;
 pub use demand::{Demand, demand};
 pub use hash::input_hash;

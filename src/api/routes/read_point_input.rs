@@ -4,7 +4,6 @@ use crate::api::problem::Refusal;
 use crate::api::request::PointPath;
 use crate::api::state::AppState;
 use crate::job::parse;
-use crate::study::point_document;
 use axum::Json;
 use axum::extract::State;
 use serde_json::Value;
@@ -30,5 +29,5 @@ pub async fn read_point_input(
 ) -> Result<Json<Value>, Refusal> {
     let input = super::sweep_input(&state, id).await?;
     let sweep = parse(input.as_bytes()).map_err(Refusal::internal)?;
-    point_document(&sweep, position).map(Json).ok_or_else(|| Refusal::not_found("The sweep has no such point."))
+    sweep.of_row(position).map(Json).ok_or_else(|| Refusal::not_found("The sweep has no such point."))
 }

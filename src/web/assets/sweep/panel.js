@@ -18,6 +18,7 @@ import { PointTable } from "./table.js";
 /** Between two readings of a running sweep: at least so long, and so many times as long as the last took. */
 const PAUSE_MS = 600;
 const PAUSE_FACTOR = 4;
+const LONGEST_PAUSE_MS = 10_000;
 
 /** Views with the controls that they use. */
 const VIEWS = {
@@ -168,8 +169,9 @@ class Panel {
   async follow(job) {
     this.job = job;
     this.stale = true;
-    this.reading ??= this.read().finally(() => { this.reading = null; });
-    await this.reading;
+    // The end is shown without delay.
+    if (api.isEnded(job)) this.wake?.();
+    while (this.stale || this.reading) await (this.reading ??= this.read().finally(() => { this.reading = null; }));
   }
 
   async read() {
@@ -193,8 +195,12 @@ class Panel {
       await this.redraw();
       await this.table.update();
       if (api.isEnded(job)) continue;
-      const pause = Math.max(PAUSE_MS, PAUSE_FACTOR * (performance.now() - started));
-      await new Promise((resolve) => { setTimeout(resolve, pause); });
+      const pause = Math.min(LONGEST_PAUSE_MS, Math.max(PAUSE_MS, PAUSE_FACTOR * (performance.now() - started)));
+      await new Promise((resolve) => {
+        this.wake = resolve;
+        if (api.isEnded(this.job)) resolve();
+        setTimeout(resolve, pause);
+      });
     }
   }
 
