@@ -135,6 +135,43 @@ impl Browser {
         self.driver.execute_async(script, vec![json!(path)]).await.unwrap().json().clone()
     }
 
+    /// Submits a document as a page would (one has to be open) and waits until its job has ended; its id.
+    pub async fn solved(&self, document: &Value) -> String {
+        let script = "const done = arguments[1]; const headers = {'Content-Type': 'application/json'}; \
+                      fetch('/api/v1/jobs', {method: 'POST', headers, body: JSON.stringify(arguments[0])}) \
+                      .then((answer) => answer.json()).then(done, (error) => done(String(error)));";
+        let job = self.driver.execute_async(script, vec![document.clone()]).await.unwrap().json().clone();
+        let id = job["id"].as_str().unwrap_or_else(|| panic!("not accepted: {job}")).to_owned();
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            let job = self.fetch(&format!("/api/v1/jobs/{id}")).await;
+            if ["succeeded", "failed", "canceled"].iter().any(|state| job["state"] == *state) {
+                return id;
+            }
+            assert!(Instant::now() < deadline, "not within {PATIENCE:?}: {job}");
+            tokio::time::sleep(Duration::from_millis(50)).await;
+        }
+    }
+
+    /// Makes the window so wide, also narrower than a desktop's windows can be.
+    pub async fn resize(&self, width: u32) {
+        let height = if width < 600 { 844 } else { 1000 };
+        let size = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
+        self.command("Emulation.setDeviceMetricsOverride", size).await;
+        assert_eq!(self.value("window.innerWidth").await, json!(width));
+    }
+
+    /// Whether the system prefers dark pages.
+    pub async fn prefer_dark(&self, dark: bool) {
+        let scheme = json!({"name": "prefers-color-scheme", "value": if dark { "dark" } else { "light" }});
+        self.command("Emulation.setEmulatedMedia", json!({"features": [scheme]})).await;
+    }
+
+    /// A command of the browser's own protocol.
+    pub async fn command(&self, method: &str, parameters: Value) -> Value {
+        self.driver.cdp().send_raw(method, parameters).await.unwrap_or_else(|error| panic!("{method}: {error}"))
+    }
+
     /// Waits until a JavaScript expression is true.
     pub async fn until(&self, expression: &str) {
         let deadline = Instant::now() + PATIENCE;

@@ -4,11 +4,13 @@
 //! Every flow also fails when the browser's console shows an error, or when anything is requested from another host.
 //! `HERRINGBONE_BROWSER_TEST_URL` runs the flows against a server that is already there.
 
+mod accessibility;
 mod browser;
 mod form;
 mod job;
 mod list;
 mod login;
+mod pages;
 mod process;
 mod server;
 mod start;

@@ -1,0 +1,87 @@
+//! Every page of the service, each in the states that people meet: for what holds of all of them.
+
+use crate::browser::Browser;
+use serde_json::{Value, json};
+
+/// A page with something on it.
+pub struct Page {
+    pub name: &'static str,
+    pub path: String,
+    /// True when everything is there: a JavaScript expression.
+    ready: &'static str,
+    /// What a person does then, as a script; and what is true after it.
+    deed: Option<(&'static str, &'static str)>,
+    pub has_plot: bool,
+}
+
+impl Page {
+    fn new(name: &'static str, path: impl Into<String>, ready: &'static str) -> Self {
+        Self { name, path: path.into(), ready, deed: None, has_plot: false }
+    }
+
+    fn with_plot(self) -> Self {
+        Self { has_plot: true, ..self }
+    }
+
+    fn after(self, deed: &'static str, ready: &'static str) -> Self {
+        Self { deed: Some((deed, ready)), ..self }
+    }
+
+    /// Opens the page and waits until everything is there.
+    pub async fn open(&self, browser: &Browser) {
+        browser.open(&self.path).await;
+        browser.until(self.ready).await;
+        if let Some((deed, ready)) = self.deed {
+            browser.driver.execute(deed, Vec::new()).await.unwrap();
+            browser.until(ready).await;
+        }
+    }
+}
+
+const CHECKED: &str = "document.querySelector('#check-state').classList.contains('good')";
+const SHOWN: &str = "document.querySelector('[data-ready]')";
+
+/// All pages of a service without a token, with jobs that it has solved for them.
+pub async fn all(browser: &Browser) -> Vec<Page> {
+    browser.open("/nowhere").await;
+    let example: Value = serde_json::from_str(include_str!("../../examples/table1.json")).unwrap();
+    let changed = |change: &dyn Fn(&mut Value)| {
+        let mut document = example.clone();
+        change(&mut document);
+        document
+    };
+    let response = browser.solved(&example).await;
+    let other = browser.solved(&changed(&|document| document["operation"]["pinion_torque_nm"] = json!(400))).await;
+    let mesh = browser.solved(&changed(&|document| document["kind"] = json!("mesh"))).await;
+    let sweep = browser
+        .solved(&changed(&|document| {
+            document["kind"] = json!("sweep");
+            document["name"] = json!("Three speeds");
+            document["axes"] = json!([{"pointer": "/operation/pinion_speed_rpm", "values": [1000, 2000, 3000]}]);
+        }))
+        .await;
+    let failed = browser
+        .solved(&changed(&|document| {
+            document["name"] = json!("Far from rest");
+            document["analysis"]["method"] = json!("integrate");
+            document["analysis"]["initial_state"] = json!(vec![1e6; 24]);
+        }))
+        .await;
+    vec![
+        Page::new("design", "/", CHECKED),
+        Page::new("design with errors", "/", CHECKED).after(
+            "const input = document.querySelector(\"[data-pointer='/design/helix_angle_deg'] input\"); input.value = '77'; \
+             input.dispatchEvent(new Event('input', {bubbles: true})); document.querySelector('#submit').click();",
+            "!document.querySelector('#problems').hidden && document.querySelector('[aria-invalid=true]')",
+        ),
+        Page::new("jobs", "/jobs", "document.querySelectorAll('tr[data-id]').length === 5"),
+        Page::new("response", format!("/jobs/{response}"), SHOWN).with_plot(),
+        Page::new("mesh", format!("/jobs/{mesh}"), SHOWN).with_plot(),
+        Page::new("sweep", format!("/jobs/{sweep}"), SHOWN).with_plot(),
+        Page::new("failed job", format!("/jobs/{failed}"), "document.querySelector('#state')?.textContent === 'failed'"),
+        Page::new("not found", "/nowhere", "document.readyState === 'complete'"),
+    ]
+    .into_iter()
+    .chain((!other.is_empty()).then(|| Page::new("other", format!("/jobs/{other}"), SHOWN).with_plot()))
+    .collect()
+}
