@@ -31,6 +31,11 @@ pub async fn file(Path(name): Path<String>, headers: HeaderMap) -> Response {
     (caching, content, file.data.into_owned()).into_response()
 }
 
+/// The text of a file.
+pub fn text(name: &str) -> Option<String> {
+    String::from_utf8(Files::get(name)?.data.into_owned()).ok()
+}
+
 fn find(name: &str) -> Option<(EmbeddedFile, &'static str)> {
     let media_type = match name.rsplit_once('.')?.1 {
         "css" => "text/css; charset=utf-8",

@@ -6,6 +6,7 @@
 
 mod assets;
 mod form;
+mod modules;
 mod pages;
 mod plotly;
 

@@ -6,6 +6,7 @@ use futures_util::FutureExt;
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, resume_unwind};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 use thirtyfour::prelude::*;
 use tokio::sync::Mutex;
@@ -22,6 +23,7 @@ static ONE_AT_A_TIME: Mutex<()> = Mutex::const_new(());
 pub struct Browser {
     pub driver: WebDriver,
     pub server: Server,
+    requested: AtomicUsize,
 }
 
 /// Runs a flow in a fresh browser against a fresh server, then checks the console and where requests went.
@@ -46,7 +48,7 @@ pub async fn flow_against(server: impl FnOnce() -> Server, steps: impl AsyncFnOn
         Ok(driver) => driver,
         Err(error) => panic!("Chromium could not be started: {error}. {INSTALL}"),
     };
-    let browser = Browser { driver, server };
+    let browser = Browser { driver, server, requested: AtomicUsize::new(0) };
     let outcome = AssertUnwindSafe(async {
         steps(&browser).await;
         browser.check_console().await;
@@ -199,8 +201,9 @@ impl Browser {
         assert!(errors.is_empty(), "the console has {} errors:\n{}", errors.len(), errors.join("\n"));
     }
 
-    async fn check_requests(&self) {
-        let mut count = 0;
+    /// What was requested from the server since this was last asked: paths with their queries. Whatever else was asked fails the flow.
+    pub async fn requests(&self) -> Vec<String> {
+        let mut paths = Vec::new();
         for entry in self.driver.get_log("performance").await.unwrap() {
             let event: Value = serde_json::from_str(&entry.message).unwrap();
             if event["message"]["method"] != "Network.requestWillBeSent" {
@@ -208,14 +211,23 @@ impl Browser {
             }
             let url = event["message"]["params"]["request"]["url"].as_str().unwrap();
             // The browser's own pages (chrome:) and what a page makes itself (data:, blob:) need no network.
-            let local = ["chrome:", "data:", "blob:", "about:"].iter().any(|scheme| url.starts_with(scheme));
-            let inside = url.strip_prefix(&self.server.url).is_some_and(|rest| rest.starts_with('/'));
-            assert!(local || inside, "a request to {url}");
-            if local {
+            if ["chrome:", "data:", "blob:", "about:"].iter().any(|scheme| url.starts_with(scheme)) {
                 continue;
             }
-            count += 1;
+            let path = url.strip_prefix(&self.server.url).filter(|rest| rest.starts_with('/'));
+            paths.push(path.unwrap_or_else(|| panic!("a request to {url}")).to_owned());
         }
-        assert!(count > 0, "the log of requests is empty: nothing was checked");
+        self.requested.fetch_add(paths.len(), Ordering::Relaxed);
+        paths
+    }
+
+    async fn check_requests(&self) {
+        self.requests().await;
+        assert!(self.requested.load(Ordering::Relaxed) > 0, "the log of requests is empty: nothing was checked");
+    }
+
+    /// What the console says since this was last asked; what is read here is no matter of the check at the end.
+    pub async fn console(&self) -> Vec<String> {
+        self.driver.browser_log().await.unwrap().into_iter().map(|entry| entry.message).collect()
     }
 }
