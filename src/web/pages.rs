@@ -31,6 +31,13 @@ struct JobPage {
 }
 
 #[derive(Template)]
+#[template(path = "compare.html")]
+struct ComparePage {
+    has_login: bool,
+    plotly_script: String,
+}
+
+#[derive(Template)]
 #[template(path = "not_found.html")]
 struct NotFoundPage {
     has_login: bool,
@@ -62,6 +69,11 @@ pub async fn jobs(Extension(HasLogin(has_login)): Site) -> Response {
 /// `/jobs/{id}`: one job. Whether it exists is for the API to say, which the page asks.
 pub async fn job(Extension(HasLogin(has_login)): Site, Path(id): Path<String>) -> Response {
     page(StatusCode::OK, &JobPage { has_login, id, plotly_script: plotly::script_url() })
+}
+
+/// `/compare`: jobs side by side. Which ones stands in the query, which the page's script reads.
+pub async fn compare(Extension(HasLogin(has_login)): Site) -> Response {
+    page(StatusCode::OK, &ComparePage { has_login, plotly_script: plotly::script_url() })
 }
 
 /// The page for addresses that lead nowhere (status 404); for the router's fallback.

@@ -6,6 +6,7 @@
 
 mod accessibility;
 mod browser;
+mod compare;
 mod form;
 mod job;
 mod list;

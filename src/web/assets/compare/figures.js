@@ -1,0 +1,207 @@
+// The curves of all jobs, one above the other: the same colour and dash for a job in every figure.
+
+import * as api from "../common/api.js";
+import { byId, el, show } from "../common/dom.js";
+import { number, shownUnit } from "../common/format.js";
+import { bars, draw, line, points, stems } from "../common/plots.js";
+
+const PHASE = "Position in the mesh period";
+/** Points of a record that a figure shows at most. */
+const MAX_POINTS = 4000;
+/** Mesh periods of an integrated motion in the phase plane. */
+const PHASE_PERIODS = 40;
+/** A spectrum with more lines than this is drawn as a curve. */
+const MAX_BARS = 48;
+
+const plotOf = (id) => byId(id).querySelector(".plot");
+const options = () => ({
+  half: document.querySelector("#half input:checked").value,
+  isMeanRemoved: byId("mean-removed").checked,
+  channel: byId("channel").value,
+  periods: Number(byId("periods").value),
+  isLogarithmic: byId("spectrum-log").checked,
+});
+
+let jobs = [];
+/** Series that were read: job and channel and window to the answer on its way. */
+let series = new Map();
+let drawing = 0;
+
+export function watchOptions(failed) {
+  for (const id of ["half", "mean-removed", "channel", "periods", "spectrum-log"]) byId(id).addEventListener("change", () => update().catch(failed));
+}
+
+/** Draws the curves of these jobs, as far as they have them. */
+export async function showCurves(all) {
+  jobs = all.filter(({ result }) => result);
+  series = new Map([...series].filter(([key]) => jobs.some(({ id }) => key.startsWith(id))));
+  const symmetric = jobs.every(isSymmetric);
+  show(byId("half"), !symmetric);
+  byId("half-note").textContent = symmetric ? "The halves are alike: the left one is shown." : "";
+  fillChannels();
+  show(byId("curves"), jobs.length > 0);
+  await update();
+}
+
+function isSymmetric({ result }) {
+  const rms = result.response?.rms?.mesh_circumferential_acceleration_m_s2;
+  const alike = !rms || Math.abs(rms.left - rms.right) <= 1e-6 * Math.abs(rms.left);
+  return alike && !result.mesh?.right_curve;
+}
+
+/** Channels that some job has, by the name that they have in either half. */
+function fillChannels() {
+  const known = new Map();
+  for (const { channels } of jobs) for (const { name, quantity, unit } of channels) if (name.endsWith("_left")) known.set(name.slice(0, -5), { quantity, unit });
+  const choice = byId("channel");
+  const chosen = choice.value || "a_x";
+  choice.replaceChildren(...[...known].map(([name, { quantity, unit }]) => el("option", { value: name }, `${name}${quantity ? ` – ${quantity.replaceAll("_", " ")}` : ""}, ${inUnit(unit).unit}`)));
+  if (known.has(chosen)) choice.value = chosen;
+  else if (known.has("a_x")) choice.value = "a_x";
+}
+
+async function update() {
+  const turn = ++drawing;
+  const wanted = options();
+  const shown = [meshCurve("stiffness", "N/µm", (curve) => curve.stiffness_n_per_um, wanted), meshCurve("error", "µm", (curve) => curve.transmission_error_um, wanted), share(wanted), impact(), spectrum(wanted)];
+  await Promise.all([...shown, records(wanted, () => turn === drawing)]);
+  if (turn === drawing) byId("curves").dataset.ready = String(turn);
+}
+
+/** Shows a figure, or hides it where no job has anything for it. */
+async function put(id, traces, axes) {
+  const present = traces.filter(({ x }) => x?.length);
+  show(byId(id), present.length > 0);
+  if (present.length) await draw(plotOf(id), present, axes);
+}
+
+const styledFor = ({ slot }, trace) => ({ ...trace, colour: slot });
+const curveOf = ({ result }, half) => (half === "right" ? result.mesh?.right_curve : null) ?? result.mesh?.curve;
+
+function withoutMean(values, isMeanRemoved) {
+  if (!isMeanRemoved || !values?.length) return values;
+  const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
+  return values.map((value) => value - mean);
+}
+
+function meshCurve(id, unit, pick, { half, isMeanRemoved }) {
+  const traces = jobs.map((job) => {
+    const curve = curveOf(job, half);
+    const values = curve && withoutMean(pick(curve), isMeanRemoved);
+    if (!values?.length) return { x: [] };
+    // The period closes: its end is its beginning.
+    return styledFor(job, line([...curve.phase, curve.phase[0] + 1], [...values, values[0]], job.short));
+  });
+  return put(id, traces, { x: PHASE, y: isMeanRemoved ? `From the mean, ${unit}` : unit, link: "mesh", csvName: `compare-${id}` });
+}
+
+function share({ half }) {
+  const traces = jobs.map((job) => {
+    const { curve } = job.result.mesh ?? {};
+    const shares = curve?.load_share ?? [];
+    const values = shares[half === "right" && shares.length > 1 ? 1 : 0];
+    return values ? styledFor(job, line(curve.load_share_phase, values, job.short)) : { x: [] };
+  });
+  return put("share", traces, { x: "Base pitches from the theoretical start of contact", y: "Share", csvName: "compare-load-share" });
+}
+
+/** The pulses: half sines from the corner's first touch. */
+function impact() {
+  const traces = jobs.map((job) => {
+    const { impact: found, geometry, response } = job.result;
+    const { force_n: force, duration_us: duration, start_mesh_periods: start } = found ?? {};
+    const frequency = response?.mesh_frequency_hz ?? geometry?.mesh_frequency_hz;
+    if (![force, duration, frequency].every((value) => typeof value === "number")) return { x: [] };
+    const length = duration * 1e-6 * frequency;
+    const steps = Array.from({ length: 61 }, (_, index) => index / 60);
+    return styledFor(job, line(steps.map((step) => (start ?? 0) + step * length), steps.map((step) => force * Math.sin(Math.PI * step)), job.short));
+  });
+  return put("impact", traces, { x: "Mesh periods from the theoretical start of contact", y: "N", csvName: "compare-impact" });
+}
+
+function spectrum({ isLogarithmic }) {
+  const found = jobs.map((job) => ({ job, frequency: job.result.response?.mesh_frequency_hz, spectrum: job.result.response?.spectrum })).filter(({ frequency, spectrum: lines }) => frequency > 0 && lines?.frequency_hz?.length);
+  const isFew = (lines) => lines.frequency_hz.length <= MAX_BARS;
+  const areFew = found.every(({ spectrum: lines }) => isFew(lines));
+  const traces = found.map(({ job, frequency, spectrum: lines }) => {
+    const orders = lines.frequency_hz.map((hertz) => Math.round((hertz / frequency) * 1e6) / 1e6);
+    const kind = areFew ? bars : isFew(lines) ? stems : line;
+    return styledFor(job, { ...kind(orders, lines.amplitude_m_s2, job.short), showlegend: true });
+  });
+  return put("spectrum", traces, { x: "Mesh order", y: "m/s²", log: isLogarithmic, csvName: "compare-spectrum", hover: "closest" });
+}
+
+/** Time series and phase plane: both need records of the motion. */
+async function records({ half, isMeanRemoved, channel, periods }, isCurrent) {
+  const moving = jobs.filter(({ channels }) => channels.length > 0);
+  const read = (names, count) => Promise.all(moving.map((job) => Promise.all(names.map((name) => record(job, `${name}_${half}`, count)))));
+  const [chosen, planes] = await Promise.all([read([channel], periods), read(["x", "v_x"], PHASE_PERIODS)]);
+  if (!isCurrent()) return;
+  const { unit, factor } = inUnit(moving.map((job) => channelOf(job, `${channel}_${half}`)).find(Boolean)?.unit);
+  const traces = moving.map((job, index) => {
+    const [found] = chosen[index];
+    if (!found) return { x: [] };
+    const values = withoutMean(found.values, isMeanRemoved).map((value) => value * factor);
+    return styledFor(job, line(...repeated(found, values, periods), job.short));
+  });
+  await put("series", traces, { x: "Mesh periods", y: `${channel}_${half}${isMeanRemoved ? " from the mean" : ""}, ${unit}`, zoomX: true, csvName: `compare-${channel}-${half}` });
+  const paths = moving.map((job, index) => {
+    const [x, v] = planes[index];
+    if (!x || !v) return { x: [] };
+    const close = (values) => (x.isPeriodic ? [...values, values[0]] : values);
+    const path = (x.isPeriodic || x.values.length <= MAX_POINTS ? line : points)(close(x.values.map((value) => value * 1e6)), close(v.values), job.short);
+    return styledFor(job, path);
+  });
+  await put("phase", paths, { x: `x_${half}, µm`, y: `v_x_${half}, m/s`, hover: "closest", csvName: "compare-phase-plane" });
+}
+
+const channelOf = ({ channels }, name) => channels.find((channel) => channel.name === name);
+
+/** Metres are shown as micrometres, other units as they are. */
+const inUnit = (unit) => (unit === "m" ? { unit: "µm", factor: 1e6 } : { unit: shownUnit(unit), factor: 1 });
+
+/** The last mesh periods of a channel: { phase, values, isPeriodic, span }, phase in mesh periods from the start of one. */
+async function record(job, name, periods) {
+  const channel = channelOf(job, name);
+  const { response } = job.result;
+  const frequency = response?.mesh_frequency_hz;
+  if (!channel || !(frequency > 0)) return null;
+  const { t0, dt, n } = channel;
+  const isPeriodic = response.method === "periodic";
+  const span = Math.round(n * dt * frequency);
+  const count = isPeriodic ? span : Math.min(span, periods);
+  const start = t0 + (span - count) / frequency;
+  const window = isPeriodic ? { method: "none" } : { from: Math.max(t0, start - dt / 4), to: t0 + (n - 1) * dt, max_points: MAX_POINTS };
+  const key = `${job.id} ${name} ${count}`;
+  if (!series.has(key)) series.set(key, api.series(job.id, name, window));
+  try {
+    const { t, y } = await series.get(key);
+    return { phase: t.map((time) => (time - start) * frequency), values: y, isPeriodic, span: count };
+  } catch (error) {
+    series.delete(key);
+    throw error;
+  }
+}
+
+/** A periodic record as often as it takes. */
+function repeated({ phase, values: { length }, isPeriodic, span }, values, periods) {
+  if (!isPeriodic || span === 0) return [phase, values];
+  const times = Math.max(1, Math.ceil(periods / span));
+  const x = [];
+  const y = [];
+  for (let turn = 0; turn < times; turn += 1) {
+    for (let index = 0; index < length; index += 1) {
+      if (phase[index] + turn * span > periods) break;
+      x.push(phase[index] + turn * span);
+      y.push(values[index]);
+    }
+  }
+  x.push(Math.min(periods, times * span));
+  y.push(values[Math.round((x.at(-1) % span) / span * length) % length]);
+  return [x, y];
+}
+
+export const describeCurves = () => {
+  const frequencies = new Set(jobs.map(({ result }) => result.response?.mesh_frequency_hz).filter(Boolean).map((hertz) => number(hertz, 6)));
+  return frequencies.size > 1 ? "The mesh frequencies differ: time is counted in mesh periods, frequency in mesh orders." : "";
+};

@@ -1,0 +1,105 @@
+// The headline numbers of each job, in groups, and how they differ from the reference's.
+
+import { number } from "../common/format.js";
+
+/** A quantity: what it is called, its unit, and where it is found. `change` says how differences are told. */
+const quantity = (name, label, unit, pick, options = {}) => ({ name, label, unit, pick, change: "percent", ...options });
+
+/** A value per half: one row when the halves are alike in all jobs. */
+const halves = (name, label, unit, pick, options) => ({ name, label, unit, pickBoth: pick, ...options });
+
+const of = (part, name) => ({ result }) => result?.[part]?.[name];
+
+const GROUPS = [
+  ["Vibration", [
+    halves("circumferential", "Circumferential acceleration of the mesh, RMS", "m/s²", ({ result }) => result?.response?.rms?.mesh_circumferential_acceleration_m_s2),
+    halves("axial", "Axial acceleration of the pinion, RMS", "m/s²", ({ result }) => result?.response?.rms?.pinion_axial_acceleration_m_s2),
+    quantity("dynamic_factor", "Dynamic factor", "", of("response", "dynamic_factor")),
+    quantity("regime", "Motion", "", of("response", "regime"), { change: "word" }),
+    quantity("contact", "Contact", "", of("response", "contact"), { change: "word" }),
+    quantity("min_displacement_um", "Least mesh displacement", "µm", of("response", "min_displacement_um"), { change: "absolute" }),
+    quantity("mesh_frequency_hz", "Mesh frequency", "Hz", ({ result }) => result?.response?.mesh_frequency_hz ?? result?.geometry?.mesh_frequency_hz),
+  ]],
+  ["Mesh-in impact", [
+    quantity("force_n", "Impact force", "N", of("impact", "force_n")),
+    quantity("zhou2008_force_n", "Impact force after Zhou 2008", "N", of("impact", "zhou2008_force_n")),
+    quantity("reduction_percent", "Reduction by the pairs in mesh", "%", of("impact", "reduction_percent"), { change: "points" }),
+    quantity("velocity_m_s", "Impact velocity", "m/s", of("impact", "velocity_m_s")),
+    quantity("duration_us", "Impact duration", "µs", of("impact", "duration_us")),
+  ]],
+  ["Mesh of one half", [
+    quantity("stiffness_mean_n_per_um", "Mean mesh stiffness", "N/µm", of("mesh", "stiffness_mean_n_per_um")),
+    quantity("stiffness_swing", "Mesh stiffness, peak to peak", "N/µm", ({ result }) => swing(result?.mesh)),
+    quantity("transmission_error_pp_um", "Transmission error, peak to peak", "µm", of("mesh", "transmission_error_pp_um")),
+    quantity("transmission_error_mean_um", "Transmission error, mean", "µm", of("mesh", "transmission_error_mean_um")),
+    quantity("load_share_at_mesh_in", "Load share at mesh-in", "", of("mesh", "load_share_at_mesh_in"), { change: "absolute" }),
+    quantity("max_line_load_n_per_mm", "Largest line load", "N/mm", of("mesh", "max_line_load_n_per_mm")),
+    quantity("max_contact_pressure_mpa", "Largest contact pressure", "MPa", of("mesh", "max_contact_pressure_mpa")),
+  ]],
+  ["Geometry", [
+    quantity("transverse_contact_ratio", "Transverse contact ratio ε_α", "", of("geometry", "transverse_contact_ratio")),
+    quantity("overlap_ratio", "Overlap ratio ε_β", "", of("geometry", "overlap_ratio")),
+    quantity("total_contact_ratio", "Total contact ratio ε_γ", "", of("geometry", "total_contact_ratio")),
+    quantity("loaded_contact_ratio", "Total contact ratio under load", "", of("mesh", "loaded_contact_ratio")),
+    quantity("working_pressure_angle_deg", "Working transverse pressure angle α_wt", "°", of("geometry", "working_pressure_angle_deg"), { change: "absolute" }),
+    quantity("center_distance_mm", "Centre distance a", "mm", of("geometry", "center_distance_mm")),
+  ]],
+  ["Sweep", [
+    halves("sweep_circumferential", "Largest circumferential acceleration, RMS", "m/s²", ({ points }) => largestOfHalves(points, "mesh_circumferential_acceleration_rms_m_s2")),
+    halves("sweep_axial", "Largest axial acceleration of the pinion, RMS", "m/s²", ({ points }) => largestOfHalves(points, "pinion_axial_acceleration_rms_m_s2")),
+    quantity("sweep_dynamic_factor", "Largest dynamic factor", "", ({ points }) => largest(points, (point) => point.dynamic_factor)),
+    quantity("sweep_separated", "Points at which the teeth separate", "", ({ points }) => points && points.filter(({ contact }) => contact && contact !== "continuous").length, { change: "absolute" }),
+    quantity("sweep_points", "Points", "", ({ points }) => points?.length, { change: "absolute" }),
+  ]],
+];
+
+function swing(mesh) {
+  const [least, most] = [mesh?.stiffness_min_n_per_um, mesh?.stiffness_max_n_per_um];
+  return typeof least === "number" && typeof most === "number" ? most - least : null;
+}
+
+function largest(points, pick) {
+  const found = (points ?? []).map((point) => ({ value: pick(point), at: point.values })).filter(({ value }) => typeof value === "number");
+  return found.length ? found.reduce((a, b) => (b.value > a.value ? b : a)) : null;
+}
+
+function largestOfHalves(points, name) {
+  const [left, right] = ["left", "right"].map((half) => largest(points, (point) => point[name]?.[half]));
+  return left || right ? { left, right } : null;
+}
+
+const isFinding = (found) => found !== null && typeof found === "object";
+const valueOf = (found) => (isFinding(found) ? found.value : found);
+const alike = (a, b) => a === b || Math.abs(a - b) <= 1e-9 * Math.abs(a);
+
+/** Groups { title, rows: [{ name, label, unit, cells: [{ value, at }], change }] } of what at least one job has. */
+export function groupsOf(jobs) {
+  return GROUPS.map(([title, quantities]) => ({ title, rows: quantities.flatMap((entry) => rowsOf(entry, jobs)) })).filter(({ rows }) => rows.length > 0);
+}
+
+function rowsOf(entry, jobs) {
+  if (!entry.pickBoth) return row(entry, entry.label, jobs.map(entry.pick));
+  const both = jobs.map((job) => entry.pickBoth(job));
+  const symmetric = both.every((pair) => !pair || alike(valueOf(pair.left), valueOf(pair.right)));
+  if (symmetric) return row({ ...entry, name: `${entry.name}-both` }, `${entry.label}, both halves`, both.map((pair) => pair?.left));
+  return ["left", "right"].flatMap((half) => row({ ...entry, name: `${entry.name}-${half}` }, `${entry.label}, ${half}`, both.map((pair) => pair?.[half])));
+}
+
+function row({ name, unit, change = "percent" }, label, found) {
+  const cells = found.map((one) => ({ value: valueOf(one) ?? null, at: isFinding(one) ? one.at : null }));
+  return cells.every(({ value }) => value === null) ? [] : [{ name, label, unit, change, cells }];
+}
+
+/** How a value differs from the reference's, as text; empty where that means nothing. */
+export function difference(value, reference, change, unit) {
+  if (typeof value !== "number" || typeof reference !== "number" || change === "word") return "";
+  const by = value - reference;
+  if (by === 0) return "=";
+  const sign = by > 0 ? "+" : "";
+  if (change === "points") return `${sign}${number(by, 3)} points`;
+  if (change === "absolute" || reference === 0) return `${sign}${number(by, 3)}${unit ? ` ${unit}` : ""}`;
+  const percent = (100 * by) / Math.abs(reference);
+  if (Math.abs(percent) < 5e-4) return "≈";
+  if (percent >= 1000) return `×${number(value / reference, 3)}`;
+  return `${sign}${number(percent, 3)} %`;
+}

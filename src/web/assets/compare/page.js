@@ -1,0 +1,140 @@
+// Two to five jobs side by side: inputs that differ, headline numbers, curves.
+
+import * as api from "../common/api.js";
+import { byId, notify } from "../common/dom.js";
+import { followJobs } from "../common/follow.js";
+import { nameOf } from "../jobs/words.js";
+import * as address from "./address.js";
+import { mark, showChosen } from "./chosen.js";
+import { describeCurves, showCurves, watchOptions } from "./figures.js";
+import { load } from "./load.js";
+import { pick } from "./picker.js";
+import { showSweeps, watchQuantity } from "./sweeps.js";
+import { saveTables, showTables } from "./tables.js";
+
+const LETTERS = "ABCDE";
+const MAX_NAME = 26;
+
+const notice = byId("notice");
+let view = address.read();
+let known = new Map();
+/** Which line stands for which job: kept as long as the job is here. */
+let slots = new Map();
+let turn = 0;
+let stopFollowing = null;
+
+function failed(error) {
+  notice.classList.add("bad");
+  notify(notice, error);
+}
+
+function slotOf(id) {
+  if (!slots.has(id)) slots.set(id, [...LETTERS].findIndex((_, slot) => ![...slots.values()].includes(slot)));
+  return slots.get(id);
+}
+
+/** The jobs in their order, with what they are called here. */
+function entries() {
+  slots = new Map([...slots].filter(([id]) => view.ids.includes(id)));
+  return view.ids.map((id) => {
+    const found = known.get(id) ?? { id, job: null };
+    const slot = slotOf(id);
+    const letter = LETTERS[slot];
+    const name = found.job ? nameOf(found.job) : `Job …${id.slice(-6)}`;
+    const short = `${letter}  ${name.length > MAX_NAME ? `${name.slice(0, MAX_NAME - 1)}…` : name}`;
+    return { ...found, slot, letter, name, short, mark: () => mark(letter, slot) };
+  });
+}
+
+/** Reads what is not known yet, and shows everything. */
+async function refresh() {
+  const mine = ++turn;
+  try {
+    const found = await Promise.all(view.ids.map((id) => load(id, known.get(id))));
+    if (mine !== turn) return;
+    known = new Map(found.map((entry) => [entry.id, entry]));
+    notice.classList.toggle("bad", view.surplus === 0);
+    notify(notice, view.surplus > 0 ? { problem: { title: "At most five jobs can be compared.", detail: `The first five are shown; ${view.surplus} more stood in the address.` } } : null);
+    await render();
+  } catch (error) {
+    if (mine === turn) failed(error);
+  }
+  follow();
+}
+
+async function render() {
+  const jobs = entries();
+  const reference = jobs.find(({ id }) => id === view.reference) ?? jobs[0];
+  showChosen(jobs, reference, { add, replace, remove, refer });
+  const names = jobs.map(({ name }) => name).join(", ");
+  document.title = `${names ? `Compare ${names}` : "Compare"} · herringbone`;
+  showTables(jobs, reference);
+  await Promise.all([showCurves(jobs), showSweeps(jobs, reference)]);
+  byId("curves-note").textContent = describeCurves();
+  byId("compare").dataset.ready = view.ids.join(",");
+}
+
+/** While a job lives, its end is waited for; a stream costs a place, so none is kept open without need. */
+function follow() {
+  const isLive = [...known.values()].some(({ job }) => job && !api.isEnded(job));
+  if (isLive && !stopFollowing) {
+    stopFollowing = followJobs({}, {
+      onReload: () => turn > 0 && refresh(),
+      onJob: (job) => known.has(job.id) && take(job),
+      onDeleted: (id) => known.has(id) && refresh(),
+    });
+  } else if (!isLive && stopFollowing) {
+    stopFollowing();
+    stopFollowing = null;
+  }
+}
+
+function take(job) {
+  const entry = known.get(job.id);
+  if (!entry.job || entry.job.revision >= job.revision) return;
+  if (api.isEnded(job)) {
+    byId("said").textContent = `${nameOf(job)} ${job.state}`;
+    refresh();
+    return;
+  }
+  known.set(job.id, { ...entry, job });
+  const jobs = entries();
+  showChosen(jobs, jobs.find(({ id }) => id === view.reference) ?? jobs[0], { add, replace, remove, refer });
+}
+
+function go(next) {
+  view = { surplus: 0, ...next };
+  if (!view.ids.includes(view.reference)) view.reference = view.ids[0];
+  address.write(view, true);
+  refresh();
+}
+
+const add = () => pick("Add a job", view.ids, (id) => go({ ...view, ids: [...view.ids, id] }), failed);
+
+function replace(old) {
+  pick("Replace the job by", view.ids, (id) => {
+    slots.set(id, slotOf(old));
+    slots.delete(old);
+    go({ ids: view.ids.map((one) => (one === old ? id : one)), reference: view.reference === old ? id : view.reference });
+  }, failed);
+}
+
+const remove = (gone) => go({ ...view, ids: view.ids.filter((id) => id !== gone) });
+
+function refer(reference) {
+  view = { ...view, reference };
+  address.write(view, true);
+  render().catch(failed);
+}
+
+byId("csv").addEventListener("click", () => {
+  const jobs = entries();
+  saveTables(jobs, jobs.find(({ id }) => id === view.reference) ?? jobs[0]);
+});
+window.addEventListener("popstate", () => {
+  view = address.read();
+  refresh();
+});
+watchOptions(failed);
+watchQuantity(failed);
+refresh();
