@@ -107,12 +107,19 @@ async fn two_jobs_are_compared_and_a_third_is_added() {
         browser.element("#picker-search").await.send_keys("FAST").await.unwrap();
         browser.element("#picker-jobs button").await.click().await.unwrap();
         browser.until(&format!("document.querySelector('#compare').dataset.ready === '{a},{b},{c}'")).await;
-        assert_eq!(browser.value("new URLSearchParams(location.search).get('jobs')").await, json!(format!("{a},{b},{c}")));
+        assert_eq!(
+            browser.value("new URLSearchParams(location.search).get('jobs')").await,
+            json!(format!("{a},{b},{c}"))
+        );
         let expected = json!(["/design/helix_angle_deg", "/operation/pinion_speed_rpm", "/operation/pinion_torque_nm"]);
         assert_eq!(browser.value(pointers).await, expected);
         near(cell(browser, "circumferential-both", &c).await.0, &rms(&third));
         for figure in ["error", "series", "spectrum"] {
-            browser.until(&format!("document.querySelector('#{figure} .plot').data.filter((trace) => trace.name).length === 3")).await;
+            browser
+                .until(&format!(
+                    "document.querySelector('#{figure} .plot').data.filter((trace) => trace.name).length === 3"
+                ))
+                .await;
         }
         // Mesh periods of different length lie above each other.
         let ends = "document.querySelector('#series .plot').data.map((trace) => trace.x.at(-1))";
