@@ -58,7 +58,6 @@ export const cancel = (id) => request("POST", `${at(id)}/cancel`);
 export const remove = (id) => request("DELETE", at(id));
 export const input = (id) => request("GET", inputUrl(id).slice(BASE.length));
 export const result = (id) => request("GET", resultUrl(id).slice(BASE.length));
-export const points = (id, parameters, signal) => request("GET", `${at(id)}/points${query(parameters)}`, { signal });
 export const catalogue = (id) => request("GET", `${at(id)}/series`);
 export const series = (id, channel, parameters, signal) =>
   request("GET", `${at(id)}/series/${encodeURIComponent(channel)}${query(parameters)}`, { signal });
