@@ -24,13 +24,14 @@ use axum::{Extension, Router};
 pub const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; \
                                            base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
-/// The pages `/`, `/jobs`, `/jobs/{id}`, `/compare` and the files under `/assets/`. `has_login` says whether the service has a token,
+/// The pages `/`, `/jobs`, `/jobs/{id}`, `/jobs/{id}/report`, `/compare` and the files under `/assets/`. `has_login` says whether the service has a token,
 /// so that people can log out.
 pub fn routes(has_login: bool) -> Router {
     Router::new()
         .route("/", get(pages::design))
         .route("/jobs", get(pages::jobs))
         .route("/jobs/{id}", get(pages::job))
+        .route("/jobs/{id}/report", get(pages::report))
         .route("/compare", get(pages::compare))
         .route("/assets/plotly.js", get(plotly::script))
         .route("/assets/plotly.css", get(plotly::stylesheet))

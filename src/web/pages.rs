@@ -38,6 +38,14 @@ struct ComparePage {
 }
 
 #[derive(Template)]
+#[template(path = "report.html")]
+struct ReportPage {
+    has_login: bool,
+    id: String,
+    plotly_script: String,
+}
+
+#[derive(Template)]
 #[template(path = "not_found.html")]
 struct NotFoundPage {
     has_login: bool,
@@ -74,6 +82,11 @@ pub async fn job(Extension(HasLogin(has_login)): Site, Path(id): Path<String>) -
 /// `/compare`: jobs side by side. Which ones stands in the query, which the page's script reads.
 pub async fn compare(Extension(HasLogin(has_login)): Site) -> Response {
     page(StatusCode::OK, &ComparePage { has_login, plotly_script: plotly::script_url() })
+}
+
+/// `/jobs/{id}/report`: one job on paper.
+pub async fn report(Extension(HasLogin(has_login)): Site, Path(id): Path<String>) -> Response {
+    page(StatusCode::OK, &ReportPage { has_login, id, plotly_script: plotly::script_url() })
 }
 
 /// The page for addresses that lead nowhere (status 404); for the router's fallback.

@@ -53,6 +53,7 @@ export const validate = (document, signal) => request("POST", "/jobs/validate", 
 export const submit = (document, key) =>
   request("POST", "/jobs", { body: document, headers: { "Idempotency-Key": key } });
 export const jobs = (parameters, signal) => request("GET", `/jobs${query(parameters)}`, { signal });
+export const kinds = () => request("GET", "/kinds");
 export const job = (id) => request("GET", at(id));
 export const cancel = (id) => request("POST", `${at(id)}/cancel`);
 export const remove = (id) => request("DELETE", at(id));

@@ -65,7 +65,7 @@ const isMap = ({ type }) => type === "heatmap" || type === "contour";
 const shownTraces = ({ traces }) => traces.filter((trace) => !trace.aside);
 
 /** Least and greatest value of each trace, and where they are. */
-function summary(figure) {
+export function summary(figure) {
   const { axes } = figure;
   const x = parts(axes.x);
   return shownTraces(figure)

@@ -37,12 +37,12 @@ export function impactValues(impact) {
   const value = (shown, digits = 4) => (typeof shown === "number" ? number(shown, digits) : null);
   return [
     ["Excites the response", IMPACTS[impact.source] ?? impact.source],
-    ["Impact velocity v_s", value(impact.velocity_m_s), "m/s"],
+    ["Impact velocity", value(impact.velocity_m_s), "m/s"],
     ["Length of the pulse", value(impact.duration_us), "µs"],
     ["Length by the balance of energy", value(impact.energy_balance_duration_us), "µs"],
     ["Start", value(impact.start_mesh_periods), "mesh periods"],
     ["Inclination of the line of action θ", value(impact.theta_deg), "°"],
-    ["Equivalent mass m_e", value(impact.equivalent_mass_kg), "kg"],
+    ["Equivalent mass", value(impact.equivalent_mass_kg), "kg"],
     ["Stiffness of the entering pair", value(impact.single_pair_stiffness_n_per_um), "N/µm"],
     ["Stiffness of the pairs in mesh", value(impact.other_pairs_stiffness_n_per_um), "N/µm"],
     ["Deflection at the first touch", value(impact.corner_deflection_um), "µm"],

@@ -36,7 +36,8 @@ export class Life {
     show(byId("cancel"), !ended);
     byId("cancel").disabled = Boolean(job.cancel_requested_at);
     show(byId("delete"), ended);
-    for (const name of ["report", "compare", "download-result"]) show(byId(name), job.state === "succeeded");
+    for (const name of ["compare", "download-result"]) show(byId(name), job.state === "succeeded");
+    show(byId("report"), job.state === "succeeded" && job.kind !== "sweep");
     byId("download-input").href = api.inputUrl(this.id);
     byId("download-result").href = api.resultUrl(this.id);
     this.showValues(job);

@@ -29,7 +29,7 @@ export function modeRows({ natural_modes: modes, mesh_frequency_hz: mesh }, inpu
       String(at + 1),
       mode.frequency_hz > 0 ? number(mode.frequency_hz, 5) : "0",
       typeof mode.damping_ratio === "number" ? number(100 * mode.damping_ratio, 3) : "",
-      mode.frequency_hz > 0 ? number(100 * meshShare(mode), 3) : "",
+      mode.frequency_hz > 0 ? number(meshShare(mode) < 1e-9 ? 0 : 100 * meshShare(mode), 3) : "",
       nearest ? String(nearest.order) : "",
       nearest ? number(nearest.ratio, 3) : "",
       nearest && speed > 0 ? number(speed / nearest.ratio, 4) : "",

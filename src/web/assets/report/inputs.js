@@ -1,0 +1,48 @@
+// The inputs of a job by groups, with what differs from the defaults.
+
+import { labelOf, number, sentence, shownUnit, unitOf } from "../common/format.js";
+
+const GROUPS = [
+  ["Operating point", "/operation"], ["Gear", "/design"], ["Material", "/design/material"], ["Pinion", "/design/pinion"], ["Wheel", "/design/gear"], ["Supports", "/design/supports"],
+  ["Assembly errors", "/design/assembly"], ["Model", "/model"], ["Analysis", "/analysis"],
+];
+
+/** Groups { title, rows } of rows { label, value, unit, differs, usual, help }; what is null is derived and left out. */
+export function inputGroups(input, schema) {
+  const groups = new Map(GROUPS.map(([title, pointer]) => [pointer, { title, rows: [] }]));
+  walk(input, schema, "", (pointer, value, about) => {
+    const home = [...groups.keys()].filter((key) => pointer.startsWith(`${key}/`)).sort((a, b) => b.length - a.length)[0];
+    if (!home) return;
+    const steps = pointer.slice(home.length + 1).split("/");
+    const name = steps.at(-1);
+    const where = steps.slice(0, -1).map((step) => step.replaceAll("_", " "));
+    const usual = about?.default;
+    const unit = unitOf(name.replace("_per_rad", "")) + (name.endsWith("_per_rad") ? "/rad" : "") || (about?.["x-unit"] && about["x-unit"] !== "1" ? shownUnit(about["x-unit"]) : "");
+    groups.get(home).rows.push({
+      label: sentence([...where, wordsOf(name)].join(", ")), value: shown(value), unit, help: about?.description ?? "",
+      differs: usual !== undefined && usual !== null && JSON.stringify(usual) !== JSON.stringify(value), usual: usual === undefined || usual === null ? null : shown(usual),
+    });
+  });
+  return [...groups.values()].filter(({ rows }) => rows.length);
+}
+
+/** A field's name as words; names of people keep their capitals. */
+const wordsOf = (name) => labelOf(name.replace("_per_rad", "")).toLowerCase().replace("youngs", "Young's").replace("poissons", "Poisson's");
+
+function walk(value, schema, pointer, found) {
+  if (value === null || value === undefined) return;
+  if (typeof value === "object" && !Array.isArray(value)) {
+    for (const [name, inner] of Object.entries(value)) walk(inner, schema?.properties?.[name], `${pointer}/${name}`, found);
+  } else {
+    found(pointer, value, schema);
+  }
+}
+
+function shown(value) {
+  if (Array.isArray(value)) {
+    if (value.length > 8) return `${value.length} values`;
+    return value.map((one) => (typeof one === "object" ? Object.values(one).map(shown).join(" at ") : shown(one))).join("; ");
+  }
+  if (typeof value === "boolean") return value ? "yes" : "no";
+  return typeof value === "number" ? number(value, 8) : String(value).replaceAll("_", " ");
+}

@@ -1,0 +1,174 @@
+// The report of one job: everything on paper, plots as drawings.
+
+import * as api from "../common/api.js";
+import { byId, el, fillRows, fillValues, fillWarnings, notify, show } from "../common/dom.js";
+import { instant, number } from "../common/format.js";
+import { line } from "../common/plot_traces.js";
+import { summary } from "../common/plot_tools.js";
+import { picture } from "../common/plots.js";
+import { headlines } from "../job/headline.js";
+import { impactRows, impactValues } from "../job/impact.js";
+import { pulsePlot } from "../job/impact_plots.js";
+import { meshValues } from "../job/mesh.js";
+import { errorPlot, flankPlot, harmonicsPlot, sharePlot, sharingPlot, stiffnessPlot } from "../job/mesh_plots.js";
+import { modeRows } from "../job/modes.js";
+import { modesPlot, phasePlot, spectrumPlot } from "../job/motion_plots.js";
+import { numericsValues } from "../job/numerics.js";
+import { responseValues } from "../job/response.js";
+import { channelScale, channelWords } from "../job/words.js";
+import { gearData, symbolOf } from "./iso21771.js";
+import { inputGroups } from "./inputs.js";
+
+const { id } = byId("report").dataset;
+/** Points of a series on paper. */
+const POINTS = 1500;
+/** Mesh periods of a series on paper. */
+const PERIODS = 8;
+/** Sizes of the drawings, px: they are made smaller on paper, by about a quarter. */
+const HALF = { width: 460, height: 280 };
+const WHOLE = { width: 930, height: 250 };
+
+function showHead(job) {
+  show(byId("head"));
+  const name = job.name ?? `Job ${job.id.slice(-8)}`;
+  byId("title").textContent = name;
+  document.title = `${name} · report`;
+  byId("subtitle").textContent = "Contact, mesh-in impact and vibration of a double-helical gear pair";
+  fillValues(byId("facts"), [
+    ["Kind", { mesh: "Mesh", response: "Response at one operating point" }[job.kind] ?? job.kind],
+    ["Label", job.label],
+    ["Computed", job.ended_at ? instant(job.ended_at) : null],
+    ["Solver", `herringbone ${job.solver_version}`],
+    ["Job", el("code", {}, job.id)],
+    ["Input hash", el("code", { class: "hash" }, job.input_hash)],
+  ]);
+}
+
+function showGearData(geometry, input) {
+  if (!geometry) return;
+  const { pair, members } = gearData({ geometry, input });
+  fillRows(byId("members").tBodies[0], members.filter(({ pinion, gear }) => pinion !== null && gear !== null).map(({ symbol, name, pinion, gear, unit }) => [name, symbolOf(symbol) ?? "", number(pinion, 6), number(gear, 6), unit]));
+  fillRows(byId("pair").tBodies[0], pair.filter(({ value }) => value !== null).map(({ symbol, name, value, unit }) => [name, symbolOf(symbol) ?? "", number(value, 6), unit]));
+  show(byId("gear-data"));
+}
+
+function showResults({ mesh, impact, response }, input) {
+  show(byId("results"), Boolean(mesh || impact || response));
+  if (response) {
+    const row = (name, { left, right }) => [name, number(left), number(right), "m/s²"];
+    fillRows(byId("rms").tBodies[0], [row("Circumferential, mesh", response.rms.mesh_circumferential_acceleration_m_s2), row("Axial, pinion", response.rms.pinion_axial_acceleration_m_s2)]);
+    fillValues(byId("response-values"), responseValues(response, input));
+    show(byId("response-block"));
+  }
+  if (mesh) {
+    fillValues(byId("mesh-values"), meshValues(mesh, input));
+    show(byId("mesh-block"));
+  }
+  if (impact) {
+    fillRows(byId("impact-table").tBodies[0], impactRows(impact));
+    fillValues(byId("impact-values"), impactValues(impact));
+    show(byId("impact-block"));
+  }
+}
+
+async function showPlots({ geometry, mesh, impact, response, numerics }, input, catalogue) {
+  const motion = response ? await motionPlots(response, numerics, input, catalogue) : [];
+  const plots = [
+    ["Mesh stiffness of one half", stiffnessPlot(mesh)],
+    ["Loaded transmission error of one half", errorPlot(mesh)],
+    ["Share of the load of one pair over its path", sharePlot(mesh, geometry)],
+    ["Sharing of the load between all pairs in mesh", sharingPlot(mesh)],
+    ["Line load on the flanks of a pinion tooth, true to scale", flankPlot(mesh, geometry, input), WHOLE],
+    ["Harmonics of the transmission error", harmonicsPlot(mesh)],
+    ["Impact pulse", pulsePlot(impact, geometry?.mesh_frequency_hz)],
+    ...motion,
+    ["Spectrum of the left circumferential acceleration", response && spectrumPlot(response, numerics)],
+    ["Natural modes against the harmonics of the mesh frequency", response && modesPlot(response, numerics), WHOLE],
+  ].filter(([, plot]) => plot);
+  show(byId("plots"), plots.length > 0);
+  for (const [title, { traces, axes }, size = HALF] of plots) {
+    const image = el("img", { width: size.width, height: size.height, alt: summary({ traces, axes: { ...axes, name: title } }) });
+    byId("figures").append(el("figure", { class: size === WHOLE ? "whole" : "" }, el("figcaption", {}, title), image));
+    const drawing = await picture(traces, { ...axes, name: title }, { format: "svg", ...size });
+    image.src = `data:image/svg+xml,${encodeURIComponent(drawing)}`;
+    await image.decode();
+  }
+}
+
+/** The last mesh periods of displacement and acceleration of the meshes, and the phase plane over the same time. */
+async function motionPlots(response, numerics, input, catalogue) {
+  const known = new Map(catalogue.map((channel) => [channel.name, channel]));
+  const period = 1 / response.mesh_frequency_hz;
+  const last = async (name) => {
+    const { t_end: end, t0 } = known.get(name);
+    return api.series(id, name, { from: Math.max(t0, end - PERIODS * period), to: end, max_points: POINTS });
+  };
+  const halves = numerics.degrees_of_freedom === 6 ? ["left"] : ["left", "right"];
+  const plots = [];
+  for (const [title, base] of [["Mesh displacement along the circumference", "x"], ["Mesh acceleration along the circumference", "a_x"]]) {
+    const names = halves.map((half) => `${base}_${half}`).filter((name) => known.has(name));
+    if (!names.length) continue;
+    const { unit, factor } = channelScale(known.get(names[0]).unit);
+    const traces = (await Promise.all(names.map(last))).map(({ t, y }, index) => line(t.map((time) => time * 1e3), y.map((value) => value * factor), halves.length > 1 ? halves[index] : ""));
+    plots.push([title, { traces, axes: { x: "Time, ms", y: { label: base === "x" ? "Displacement" : "Acceleration", unit } } }]);
+  }
+  if (known.has("s_left") && known.has("v_s_left")) {
+    const exact = async (name) => {
+      const { t_end: end, t0 } = known.get(name);
+      return (await api.series(id, name, { from: Math.max(t0, end - PERIODS * period), to: end, method: "none" })).y;
+    };
+    const paths = await Promise.all(halves.filter((half) => known.has(`s_${half}`) && known.has(`v_s_${half}`)).map(async (half) => {
+      const closed = (values) => (response.method === "periodic" ? [...values, values[0]] : values);
+      const [place, velocity] = await Promise.all([`s_${half}`, `v_s_${half}`].map(exact));
+      return { half, place: closed(place.map((value) => value * 1e6)), velocity: closed(velocity.map((value) => value * 1e3)) };
+    }));
+    plots.push([`Phase plane, ${channelWords("s_left").split(",")[1].trim()}`, phasePlot(paths, { x: "Displacement s, µm", y: "Velocity, mm/s", edge: input.design?.backlash_um / 2 })]);
+  }
+  return plots;
+}
+
+function showInputs(input, kinds) {
+  const schema = kinds.items.find(({ kind }) => kind === input.kind)?.schema;
+  const groups = inputGroups(input, schema);
+  byId("input-groups").replaceChildren(
+    ...groups.map(({ title, rows }) =>
+      el("section", {}, el("h3", {}, title), el("dl", { class: "values" }, ...rows.map(({ label, value, unit, differs, usual, help }) =>
+        el("div", { class: differs ? "differs" : "", title: help }, el("dt", {}, differs ? "● " : "", label), el("dd", {}, value, unit ? el("span", { class: "unit" }, ` ${unit}`) : null, differs ? el("span", { class: "usual" }, ` (${usual})`) : null))))),
+    ),
+  );
+  show(byId("inputs"), groups.length > 0);
+}
+
+async function start() {
+  const job = await api.job(id);
+  showHead(job);
+  if (job.state !== "succeeded" || job.kind === "sweep") {
+    throw new Error(job.kind === "sweep" ? "A report is of one operating point: this job is a sweep." : `There is a report when the job has succeeded; it is ${job.state}.`);
+  }
+  const [result, input, kinds] = await Promise.all([api.result(id), api.input(id), api.kinds()]);
+  const catalogue = result.response ? (await api.catalogue(id)).items : [];
+  fillRows(byId("headline").tBodies[0], headlines(result).map(([name, value, unit, note]) => [name, el("strong", {}, `${value} ${unit}`.trim()), el("span", {}, ...[note].flat())]));
+  show(byId("summary"));
+  fillWarnings(byId("warnings"), result.warnings);
+  show(byId("warned"), result.warnings?.length > 0);
+  showGearData(result.geometry, input);
+  showResults(result, input);
+  showInputs(input, kinds);
+  if (result.response?.natural_modes?.length) {
+    fillRows(byId("modes-table").tBodies[0], modeRows(result.response, input));
+    show(byId("modes"));
+  }
+  fillValues(byId("numerics-values"), [
+    ["Error of the RMS values, estimated", typeof result.response?.error_estimate === "number" ? number(result.response.error_estimate, 2) : null],
+    ["Error asked for", result.response ? number(input.analysis?.accuracy, 2) : null],
+    ["Time", number(Object.values(result.numerics.wall_ms).reduce((sum, time) => sum + time, 0), 3), "ms"],
+    ...numericsValues({ job: null, ...result }),
+  ]);
+  show(byId("numerics"));
+  await showPlots(result, input, catalogue);
+  byId("print").disabled = false;
+  byId("report").dataset.ready = "true";
+}
+
+byId("print").addEventListener("click", () => window.print());
+start().catch((error) => notify(byId("notice"), error));
