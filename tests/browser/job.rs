@@ -19,6 +19,42 @@ pub async fn succeeded(browser: &Browser) {
     assert_eq!(browser.value("document.querySelector('#notice').hidden").await, json!(true));
 }
 
+/// A document of the folder of examples.
+pub fn example(name: &str) -> Value {
+    let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// Submits a document to the API from a page of the service; returns the job's id.
+pub async fn submit_document(browser: &Browser, document: &Value) -> String {
+    browser.open("/nowhere").await;
+    let script = "const done = arguments[1]; fetch('/api/v1/jobs', {method: 'POST', headers: {'Content-Type': 'application/json'}, \
+                  body: JSON.stringify(arguments[0])}).then((answer) => answer.json()).then(done, (error) => done(String(error)));";
+    let job = browser.driver.execute_async(script, vec![document.clone()]).await.unwrap().json().clone();
+    job["id"].as_str().unwrap_or_else(|| panic!("{job}")).to_owned()
+}
+
+/// Elements that reach beyond the right edge of the window, but those that scroll inside.
+pub const STICKING_OUT: &str = "[...document.querySelectorAll('main *')].filter((node) => node.getBoundingClientRect().right > \
+     window.innerWidth && !node.closest('.scroll, .visually-hidden, defs, clipPath, dialog:not([open])')).map((node) => \
+     `${node.tagName} ${node.id} ${node.getAttribute('class')}`)";
+
+/// Nothing that is missing shows as a word of the programming language.
+pub async fn assert_complete(browser: &Browser) {
+    let words = "document.querySelector('main').innerText.match(/\\b(null|undefined|NaN|Infinity)\\b|\\[object/g)";
+    assert_eq!(browser.value(words).await, Value::Null, "{}", browser.text("main").await);
+}
+
+/// The text that a click on a button saves as a file.
+async fn saved_by(browser: &Browser, selector: &str) -> String {
+    let script = "const [selector, done] = arguments; const make = URL.createObjectURL; \
+                  HTMLAnchorElement.prototype.click = function () {}; \
+                  URL.createObjectURL = (blob) => { blob.text().then(done); return make.call(URL, blob); }; \
+                  document.querySelector(selector).click();";
+    let text = browser.driver.execute_async(script, vec![json!(selector)]).await.unwrap();
+    text.json().as_str().unwrap().to_owned()
+}
+
 /// A number as the page writes it, read back.
 fn read_number(text: &str) -> f64 {
     let text = text.replace('\u{202f}', "").replace('−', "-");
@@ -50,23 +86,48 @@ async fn the_example_goes_from_the_form_to_its_result() {
         let geometry = browser.text("#geometry-values").await;
         assert!(geometry.contains("Transverse contact ratio"), "{geometry}");
         assert_eq!(browser.value("document.querySelectorAll('#impact-table tbody tr').length").await, json!(3));
-        let spectrum = !result["response"]["spectrum"].is_null();
-        assert_eq!(browser.value("!document.querySelector('#spectrum').hidden").await, json!(spectrum));
-        let plots = ["stiffness", "error", "share", "series", "phase", "spectrum"];
-        for plot in plots.into_iter().filter(|plot| spectrum || *plot != "spectrum") {
+        let headline = browser.text("#headline").await;
+        for words in ["Teeth stay in contact", "Period 1", "below Zhou 2008", "Nearest resonance"] {
+            assert!(headline.contains(words), "{words}: {headline}");
+        }
+        for plot in [
+            "stiffness",
+            "error",
+            "share",
+            "sharing",
+            "flank",
+            "harmonics",
+            "impact",
+            "series",
+            "phase",
+            "spectrum",
+            "modes",
+        ] {
             // Plots are drawn when they are scrolled near.
             browser.value(&format!("document.querySelector('#{plot}-plot').scrollIntoView()")).await;
-            browser.until(&format!("document.querySelectorAll('#{plot}-plot .scatterlayer .trace').length >= 1")).await;
+            browser
+                .until(&format!("document.querySelectorAll('#{plot}-plot :is(.trace, .point, .hm)').length >= 1"))
+                .await;
         }
+        assert_complete(browser).await;
+
+        // A plot's file has the numbers of the API.
+        let text = saved_by(browser, "#stiffness-plot + .plot-tools .plot-files button").await;
+        let curve = &result["mesh"]["curve"];
+        let mut rows = text.trim_end().split("\r\n");
+        let header = rows.next().unwrap();
+        assert!(header.starts_with("Position in the mesh period,Mesh stiffness tangent dF/dδ [N/µm]"), "{header}");
+        let rows: Vec<Vec<f64>> = rows.map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+        let numbers = |name: &str| curve[name].as_array().unwrap().iter().map(|value| value.as_f64().unwrap());
+        assert!(rows.iter().map(|row| row[0]).zip(numbers("phase")).all(|(a, b)| a == b));
+        assert!(rows.iter().map(|row| row[1]).zip(numbers("stiffness_n_per_um")).all(|(a, b)| a == b));
+        assert_eq!(rows.len(), curve["phase"].as_array().unwrap().len() + 1, "the period's end repeats its start");
 
         // On a telephone nothing sticks out, the plots included.
         browser.driver.set_window_rect(0, 0, 390, 844).await.unwrap();
         browser.driver.refresh().await.unwrap();
         succeeded(browser).await;
-        let sticking = "[...document.querySelectorAll('main *')].filter((node) => node.getBoundingClientRect().right > \
-                        window.innerWidth && !node.closest('.scroll, .visually-hidden, defs, clipPath, dialog:not([open])')).map((node) => \
-                        `${node.tagName} ${node.id} ${node.getAttribute('class')}`)";
-        assert_eq!(browser.value(sticking).await, json!([]));
+        assert_eq!(browser.value(STICKING_OUT).await, json!([]));
         browser.driver.set_window_rect(0, 0, 1280, 1000).await.unwrap();
 
         // The document can be taken up again in the form.
@@ -78,6 +139,68 @@ async fn the_example_goes_from_the_form_to_its_result() {
             browser.value("document.querySelector('[data-pointer=\"/design/pinion/teeth\"] input').value").await,
             json!("17")
         );
+
+        // A job is deleted only when that is confirmed.
+        browser.open(&format!("/jobs/{id}")).await;
+        succeeded(browser).await;
+        for (answer, path) in [("cancel", format!("/jobs/{id}")), ("delete", "/jobs".to_owned())] {
+            browser.element("#delete").await.click().await.unwrap();
+            browser.until("document.querySelector('#delete-dialog').open").await;
+            browser.element(&format!("#delete-dialog [value='{answer}']")).await.click().await.unwrap();
+            browser.until(&format!("location.pathname === '{path}' && !document.querySelector('dialog[open]')")).await;
+        }
+        assert_eq!(browser.fetch(&format!("/api/v1/jobs/{id}")).await["status"], 404);
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn a_failed_job_says_why_when_and_what_to_do() {
+    flow(async |browser| {
+        let mut document = example("given_stiffness");
+        document["analysis"] = json!({"method": "integrate", "mesh_periods": 20, "record_mesh_periods": 10, "initial_state": vec![1e6; 24]});
+        let id = submit_document(browser, &document).await;
+        browser.open(&format!("/jobs/{id}")).await;
+        browser.until("!document.querySelector('#failure').hidden && document.querySelector('#failure-advice').textContent").await;
+        assert_eq!(browser.text("#state").await, "failed");
+        let failure = browser.text("#failure").await;
+        let error = browser.fetch(&format!("/api/v1/jobs/{id}")).await["error"].clone();
+        for words in [error["title"].as_str().unwrap(), error["detail"].as_str().unwrap(), "Simulated time", "Vibration", "damping and mesh stiffness are where to look"] {
+            assert!(failure.contains(words), "{words}: {failure}");
+        }
+        let visible = "['headline', 'response', 'mesh', 'report', 'cancel'].filter((id) => !document.getElementById(id).hidden)";
+        assert_eq!(browser.value(visible).await, json!([]));
+        assert_complete(browser).await;
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn a_given_stiffness_with_separation_is_told_in_words_with_its_subharmonics() {
+    flow(async |browser| {
+        let id = submit_document(browser, &example("given_stiffness")).await;
+        browser.open(&format!("/jobs/{id}")).await;
+        succeeded(browser).await;
+        let headline = browser.text("#headline").await;
+        for words in ["Teeth separate", "Period 2", "1/2 of the mesh frequency"] {
+            assert!(headline.contains(words), "{words}: {headline}");
+        }
+        let spectrum = browser.text("#spectrum-note").await;
+        assert!(spectrum.contains("/2 ("), "no subharmonic among the strongest lines: {spectrum}");
+        // Levels instead of amplitudes: the greatest stays the greatest.
+        browser.value("document.querySelector('#spectrum-plot').scrollIntoView({block: 'center'})").await;
+        browser.until("document.querySelector('#spectrum-plot').data").await;
+        let greatest = "((y) => y.indexOf(Math.max(...y)))(document.querySelector('#spectrum-plot').data[0].y)";
+        let linear = browser.value(greatest).await;
+        browser.element("label:has(#scale-db)").await.click().await.unwrap();
+        browser.until("document.querySelector('#spectrum-plot').layout.yaxis.title.text.endsWith('dB')").await;
+        assert_eq!(browser.value(greatest).await, linear);
+        // The edges of the gap stand in the plane of the normal displacement.
+        browser.choose("#phase-plane", "s").await;
+        browser.until("document.querySelector('#phase-plot').layout?.shapes?.length >= 1").await;
+        let edge = browser.value("document.querySelector('#phase-plot').layout.shapes[0].x0").await;
+        assert_eq!(edge, json!(20), "half of the backlash");
+        assert_complete(browser).await;
     })
     .await;
 }
@@ -142,10 +265,11 @@ async fn a_mesh_job_has_no_response() {
         browser.choose("[data-pointer='/kind'] select", "mesh").await;
         let id = submit(browser).await;
         succeeded(browser).await;
+        assert_complete(browser).await;
         let result = browser.fetch(&format!("/api/v1/jobs/{id}/result")).await;
         assert_eq!(result["response"], Value::Null);
         let hidden =
-            "['response', 'series', 'phase', 'spectrum', 'sweep'].every((id) => document.getElementById(id).hidden)";
+            "['response', 'series', 'phase', 'spectrum', 'modes', 'sweep'].every((id) => document.getElementById(id).hidden)";
         assert_eq!(browser.value(hidden).await, json!(true));
         assert_eq!(browser.value("document.querySelector('#mesh').hidden").await, json!(false));
     })

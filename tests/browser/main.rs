@@ -14,6 +14,7 @@ mod login;
 mod offline;
 mod pages;
 mod process;
+mod report;
 mod server;
 mod speed;
 mod start;
