@@ -2,6 +2,7 @@
 
 mod fidelities;
 mod invariants;
+mod published;
 mod reference_pair;
 mod robustness;
 mod tooth_tables;

@@ -26,8 +26,14 @@ fn helical() -> Pair {
 
 /// A spur pinion of `z` teeth, held at root radius / `h`.
 fn spur(z: u32, h: f64, width_modules: f64) -> Pair {
+    shifted_spur(z, 0.0, h, width_modules)
+}
+
+/// The same with profile shift `x`.
+fn shifted_spur(z: u32, x: f64, h: f64, width_modules: f64) -> Pair {
     let mut spec = spec([z, 67], 0.0, width_modules * 4e-3);
-    spec.pinion.bore_radius_m = (0.5 * f64::from(z) - 1.25) * 4e-3 / h;
+    spec.pinion.profile_shift = x;
+    spec.pinion.bore_radius_m = (0.5 * f64::from(z) - 1.25 + x) * 4e-3 / h;
     pair(&spec)
 }
 
@@ -37,14 +43,18 @@ fn roll_m(pair: &Pair, modules: f64) -> f64 {
 
 #[test]
 fn plane_teeth_are_within_nine_percent_of_finite_elements() {
-    for (z, h, table) in [
-        (25, 1.4, [(11.8959, 2.6863), (12.5905, 4.7170), (13.3713, 10.2972)]),
-        (25, 2.0, [(11.8959, 3.6319), (12.5905, 5.7231), (13.3713, 11.4134)]),
-        (43, 1.4, [(20.8074, 2.4303), (21.6259, 4.8307), (22.3809, 10.3803)]),
-        (43, 2.0, [(20.8074, 3.3069), (21.6259, 5.7485), (22.3809, 11.3517)]),
+    for (z, x, h, table) in [
+        (17, 0.0, 1.4, [(8.0049, 3.3479), (8.5652, 4.8521), (9.3637, 10.5361)]),
+        (17, 0.3, 2.0, [(8.0994, 3.1697), (8.8244, 4.8340), (9.6624, 10.0797)]),
+        (25, 0.0, 1.4, [(11.8959, 2.6863), (12.5905, 4.7170), (13.3713, 10.2972)]),
+        (25, 0.0, 2.0, [(11.8959, 3.6319), (12.5905, 5.7231), (13.3713, 11.4134)]),
+        (43, 0.0, 1.4, [(20.8074, 2.4303), (21.6259, 4.8307), (22.3809, 10.3803)]),
+        (43, 0.0, 2.0, [(20.8074, 3.3069), (21.6259, 5.7485), (22.3809, 11.3517)]),
     ] {
+        // Near the tip of few teeth the model is 7 % too stiff.
+        let limit = if z == 17 { 0.08 } else { 0.05 };
         let n = 32;
-        let pair = spur(z, h, 24.0);
+        let pair = shifted_spur(z, x, h, 24.0);
         let flank = Flank::new(&pair, 1.0, BodyHold::Bore, n, 1);
         for (r, expected) in table {
             let w = flank.weights(roll_m(&pair, r));
@@ -52,7 +62,8 @@ fn plane_teeth_are_within_nine_percent_of_finite_elements() {
             let mean = (0..n).map(|j| flank.bulk.between(0, middle, j, &w, &w)).sum::<f64>() / n as f64;
             let got = E * mean * pair.spec.face_width_m;
             let topic = "Contact: plane tooth against finite elements";
-            check(topic, &format!("C*, z {z}, h {h}, r {r} modules"), got, expected, Relative(0.05));
+            let shifted = if x == 0.0 { String::new() } else { format!(", x {x}") };
+            check(topic, &format!("C*, z {z}{shifted}, h {h}, r {r} modules"), got, expected, Relative(limit));
         }
     }
 }

@@ -49,10 +49,23 @@ fn oscillator(omega: f64, epsilon: f64, amplitude: f64) -> Parameters {
     }
 }
 
-/// Largest minus smallest u over one period.
+/// Least and greatest u over one period, and the integrals of u and u² over it.
 struct Swing {
     low: f64,
     high: f64,
+    duration: f64,
+    first: f64,
+    second: f64,
+}
+
+impl Swing {
+    const NONE: Swing = Swing { low: f64::INFINITY, high: f64::NEG_INFINITY, duration: 0.0, first: 0.0, second: 0.0 };
+
+    /// Peak to peak, mean, RMS about the mean.
+    fn values(&self) -> [f64; 3] {
+        let mean = self.first / self.duration;
+        [self.high - self.low, mean, (self.second / self.duration - mean * mean).sqrt()]
+    }
 }
 
 impl Observer<6> for Swing {
@@ -62,24 +75,33 @@ impl Observer<6> for Swing {
             let u = g.rows[..=g.degree].iter().rev().fold(0.0, |s, row| s * t + row[U]);
             self.low = self.low.min(u);
             self.high = self.high.max(u);
+            // Simpson's rule.
+            let weight = g.h / 192.0 * if i == 0 || i == 64 { 1.0 } else { 2.0 + 2.0 * f64::from(i % 2) };
+            self.duration += weight;
+            self.first += weight * u;
+            self.second += weight * u * u;
         }
     }
 }
 
-/// Steady swing at `omega` from the displacement and velocity (per unit of time) `from`; leaves where it ends.
-fn swing(omega: f64, epsilon: f64, amplitude: f64, from: &mut (f64, f64)) -> f64 {
+/// Steady swing at `omega` from the displacement and velocity (per unit of time) `from`; leaves where it ends. Peak to peak, mean, RMS.
+fn motion(omega: f64, epsilon: f64, amplitude: f64, from: &mut (f64, f64)) -> [f64; 3] {
     let model = Model::<6>::new(&oscillator(omega, epsilon, amplitude)).unwrap();
     let mut state = model.state_from(&[0.0; 24]);
     (state.x[U], state.v[U]) = (from.0, from.1 / model.omega_ref);
     state.contact = [model.contact_of(from.0); 2];
-    let mut motion = Motion::new(&model, state, Integrator::Taylor, 1e-9, u64::MAX);
+    let mut path = Motion::new(&model, state, Integrator::Taylor, 1e-9, u64::MAX);
     for _ in 0..200 {
-        motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
+        path.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
     }
-    let mut out = Swing { low: f64::INFINITY, high: f64::NEG_INFINITY };
-    motion.advance_period(&mut out, &Watch::none(), 0.0).unwrap();
-    *from = (motion.state.x[U], motion.state.v[U] * model.omega_ref);
-    out.high - out.low
+    let mut out = Swing::NONE;
+    path.advance_period(&mut out, &Watch::none(), 0.0).unwrap();
+    *from = (path.state.x[U], path.state.v[U] * model.omega_ref);
+    out.values()
+}
+
+fn swing(omega: f64, epsilon: f64, amplitude: f64, from: &mut (f64, f64)) -> f64 {
+    motion(omega, epsilon, amplitude, from)[0]
 }
 
 /// Swings along Ω from `first` to `last` in steps of 1, all in thousandths.
@@ -114,7 +136,15 @@ fn jump(sweep: &[(i32, f64)]) -> (i32, i32) {
 
 #[test]
 fn forced_swings_are_met() {
-    for (omega, p2p) in [(500, 0.013304), (700, 0.038072), (800, 0.069418), (1100, 0.203195), (1200, 0.126282)] {
+    for (omega, p2p) in [
+        (500, 0.013304),
+        (700, 0.038072),
+        (800, 0.069418),
+        (850, 0.099567),
+        (1000, 0.276825),
+        (1100, 0.203195),
+        (1200, 0.126282),
+    ] {
         let found = swing(f64::from(omega) / 1000.0, 0.0, 0.02, &mut (1.1, 0.0));
         check(FORCED, &format!("peak to peak at Ω = {}", f64::from(omega) / 1000.0), found, p2p, Relative(2e-4));
         // Where contact is kept the linear amplitude holds.
@@ -128,7 +158,7 @@ fn forced_swings_are_met() {
 
 #[test]
 fn parametric_swings_are_met() {
-    for (omega, p2p) in [(500, 0.094955), (700, 0.079515), (1200, 0.084516)] {
+    for (omega, p2p) in [(500, 0.094955), (700, 0.079515), (1000, 0.260238), (1200, 0.084516)] {
         let found = swing(f64::from(omega) / 1000.0, 0.2, 0.0, &mut (1.1, 0.0));
         check(PARAMETRIC, &format!("peak to peak at Ω = {}", f64::from(omega) / 1000.0), found, p2p, Relative(2e-4));
     }
@@ -143,6 +173,9 @@ fn forced_jumps_are_bracketed() {
     let down = sweep(960, 880, 0.0, 0.02);
     check_swings(FORCED, "falling", &down, &[(950, 0.31424), (900, 0.347418)]);
     check_jump(FORCED, "falling", &down, 0.887);
+    let [_, mean, rms] = motion(0.95, 0.0, 0.02, &mut (1.1, 0.0));
+    check(FORCED, "mean at Ω = 0.95", mean, 1.085945, Relative(2e-4));
+    check(FORCED, "RMS about it at Ω = 0.95", rms, 0.112026, Relative(2e-4));
 }
 
 /// Case B: jump up between 0.906 and 0.908, down between 0.836 and 0.834.
