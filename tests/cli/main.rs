@@ -3,6 +3,7 @@
 mod backup;
 mod deploy;
 mod opening;
+mod study;
 
 use serde_json::Value;
 use std::io::Write;

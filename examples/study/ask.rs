@@ -1,0 +1,102 @@
+//! Documents in, results out, through the service's HTTP interface.
+
+use crate::connection::Connection;
+use crate::service::Service;
+use serde_json::Value;
+use std::error::Error;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+pub type Outcome<T> = Result<T, Box<dyn Error>>;
+
+/// The running service, and how much was asked of it.
+pub struct Bench {
+    connection: Connection,
+    _service: Service,
+    _directory: TempDir,
+    pub jobs: usize,
+    pub points: usize,
+}
+
+/// A sweep's points, in the order of the axes (the first one fastest; those that were not solved have an `error`), and how long
+/// they took.
+pub struct Swept {
+    pub points: Vec<Value>,
+    pub seconds: f64,
+}
+
+impl Bench {
+    pub fn start() -> Outcome<Self> {
+        let directory = tempfile::tempdir()?;
+        let service = Service::start(&directory.path().join("study.db"), &[])?;
+        Ok(Self { connection: service.connect()?, _service: service, _directory: directory, jobs: 0, points: 0 })
+    }
+
+    /// The result of a document.
+    ///
+    /// # Errors
+    /// The service's own words, when it refuses the document or cannot solve it.
+    pub fn result(&mut self, document: &Value) -> Outcome<Value> {
+        let path = self.solved(document)?;
+        Ok(self.connection.json("GET", &format!("{path}/result"), "")?)
+    }
+
+    /// The result, or why the document is refused: the code of its first violation and the sentence.
+    pub fn result_or_refusal(&mut self, document: &Value) -> Outcome<Result<Value, String>> {
+        let answer = self.connection.json("POST", "/api/v1/jobs", &document.to_string())?;
+        match answer["errors"][0]["code"].as_str() {
+            Some(code) => Ok(Err(code.replace('-', " "))),
+            None => self.result(document).map(Ok),
+        }
+    }
+
+    /// The result with recorded channels, each as (time in s, values).
+    pub fn series(&mut self, document: &Value, channels: &[&str]) -> Outcome<(Value, Vec<Vec<f64>>)> {
+        let mut document = document.clone();
+        document["analysis"]["channels"] = channels.into();
+        document["analysis"]["samples_per_mesh_period"] = 1024.into();
+        let path = self.solved(&document)?;
+        let result = self.connection.json("GET", &format!("{path}/result"), "")?;
+        let read = |channel: &&str| -> Outcome<Vec<f64>> {
+            let series = self.connection.json("GET", &format!("{path}/series/{channel}?method=none"), "")?;
+            let values = series["y"].as_array().ok_or_else(|| series.to_string())?;
+            values.iter().map(|value| value.as_f64().ok_or_else(|| "a sample is missing".into())).collect()
+        };
+        let series = channels.iter().map(read).collect::<Outcome<_>>()?;
+        Ok((result, series))
+    }
+
+    /// A sweep of a document over one or two inputs.
+    pub fn sweep(&mut self, document: &Value, axes: &[(&str, &[f64])]) -> Outcome<Swept> {
+        let mut document = document.clone();
+        document["kind"] = "sweep".into();
+        let axis = |(pointer, values): &(&str, &[f64])| serde_json::json!({"pointer": pointer, "values": values});
+        document["axes"] = axes.iter().map(axis).collect();
+        let began = Instant::now();
+        let mut result = self.result(&document)?;
+        let seconds = began.elapsed().as_secs_f64();
+        let Value::Array(points) = result["sweep"]["points"].take() else { return Err("a sweep has no points".into()) };
+        self.points += points.len();
+        Ok(Swept { points, seconds })
+    }
+
+    /// Submits a document and waits until it is solved; its path.
+    fn solved(&mut self, document: &Value) -> Outcome<String> {
+        self.jobs += 1;
+        let path = self.connection.submit(document)?;
+        let ended = |job: &Value| !matches!(job["state"].as_str(), Some("queued" | "running"));
+        let job = self.connection.until(&path, Duration::from_millis(3), ended)?;
+        if job["state"] != "succeeded" {
+            return Err(job.to_string().into());
+        }
+        Ok(path)
+    }
+}
+
+/// The number at a JSON pointer.
+///
+/// # Errors
+/// When there is none.
+pub fn number(value: &Value, pointer: &str) -> Outcome<f64> {
+    value.pointer(pointer).and_then(Value::as_f64).ok_or_else(|| format!("no number at {pointer}").into())
+}

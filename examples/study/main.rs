@@ -1,0 +1,99 @@
+//! What the source paper reports, beside what the service answers, and the design guide that it left as future work. Drives the
+//! release program over loopback, documents in, results out, and writes docs/STUDY.md with its figures; see `scripts/study`.
+//! With names of chapters as arguments, only these are run: their figures are written, their text printed.
+
+mod ask;
+#[path = "../load/connection.rs"]
+mod connection;
+mod documents;
+mod front;
+mod guide;
+mod heat;
+mod histories;
+mod maps;
+mod mechanisms;
+mod page;
+mod rules;
+mod sensitivity;
+#[path = "../load/service.rs"]
+#[allow(dead_code, reason = "the load report also reads the program's memory")]
+mod service;
+mod source;
+mod svg;
+mod table2;
+mod table3;
+mod ways;
+
+use ask::{Bench, Outcome};
+use page::Page;
+use std::time::Instant;
+use svg::Sheet;
+
+/// The service that is asked, the page that is written, the figures that are drawn.
+pub struct Study {
+    bench: Bench,
+    page: Page,
+    figures: Vec<(String, String)>,
+    /// Title, points and seconds of each map.
+    maps: Vec<(String, usize, f64)>,
+    /// What became of the source's claims.
+    verdicts: Vec<front::Verdict>,
+}
+
+impl Study {
+    /// Adds a figure to the page.
+    fn figure(&mut self, name: &str, sheet: Sheet, caption: &str) {
+        self.page.figure(name, caption);
+        self.figures.push((name.to_owned(), sheet.finish()));
+    }
+}
+
+type Chapter = fn(&mut Study) -> Outcome<()>;
+
+fn main() -> Outcome<()> {
+    let began = Instant::now();
+    let mut study = Study {
+        bench: Bench::start()?,
+        page: Page::default(),
+        figures: Vec::new(),
+        maps: Vec::new(),
+        verdicts: Vec::new(),
+    };
+    let chapters: [(&str, Chapter); 8] = [
+        ("table2", table2::write),
+        ("table3", table3::write),
+        ("histories", histories::write),
+        ("sensitivity", sensitivity::write),
+        ("mechanisms", mechanisms::write),
+        ("guide", guide::write),
+        ("rules", rules::write),
+        ("differences", front::differences),
+    ];
+    let chosen: Vec<String> = std::env::args().skip(1).collect();
+    for (name, write) in chapters {
+        if !chosen.is_empty() && !chosen.iter().any(|chosen| chosen == name) {
+            continue;
+        }
+        let began = Instant::now();
+        write(&mut study)?;
+        eprintln!("{name}: {:.1} s", began.elapsed().as_secs_f64());
+    }
+    front::cost(&mut study, began.elapsed().as_secs_f64());
+    let text = format!("{}\n{}", front::beginning(&study.verdicts), study.page.finish()?);
+    std::fs::create_dir_all("docs/study")?;
+    for (name, figure) in &study.figures {
+        std::fs::write(format!("docs/study/{name}.svg"), figure)?;
+    }
+    if !chosen.is_empty() {
+        println!("{text}");
+        return Ok(());
+    }
+    std::fs::write("docs/STUDY.md", text)?;
+    println!(
+        "docs/STUDY.md: {} jobs, {} points of sweeps, {:.0} s",
+        study.bench.jobs,
+        study.bench.points,
+        began.elapsed().as_secs_f64()
+    );
+    Ok(())
+}

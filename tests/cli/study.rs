@@ -1,0 +1,45 @@
+//! docs/STUDY.md says what the program answers: its Tables 2 and 3, in the digits that it prints.
+
+use super::*;
+
+/// The rows of the table that follows a mark, as cells.
+fn rows(page: &str, mark: &str) -> Vec<Vec<String>> {
+    let after = page.split(&format!("<!-- headline: {mark} -->")).nth(1).unwrap_or_else(|| panic!("no {mark}"));
+    let lines = after.trim_start().lines().take_while(|line| line.starts_with('|')).skip(2);
+    lines.map(|line| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()).collect()
+}
+
+/// A number as the page prints it, without what stands in brackets, and half of its last digit.
+fn printed(cell: &str) -> (f64, f64) {
+    let text = cell.split(" (").next().unwrap_or_default().replace('−', "-");
+    let decimals = text.split('.').nth(1).map_or(0, str::len) as i32;
+    (text.parse().unwrap_or_else(|_| panic!("no number: {cell}")), 0.51 * 10f64.powi(-decimals))
+}
+
+#[test]
+fn the_page_of_the_study_says_what_the_program_answers() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/STUDY.md")).expect("the page");
+    let [impacts, vibrations] = ["table 2", "table 3"].map(|mark| rows(&page, mark));
+    assert_eq!([impacts.len(), vibrations.len()], [5, 5]);
+    for (impact, vibration) in impacts.iter().zip(&vibrations) {
+        assert_eq!(impact[0], vibration[0]);
+        let name = format!("table2_{}.json", impact[0].replace('.', "_"));
+        let result = solve(&name);
+        let number = |pointer: &str| result.pointer(pointer).and_then(Value::as_f64).expect("a number");
+        for (cell, value) in [
+            (&impact[2], number("/mesh/loaded_contact_ratio")),
+            (&impact[3], 100.0 * number("/mesh/load_share_at_mesh_in")),
+            (&impact[4], number("/impact/velocity_m_s")),
+            (&impact[5], number("/impact/zhou2008_force_n") / 1e3),
+            (&impact[6], number("/impact/force_n") / 1e3),
+            (&impact[7], number("/impact/reduction_percent")),
+            (&vibration[1], number("/response/rms/mesh_circumferential_acceleration_m_s2/left")),
+            (&vibration[2], number("/response/rms/pinion_axial_acceleration_m_s2/left")),
+            (&vibration[5], number("/response/dynamic_factor")),
+        ] {
+            let (stated, rounding) = printed(cell);
+            assert!((value - stated).abs() <= rounding, "{name}: the page says {cell}, the program {value}");
+        }
+        assert_eq!(vibration[6], result["response"]["contact"].as_str().expect("a word"));
+    }
+}
