@@ -11,9 +11,9 @@ use super::spec::{Infeasibility, PairSpec, Warning};
 use super::tooth::Cutter;
 
 /// Thinnest tip, in normal modules, that is accepted without a warning (usual practice; 0.4 when case-hardened).
-const TIP_THICKNESS_WARNING: f64 = 0.2;
+pub(super) const TIP_THICKNESS_WARNING: f64 = 0.2;
 /// Tip clearance, in normal modules, below which a warning is given (ISO 53 racks leave 0.25, the usual least is 0.1).
-const CLEARANCE_WARNING: f64 = 0.1;
+pub(super) const CLEARANCE_WARNING: f64 = 0.1;
 /// Rim thickness over tooth height below which a tooth root sees the rim (ISO 6336-3, rim thickness factor above 1).
 const RIM_WARNING: f64 = 1.2;
 /// Depth, in normal modules, to which a tip corner may dip into the mate's nominal fillet before the design is refused:

@@ -15,8 +15,10 @@ mod corner;
 mod feasibility;
 mod involute;
 mod lines;
+mod margins;
 mod member;
 mod modification;
+mod outline;
 mod pair;
 mod spec;
 mod tooth;
@@ -24,6 +26,7 @@ mod values;
 
 pub use corner::CornerContact;
 pub use lines::ContactLine;
+pub use margins::Margin;
 pub use member::Member;
 pub use pair::Pair;
 pub use spec::{

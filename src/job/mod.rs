@@ -3,6 +3,7 @@
 #[cfg(test)]
 pub(crate) mod arbitrary;
 pub mod document;
+pub mod drawing;
 mod fields;
 mod finite;
 mod json;

@@ -1,5 +1,7 @@
 //! What can be said of a document without solving it.
 
+mod drawing;
+
 use super::axes::check_axes;
 use super::prepare::{geometry, prepare};
 use super::{CheckReport, demand, vibration};

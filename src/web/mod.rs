@@ -9,6 +9,7 @@ mod form;
 mod modules;
 mod pages;
 mod plotly;
+mod presets;
 
 pub use pages::{login, not_found};
 
@@ -35,6 +36,7 @@ pub fn routes(has_login: bool) -> Router {
         .route("/compare", get(pages::compare))
         .route("/assets/plotly.js", get(plotly::script))
         .route("/assets/plotly.css", get(plotly::stylesheet))
+        .route("/assets/presets.json", get(presets::presets))
         .route("/assets/{*file}", get(assets::file))
         .layer(Extension(pages::HasLogin(has_login)))
 }

@@ -1,6 +1,7 @@
 //! One handler per page.
 
-use super::form::{self, Control, Group};
+use super::form::{self, Control, Group, Layout};
+use super::presets::{self, PresetGroup};
 use super::{page_headers, plotly};
 use askama::Template;
 use axum::Extension;
@@ -14,6 +15,7 @@ struct DesignPage {
     has_login: bool,
     groups: &'static [Group],
     sweepable: &'static [String],
+    presets: &'static [PresetGroup],
 }
 
 #[derive(Template)]
@@ -66,7 +68,8 @@ type Site = Extension<HasLogin>;
 
 /// `/`: the form for a new job, filled with the source paper's example.
 pub async fn design(Extension(HasLogin(has_login)): Site) -> Response {
-    page(StatusCode::OK, &DesignPage { has_login, groups: form::groups(), sweepable: form::sweepable_pointers() })
+    let (groups, sweepable) = (form::groups(), form::sweepable_pointers());
+    page(StatusCode::OK, &DesignPage { has_login, groups, sweepable, presets: presets::GROUPS })
 }
 
 /// `/jobs`: the list of jobs.

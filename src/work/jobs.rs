@@ -11,6 +11,7 @@ use super::reuse::stored_completion;
 use super::solver::Solver;
 use crate::job::DocumentError;
 use crate::job::document::JobDocument;
+use crate::job::drawing::Drawing;
 use crate::store::{Cancellation, Deletion, JobId, JobRecord, NewJob, Store, StoreError, Submission, WorkClass};
 use crate::study::CheckReport;
 use sha2::{Digest, Sha256};
@@ -137,6 +138,14 @@ impl Jobs {
             memory.check(&document).map(|()| report)
         });
         Ok(checked.await??)
+    }
+
+    /// The pair of a document to scale.
+    ///
+    /// # Errors
+    /// [`SubmitError::Document`] when the gear cannot exist.
+    pub async fn drawing(&self, document: JobDocument) -> Result<Drawing, SubmitError> {
+        Ok(tokio::task::spawn_blocking(move || Drawing::of(&document)).await??)
     }
 
     /// Accepts a job: checks it, writes it, and has it run; the job has ended already when its result was there.

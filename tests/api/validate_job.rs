@@ -40,3 +40,23 @@ async fn a_job_that_would_take_too_much_memory_is_refused_where_it_asks_for_it()
     document["analysis"]["channels"] = serde_json::json!(["x_left"]);
     app.run(&document).await;
 }
+
+#[tokio::test]
+async fn a_drawing_where_it_is_asked_for() {
+    let app = app().await;
+    let document = document();
+    let json = [("content-type", "application/json")];
+    let plain = app.send(Method::POST, "/api/v1/jobs/validate?drawing=false", &json, document.to_string()).await;
+    assert!(plain.json.get("drawing").is_none(), "{plain:?}");
+    let answer = app.send(Method::POST, "/api/v1/jobs/validate?drawing=true", &json, document.to_string()).await;
+    assert_eq!(answer.status, 200, "{answer:?}");
+    assert_eq!(answer.json["geometry"], plain.json["geometry"]);
+    assert_eq!(answer.json["drawing"]["margins"].as_array().map(Vec::len), Some(8));
+    let section = &answer.json["drawing"]["section"];
+    assert_eq!(section["pinion"]["teeth"], document["design"]["pinion"]["teeth"]);
+    assert!(section["pinion"]["tooth_mm"].as_array().is_some_and(|points| points.len() > 40), "{section}");
+    let refused = app.send(Method::POST, "/api/v1/jobs/validate?drawing=yes", &json, document.to_string()).await;
+    refused.assert_problem(400, "invalid-parameter");
+    let unknown = app.send(Method::POST, "/api/v1/jobs/validate?draw=true", &json, document.to_string()).await;
+    unknown.assert_problem(400, "invalid-parameter");
+}

@@ -3,6 +3,9 @@
 use crate::browser::{Browser, flow};
 use serde_json::{Value, json};
 
+/// The document on the page can be solved.
+const GOOD: &str = "document.querySelector('#check-state').classList.contains('good')";
+
 async fn document(browser: &Browser) -> Value {
     let text = browser.value("document.querySelector('#document-text').textContent").await;
     serde_json::from_str(text.as_str().unwrap()).unwrap()
@@ -12,7 +15,7 @@ async fn document(browser: &Browser) -> Value {
 async fn the_check_shows_contact_ratios_while_typing() {
     flow(async |browser| {
         browser.open("/").await;
-        browser.until("document.querySelector('#check-state').classList.contains('good')").await;
+        browser.until(GOOD).await;
         let ratio = "document.querySelector('#check-geometry dd')?.textContent";
         let before = browser.value(ratio).await;
         // ISO 21771 with the example's data: 1.4968.
@@ -56,7 +59,7 @@ async fn an_invalid_field_is_marked_with_the_servers_message() {
 async fn an_error_opens_the_section_it_is_in() {
     flow(async |browser| {
         browser.open("/").await;
-        browser.until("document.querySelector('#check-state').classList.contains('good')").await;
+        browser.until(GOOD).await;
         browser.element("#group-model summary").await.click().await.unwrap();
         browser.choose("[data-pointer='/model/mesh_stiffness/source'] select", "given").await;
         browser.element("#group-model summary").await.click().await.unwrap();
@@ -83,7 +86,7 @@ async fn the_document_says_what_differs_from_the_defaults() {
         assert_eq!(changed["design"]["backlash_um"], json!(50));
         let axis = json!({"pointer": "/operation/pinion_speed_rpm", "values": [1000, 2000, 3000]});
         assert_eq!(changed["axes"], json!([axis]));
-        browser.until("document.querySelector('#check-state').classList.contains('good')").await;
+        browser.until(GOOD).await;
         // Hidden again, the axes are no part of the document.
         browser.choose("[data-pointer='/kind'] select", "response").await;
         assert_eq!(document(browser).await["axes"], Value::Null);
@@ -92,22 +95,157 @@ async fn the_document_says_what_differs_from_the_defaults() {
 }
 
 #[tokio::test]
-async fn a_file_fills_the_form() {
+async fn a_file_fills_the_form_and_what_it_does_not_know_stays_in_the_document() {
     flow(async |browser| {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("document.json");
         let mut given: Value = serde_json::from_str(include_str!("../../examples/table1.json")).unwrap();
         given["design"]["pinion"]["tip_relief"] = json!({"amount_um": 12.5, "length_mm": 4});
         given["model"]["damping_in_gap"] = json!(false);
-        given["surplus"] = json!(1);
+        given["surplus"] = json!({"deep": [1, 2]});
         std::fs::write(&path, given.to_string()).unwrap();
         browser.open("/").await;
-        browser.until("document.querySelector('#document-text').textContent").await;
+        browser.until(GOOD).await;
         browser.element("#upload").await.send_keys(path.to_str().unwrap()).await.unwrap();
-        browser.until("document.querySelector('#document-note').textContent.includes('/surplus')").await;
+        browser.until("document.querySelector('#extras').textContent.includes('/surplus/deep')").await;
         let shown = document(browser).await;
         assert_eq!(shown["design"]["pinion"]["tip_relief"], json!({"amount_um": 12.5, "length_mm": 4}));
         assert_eq!(shown["model"]["damping_in_gap"], json!(false));
+        assert_eq!(shown["surplus"], json!({"deep": [1, 2]}));
+        // The server says what is wrong with it, and it goes only when it is told to.
+        browser.until("document.querySelector('#problems li')?.textContent.includes('/surplus')").await;
+        browser.element("#extras button").await.click().await.unwrap();
+        browser.until(GOOD).await;
+        assert_eq!(document(browser).await["surplus"], Value::Null);
+        // Dropped anywhere on the page, a file does the same.
+        let drop = "const transfer = new DataTransfer(); \
+                    transfer.items.add(new File([arguments[0]], 'dropped.json')); \
+                    for (const name of ['dragenter', 'drop']) { \
+                      document.querySelector('h1').dispatchEvent(new DragEvent(name, {bubbles: true, cancelable: true, dataTransfer: transfer})); \
+                    }";
+        given["design"]["pinion"]["teeth"] = json!(19);
+        browser.driver.execute(drop, vec![json!(given.to_string())]).await.unwrap();
+        browser.until("document.querySelector('#start-note').textContent.includes('dropped.json')").await;
+        assert_eq!(document(browser).await["design"]["pinion"]["teeth"], json!(19));
+        assert_eq!(browser.value("document.querySelector('#drop-target').hidden").await, json!(true));
+        browser.driver.execute(drop, vec![json!("[1, 2")]).await.unwrap();
+        browser.until("document.querySelector('#start-note').textContent.includes('is not a job document')").await;
+        assert_eq!(document(browser).await["design"]["pinion"]["teeth"], json!(19), "a bad file changes nothing");
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn the_pair_is_drawn_and_the_drawing_follows_the_fields() {
+    flow(async |browser| {
+        browser.open("/").await;
+        browser.until("document.querySelectorAll('#drawing-section .flanks').length === 2").await;
+        let title = "document.querySelector('#drawing-section title').textContent";
+        assert!(browser.value(title).await.as_str().unwrap().contains("17 and 44 teeth"));
+        let names = "[...document.querySelectorAll('#drawing-section text.name')].map((name) => name.textContent).join(' ')";
+        assert_eq!(browser.value(names).await, json!("T₁ A B C D E T₂"));
+        // One mesh period turns the pinion by one tooth, clockwise, and the lines of contact pass on.
+        let turn = "Number(document.querySelector('#drawing-section .pinion .turning').getAttribute('transform').match(/-?[\\d.]+/)[0])";
+        let set = |phase: &str| {
+            format!("(() => {{ const slider = document.querySelector('#drawing-phase'); slider.value = {phase}; \
+                     slider.dispatchEvent(new Event('input', {{bubbles: true}})); return {turn}; }})()")
+        };
+        let from = browser.value(&set("0")).await.as_f64().unwrap();
+        let to = browser.value(&set("1")).await.as_f64().unwrap();
+        assert!((from - to - 360.0 / 17.0).abs() < 1e-6, "{from} to {to}");
+        assert_eq!(browser.value("document.querySelectorAll('#drawing-plane .lines').length").await, json!(2));
+        let in_contact = "document.querySelectorAll('#drawing-section .contact:not(.away)').length";
+        assert!(browser.value(in_contact).await.as_i64().is_some_and(|count| (1..=2).contains(&count)));
+        let outline = "document.querySelector('#drawing-section .pinion .flanks').getAttribute('d')";
+        let before = browser.value(outline).await;
+        browser.fill("/design/pinion/teeth", "23").await;
+        browser.until(&format!("{title}.includes('23 and 44 teeth')")).await;
+        assert_ne!(browser.value(outline).await, before);
+        // What cannot be drawn leaves the last pair, faded.
+        browser.fill("/design/helix_angle_deg", "77").await;
+        browser.until("document.querySelector('#drawing').classList.contains('stale')").await;
+        assert!(browser.value(title).await.as_str().unwrap().contains("23 and 44"));
+        browser.fill("/design/helix_angle_deg", "24").await;
+        browser.until("!document.querySelector('#drawing').classList.contains('stale')").await;
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn the_form_starts_from_an_example_or_where_it_was_left() {
+    flow(async |browser| {
+        browser.open("/").await;
+        browser.until(GOOD).await;
+        browser.choose("#start-from", "tip_relief").await;
+        browser.until("document.querySelector('#start-note').textContent.includes('15 µm')").await;
+        let relief = |document: Value| document["design"]["pinion"]["tip_relief"]["amount_um"].clone();
+        assert_eq!(relief(document(browser).await), json!(15));
+        let gist = "document.querySelector('#group-micro-geometry .gist').textContent";
+        assert_eq!(browser.value(gist).await, json!("Tip relief, amount 15 / 15 µm, tip relief, length 6 / 6 mm"));
+        // One step back.
+        browser.element("#start-note button").await.click().await.unwrap();
+        browser.until(&format!("{gist} === 'none'")).await;
+        // A field is put back to its default where it stands.
+        browser.fill("/design/backlash_um", "50").await;
+        browser
+            .until("document.querySelector(\"[data-pointer='/design/backlash_um']\").classList.contains('differs')")
+            .await;
+        browser.element("[data-pointer='/design/backlash_um'] .reset").await.click().await.unwrap();
+        assert_eq!(
+            browser.value("document.querySelector(\"[data-pointer='/design/backlash_um'] input\").value").await,
+            json!("2")
+        );
+        // What was typed survives a reload, until it is discarded.
+        browser.fill("/design/face_width_mm", "61").await;
+        browser.until("localStorage.getItem('herringbone.draft')?.includes('61')").await;
+        browser.open("/").await;
+        browser.until("document.querySelector('#start-note').textContent.includes('Your draft')").await;
+        assert_eq!(document(browser).await["design"]["face_width_mm"], json!(61));
+        browser.element("#start-note button").await.click().await.unwrap();
+        assert_eq!(document(browser).await["design"]["face_width_mm"], json!(75));
+        browser.open("/").await;
+        browser.until(GOOD).await;
+        assert_eq!(document(browser).await["design"]["face_width_mm"], json!(75));
+        // Submitted, the document can be started from again.
+        browser.fill("/name", "it's mine").await;
+        browser.element("#submit").await.click().await.unwrap();
+        browser.until("location.pathname.startsWith('/jobs/')").await;
+        browser.open("/").await;
+        browser.until(GOOD).await;
+        browser.choose("#start-from", "submitted").await;
+        browser.until("document.querySelector('#document-text').textContent.includes(\"it's mine\")").await;
+        // As a command of the shell, quotes and all.
+        let copy = "navigator.clipboard.writeText = async (text) => { window.copied = text; }; \
+                    document.querySelector('#copy-curl').click(); return true;";
+        browser.driver.execute(copy, Vec::new()).await.unwrap();
+        browser.until("window.copied?.includes(\"it'\\\\''s mine\") && window.copied.includes('/api/v1/jobs')").await;
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn help_and_warnings_stand_at_their_fields() {
+    flow(async |browser| {
+        browser.open("/").await;
+        browser.until(GOOD).await;
+        let place = "[data-pointer='/design/helix_angle_deg']";
+        let height = "document.querySelector('#group-widths').offsetHeight";
+        let before = browser.value(height).await;
+        browser.element(&format!("{place} input")).await.focus().await.unwrap();
+        browser.until("document.querySelector('#help-line').textContent.includes('0 to 50 °')").await;
+        browser.fill("/design/helix_angle_deg", "77").await;
+        browser.until("document.querySelectorAll('[aria-invalid=true]').length === 1").await;
+        assert_eq!(browser.value(height).await, before, "an error moves nothing");
+        browser.fill("/design/helix_angle_deg", "24.43").await;
+        browser.until(GOOD).await;
+        // The help is disclosed where it is asked for.
+        browser.element(&format!("{place} .why")).await.click().await.unwrap();
+        assert!(browser.text(&format!("{place} .help")).await.starts_with("Helix angle"));
+        // An undercut pinion is a warning, at the field that cures it.
+        browser.fill("/design/pinion/teeth", "15").await;
+        browser.until("document.querySelector(\"[data-pointer='/design/pinion/profile_shift'] .caution\").textContent.includes('undercut')").await;
+        browser.until("document.querySelector('#check-warnings li')").await;
+        assert!(browser.value("document.querySelector('#check-gears .low')?.textContent.includes('below')").await == json!(true));
     })
     .await;
 }

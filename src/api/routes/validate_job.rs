@@ -1,21 +1,36 @@
 //! `POST /api/v1/jobs/validate`
 
 use crate::api::problem::Refusal;
-use crate::api::request::DocumentBody;
+use crate::api::request::{DocumentBody, Parameters};
 use crate::api::state::AppState;
+use crate::job::drawing::Drawing;
 use crate::study::CheckReport;
 use axum::Json;
 use axum::extract::State;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// What a check found, and the drawing where it was asked for.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Checked {
+    #[serde(flatten)]
+    pub report: CheckReport,
+    /// The pair to scale; only with `drawing=true`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drawing: Option<Drawing>,
+}
 
 /// Check a job document without queueing it.
 ///
-/// Geometry and warnings in milliseconds, or every violation at once.
+/// Geometry and warnings in milliseconds, or every violation at once. With `drawing=true` also what a drawing of the pair
+/// needs (outlines of the teeth, path of contact, lines of contact) and its margins.
 #[utoipa::path(
     post, path = "/jobs/validate", tag = "jobs",
+    params(("drawing" = Option<bool>, Query, description = "Whether the answer has the drawing; false when left out.")),
     request_body(content = serde_json::Value, content_type = "application/json"),
     responses(
-        (status = 200, description = "The gear can exist and be solved.", body = CheckReport),
-        (status = 400, description = "The body is not JSON."),
+        (status = 200, description = "The gear can exist and be solved.", body = Checked),
+        (status = 400, description = "The body is not JSON, or `invalid-parameter`."),
         (status = 413, description = "The body is larger than 1 MiB."),
         (status = 415, description = "The body is not `application/json`."),
         (status = 422, description = "`invalid-design` or `unsupported-design`."),
@@ -23,7 +38,16 @@ use axum::extract::State;
 )]
 pub async fn validate_job(
     State(state): State<AppState>,
+    mut query: Parameters,
     DocumentBody(document): DocumentBody,
-) -> Result<Json<CheckReport>, Refusal> {
-    Ok(Json(state.jobs().check(document).await?))
+) -> Result<Json<Checked>, Refusal> {
+    let with_drawing = query.choice("drawing", &[("true", true), ("false", false)]).unwrap_or(false);
+    query.finish()?;
+    let drawn = with_drawing.then(|| document.clone());
+    let report = state.jobs().check(document).await?;
+    let drawing = match drawn {
+        Some(document) => Some(state.jobs().drawing(document).await?),
+        None => None,
+    };
+    Ok(Json(Checked { report, drawing }))
 }

@@ -4,5 +4,6 @@ mod corner;
 mod feasibility;
 mod lines;
 mod modification;
+mod outline;
 mod published;
 mod tooth;

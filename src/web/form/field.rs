@@ -2,6 +2,7 @@
 
 use super::groups::{CONDITIONS, Condition, DERIVED};
 use super::is_at_or_in;
+use super::symbols::symbol;
 use serde_json::Value;
 
 /// What kind of input a field has; the page's script reads its value back accordingly.
@@ -33,6 +34,10 @@ pub struct Field {
     pub id: String,
     pub pointer: String,
     pub label: String,
+    /// Label of the row that the field shares with others; empty where it stands alone.
+    pub row: String,
+    /// Letter and subscript of the quantity, or empty.
+    pub symbol: (&'static str, &'static str),
     pub help: String,
     /// Permitted range with unit, or empty.
     pub range: String,
@@ -66,10 +71,12 @@ impl Field {
             id: format!("field{}", pointer.replace('/', "-")),
             pointer: pointer.to_owned(),
             label: label(pointer, declared_unit),
+            row: String::new(),
+            symbol: symbol(pointer),
             help: help(schema),
             range: range(schema, declared_unit),
             unit: shown_unit(declared_unit),
-            control: control(schema, &value, derived)?,
+            control: control(pointer, schema, &value, derived)?,
             value,
             default,
             placeholder,
@@ -92,16 +99,28 @@ impl Field {
         }
     }
 
+    /// Where a field differs from this, the page offers to put it back; in words for people.
+    pub fn default_text(&self) -> String {
+        let default = match (&self.control, self.default.as_str()) {
+            (Control::Choice(choices), word) => {
+                choices.iter().find(|choice| choice.word == word).map_or(String::new(), |choice| choice.label.clone())
+            }
+            (_, "") => return "empty".to_owned(),
+            (_, text) => text.to_owned(),
+        };
+        format!("{default} {}", self.unit).trim_end().to_owned()
+    }
+
     pub fn is_sweep_target(&self) -> bool {
         self.pointer.starts_with("/axes/") && self.pointer.ends_with("/pointer")
     }
 }
 
-fn control(schema: &Value, value: &str, derived: Option<&str>) -> Option<Control> {
+fn control(pointer: &str, schema: &Value, value: &str, derived: Option<&str>) -> Option<Control> {
     if let Some(words) = schema["enum"].as_array() {
         let word = |word: &Value| {
             let word = text(word);
-            Choice { label: word.replace('_', " "), chosen: word == value, word }
+            Choice { label: choice_label(pointer, &word), chosen: word == value, word }
         };
         let derived = derived.map(|meaning| Choice { word: String::new(), label: meaning.to_owned(), chosen: true });
         let words = words.iter().filter(|word| !word.is_null()).map(word);
@@ -119,6 +138,29 @@ fn control(schema: &Value, value: &str, derived: Option<&str>) -> Option<Control
         },
         _ => return None,
     })
+}
+
+/// Words of the document that people would say otherwise: end of the field's pointer, word, label.
+const CHOICES: [(&str, &str, &str); 14] = [
+    ("/kind", "mesh", "mesh (contact, impact)"),
+    ("/kind", "response", "response (one point)"),
+    ("/kind", "sweep", "sweep (over inputs)"),
+    ("/rotation", "apex_leading", "apex leading (inner first)"),
+    ("/rotation", "apex_trailing", "apex trailing (outer first)"),
+    ("/mesh_stiffness/source", "ltca", "loaded tooth contact"),
+    ("/mesh_stiffness/source", "iso6336", "ISO 6336-1, closed form"),
+    ("/mesh_stiffness/fidelity", "fe", "finite elements"),
+    ("/mesh_stiffness/law", "secant", "secant F/δ"),
+    ("/mesh_stiffness/law", "tangent", "tangent dF/dδ"),
+    ("/impact/source", "zhou2008", "Zhou (2008), unbuffered"),
+    ("/plane", "base", "base (consistent)"),
+    ("/plane", "pitch", "pitch (the source's)"),
+    ("/integrator", "runge_kutta_4", "Runge–Kutta 4"),
+];
+
+fn choice_label(pointer: &str, word: &str) -> String {
+    let found = CHOICES.iter().find(|(end, name, _)| pointer.ends_with(end) && *name == word);
+    found.map_or_else(|| word.replace('_', " "), |(.., label)| (*label).to_owned())
 }
 
 /// The text of a value as it stands in an input: numbers as people write them, nothing for null.
@@ -139,6 +181,10 @@ fn number_text(number: f64) -> String {
 
 fn range(schema: &Value, unit: &str) -> String {
     let bounds = if schema["items"].is_object() { &schema["items"] } else { schema };
+    // The axes of a sweep take what the swept field takes, which the server says.
+    if unit == "unit of the input" {
+        return String::new();
+    }
     let (Some(minimum), Some(maximum)) = (bounds["minimum"].as_f64(), bounds["maximum"].as_f64()) else {
         return String::new();
     };
@@ -182,15 +228,9 @@ fn label(pointer: &str, unit: &str) -> String {
     if let Some(name) = parts.last_mut() {
         *name = name.strip_suffix(unit_suffix(unit)).unwrap_or(name).to_owned();
     }
-    let member = match pointer {
-        "/design/pinion/left_half_hand" => "pinion ",
-        "/design/gear/left_half_hand" => "gear ",
-        _ => "",
-    };
     let words = parts.join(", ").replace('_', " ");
     let words = SPELLINGS.iter().fold(words, |words, (name, spelling)| words.replace(name, spelling));
-    let label = format!("{member}{words}");
-    let mut letters = label.chars();
+    let mut letters = words.chars();
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 
@@ -232,7 +272,19 @@ mod tests {
         assert_eq!(label("/design/normal_module_mm", "mm"), "Normal module");
         assert_eq!(label("/design/pinion/tip_relief/amount_um", "um"), "Tip relief, amount");
         assert_eq!(label("/model/impact/force_n", "N"), "Force");
-        assert_eq!(label("/design/gear/left_half_hand", "1"), "Gear left half hand");
+        assert_eq!(label("/design/gear/left_half_hand", "1"), "Left half hand");
+    }
+
+    #[test]
+    fn labels_of_choices_belong_to_words_of_fields() {
+        for (end, word, _) in CHOICES {
+            let fields = field_descriptions();
+            let mut schemas = fields.iter().filter(|field| field.pointer.ends_with(end)).map(|field| &field.schema);
+            let has =
+                |schema: &Value| schema["enum"].as_array().is_some_and(|words| words.iter().any(|known| known == word));
+            assert!(schemas.any(has), "{word} of {end}");
+        }
+        assert_eq!(choice_label("/analysis/method", "auto"), "auto");
     }
 
     #[test]

@@ -5,15 +5,28 @@
 pub struct GroupPlan {
     pub id: &'static str,
     pub title: &'static str,
+    /// The title in the list of sections.
+    pub short: &'static str,
     pub help: &'static str,
     pub open: bool,
+    /// What the heading says while nothing is set.
+    pub nothing: &'static str,
     pub blocks: &'static [BlockPlan],
 }
 
-/// Fields that stand together: JSON pointers of fields, or of objects for all fields in them.
+/// Fields that stand together under a common (perhaps empty) title.
 pub struct BlockPlan {
     pub title: &'static str,
-    pub pointers: &'static [&'static str],
+    /// Folded away until it is wanted.
+    pub folded: bool,
+    pub layout: LayoutPlan,
+}
+
+pub enum LayoutPlan {
+    /// JSON pointers of fields, or of objects for all fields in them.
+    Fields(&'static [&'static str]),
+    /// Several objects with the same fields side by side: heading and pointer of each, and names of fields (or objects).
+    Table { columns: &'static [(&'static str, &'static str)], names: &'static [&'static str] },
 }
 
 /// A field (or all fields of an object) that matters only while another field has one of some values.
@@ -24,27 +37,43 @@ pub struct Condition {
 }
 
 const fn block(title: &'static str, pointers: &'static [&'static str]) -> BlockPlan {
-    BlockPlan { title, pointers }
+    BlockPlan { title, folded: false, layout: LayoutPlan::Fields(pointers) }
 }
 
+const PAIR: &[(&str, &str)] = &[("Pinion", "/design/pinion"), ("Gear", "/design/gear")];
+
+const FLANKS: &[(&str, &str)] = &[
+    ("Pinion, left", "/design/pinion/left"),
+    ("Pinion, right", "/design/pinion/right"),
+    ("Gear, left", "/design/gear/left"),
+    ("Gear, right", "/design/gear/right"),
+];
+
+const MODIFICATIONS: &[&str] = &["tip_relief", "lead_crowning_um", "helix_slope_um", "end_relief"];
+
+const fn pair(names: &'static [&'static str]) -> BlockPlan {
+    BlockPlan { title: "", folded: false, layout: LayoutPlan::Table { columns: PAIR, names } }
+}
+
+const DEFAULTS: &str = "as by default";
+
 pub const GROUPS: &[GroupPlan] = &[
-    GroupPlan { id: "job", title: "Job", help: "", open: true, blocks: &[block("", &["/kind", "/name", "/label"])] },
     GroupPlan {
-        id: "sweep",
-        title: "Sweep",
-        help: "One or two inputs that vary: give first and last value, or a list of values.",
+        id: "job",
+        title: "Job",
+        short: "Job",
+        help: "",
         open: true,
-        blocks: &[
-            block("First axis", &["/axes/0"]),
-            block("Second axis", &["/axes/1"]),
-            block("", &["/continuation", "/record"]),
-        ],
+        nothing: DEFAULTS,
+        blocks: &[block("", &["/kind", "/name", "/label"])],
     },
     GroupPlan {
         id: "gears",
         title: "Gears",
+        short: "Gears",
         help: "",
         open: true,
+        nothing: DEFAULTS,
         blocks: &[
             block(
                 "",
@@ -56,130 +85,113 @@ pub const GROUPS: &[GroupPlan] = &[
                     "/design/backlash_um",
                 ],
             ),
-            block(
-                "Pinion",
-                &[
-                    "/design/pinion/teeth",
-                    "/design/pinion/bore_diameter_mm",
-                    "/design/pinion/mass_kg",
-                    "/design/pinion/inertia_kg_m2",
-                ],
-            ),
-            block(
-                "Gear",
-                &[
-                    "/design/gear/teeth",
-                    "/design/gear/bore_diameter_mm",
-                    "/design/gear/mass_kg",
-                    "/design/gear/inertia_kg_m2",
-                ],
-            ),
+            pair(&["teeth", "bore_diameter_mm", "mass_kg", "inertia_kg_m2"]),
             block("Material of both", &["/design/material"]),
         ],
     },
     GroupPlan {
         id: "widths",
         title: "Widths and helix",
+        short: "Widths",
         help: "Widths and angles are those of one half.",
         open: true,
-        blocks: &[block(
-            "",
-            &[
-                "/design/helix_angle_deg",
-                "/design/face_width_mm",
-                "/design/gap_width_mm",
-                "/design/half_stagger",
-                "/design/pinion/left_half_hand",
-                "/design/gear/left_half_hand",
-            ],
-        )],
+        nothing: DEFAULTS,
+        blocks: &[
+            block(
+                "",
+                &["/design/helix_angle_deg", "/design/face_width_mm", "/design/gap_width_mm", "/design/half_stagger"],
+            ),
+            pair(&["left_half_hand"]),
+        ],
     },
-    GroupPlan { id: "operation", title: "Operation", help: "", open: true, blocks: &[block("", &["/operation"])] },
     GroupPlan {
         id: "tooth-form",
         title: "Tooth form",
+        short: "Tooth form",
         help: "Coefficients are multiples of the normal module.",
         open: false,
-        blocks: &[
-            block(
-                "Pinion",
-                &[
-                    "/design/pinion/profile_shift",
-                    "/design/pinion/addendum",
-                    "/design/pinion/dedendum",
-                    "/design/pinion/fillet_radius",
-                    "/design/pinion/tip_alteration",
-                ],
-            ),
-            block(
-                "Gear",
-                &[
-                    "/design/gear/profile_shift",
-                    "/design/gear/addendum",
-                    "/design/gear/dedendum",
-                    "/design/gear/fillet_radius",
-                    "/design/gear/tip_alteration",
-                ],
-            ),
-        ],
+        nothing: DEFAULTS,
+        blocks: &[pair(&["profile_shift", "addendum", "dedendum", "fillet_radius", "tip_alteration"])],
     },
     GroupPlan {
         id: "micro-geometry",
         title: "Micro-geometry",
+        short: "Micro-geometry",
         help: "Amounts are material removed, in the transverse plane along the base tangent. They apply to both halves \
                unless a half says otherwise.",
         open: false,
+        nothing: "none",
         blocks: &[
-            block(
-                "Pinion",
-                &[
-                    "/design/pinion/tip_relief",
-                    "/design/pinion/lead_crowning_um",
-                    "/design/pinion/helix_slope_um",
-                    "/design/pinion/end_relief",
-                ],
-            ),
-            block(
-                "Gear",
-                &[
-                    "/design/gear/tip_relief",
-                    "/design/gear/lead_crowning_um",
-                    "/design/gear/helix_slope_um",
-                    "/design/gear/end_relief",
-                ],
-            ),
-            block("Pinion, left half only", &["/design/pinion/left"]),
-            block("Pinion, right half only", &["/design/pinion/right"]),
-            block("Gear, left half only", &["/design/gear/left"]),
-            block("Gear, right half only", &["/design/gear/right"]),
+            pair(MODIFICATIONS),
+            BlockPlan {
+                title: "Where the halves differ",
+                folded: true,
+                layout: LayoutPlan::Table { columns: FLANKS, names: MODIFICATIONS },
+            },
         ],
     },
     GroupPlan {
         id: "supports",
         title: "Supports",
+        short: "Supports",
         help: "Shafts and bearings, per half.",
         open: false,
+        nothing: DEFAULTS,
         blocks: &[block("", &["/design/supports"])],
     },
     GroupPlan {
         id: "assembly",
         title: "Assembly errors",
+        short: "Assembly",
         help: "",
         open: false,
+        nothing: "none",
         blocks: &[block("", &["/design/assembly"])],
+    },
+    GroupPlan {
+        id: "operation",
+        title: "Operation",
+        short: "Operation",
+        help: "",
+        open: true,
+        nothing: DEFAULTS,
+        blocks: &[block("", &["/operation"])],
+    },
+    GroupPlan {
+        id: "sweep",
+        title: "Sweep",
+        short: "Sweep",
+        help: "One or two inputs that vary: give first and last value, or a list of values.",
+        open: true,
+        nothing: "no axis",
+        blocks: &[
+            block("First axis", &["/axes/0"]),
+            block("Second axis", &["/axes/1"]),
+            block("", &["/continuation", "/record"]),
+        ],
     },
     GroupPlan {
         id: "model",
         title: "Model",
+        short: "Model",
         help: "",
         open: false,
+        nothing: DEFAULTS,
         blocks: &[
             block("", &["/model/plane", "/model/mesh_damping_ratio", "/model/damping_in_gap"]),
             block("Mesh stiffness", &["/model/mesh_stiffness"]),
             block("Impact", &["/model/impact"]),
         ],
     },
-    GroupPlan { id: "analysis", title: "Analysis", help: "", open: false, blocks: &[block("", &["/analysis"])] },
+    GroupPlan {
+        id: "analysis",
+        title: "Analysis",
+        short: "Analysis",
+        help: "",
+        open: false,
+        nothing: DEFAULTS,
+        blocks: &[block("", &["/analysis"])],
+    },
 ];
 
 pub const CONDITIONS: &[Condition] = &[
@@ -188,6 +200,7 @@ pub const CONDITIONS: &[Condition] = &[
     Condition { pointer: "/record", on: "/kind", values: "sweep" },
     Condition { pointer: "/model/mesh_stiffness/fidelity", on: "/model/mesh_stiffness/source", values: "ltca" },
     Condition { pointer: "/model/mesh_stiffness/elements", on: "/model/mesh_stiffness/fidelity", values: "fe" },
+    Condition { pointer: "/model/mesh_stiffness/law", on: "/model/mesh_stiffness/source", values: "ltca" },
     Condition { pointer: "/model/mesh_stiffness/accuracy", on: "/model/mesh_stiffness/source", values: "ltca" },
     Condition { pointer: "/model/mesh_stiffness/body", on: "/model/mesh_stiffness/source", values: "ltca" },
     Condition { pointer: "/model/mesh_stiffness/corner_contact", on: "/model/mesh_stiffness/source", values: "ltca" },

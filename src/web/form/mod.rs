@@ -2,10 +2,12 @@
 
 mod field;
 mod groups;
+mod symbols;
 
 pub use field::{Control, Field};
 
 use crate::job::schema::field_descriptions;
+use groups::LayoutPlan;
 use serde_json::Value;
 use std::sync::LazyLock;
 
@@ -13,15 +15,49 @@ use std::sync::LazyLock;
 pub struct Group {
     pub id: &'static str,
     pub title: &'static str,
+    /// The title in the list of sections.
+    pub short: &'static str,
     pub help: &'static str,
     pub open: bool,
+    /// What the heading says while nothing is set.
+    pub nothing: &'static str,
     pub blocks: Vec<Block>,
 }
 
 /// Fields that stand together under a common (perhaps empty) title.
 pub struct Block {
     pub title: &'static str,
-    pub fields: Vec<Field>,
+    pub folded: bool,
+    pub layout: Layout,
+}
+
+pub enum Layout {
+    Fields(Vec<Field>),
+    Table { columns: Vec<&'static str>, rows: Vec<Row> },
+}
+
+/// The same field of several objects, with what it has in common.
+pub struct Row {
+    pub label: String,
+    pub cells: Vec<Field>,
+}
+
+impl Row {
+    /// The cells have the same declaration: the first speaks for all.
+    pub fn first(&self) -> Option<&Field> {
+        self.cells.first()
+    }
+}
+
+impl Block {
+    /// All fields of the block.
+    #[cfg(test)]
+    fn fields(&self) -> Vec<&Field> {
+        match &self.layout {
+            Layout::Fields(fields) => fields.iter().collect(),
+            Layout::Table { rows, .. } => rows.iter().flat_map(|row| &row.cells).collect(),
+        }
+    }
 }
 
 /// The form's first contents: the source paper's example.
@@ -70,26 +106,64 @@ fn plan(mut fields: Vec<Field>) -> Vec<Group> {
         .map(|group| Group {
             id: group.id,
             title: group.title,
+            short: group.short,
             help: group.help,
             open: group.open,
+            nothing: group.nothing,
             blocks: group
                 .blocks
                 .iter()
-                .map(|block| Block { title: block.title, fields: take(&mut fields, block.pointers) })
+                .map(|block| Block {
+                    title: block.title,
+                    folded: block.folded,
+                    layout: match &block.layout {
+                        LayoutPlan::Fields(pointers) => Layout::Fields(take(&mut fields, pointers)),
+                        LayoutPlan::Table { columns, names } => table(&mut fields, columns, names),
+                    },
+                })
                 .collect(),
         })
         .collect();
     if !fields.is_empty() {
-        let blocks = vec![Block { title: "", fields }];
-        planned.push(Group { id: "other", title: "Other", help: "", open: false, blocks });
+        let blocks = vec![Block { title: "", folded: false, layout: Layout::Fields(fields) }];
+        planned.push(Group { id: "other", title: "Other", short: "Other", help: "", open: false, nothing: "", blocks });
     }
     planned
 }
 
-fn take(fields: &mut Vec<Field>, pointers: &[&str]) -> Vec<Field> {
+/// A row for each field, in the order declared in the first column's object.
+fn table(fields: &mut Vec<Field>, columns: &[(&'static str, &str)], names: &[&str]) -> Layout {
+    let mut taken: Vec<Vec<Field>> = columns
+        .iter()
+        .map(|(_, object)| {
+            let pointers: Vec<String> = names.iter().map(|name| format!("{object}/{name}")).collect();
+            take(fields, &pointers)
+        })
+        .collect();
+    let count = taken.first().map_or(0, Vec::len);
+    let mut rows = Vec::with_capacity(count);
+    for _ in 0..count {
+        let cells: Vec<Field> =
+            taken.iter_mut().filter(|column| !column.is_empty()).map(|column| column.remove(0)).collect();
+        let label = cells.first().map(|field| field.label.clone()).unwrap_or_default();
+        let cells = cells
+            .into_iter()
+            .zip(columns)
+            .map(|(cell, (column, _))| Field {
+                label: format!("{label}, {}", column.to_lowercase()),
+                row: label.clone(),
+                ..cell
+            })
+            .collect();
+        rows.push(Row { label, cells });
+    }
+    Layout::Table { columns: columns.iter().map(|(title, _)| *title).collect(), rows }
+}
+
+fn take(fields: &mut Vec<Field>, pointers: &[impl AsRef<str>]) -> Vec<Field> {
     let mut taken = Vec::new();
     for pointer in pointers {
-        taken.extend(fields.extract_if(.., |field| is_at_or_in(&field.pointer, pointer)));
+        taken.extend(fields.extract_if(.., |field| is_at_or_in(&field.pointer, pointer.as_ref())));
     }
     taken
 }
@@ -106,7 +180,7 @@ mod tests {
     #[test]
     fn the_plan_places_every_field() {
         let unplaced: Vec<_> = groups().iter().filter(|group| group.id == "other").collect();
-        let names = unplaced.iter().flat_map(|group| &group.blocks).flat_map(|block| &block.fields);
+        let names = unplaced.iter().flat_map(|group| &group.blocks).flat_map(Block::fields);
         assert_eq!(names.map(|field| field.pointer.as_str()).collect::<Vec<_>>(), Vec::<&str>::new());
     }
 
@@ -114,13 +188,22 @@ mod tests {
     fn the_plan_names_only_fields_that_exist() {
         for group in groups() {
             for block in &group.blocks {
-                assert!(!block.fields.is_empty(), "nothing in {} / {}", group.title, block.title);
+                assert!(!block.fields().is_empty(), "nothing in {} / {}", group.title, block.title);
             }
         }
         let fields = all_fields();
         let exists = |place: &str| fields.iter().any(|field| is_at_or_in(&field.pointer, place));
-        for plan in groups::GROUPS.iter().flat_map(|group| group.blocks).flat_map(|block| block.pointers) {
-            assert!(exists(plan), "{plan}");
+        for block in groups::GROUPS.iter().flat_map(|group| group.blocks) {
+            match &block.layout {
+                LayoutPlan::Fields(pointers) => pointers.iter().for_each(|place| assert!(exists(place), "{place}")),
+                LayoutPlan::Table { columns, names } => {
+                    for (object, name) in
+                        columns.iter().flat_map(|(_, object)| names.iter().map(move |name| (object, name)))
+                    {
+                        assert!(exists(&format!("{object}/{name}")), "{object}/{name}");
+                    }
+                }
+            }
         }
         for condition in groups::CONDITIONS {
             assert!(exists(condition.pointer) && exists(condition.on), "{}", condition.pointer);
@@ -128,6 +211,22 @@ mod tests {
         for (place, _) in groups::DERIVED {
             assert!(exists(place), "{place}");
         }
+    }
+
+    #[test]
+    fn rows_have_the_same_field_of_every_object() {
+        let blocks = groups().iter().flat_map(|group| &group.blocks);
+        let mut seen = 0;
+        for block in blocks {
+            let Layout::Table { columns, rows } = &block.layout else { continue };
+            for row in rows {
+                assert_eq!(row.cells.len(), columns.len(), "{}", row.label);
+                let name = |field: &Field| field.pointer.rsplit('/').next().unwrap().to_owned();
+                assert!(row.cells.iter().all(|cell| name(cell) == name(&row.cells[0])), "{}", row.label);
+                seen += 1;
+            }
+        }
+        assert!(seen > 20, "{seen} rows");
     }
 
     #[test]

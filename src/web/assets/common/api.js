@@ -12,7 +12,7 @@ export class Problem extends Error {
   }
 }
 
-async function request(method, path, { body, headers = {}, signal } = {}) {
+async function request(method, path, { body, headers = {}, signal, base = BASE } = {}) {
   const options = { method, headers: { Accept: "application/json, application/problem+json", ...headers }, signal };
   if (body !== undefined) {
     options.body = JSON.stringify(body);
@@ -20,7 +20,7 @@ async function request(method, path, { body, headers = {}, signal } = {}) {
   }
   let response;
   try {
-    response = await fetch(BASE + path, options);
+    response = await fetch(base + path, options);
   } catch (error) {
     if (error.name === "AbortError") throw error;
     throw new Problem({ title: "The server does not answer", status: 0, code: "unreachable" });
@@ -49,7 +49,10 @@ function query(parameters) {
   return given.length ? `?${new URLSearchParams(given)}` : "";
 }
 
-export const validate = (document, signal) => request("POST", "/jobs/validate", { body: document, signal });
+/** Checks a document; with `drawing` the answer has what a drawing of the pair needs. */
+export const validate = (document, { drawing, signal } = {}) =>
+  request("POST", `/jobs/validate${query({ drawing })}`, { body: document, signal });
+export const presets = () => request("GET", "/assets/presets.json", { base: "" });
 export const submit = (document, key) =>
   request("POST", "/jobs", { body: document, headers: { "Idempotency-Key": key } });
 export const jobs = (parameters, signal) => request("GET", `/jobs${query(parameters)}`, { signal });

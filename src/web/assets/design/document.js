@@ -5,11 +5,14 @@ export function fieldsOf(form) {
   return [...form.querySelectorAll("[data-pointer]")].map((box) => ({
     box,
     pointer: box.dataset.pointer,
+    label: box.querySelector("label").firstChild.textContent.trim(),
+    /** What fields of pinion and gear share a row for. */
+    row: box.dataset.row,
+    unit: box.dataset.unit ?? "",
     control: box.dataset.control,
     default: box.dataset.default,
     required: box.dataset.required !== undefined,
     input: box.querySelector("input, select, textarea"),
-    error: box.querySelector(".error"),
   }));
 }
 
@@ -44,8 +47,8 @@ function asNumber(text) {
   return text !== "" && Number.isFinite(value) ? value : text;
 }
 
-function isLeftOut(field) {
-  if (field.box.hidden) return true;
+/** Whether a field says what leaving it out says. */
+export function isDefault(field) {
   if (field.control === "boolean") return String(field.input.checked) === field.default;
   const text = field.input.value.trim();
   if (text === "") return true;
@@ -54,11 +57,14 @@ function isLeftOut(field) {
   return text === field.default;
 }
 
+/** What documents had that the form has no field for: kept, so that the server says what is wrong with it. */
+const extras = new Map();
+
 /** The job document that the form describes; what has its default is left out. */
 export function readDocument(form) {
   const root = {};
   for (const field of fieldsOf(form)) {
-    if (!isLeftOut(field)) put(root, field.pointer, valueOf(field));
+    if (!field.box.hidden && !isDefault(field)) put(root, field.pointer, valueOf(field));
   }
   // The second axis without the first: the document has no gaps.
   if (root.axes) root.axes = root.axes.filter(Boolean);
@@ -66,10 +72,11 @@ export function readDocument(form) {
   for (const pointer of ["/design", "/design/pinion", "/design/gear", "/operation"]) {
     if (get(root, pointer) === undefined) put(root, pointer, {});
   }
+  for (const [pointer, value] of extras) put(root, pointer, value);
   return root;
 }
 
-/** Fills the form from a document. Returns the pointers of what has no place in it. */
+/** Fills the form from a document. What has no place in it is kept for the documents read later. */
 export function writeDocument(form, document) {
   const known = new Set();
   for (const field of fieldsOf(form)) {
@@ -78,26 +85,40 @@ export function writeDocument(form, document) {
     if (field.control === "boolean") field.input.checked = (value ?? field.default === "true") === true;
     else field.input.value = asText(field, value ?? null);
   }
-  return leavesOf(document).filter((pointer) => ![...known].some((place) => pointer === place || pointer.startsWith(`${place}/`)));
+  extras.clear();
+  const places = [...known];
+  for (const [pointer, value] of leavesOf(document)) {
+    const hasField = places.some((place) => pointer === place || pointer.startsWith(`${place}/`));
+    const isEmptyGroup = typeof value === "object" && places.some((place) => place.startsWith(`${pointer}/`));
+    if (!hasField && !isEmptyGroup) extras.set(pointer, value);
+  }
 }
+
+/** Pointers of what is kept though the form has no field for it. */
+export const extraPointers = () => [...extras.keys()];
+
+export const dropExtras = () => extras.clear();
 
 function asText(field, value) {
   if (value === null) return field.default;
   if (field.control === "json") return JSON.stringify(value);
-  if (Array.isArray(value)) return value.join(", ");
+  if (Array.isArray(value)) return value.map((item) => (typeof item === "object" ? JSON.stringify(item) : item)).join(", ");
   return typeof value === "object" ? JSON.stringify(value) : String(value);
 }
 
+/** Pointer and value of all that is not null; of an empty object or list, itself. */
 function leavesOf(value, pointer = "") {
   if (value === null) return [];
-  if (typeof value !== "object") return [pointer];
-  return Object.entries(value).flatMap(([name, inner]) => leavesOf(inner, `${pointer}/${name}`));
+  if (typeof value !== "object" || (pointer && Object.keys(value).length === 0)) return [[pointer, value]];
+  return Object.entries(value).flatMap(([name, inner]) => leavesOf(inner, `${pointer}/${escaped(name)}`));
 }
 
-const steps = (pointer) => pointer.split("/").slice(1);
+// JSON pointers (RFC 6901).
+const escaped = (name) => name.replaceAll("~", "~0").replaceAll("/", "~1");
+const steps = (pointer) => pointer.split("/").slice(1).map((step) => step.replaceAll("~1", "/").replaceAll("~0", "~"));
 
 function get(root, pointer) {
-  return steps(pointer).reduce((value, step) => (value === null || value === undefined ? undefined : value[step]), root);
+  return steps(pointer).reduce((value, step) => (value === null || value === undefined || !Object.hasOwn(Object(value), step) ? undefined : value[step]), root);
 }
 
 function put(root, pointer, value) {
@@ -106,9 +127,15 @@ function put(root, pointer, value) {
   let place = root;
   path.forEach((step, index) => {
     const next = path[index + 1] ?? last;
-    place = place[step] ??= /^\d+$/.test(next) ? [] : {};
+    if (!Object.hasOwn(place, step) || typeof place[step] !== "object") set(place, step, /^\d+$/.test(next) ? [] : {});
+    place = place[step];
   });
-  place[last] = value;
+  set(place, last, value);
+}
+
+/** Sets a member of its own, whatever its name. */
+function set(place, name, value) {
+  Object.defineProperty(place, name, { value, writable: true, enumerable: true, configurable: true });
 }
 
 /** Shows the fields whose conditions hold; hidden fields do not count. */
@@ -117,11 +144,13 @@ export function applyConditions(form) {
   for (const { box } of fields) {
     if (box.dataset.when === undefined) continue;
     const other = fields.find((field) => field.pointer === box.dataset.when);
-    box.hidden = !box.dataset.whenValues.split(" ").includes(other?.input.value);
+    box.hidden = !other || other.box.hidden || !box.dataset.whenValues.split(" ").includes(other.input.value);
   }
-  for (const block of form.querySelectorAll("fieldset, .group")) {
-    block.hidden = [...block.querySelectorAll("[data-pointer]")].every((box) => box.hidden);
+  for (const block of form.querySelectorAll(".block, .group")) {
+    const boxes = [...block.querySelectorAll("[data-pointer]")];
+    block.hidden = boxes.length > 0 && boxes.every((box) => box.hidden);
   }
+  document.getElementById("to-sweep").hidden = document.getElementById("group-sweep").hidden;
 }
 
 /** The field that a pointer of the server's is about: itself, or the nearest around it. */

@@ -1,14 +1,24 @@
-// Shows the server's violations at the fields they are about.
+// What the server says of the document, shown at the fields it is about: violations and warnings.
 
 import { byId, el, show } from "../common/dom.js";
 import { fieldAt, fieldsOf } from "./document.js";
 
 export function clearErrors(form) {
   for (const field of fieldsOf(form)) {
-    field.error.textContent = "";
+    say(field, "error", "");
+    say(field, "caution", "");
     field.input.removeAttribute("aria-invalid");
   }
   show(byId("problems"), false);
+}
+
+/** Marks the fields that warnings are about. */
+export function showWarnings(form, warnings) {
+  const fields = fieldsOf(form);
+  for (const { pointer, detail } of warnings) {
+    const field = fieldAt(fields, pointer ?? "");
+    if (field) say(field, "caution", detail, { add: true });
+  }
 }
 
 /** Marks the fields named in the error; `summary` also lists everything at the top and goes there. */
@@ -19,9 +29,9 @@ export function showErrors(form, error, { summary }) {
   for (const { field, pointer, detail } of entries) {
     if (!field) continue;
     const place = field.pointer === pointer ? "" : `${pointer.slice(field.pointer.length + 1)}: `;
-    field.error.append(field.error.textContent ? `; ${place}${detail}` : `${place}${detail}`);
+    say(field, "error", `${place}${detail}`, { add: true });
     field.input.setAttribute("aria-invalid", "true");
-    field.box.closest("details").open = true;
+    unfold(field);
   }
   const nowhere = entries.filter(({ field }) => !field);
   if (summary || nowhere.length || entries.length === 0) {
@@ -30,19 +40,33 @@ export function showErrors(form, error, { summary }) {
   }
 }
 
+/** Opens the sections around a field. */
+export function unfold(field) {
+  for (let place = field.box.closest("details"); place; place = place.parentElement.closest("details")) place.open = true;
+}
+
+/** A link that leads to a field and opens what it is in. */
+export function linkTo(field) {
+  const link = el("a", { href: `#${field.input.id}` }, field.label);
+  link.addEventListener("click", (event) => {
+    event.preventDefault();
+    unfold(field);
+    field.input.focus();
+  });
+  return link;
+}
+
+function say(field, kind, text, { add = false } = {}) {
+  const node = field.box.querySelector(`.${kind}`);
+  node.textContent = add && node.textContent ? `${node.textContent}; ${text}` : text;
+}
+
 function listProblems(error, entries) {
   const box = byId("problems");
   const items = entries.map(({ field, pointer, detail }) => {
     const text = [pointer, detail].filter(Boolean).join(" ");
     if (!field) return el("li", {}, text);
-    const label = field.box.querySelector("label").firstChild.textContent.trim();
-    const link = el("a", { href: `#${field.input.id}` }, label);
-    link.addEventListener("click", (event) => {
-      event.preventDefault();
-      field.box.closest("details").open = true;
-      field.input.focus();
-    });
-    return el("li", {}, link, ` ${detail}`);
+    return el("li", {}, linkTo(field), ` ${detail}`);
   });
   box.replaceChildren(
     el("strong", {}, error.problem?.title ?? error.message),

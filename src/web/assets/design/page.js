@@ -1,67 +1,81 @@
-// The page with the design form: live check, errors at their fields, submission.
+// The page with the design form: what happens when a field changes, and submission.
 
 import * as api from "../common/api.js";
-import { byId, download, fillValues, fillWarnings, show } from "../common/dom.js";
-import { applyConditions, readDocument, writeDocument } from "./document.js";
-import { clearErrors, showErrors } from "./errors.js";
-import { labelOf, number, unitOf } from "../common/format.js";
+import { byId, download, el, show } from "../common/dom.js";
+import { initCheck } from "./check.js";
+import { applyConditions, dropExtras, extraPointers, readDocument, writeDocument } from "./document.js";
+import { keepDraft, keepSubmitted } from "./draft.js";
+import { showErrors } from "./errors.js";
+import { initHelp } from "./help.js";
+import { initStart } from "./start.js";
+import { initResets, showWhatIsSet } from "./summary.js";
 import { initSweep } from "./sweep.js";
 
-const CHECK_AFTER_MS = 400;
-const CHECKED = [
-  "transverse_contact_ratio", "overlap_ratio", "total_contact_ratio", "working_pressure_angle_deg", "center_distance_mm", "mesh_frequency_hz",
-];
+const CHECK_AFTER_MS = 250;
 
 const form = byId("design");
-const checkState = byId("check-state");
+const check = initCheck(form);
 let timer = null;
-let checking = null;
+let touched = false;
+
+/** Brings the page in line with the fields, and asks for a check a moment later. */
+function refresh() {
+  applyConditions(form);
+  showWhatIsSet(form);
+  const document = readDocument(form);
+  byId("document-text").textContent = JSON.stringify(document, null, 2);
+  showExtras();
+  clearTimeout(timer);
+  timer = setTimeout(() => {
+    if (touched) keepDraft(document);
+    check.run(document);
+  }, CHECK_AFTER_MS);
+}
 
 function changed() {
-  applyConditions(form);
-  byId("document-text").textContent = JSON.stringify(readDocument(form), null, 2);
-  clearTimeout(timer);
-  timer = setTimeout(check, CHECK_AFTER_MS);
+  touched = true;
+  refresh();
 }
 
-async function check() {
-  checking?.abort();
-  checking = new AbortController();
-  const { signal } = checking;
-  checkState.textContent = "Checking …";
-  try {
-    const report = await api.validate(readDocument(form), signal);
-    if (signal.aborted) return;
-    clearErrors(form);
-    setState("good", report.warnings.length ? "Can be solved; see the warnings." : "Can be solved.");
-    fillValues(byId("check-geometry"), CHECKED.map((name) => [labelOf(name), number(report.geometry[name]), unitOf(name)]));
-    fillWarnings(byId("check-warnings"), report.warnings);
-  } catch (error) {
-    if (signal.aborted) return;
-    fillValues(byId("check-geometry"), []);
-    fillWarnings(byId("check-warnings"), []);
-    const count = error.errors?.length ?? 0;
-    setState("bad", count ? `${count} ${count === 1 ? "field needs" : "fields need"} attention.` : error.message);
-    showErrors(form, error, { summary: false });
+/** What the form has no field for is kept in the document until it is removed. */
+function showExtras() {
+  const names = extraPointers();
+  const note = byId("extras");
+  show(note, names.length > 0);
+  if (!names.length) return;
+  const remove = el("button", { type: "button", class: "quiet" }, names.length > 1 ? "Remove them" : "Remove it");
+  remove.addEventListener("click", () => {
+    dropExtras();
+    changed();
+    byId("submit").focus();
+  });
+  note.replaceChildren(`Not in this form, kept in the document: ${names.join(", ")} `, remove);
+}
+
+/** Fills the form from a document; without one it stays as it is. */
+function fill(document) {
+  if (document) {
+    writeDocument(form, document);
+    changed();
+  } else {
+    refresh();
   }
-}
-
-function setState(kind, text) {
-  checkState.className = `state ${kind}`;
-  checkState.textContent = text;
 }
 
 async function submit(event) {
   event.preventDefault();
   clearTimeout(timer);
-  checking?.abort();
+  check.stop();
   const button = byId("submit");
   button.disabled = true;
+  const document = readDocument(form);
   try {
-    const job = await api.submit(readDocument(form), newKey());
+    const job = await api.submit(document, newKey());
+    keepSubmitted(document);
     window.location.assign(`/jobs/${encodeURIComponent(job.id)}`);
   } catch (error) {
-    setState("bad", "Not submitted.");
+    if (touched) keepDraft(document);
+    check.notSubmitted();
     showErrors(form, error, { summary: true });
     button.disabled = false;
   }
@@ -73,58 +87,47 @@ function newKey() {
   return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
-function fill(document) {
-  const unplaced = writeDocument(form, document);
-  byId("document-note").textContent = unplaced.length ? `Not in this form, left out: ${unplaced.join(", ")}` : "";
-  changed();
-}
-
-async function upload(event) {
-  const [file] = event.target.files;
-  event.target.value = "";
-  if (!file) return;
-  try {
-    const document = JSON.parse(await file.text());
-    if (document === null || typeof document !== "object" || Array.isArray(document)) throw new Error("it is not a JSON object");
-    fill(document);
-  } catch (error) {
-    byId("document-note").textContent = `${file.name} is not a job document: ${error.message}`;
-  }
-}
-
 async function copyCurl() {
   const body = JSON.stringify(readDocument(form), null, 2).replaceAll("'", "'\\''");
-  const command = `curl -sS -X POST ${api.submitUrl()} -H 'Content-Type: application/json' -d '${body}'\n`;
+  const login = form.dataset.login === undefined ? "" : ' -H "Authorization: Bearer $HERRINGBONE_TOKEN"';
+  const command = `curl -sS -X POST '${api.submitUrl()}'${login} -H 'Content-Type: application/json' -d '${body}'\n`;
   const note = byId("document-note");
+  const hint = login ? " Put the service's token into HERRINGBONE_TOKEN." : "";
   try {
     await navigator.clipboard.writeText(command);
-    note.textContent = "Copied.";
+    note.textContent = `Copied.${hint}`;
   } catch {
     byId("document-text").textContent = command;
-    note.textContent = "The clipboard is not available: copy the command below.";
+    byId("document-panel").open = true;
+    note.textContent = `The clipboard is not available: copy the command below.${hint}`;
   }
 }
 
-async function start() {
-  const from = new URLSearchParams(window.location.search).get("from");
-  if (from) {
-    try {
-      fill(await api.input(from));
-      return;
-    } catch (error) {
-      showErrors(form, error, { summary: true });
-    }
-  }
-  changed();
+/** "Table 1 of the source" becomes "table-1-of-the-source.json". */
+function fileName({ name }) {
+  const words = String(name ?? "").normalize("NFKD").toLowerCase().match(/[a-z0-9]+/g) ?? [];
+  return `${words.join("-").slice(0, 60) || "herringbone-job"}.json`;
 }
 
-form.addEventListener("input", changed);
+function save() {
+  const document = readDocument(form);
+  download(fileName(document), `${JSON.stringify(document, null, 2)}\n`);
+}
+
+const isOfAField = (event) => event.target.closest("[data-pointer]") !== null;
+form.addEventListener("input", (event) => isOfAField(event) && changed());
 form.addEventListener("submit", submit);
-byId("upload").addEventListener("change", upload);
-byId("upload").addEventListener("input", (event) => event.stopPropagation());
+form.addEventListener("keydown", (event) => {
+  if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) form.requestSubmit();
+});
 byId("copy-curl").addEventListener("click", copyCurl);
-byId("download").addEventListener("click", () => download("job.json", JSON.stringify(readDocument(form), null, 2)));
-byId("reset").addEventListener("click", () => window.location.assign("/"));
+byId("download").addEventListener("click", save);
+byId("sections").addEventListener("click", (event) => {
+  const link = event.target.closest("a");
+  if (link) document.querySelector(link.hash).open = true;
+});
 show(byId("problems"), false);
+initHelp(form);
+initResets(form, changed);
 initSweep(form, { readDocument: () => readDocument(form), changed });
-start();
+initStart({ fill, read: () => readDocument(form), failed: (error) => showErrors(form, error, { summary: true }) })();

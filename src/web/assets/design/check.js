@@ -1,0 +1,124 @@
+// The live check: asks the server what it thinks of the document, and shows the answer beside the form.
+
+import * as api from "../common/api.js";
+import { byId, el, fillValues } from "../common/dom.js";
+import { labelOf, number, unitOf } from "../common/format.js";
+import { initDrawing } from "./drawing.js";
+import { fieldAt, fieldsOf } from "./document.js";
+import { clearErrors, linkTo, showErrors, showWarnings } from "./errors.js";
+
+const HEADLINE = [
+  ["transverse_contact_ratio", "Transverse", "εα"],
+  ["overlap_ratio", "Overlap", "εβ"],
+  ["total_contact_ratio", "Total", "εγ"],
+];
+const VALUES = ["center_distance_mm", "working_pressure_angle_deg", "transverse_pressure_angle_deg", "base_helix_angle_deg", "path_of_contact_mm", "mesh_frequency_hz"];
+const DIAMETERS = [
+  ["tip_diameter_mm", "Tip ø"],
+  ["reference_diameter_mm", "Reference ø"],
+  ["base_diameter_mm", "Base ø"],
+  ["root_diameter_mm", "Root ø"],
+];
+/** Margins as the check names them: label, unit, whether being below the limit is an error rather than a matter of care. */
+const MARGINS = {
+  "tip-thickness": ["Tip thickness", "m_n"],
+  "tip-clearance": ["Tip clearance", "m_n"],
+  "profile-shift": ["Profile shift (undercut)", ""],
+  "active-profile": ["Active profile from ø", "mm"],
+};
+
+/** `run(document)` checks; what it finds is shown. */
+export function initCheck(form) {
+  const drawing = initDrawing();
+  let asking = null;
+
+  function stop() {
+    asking?.abort();
+    asking = null;
+  }
+
+  async function run(document) {
+    stop();
+    asking = new AbortController();
+    const { signal } = asking;
+    byId("check-bar").setAttribute("aria-busy", "true");
+    try {
+      const report = await api.validate(document, { drawing: true, signal });
+      if (signal.aborted) return;
+      clearErrors(form);
+      showReport(report);
+      showWarnings(form, report.warnings);
+      drawing.show(report.drawing);
+    } catch (error) {
+      if (signal.aborted) return;
+      if (!error.problem) throw error;
+      const count = error.errors.length;
+      setState("bad", count ? `${count} ${count === 1 ? "field needs" : "fields need"} attention` : error.message);
+      fade();
+      drawing.fade();
+      showErrors(form, error, { summary: false });
+    } finally {
+      if (!signal.aborted) byId("check-bar").removeAttribute("aria-busy");
+    }
+  }
+
+  return { run, stop, notSubmitted: () => setState("bad", "Not submitted") };
+}
+
+function setState(kind, text) {
+  const state = byId("check-state");
+  // The same words again would be read out again.
+  if (state.textContent === text) return;
+  state.className = `state ${kind}`;
+  state.textContent = text;
+}
+
+function showReport({ geometry, drawing: { margins }, memory_mib: memory, warnings }) {
+  const count = warnings.length;
+  setState(count ? "good warned" : "good", count ? `Can be solved, ${count} ${count === 1 ? "warning" : "warnings"}` : "Can be solved");
+  byId("checked").classList.remove("stale");
+  byId("check-geometry").replaceChildren(
+    ...HEADLINE.map(([name, label, symbol]) =>
+      el("div", {}, el("dt", {}, label, " ", el("span", { class: "symbol" }, symbol)), el("dd", {}, fixed(geometry[name]))),
+    ),
+  );
+  fillValues(byId("check-values"), [
+    ...VALUES.map((name) => [labelOf(name), number(geometry[name], 6), unitOf(name)]),
+    ["Memory, at most", memory < 1 ? "1" : number(memory, 3), "MiB"],
+  ]);
+  byId("check-gears").tBodies[0].replaceChildren(
+    ...DIAMETERS.map(([name, label]) => row(label, "mm", ["pinion", "gear"].map((side) => el("td", {}, number(geometry[side][name], 6))))),
+    ...Object.entries(MARGINS).map(([code, [label, unit]]) => row(label, unit, ["pinion", "gear"].map((side) => marginCell(margins.find((one) => one.code === code && one.member === side))))),
+  );
+  listWarnings(byId("check-warnings"), warnings);
+}
+
+const row = (label, unit, cells) => el("tr", {}, el("th", { scope: "row" }, label, unit ? el("span", { class: "unit" }, ` ${unit === "m_n" ? "/ mₙ" : unit}`) : null), ...cells);
+
+/** The value with its limit; below the limit it is marked, in words too. */
+function marginCell(margin) {
+  if (!margin) return el("td", {}, "–");
+  const low = margin.value < margin.limit;
+  const limit = el("span", { class: "limit" }, `${low ? "below" : "≥"} ${number(margin.limit, 4)}`);
+  return el("td", { class: low ? "low" : null }, number(margin.value, 4), " ", limit);
+}
+
+/** Warnings in full, with the way to their fields. */
+function listWarnings(list, warnings) {
+  const fields = fieldsOf(byId("design"));
+  list.replaceChildren(
+    ...warnings.map(({ code, detail, pointer }) => {
+      const field = fieldAt(fields, pointer ?? "");
+      const place = field ? linkTo(field) : el("code", {}, pointer);
+      return el("li", {}, el("strong", {}, code.replaceAll("-", " ")), ` ${detail}. `, place);
+    }),
+  );
+}
+
+/** A ratio with four decimals: it keeps its width while one types. */
+const fixed = (value) => (Number.isFinite(value) ? value.toFixed(4) : "–");
+
+function fade() {
+  byId("checked").classList.add("stale");
+  byId("check-warnings").replaceChildren();
+}

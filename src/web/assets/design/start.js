@@ -1,0 +1,134 @@
+// Where the form starts from: an example, what was submitted last, a file, a draft of this browser, a job.
+
+import * as api from "../common/api.js";
+import { byId, el } from "../common/dom.js";
+import { instant } from "../common/format.js";
+import { draft, dropDraft, submitted } from "./draft.js";
+
+const SUBMITTED = "submitted";
+
+/**
+ * Sets up the choice and the files. `fill(document)` fills the form, `read()` gives its document, `failed(error)` shows what
+ * could not be loaded.
+ */
+export function initStart({ fill, read, failed }) {
+  const choice = byId("start-from");
+  const note = byId("start-note");
+  let presets = null;
+
+  const say = (text, undo = null, label = "Undo") => {
+    note.replaceChildren(text);
+    if (!undo) return;
+    const button = el("button", { type: "button", class: "quiet" }, label);
+    button.addEventListener("click", () => {
+      undo();
+      note.textContent = "";
+      choice.value = "";
+      choice.focus();
+    });
+    note.append(" ", button);
+  };
+
+  const replace = (document, text) => {
+    const before = read();
+    fill(document);
+    say(text, () => fill(before));
+  };
+
+  async function startFrom() {
+    const { value } = choice;
+    if (value === "") return;
+    const label = choice.selectedOptions[0].textContent.trim();
+    try {
+      if (value === SUBMITTED) {
+        const kept = submitted();
+        if (kept) replace(kept.document, `As submitted ${instant(kept.at)}.`);
+        return;
+      }
+      presets ??= await api.presets();
+      const preset = presets.find(({ id }) => id === value);
+      if (preset && choice.value === value) replace(preset.document, preset.about);
+    } catch (error) {
+      say(`${label} could not be loaded: ${error.message}`);
+    }
+  }
+
+  async function open(file) {
+    try {
+      const document = JSON.parse(await file.text());
+      if (document === null || typeof document !== "object" || Array.isArray(document)) throw new Error("it is not a JSON object");
+      choice.value = "";
+      replace(document, `From the file ${file.name}.`);
+    } catch (error) {
+      say(`${file.name} is not a job document: ${error.message}`);
+    }
+  }
+
+  choice.addEventListener("change", startFrom);
+  const upload = byId("upload");
+  upload.addEventListener("change", () => {
+    const [file] = upload.files;
+    if (file) open(file);
+    upload.value = "";
+  });
+  initDrop(open);
+  choice.querySelector(`[value=${SUBMITTED}]`).disabled = !submitted();
+
+  /** The first contents: the job named in the address, else the draft, else the example that the page came with. */
+  return async function start() {
+    const from = new URLSearchParams(window.location.search).get("from");
+    const initial = read();
+    if (from) {
+      try {
+        fill(await api.input(from));
+        say(`From the job ${from}.`);
+        return;
+      } catch (error) {
+        failed(error);
+      }
+    }
+    const kept = draft();
+    if (!from && kept && JSON.stringify(kept.document) !== JSON.stringify(initial)) {
+      fill(kept.document);
+      const discard = () => {
+        fill(initial);
+        dropDraft();
+      };
+      say(`Your draft of ${instant(kept.at)}, kept in this browser.`, discard, "Discard");
+      return;
+    }
+    fill(null);
+  };
+}
+
+/** A file may be dropped anywhere on the page. */
+function initDrop(open) {
+  const target = byId("drop-target");
+  const hasFile = (event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
+  let depth = 0;
+  const shown = (visible) => {
+    if (!visible) depth = 0;
+    target.hidden = !visible;
+  };
+  window.addEventListener("dragenter", (event) => {
+    if (!hasFile(event)) return;
+    event.preventDefault();
+    depth += 1;
+    shown(true);
+  });
+  window.addEventListener("dragleave", (event) => {
+    if (!hasFile(event)) return;
+    depth -= 1;
+    if (depth <= 0) shown(false);
+  });
+  window.addEventListener("dragover", (event) => {
+    if (hasFile(event)) event.preventDefault();
+  });
+  window.addEventListener("drop", (event) => {
+    if (!hasFile(event)) return;
+    event.preventDefault();
+    shown(false);
+    const [file] = event.dataTransfer.files;
+    if (file) open(file);
+  });
+}

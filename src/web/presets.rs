@@ -1,0 +1,133 @@
+//! The documents in `examples/`, which the form can start from.
+
+use axum::http::header;
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use serde_json::value::RawValue;
+use std::sync::LazyLock;
+
+/// A document to start from.
+pub struct Preset {
+    pub id: &'static str,
+    pub title: &'static str,
+    /// What it shows, in a sentence.
+    pub about: &'static str,
+    document: &'static str,
+}
+
+/// Presets under a common heading.
+pub struct PresetGroup {
+    pub title: &'static str,
+    pub presets: &'static [Preset],
+}
+
+macro_rules! preset {
+    ($id:literal, $title:literal, $about:literal) => {
+        Preset {
+            id: $id,
+            title: $title,
+            about: $about,
+            document: include_str!(concat!("../../examples/", $id, ".json")),
+        }
+    };
+}
+
+/// All of them, in the order of the choice.
+pub const GROUPS: &[PresetGroup] = &[
+    PresetGroup {
+        title: "One operating point",
+        presets: &[
+            preset!(
+                "table1",
+                "Example pair, z 17/44",
+                "The source paper's Table 1: module 6 mm, helix 24.43°, 2 × 75 mm, 800 N·m at 2000 r/min."
+            ),
+            preset!(
+                "tip_relief",
+                "Tip relief on both gears",
+                "15 µm parabolic over 6 mm of roll: softens the mesh-in impact and shifts the load share."
+            ),
+            preset!(
+                "assembly_errors",
+                "Assembly errors",
+                "Centre-distance error, misaligned axes and an apex offset that the floating pinion balances."
+            ),
+            preset!(
+                "given_stiffness",
+                "Given stiffness, light load",
+                "A stiffness series and an impact as given, 80 N·m: the teeth separate."
+            ),
+        ],
+    },
+    PresetGroup {
+        title: "Contact ratios of the source's Table 2",
+        presets: &[
+            preset!("table2_2_72", "Contact ratio 2.72", "By addenda of 0.686 m_n."),
+            preset!("table2_2_91", "Contact ratio 2.91", "By addenda of 0.825 m_n."),
+            preset!("table2_3_30", "Contact ratio 3.30", "By addenda of 1.123 m_n."),
+            preset!("table2_3_68", "Contact ratio 3.68", "By addenda of 1.123 m_n and faces of 92.3 mm."),
+            preset!("table2_4_07", "Contact ratio 4.07", "By addenda of 1.123 m_n and faces of 110.1 mm."),
+        ],
+    },
+    PresetGroup {
+        title: "Sweeps",
+        presets: &[
+            preset!("speed_sweep", "Over the speed", "The example pair at 56 speeds: resonances and their width."),
+            preset!(
+                "contact_ratio_sweep",
+                "Over the face width",
+                "Faces from 55 to 115 mm: contact ratio 2.70 to 4.02."
+            ),
+        ],
+    },
+];
+
+/// A preset as the page's script gets it.
+#[derive(Serialize)]
+struct Entry {
+    id: &'static str,
+    title: &'static str,
+    about: &'static str,
+    document: &'static RawValue,
+}
+
+static JSON: LazyLock<String> = LazyLock::new(|| {
+    let presets = GROUPS.iter().flat_map(|group| group.presets);
+    let entries: Result<Vec<_>, serde_json::Error> = presets
+        .map(|preset| {
+            let document = serde_json::from_str(preset.document)?;
+            Ok(Entry { id: preset.id, title: preset.title, about: preset.about, document })
+        })
+        .collect();
+    // The documents are part of the program; a test reads them all.
+    entries.and_then(|entries| serde_json::to_string(&entries)).unwrap_or_else(|_| "[]".to_owned())
+});
+
+/// `/assets/presets.json`.
+pub async fn presets() -> Response {
+    let headers = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-cache")];
+    (headers, JSON.as_str()).into_response()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_example_is_a_preset_that_can_be_solved() {
+        let listed: Vec<serde_json::Value> = serde_json::from_str(&JSON).unwrap();
+        let files = std::fs::read_dir("examples").unwrap().map(|entry| entry.unwrap().path());
+        let mut names: Vec<_> = files
+            .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+            .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
+            .collect();
+        names.sort();
+        let mut ids: Vec<_> = listed.iter().map(|entry| entry["id"].as_str().unwrap().to_owned()).collect();
+        ids.sort();
+        assert_eq!(ids, names);
+        for entry in listed {
+            let document = crate::job::parse_value(&entry["document"]).unwrap();
+            crate::study::check(&document).unwrap();
+        }
+    }
+}
