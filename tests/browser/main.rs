@@ -9,6 +9,7 @@ mod browser;
 mod compare;
 mod form;
 mod job;
+mod keyboard;
 mod list;
 mod login;
 mod offline;
