@@ -137,22 +137,33 @@ impl Browser {
         self.driver.execute_async(script, vec![json!(path)]).await.unwrap().json().clone()
     }
 
-    /// Submits a document as a page would (one has to be open) and waits until its job has ended; its id.
-    pub async fn solved(&self, document: &Value) -> String {
+    /// Submits a document as a page would (one has to be open); the job's id.
+    pub async fn submitted(&self, document: &Value) -> String {
         let script = "const done = arguments[1]; const headers = {'Content-Type': 'application/json'}; \
                       fetch('/api/v1/jobs', {method: 'POST', headers, body: JSON.stringify(arguments[0])}) \
                       .then((answer) => answer.json()).then(done, (error) => done(String(error)));";
         let job = self.driver.execute_async(script, vec![document.clone()]).await.unwrap().json().clone();
-        let id = job["id"].as_str().unwrap_or_else(|| panic!("not accepted: {job}")).to_owned();
+        job["id"].as_str().unwrap_or_else(|| panic!("not accepted: {job}")).to_owned()
+    }
+
+    /// Waits until a job has ended.
+    pub async fn ended(&self, id: &str) {
         let deadline = Instant::now() + PATIENCE;
         loop {
             let job = self.fetch(&format!("/api/v1/jobs/{id}")).await;
             if ["succeeded", "failed", "canceled"].iter().any(|state| job["state"] == *state) {
-                return id;
+                return;
             }
             assert!(Instant::now() < deadline, "not within {PATIENCE:?}: {job}");
             tokio::time::sleep(Duration::from_millis(50)).await;
         }
+    }
+
+    /// Submits a document and waits until its job has ended; its id.
+    pub async fn solved(&self, document: &Value) -> String {
+        let id = self.submitted(document).await;
+        self.ended(&id).await;
+        id
     }
 
     /// Makes the window so wide, also narrower than a desktop's windows can be.

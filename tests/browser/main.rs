@@ -14,6 +14,7 @@ mod list;
 mod login;
 mod offline;
 mod pages;
+mod pictures;
 mod process;
 mod report;
 mod server;

@@ -23,6 +23,11 @@ impl Page {
         Self { has_plot: true, ..self }
     }
 
+    /// Whether the page is as its address gives it.
+    pub fn can_be_timed(&self) -> bool {
+        !self.spoilt
+    }
+
     /// Opens the page and waits until everything is there.
     pub async fn open(&self, browser: &Browser) {
         browser.open(&self.path).await;
@@ -38,6 +43,7 @@ impl Page {
 }
 
 const CHECKED: &str = "document.querySelector('#check-state').classList.contains('good')";
+const COMPARED: &str = "document.querySelector('#curves[data-ready]')";
 const SHOWN: &str = "document.querySelector('[data-ready]')";
 
 /// All pages of a service without a token, with jobs that it has solved for them.
@@ -50,6 +56,7 @@ pub async fn all(browser: &Browser) -> Vec<Page> {
         document
     };
     let response = browser.solved(&example).await;
+    let other = browser.solved(&changed(&|document| document["operation"]["pinion_torque_nm"] = json!(400))).await;
     let mesh = browser.solved(&changed(&|document| document["kind"] = json!("mesh"))).await;
     let sweep = browser
         .solved(&changed(&|document| {
@@ -68,7 +75,7 @@ pub async fn all(browser: &Browser) -> Vec<Page> {
     vec![
         Page::new("design", "/", CHECKED),
         Page { spoilt: true, ..Page::new("design with errors", "/", CHECKED) },
-        Page::new("jobs", "/jobs", "document.querySelectorAll('tr[data-id]').length === 4"),
+        Page::new("jobs", "/jobs", "document.querySelectorAll('tr[data-id]').length === 5"),
         Page::new("response", format!("/jobs/{response}"), SHOWN).with_plot(),
         Page::new("mesh", format!("/jobs/{mesh}"), SHOWN).with_plot(),
         Page::new("sweep", format!("/jobs/{sweep}"), SHOWN).with_plot(),
