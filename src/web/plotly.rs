@@ -30,7 +30,8 @@ pub fn script_url() -> String {
 }
 
 /// The script, compressed once: it is some megabytes, and compressing it takes longer than all else that a page needs.
-static COMPRESSED: LazyLock<Option<Bytes>> = LazyLock::new(|| zstd::encode_all(&*PLOTLY.script, 12).ok().map(Bytes::from));
+static COMPRESSED: LazyLock<Option<Bytes>> =
+    LazyLock::new(|| zstd::encode_all(&*PLOTLY.script, 12).ok().map(Bytes::from));
 
 /// `/assets/plotly.js`: compressed beforehand for browsers that read zstd (they say so on this machine and over TLS), and as any other
 /// file for the rest.
@@ -123,7 +124,8 @@ mod tests {
     #[tokio::test]
     async fn what_is_compressed_is_the_script() {
         let answered = async |coding: &'static str| {
-            let headers = HeaderMap::from_iter([(header::ACCEPT_ENCODING, axum::http::HeaderValue::from_static(coding))]);
+            let headers =
+                HeaderMap::from_iter([(header::ACCEPT_ENCODING, axum::http::HeaderValue::from_static(coding))]);
             let answer = script(headers).await;
             let named = answer.headers().get(header::CONTENT_ENCODING).map(|value| value.to_str().unwrap().to_owned());
             (named, axum::body::to_bytes(answer.into_body(), 1 << 24).await.unwrap())

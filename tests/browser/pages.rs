@@ -79,6 +79,8 @@ pub async fn all(browser: &Browser) -> Vec<Page> {
         Page::new("response", format!("/jobs/{response}"), SHOWN).with_plot(),
         Page::new("mesh", format!("/jobs/{mesh}"), SHOWN).with_plot(),
         Page::new("sweep", format!("/jobs/{sweep}"), SHOWN).with_plot(),
+        Page::new("compare", format!("/compare?jobs={response},{other}"), COMPARED).with_plot(),
+        Page::new("compare nothing", "/compare", "document.querySelector('#compare').dataset.ready !== undefined"),
         Page::new(
             "failed job",
             format!("/jobs/{failed}"),

@@ -32,7 +32,11 @@ const DRAWN: &str = "[...document.querySelectorAll('.plot')].every((plot) => { c
 /// Base64, whose letters stand for six bits each.
 fn decoded(text: &str) -> Vec<u8> {
     const LETTERS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let sextets: Vec<u32> = text.bytes().filter_map(|letter| LETTERS.iter().position(|known| *known == letter)).map(|at| at as u32).collect();
+    let sextets: Vec<u32> = text
+        .bytes()
+        .filter_map(|letter| LETTERS.iter().position(|known| *known == letter))
+        .map(|at| at as u32)
+        .collect();
     let quads = sextets.chunks(4).flat_map(|quad| {
         let bits = quad.iter().enumerate().fold(0, |bits, (place, sextet)| bits | sextet << (18 - 6 * place));
         bits.to_be_bytes()[1..quad.len()].to_vec()
@@ -106,15 +110,15 @@ async fn pictures_of_every_page() {
         let failed = browser.solved(&failing).await;
         browser.ended(&sweep).await;
         browser.ended(&grid).await;
-        let long = browser.submitted(&example(TABLE_1, |document| {
+        let endless = example(TABLE_1, |document| {
             document["kind"] = json!("sweep");
             document["name"] = json!("Speed and torque, finely");
             document["axes"] = json!([
                 {"pointer": "/operation/pinion_speed_rpm", "from": 300, "to": 6000, "points": 600},
                 {"pointer": "/operation/pinion_torque_nm", "from": 100, "to": 1000, "points": 100},
             ]);
-        }));
-        let long = long.await;
+        });
+        let long = browser.submitted(&endless).await;
 
         takes(browser, "design", "/", CHECKED).await;
         browser.prefer_dark(false).await;
@@ -166,12 +170,15 @@ async fn pictures_of_every_page() {
 #[tokio::test]
 #[ignore = "makes pictures: scripts/screenshots"]
 async fn pictures_of_the_login() {
-    flow_against(|| Server::start_with_token("a-token-for-pictures"), async |browser| {
-        browser.resize(1280).await;
-        browser.open("/").await;
-        browser.until("document.querySelector('#token')").await;
-        take(browser, "login", 600).await;
-    })
+    flow_against(
+        || Server::start_with_token("a-token-for-pictures"),
+        async |browser| {
+            browser.resize(1280).await;
+            browser.open("/").await;
+            browser.until("document.querySelector('#token')").await;
+            take(browser, "login", 600).await;
+        },
+    )
     .await;
 }
 
