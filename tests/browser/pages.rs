@@ -77,6 +77,7 @@ pub async fn all(browser: &Browser) -> Vec<Page> {
         Page { spoilt: true, ..Page::new("design with errors", "/", CHECKED) },
         Page::new("jobs", "/jobs", "document.querySelectorAll('tr[data-id]').length === 5"),
         Page::new("response", format!("/jobs/{response}"), SHOWN).with_plot(),
+        Page::new("report", format!("/jobs/{response}/report"), SHOWN).with_plot(),
         Page::new("mesh", format!("/jobs/{mesh}"), SHOWN).with_plot(),
         Page::new("sweep", format!("/jobs/{sweep}"), SHOWN).with_plot(),
         Page::new("compare", format!("/compare?jobs={response},{other}"), COMPARED).with_plot(),

@@ -27,7 +27,6 @@ export class Life {
     const title = job.name ?? `Job ${job.id.slice(-8)}`;
     byId("title").textContent = title;
     document.title = `${title} · herringbone`;
-    show(byId("life"));
     const badge = byId("state");
     if (badge.textContent !== job.state) badge.textContent = job.state;
     badge.className = `badge ${job.state}`;
@@ -41,7 +40,8 @@ export class Life {
     byId("download-input").href = api.inputUrl(this.id);
     byId("download-result").href = api.resultUrl(this.id);
     this.showValues(job);
-    if (job.state === "failed") showFailure(job);
+    if (job.state === "failed") showFailure(job).then(() => show(byId("life")));
+    else show(byId("life"));
     if (job.state === "queued" && before?.state !== "queued") this.askPlace();
     this.tick();
   }
@@ -140,8 +140,8 @@ function describe(job) {
   return STATES[job.state] ?? "";
 }
 
-/** Why a job failed: where, when, and what helps. */
-function showFailure({ error }) {
+/** Why a job failed: where, when, and what helps. Done when all of it is there. */
+async function showFailure({ error }) {
   const box = byId("failure");
   if (!error || !box.hidden) return;
   show(box);
@@ -155,7 +155,7 @@ function showFailure({ error }) {
     ["Request", error.request_id],
   ]);
   byId("failure-errors").replaceChildren(...(error.errors ?? []).map((entry) => el("li", {}, [entry.pointer, entry.detail].filter(Boolean).join(" "))));
-  explain(error);
+  await explain(error);
 }
 
 async function explain({ type }) {

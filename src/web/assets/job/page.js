@@ -50,8 +50,10 @@ async function showResult(job) {
   showResponse(all);
   showGeometry(all);
   showNumerics(all);
-  await Promise.all([showSeries(all), showPhase(all), showSpectrum(all), showModes(all), showMesh(all), showImpact(all)]);
+  const drawn = [showSeries(all), showPhase(all), showSpectrum(all), showModes(all), showMesh(all), showImpact(all)];
+  // With the sections, so that nothing moves when their plots are drawn.
   showContents();
+  await Promise.all(drawn);
   byId("job").dataset.ready = "true";
 }
 
