@@ -146,7 +146,7 @@ pub struct MeshCurve {
     pub flank: Option<FlankLoad>,
 }
 
-/// Line load over the flank, for a heat map: rows along the face width, columns along the roll path.
+/// Line load over the flank, for a heat map: a row for each place on the roll path, in it the columns along the face width from the inner end.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct FlankLoad {

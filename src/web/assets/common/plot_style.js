@@ -3,6 +3,8 @@
 import { el } from "./dom.js";
 import { shownUnit } from "./format.js";
 
+/** Plots below this are on a telephone, px. */
+const NARROW = 480;
 const DASHES = ["solid", "dash", "dot", "dashdot", "longdash"];
 const UNITS = ["N/µm", "N/mm", "kg·m²", "m/s²", "m/s", "µm", "mm", "m", "N", "N·m", "MPa", "Hz", "s", "ms", "%", "°", "rad", "rad/s", "rad/s²", "r/min", "dB", "W", "kg"];
 
@@ -43,7 +45,7 @@ export const titleOf = (axis) => {
 };
 
 /** The traces in the page's colours and dashes, with what hovering shows; bands first, so that lines lie above them. */
-export function styled(traces, axes, colours) {
+export function styled(traces, axes, colours, { width = 900 } = {}) {
   const unified = hoverMode(traces, axes) === "x unified";
   let place = 0;
   const drawn = traces.map((trace) => {
@@ -51,7 +53,7 @@ export function styled(traces, axes, colours) {
     const colour = trace.tone === "muted" ? colours.muted : colours.lines[at % colours.lines.length];
     const { tone, colour: own, aside, unit, paint, ...rest } = trace;
     if (paint) return { ...rest, ...paint(colours.of), ...(rest.colorbar ? { colorbar: { ...rest.colorbar, tickfont: { color: colours.text } } } : {}) };
-    return { ...inColour(rest, colour, DASHES[at % DASHES.length], colours), hovertemplate: trace.hovertemplate ?? hoverText(trace, axes, unified) };
+    return { ...inColour(rest, colour, DASHES[at % DASHES.length], colours, axes.equal && width < NARROW), hovertemplate: trace.hovertemplate ?? hoverText(trace, axes, unified) };
   });
   // An axis is only drawn with a trace on it.
   const above = axes.top ? [{ type: "scatter", mode: "markers", x: [null], y: [null], xaxis: "x2", showlegend: false, hoverinfo: "skip" }] : [];
@@ -66,8 +68,12 @@ function filled({ x, low, high, name = "" }, colour) {
 /** A colour of the stylesheet ("rgb(0, 103, 165)"), seen through. */
 const fillOf = (colour) => ({ fillcolor: colour.replace("rgb(", "rgba(").replace(")", ", .22)") });
 
-function inColour(trace, colour, dash, colours) {
-  if (trace.type === "heatmap") return { ...trace, colorbar: { ...trace.colorbar, tickfont: { color: colours.text } } };
+function inColour(trace, colour, dash, colours, below) {
+  if (trace.type === "heatmap") {
+    // What is true to scale needs the width.
+    const place = below ? { orientation: "h", x: 0.5, y: -0.55, yanchor: "top", thickness: 10, title: { ...trace.colorbar.title, side: "top" } } : {};
+    return { ...trace, colorbar: { ...trace.colorbar, ...place, tickfont: { color: colours.text } } };
+  }
   if (trace.type === "bar") return { ...trace, marker: { color: colour, ...trace.marker } };
   if (trace.error_y) return { ...trace, marker: { ...trace.marker, color: colour }, error_y: { ...trace.error_y, color: colour } };
   return { ...trace, line: { dash, color: colour, ...trace.line }, marker: { color: colour, ...trace.marker } };
@@ -91,8 +97,19 @@ function hoverMode(traces, axes) {
   return curves.length > 1 && curves.every(rising) ? "x unified" : "closest";
 }
 
+/** A title in as many lines as its axis is too short for, px. */
+function broken(text, room) {
+  const most = Math.max(10, Math.floor(room / 6.6));
+  const lines = [""];
+  for (const word of text.split(" ")) {
+    if (lines.at(-1) && lines.at(-1).length + word.length >= most) lines.push(word);
+    else lines.push([lines.pop(), word].filter(Boolean).join(" "));
+  }
+  return lines.join("<br>");
+}
+
 export function layoutOf(axes, traces, colours, { width, height }) {
-  const { range, yRange, title, fromZero, equal, log, top, zoomX, marks = [], levels = [] } = axes;
+  const { range, yRange, y2Range, title, fromZero, equal, log, top, zoomX, marks = [], levels = [] } = axes;
   const axis = (text) => ({
     title: { text, standoff: 8 }, gridcolor: colours.grid, zerolinecolor: colours.grid, linecolor: colours.grid, automargin: true, exponentformat: "power", separatethousands: true,
   });
@@ -103,9 +120,9 @@ export function layoutOf(axes, traces, colours, { width, height }) {
     margin: { l: 56, r: 16, t: (title ? 36 : 14) + (top ? 38 : 0) + (top && named ? 20 : 0), b: 44 },
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "rgba(0,0,0,0)",
-    font: { color: colours.text, family: "system-ui, sans-serif", size: width < 480 ? 11 : 12 },
-    xaxis: { ...axis(titleOf(axes.x)), exponentformat: "none", hoverformat: ".5~g" },
-    yaxis: { ...axis(titleOf(axes.y)), type: log ? "log" : undefined },
+    font: { color: colours.text, family: "system-ui, sans-serif", size: width < NARROW ? 11 : 12 },
+    xaxis: { ...axis(broken(titleOf(axes.x), width - 90)), exponentformat: "none", hoverformat: ".5~g" },
+    yaxis: { ...axis(broken(titleOf(axes.y), height - 110)), type: log ? "log" : undefined },
     legend: { orientation: "h", y: top ? 1 + 46 / Math.max(100, height - 130) : 1.02, yanchor: "bottom", x: 0 },
     showlegend: named,
     separators: ".\u202f",
@@ -129,7 +146,7 @@ export function layoutOf(axes, traces, colours, { width, height }) {
     layout.yaxis.constrain = "domain";
     layout.xaxis.constrain = "domain";
   }
-  if (axes.y2) layout.yaxis2 = { ...axis(titleOf(axes.y2)), overlaying: "y", side: "right", showgrid: false, fixedrange: Boolean(zoomX) };
+  if (axes.y2) layout.yaxis2 = { ...axis(titleOf(axes.y2)), overlaying: "y", side: "right", showgrid: false, fixedrange: Boolean(zoomX), range: y2Range && [...y2Range] };
   if (top) layout.xaxis2 = { ...axis(titleOf(top.title)), overlaying: "x", side: "top", showgrid: false, fixedrange: true, exponentformat: "none", range: range?.map((end) => end * top.factor) };
   const whole = { ...layout, ...axes.layout };
   axes.more?.(whole, colours.of);

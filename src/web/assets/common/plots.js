@@ -4,7 +4,7 @@
 //   x, y, y2   titles with their unit after the last comma ("Time, s"), or { label, unit }
 //   name       what the plot is called, for people who do not see it and for file names; the figure's caption or heading if left out
 //   csvName    name of its files without ending
-//   range      [from, to] of x if it is not all of it;  yRange the same of y
+//   range      [from, to] of x if it is not all of it;  yRange, y2Range the same of y and y2
 //   log        y is logarithmic
 //   bands      [{ x, low, high, name }]: filled between two curves
 //   marks      [{ x, text }]: vertical lines;  levels [{ y, text }]: horizontal ones
@@ -126,7 +126,7 @@ async function render(figure) {
   const { node, traces, axes } = figure;
   const colours = palette();
   const size = { width: node.clientWidth || 600, height: node.clientHeight || 320 };
-  await plotly.react(node, styled(traces, axes, colours), layoutOf(axes, traces, colours, size), CONFIG);
+  await plotly.react(node, styled(traces, axes, colours, size), layoutOf(axes, traces, colours, size), CONFIG);
   if (figure.drawn) return;
   figure.drawn = true;
   fit.observe(node);

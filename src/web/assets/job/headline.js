@@ -53,7 +53,7 @@ export function showHeadline(result) {
         "div",
         { class: "tile" },
         el("div", { class: "tile-head" }, el("span", { class: "name" }, name), tip(name, meaning)),
-        el("span", { class: "number" }, shown, unit ? el("span", { class: "unit" }, ` ${unit}`) : null),
+        el("span", { class: /^[A-Z]/.test(shown) ? "number words" : "number" }, shown, unit ? el("span", { class: "unit" }, ` ${unit}`) : null),
         el("span", { class: "note" }, ...[note].flat()),
       ),
     ),

@@ -2,7 +2,7 @@
 
 import * as api from "../common/api.js";
 import { byId, el, fillValues, notify, show } from "../common/dom.js";
-import { instant, number, percent, seconds } from "../common/format.js";
+import { instant, number, percent, seconds, sentence } from "../common/format.js";
 
 const STAGES = { geometry: "Geometry", mesh: "Tooth contact", impact: "Mesh-in impact", response: "Vibration" };
 const STAGES_OF = { mesh: ["geometry", "mesh", "impact"], response: ["geometry", "mesh", "impact", "response"] };
@@ -146,7 +146,7 @@ async function showFailure({ error }) {
   if (!error || !box.hidden) return;
   show(box);
   byId("failure-title").textContent = error.title;
-  byId("failure-detail").textContent = error.detail;
+  byId("failure-detail").textContent = sentence(error.detail);
   fillValues(byId("failure-values"), [
     ["Stage", STAGES[error.stage] ?? error.stage],
     ["Simulated time", typeof error.sim_time_s === "number" ? number(error.sim_time_s, 4) : null, "s"],
@@ -162,7 +162,8 @@ async function explain({ type }) {
   try {
     const answer = await fetch(type, { headers: { Accept: "application/json" } });
     const { explanation } = await answer.json();
-    byId("failure-advice").textContent = explanation.replace("Error of a failed job: ", "").replace(/^./, (first) => first.toUpperCase());
+    const text = explanation.replace("Error of a failed job: ", "").replace("`sim_time_s`", "the time below").replaceAll("`", "");
+    byId("failure-advice").textContent = sentence(text);
   } catch {
     // The title and the detail stand for themselves.
   }

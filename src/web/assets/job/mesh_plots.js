@@ -22,17 +22,27 @@ export function stiffnessPlot(mesh) {
   const secant = mesh.right_curve ? [] : mesh.curve.transmission_error_um.map((error) => mesh.force_n / error);
   if (solved && secant.length && Math.abs(mean(secant) / mesh.secant_stiffness_mean_n_per_um - 1) < 0.01) traces.push(line(phaseOf(mesh.curve), closed(secant), `secant F/δ, mean ${number(mesh.secant_stiffness_mean_n_per_um, 4)}`));
   const levels = [{ y: mesh.stiffness_mean_n_per_um, text: `mean ${number(mesh.stiffness_mean_n_per_um, 4)}` }];
-  if (solved && mesh.right_curve) levels.push({ y: mesh.secant_stiffness_mean_n_per_um, text: `mean secant ${number(mesh.secant_stiffness_mean_n_per_um, 4)}` });
   return { traces, axes: { x: PHASE, y: "Mesh stiffness, N/µm", csvName: "mesh-stiffness", range: [0, 1], levels, link: "mesh" } };
 }
 
 export function errorPlot(mesh) {
   if (!mesh?.curve?.transmission_error_um?.length) return null;
   const traces = halves(mesh).map(([half, curve]) => line(phaseOf(curve), closed(curve.transmission_error_um), half));
-  // In the places of the stiffness's curves: left and right look the same in both.
   const axes = { x: PHASE, y: "Transmission error, µm", csvName: "transmission-error", range: [0, 1], link: "mesh" };
   if (!mesh.right_curve) axes.levels = [{ y: mesh.transmission_error_mean_um, text: `mean ${number(mesh.transmission_error_mean_um, 4)}` }];
+  else apart(mesh, traces, axes);
   return { traces, axes };
+}
+
+/** Where an error of assembly parts the halves by much more than they vary, each has an axis of its own, of the same length. */
+function apart({ curve, right_curve: right }, traces, axes) {
+  const ends = [curve, right].map(({ transmission_error_um: values }) => [Math.min(...values), Math.max(...values)]);
+  const span = 1.2 * Math.max(...ends.map(([low, high]) => high - low));
+  const middles = ends.map(([low, high]) => (low + high) / 2);
+  if (Math.abs(middles[0] - middles[1]) < 2 * span) return;
+  const [range, range2] = middles.map((middle) => [middle - span / 2, middle + span / 2]);
+  traces[1].yaxis = "y2";
+  Object.assign(axes, { y: "Transmission error, left, µm", y2: "right, µm", yRange: range, y2Range: range2 });
 }
 
 export function harmonicsPlot(mesh) {
@@ -97,7 +107,9 @@ export function flankPlot(mesh, geometry, input) {
   const [side, flank, row, column] = greatest(left, right, most);
   traces.push({ ...points([place(side, flank.face_mm[column])], [flank.roll_mm[row]], ""), aside: true, hovertemplate: `greatest: ${number(most, 4)} N/mm<extra></extra>`, marker: { size: 12, symbol: "circle-open", color: "#ffffff", line: { width: 2, color: "#ffffff" } } });
   const axes = { x: "Along the axis, mm", y: "Roll path of the pinion, mm", z: "Line load", csvName: "line-load", equal: true, hover: "closest",
-    annotations: [-1, 1].map((side) => ({ x: side * (gap + width) / 2, y: 1, yref: "paper", yanchor: "bottom", text: side < 0 ? "left half" : "right half", showarrow: false })) };
+    annotations: [-1, 1].map((side) => ({ x: side * (gap + width) / 2, y: 1, yref: "paper", yanchor: "bottom", text: side < 0 ? "left half" : "right half", showarrow: false })),
+    layout: { margin: { l: 56, r: 16, t: 28, b: 44 } },
+  };
   return { traces, axes, most };
 }
 

@@ -33,8 +33,8 @@ export function responseValues(response, input) {
     ["In contact, left / right", share ? `${number(100 * share.left, 4)} / ${number(100 * share.right, 4)}` : null, "% of the time"],
     ["Mesh frequency", value(response.mesh_frequency_hz, 5), "Hz"],
     ["Repeats after", response.period_mesh_periods ? number(response.period_mesh_periods) : null, response.period_mesh_periods === 1 ? "mesh period" : "mesh periods"],
-    ["Stability (largest Floquet multiplier per mesh period)", value(response.floquet_modulus_per_mesh_period)],
-    ["Lyapunov exponent per mesh period", value(response.lyapunov_per_mesh_period, 3)],
+    ["Largest Floquet multiplier", value(response.floquet_modulus_per_mesh_period), "per mesh period"],
+    ["Lyapunov exponent", value(response.lyapunov_per_mesh_period, 3), "per mesh period"],
     ["Plane of the equations", response.plane],
     ["Mesh damper in the gap", response.damping_in_gap ? "acts (the source's law)" : "does not act"],
   ];
