@@ -45,13 +45,13 @@ pub async fn assert_complete(browser: &Browser) {
     assert_eq!(browser.value(words).await, Value::Null, "{}", browser.text("main").await);
 }
 
-/// The text that a click on a button saves as a file.
-async fn saved_by(browser: &Browser, selector: &str) -> String {
-    let script = "const [selector, done] = arguments; const make = URL.createObjectURL; \
+/// The text of the file of a media type that a click on a button saves.
+async fn saved_by(browser: &Browser, selector: &str, media_type: &str) -> String {
+    let script = "const [selector, type, done] = arguments; const make = URL.createObjectURL; \
                   HTMLAnchorElement.prototype.click = function () {}; \
-                  URL.createObjectURL = (blob) => { blob.text().then(done); return make.call(URL, blob); }; \
+                  URL.createObjectURL = (blob) => { if (blob.type.startsWith(type)) blob.text().then(done); return make.call(URL, blob); }; \
                   document.querySelector(selector).click();";
-    let text = browser.driver.execute_async(script, vec![json!(selector)]).await.unwrap();
+    let text = browser.driver.execute_async(script, vec![json!(selector), json!(media_type)]).await.unwrap();
     text.json().as_str().unwrap().to_owned()
 }
 
@@ -112,7 +112,7 @@ async fn the_example_goes_from_the_form_to_its_result() {
         assert_complete(browser).await;
 
         // A plot's file has the numbers of the API.
-        let text = saved_by(browser, "#stiffness-plot + .plot-tools .plot-files button").await;
+        let text = saved_by(browser, "#stiffness-plot + .plot-tools .plot-files button", "text/csv").await;
         let curve = &result["mesh"]["curve"];
         let mut rows = text.trim_end().split("\r\n");
         let header = rows.next().unwrap();
@@ -123,9 +123,11 @@ async fn the_example_goes_from_the_form_to_its_result() {
         assert!(rows.iter().map(|row| row[1]).zip(numbers("stiffness_n_per_um")).all(|(a, b)| a == b));
         assert_eq!(rows.len(), curve["phase"].as_array().unwrap().len() + 1, "the period's end repeats its start");
 
-        let image = saved_by(browser, "#stiffness-plot + .plot-tools .plot-files button:nth-child(2)").await;
+        let image =
+            saved_by(browser, "#stiffness-plot + .plot-tools .plot-files button:nth-child(2)", "image/png").await;
         assert!(image.chars().take(8).collect::<String>().contains("PNG"), "{image:.40}");
-        let drawing = saved_by(browser, "#stiffness-plot + .plot-tools .plot-files button:nth-child(3)").await;
+        let drawing =
+            saved_by(browser, "#stiffness-plot + .plot-tools .plot-files button:nth-child(3)", "image/svg").await;
         assert!(drawing.starts_with("<svg") && drawing.contains("tangent"), "{drawing:.80}");
 
         // On a telephone nothing sticks out, the plots included.
