@@ -81,6 +81,7 @@ async fn the_document_says_what_differs_from_the_defaults() {
         browser.fill("/design/backlash_um", "50").await;
         browser.choose("[data-pointer='/kind'] select", "sweep").await;
         browser.fill("/axes/0/pointer", "/operation/pinion_speed_rpm").await;
+        browser.element("label:has([name='axis-0-mode'][value='list'])").await.click().await.unwrap();
         browser.fill("/axes/0/values", "1000, 2000 3000").await;
         let changed = document(browser).await;
         assert_eq!(changed["design"]["backlash_um"], json!(50));

@@ -64,7 +64,7 @@ export function spectra(sweep, view) {
   const diagram = campbellAt(sweep.rest, view);
   const perSpeed = diagram ? diagram.mesh_frequency_hz[1] / diagram.pinion_speed_rpm[1] : null;
   const inHertz = view.hertz && perSpeed !== null;
-  const level = (value) => (view.log ? (value > 0 ? 20 * Math.log10(value / REFERENCE) : null) : value);
+  const level = (value) => (view.log ? 20 * Math.log10(value / REFERENCE) : value);
   let y = orders;
   let z = orders.map((_, at) => rows.map((row) => level(row[at])));
   if (inHertz) {
@@ -81,7 +81,7 @@ export function spectra(sweep, view) {
     type: "heatmap", x, y, z, unit, colorscale: "Viridis", hoverongaps: false, colorbar: { title: { text: unit }, thickness: 14, outlinewidth: 0 },
     customdata: y.map(() => places.map((first) => grid.at(first, view.line, view.branch))),
     hovertemplate: `${hover("", axis.unit, "x")}<br>${inHertz ? "%{y:.5~g} Hz" : "order %{y}"}<br>%{z:.4~g} ${unit}<extra></extra>`,
-    ...(view.log ? leastShown(z) : {}), paint: () => ({}),
+    ...(view.log ? cutBelow(z) : {}), paint: () => ({}),
   }];
   if (view.resonances && diagram) traces.push(...overlay(diagram, inHertz, x, y.at(-1), perSpeed));
   const branch = grid.branches[view.branch];
@@ -90,16 +90,19 @@ export function spectra(sweep, view) {
     axes: {
       x: axis.title, y: inHertz ? "Frequency, Hz" : "Mesh order", csvName: `${sweep.name} spectra`, hover: "closest", click: view.click,
       name: ["Circumferential acceleration of the left half, amplitude", view.log ? "dB re 1 µm/s²" : "m/s²", branch].filter(Boolean).join(", "),
-      more: (layout) => { if (axis.logarithmic) layout.xaxis.type = "log"; layout.yaxis.range = [0, y.at(-1)]; },
+      more: (layout) => { if (axis.logarithmic) layout.xaxis.type = "log"; layout.yaxis.range = [0, y.at(-1)]; layout.yaxis.exponentformat = "none"; },
     },
   };
 }
 
-/** 80 dB below the strongest line nothing is told apart. */
-function leastShown(z) {
+/** What lies 80 dB below the strongest line, or has no amplitude at all, is drawn as that level. */
+function cutBelow(z) {
   let top = -Infinity;
   for (const row of z) for (const value of row) if (value !== null && value > top) top = value;
-  return Number.isFinite(top) ? { zmin: top - 80, zmax: top } : {};
+  if (!Number.isFinite(top)) return {};
+  const least = top - 80;
+  for (const row of z) row.forEach((value, at) => { if (value !== null && value < least) row[at] = least; });
+  return { zmin: least, zmax: top };
 }
 
 /** Natural frequencies of the mesh modes, and over frequency the orders 1 to 4. */

@@ -63,9 +63,10 @@ function curve({ x, y, positions, from, to, branch, side, axis, quantity }) {
     hovertemplate: `${hover("", axis.unit, "x")}<br>${hover("", quantity.unit, "y")}<extra>${name}</extra>`, showlegend: Boolean(name), connectgaps: false,
     paint: (of) => ({ line: { color: of(colour), width: 1.8, dash }, marker: { color: of(colour), size: 5 } }),
   };
-  if (!branch) return [main];
-  // Marks that point the way the branch was followed.
-  const places = [1, 2, 3, 4, 5, 6].map((part) => solved[Math.floor((part * solved.length) / 7)]);
+  if (!branch || side === "right") return [main];
+  // Marks that point the way the branch was followed; those of the other branch stand between them.
+  const shift = branch === "down" ? 0.5 : 0;
+  const places = [1, 2, 3, 4, 5, 6].map((part) => solved[Math.floor(((part - shift) * solved.length) / 7)]);
   const shown = solved.length > 7 ? [...new Set(places)] : [];
   const arrows = {
     type: "scatter", mode: "markers", x: shown.map((at) => x[at]), y: shown.map((at) => y[at]), hoverinfo: "skip", showlegend: false, aside: true,

@@ -28,6 +28,7 @@ const VIEWS = {
   spectra: { label: "Spectra", controls: ["line", "branch", "log", "hertz", "resonances"] },
   campbell: { label: "Campbell diagram", controls: ["line"] },
 };
+const SWITCHES = ["log", "contours", "hertz", "resonances"];
 const CONTROLS = ["quantity", "state", "line", "branch", "halves", "log", "contours", "hertz", "resonances"];
 
 let panel = null;
@@ -61,9 +62,37 @@ class Panel {
     this.table = new PointTable(this.sweep, this.grid, select);
     this.point = new PointPanel(this.sweep, this.grid, select);
     this.fillControls();
+    this.recall();
     byId("sweep-resume").addEventListener("click", () => this.resume());
     byId("sweep-axes").textContent = this.describeAxes();
     show(byId("sweep"));
+  }
+
+  /** The view stands in the address, so that it can be linked to and is there again on the way back. */
+  remember() {
+    const { view } = this;
+    const told = {
+      view: view.name, quantity: view.kind ?? view.quantity.name, state: view.state.name, line: view.line, branch: view.branch, halves: view.halves, point: view.selected,
+      ...Object.fromEntries(SWITCHES.map((name) => [name, Number(view[name])])),
+    };
+    const uses = new Set(["view", "point", ...VIEWS[view.name].controls]);
+    const kept = Object.entries(told).filter(([name, value]) => uses.has(name) && value !== null);
+    window.history.replaceState(window.history.state, "", `#${new URLSearchParams(kept)}`);
+  }
+
+  recall() {
+    const { view, grid } = this;
+    const told = new URLSearchParams(window.location.hash.slice(1));
+    if (VIEWS[told.get("view")]) view.name = told.get("view");
+    view.quantity = QUANTITIES.find(({ name }) => name === told.get("quantity")) ?? view.quantity;
+    if (grid.axes.length === 2 && KINDS.some(({ name }) => name === told.get("quantity"))) view.kind = told.get("quantity");
+    view.state = STATES.find(({ name }) => name === told.get("state")) ?? view.state;
+    const within = (name, end) => (/^\d+$/.test(told.get(name) ?? "") && Number(told.get(name)) < end ? Number(told.get(name)) : null);
+    view.line = within("line", grid.lines) ?? view.line;
+    view.branch = within("branch", grid.branches.length) ?? view.branch;
+    if (["left", "right"].includes(told.get("halves"))) view.halves = told.get("halves");
+    for (const name of SWITCHES) if (told.has(name)) view[name] = told.get(name) === "1";
+    this.recalled = within("point", grid.total);
   }
 
   describeAxes() {
@@ -114,13 +143,19 @@ class Panel {
     }
   }
 
+  /** Which views have something to show. */
+  there() {
+    const { view, grid, sweep } = this;
+    return {
+      curves: true, map: grid.axes.length === 2, bifurcation: this.record.includes("poincare"), spectra: this.record.includes("spectrum") && Boolean(sweep.orders),
+      campbell: Boolean(campbellAt(sweep.rest, view)),
+    };
+  }
+
   /** Shows the controls of the view, and those views that have something to show. */
   arrange() {
     const { view, grid, sweep } = this;
-    const there = {
-      curves: true, map: grid.axes.length === 2, bifurcation: this.record.includes("poincare"), spectra: this.record.includes("spectrum") && Boolean(sweep.orders),
-      campbell: Boolean(campbellAt(sweep.rest, { ...view, line: view.line })),
-    };
+    const there = this.there();
     for (const [name, is] of Object.entries(there)) {
       const input = byId(`sweep-view-${name}`);
       show(input.parentElement, is);
@@ -138,18 +173,22 @@ class Panel {
     byId("sweep-quantity").value = view.kind ?? view.quantity.name;
     byId("sweep-line").value = String(view.line);
     byId("sweep-branch").value = String(view.branch);
+    byId("sweep-state").value = view.state.name;
+    byId("sweep-halves").value = view.halves;
+    for (const name of SWITCHES) byId(`sweep-${name}`).checked = view[name];
   }
 
-  columns() {
+  columns(name = this.view.name) {
     const { view } = this;
-    if (view.name === "bifurcation") return [...ALWAYS, view.state.name];
-    if (view.name === "spectra") return [...ALWAYS, SPECTRUM];
+    if (name === "bifurcation") return [...ALWAYS, view.state.name];
+    if (name === "spectra") return [...ALWAYS, SPECTRUM];
     return [...ALWAYS, ...columnsOf(view.quantity)];
   }
 
   /** Something was chosen. */
   async change(apply) {
     apply();
+    this.remember();
     try {
       await this.redraw();
     } catch (error) {
@@ -194,6 +233,11 @@ class Panel {
       }
       await this.redraw();
       await this.table.update();
+      if (this.recalled !== null && this.sweep.data.here[this.recalled]) {
+        const position = this.recalled;
+        this.recalled = null;
+        await this.select(position);
+      }
       if (api.isEnded(job)) continue;
       const pause = Math.min(LONGEST_PAUSE_MS, Math.max(PAUSE_MS, PAUSE_FACTOR * (performance.now() - started)));
       await new Promise((resolve) => {
@@ -215,8 +259,11 @@ class Panel {
   }
 
   async drawNow() {
-    const { view, sweep, plot } = this;
-    await sweep.data.require(this.columns());
+    const { view, sweep, plot, grid } = this;
+    if (sweep.rest && !this.there()[view.name]) view.name = grid.axes.length === 2 ? "map" : "curves";
+    // What the address asks for may need the end of the sweep.
+    const name = this.there()[view.name] ? view.name : "curves";
+    await sweep.data.require([...new Set([...this.columns(name), ...columnsOf(view.quantity)])]);
     this.arrange();
     byId("sweep-count").textContent = progressText(sweep, this.job);
     const resumable = ["canceled", "failed"].includes(this.job.state) && sweep.data.n < sweep.data.total;
@@ -224,11 +271,11 @@ class Panel {
     showFindings(sweep, view, (position) => this.select(position));
     // Axes without a point have no range.
     if (!sweep.data.n) return;
-    const picture = { curves, map, bifurcation, spectra, campbell }[view.name](sweep, view);
+    const picture = { curves, map, bifurcation, spectra, campbell }[name](sweep, view);
     await draw(plot, picture.traces, picture.axes);
     onZoom(plot, (range) => this.zoomed(range));
     plot.dataset.points = String(sweep.data.n);
-    plot.dataset.view = view.name;
+    plot.dataset.view = name;
     this.showKinds();
     await this.drawSections();
   }

@@ -51,7 +51,7 @@ export function campbell(sweep, view) {
   const orders = diagram.mesh_orders.map((order) => {
     const end = Math.min(1, top / (order * mesh));
     return {
-      type: "scatter", mode: "lines+text", x: [0, end * speed], y: [0, end * order * mesh], text: ["", `${order}`], textposition: "top center", showlegend: order === 1, name: "orders of the mesh frequency",
+      type: "scatter", mode: "lines+text", x: [0, 0.94 * end * speed, end * speed], y: [0, 0.94 * end * order * mesh, end * order * mesh], text: ["", `${order}`, ""], textposition: "top left", showlegend: order === 1, name: "orders of the mesh frequency",
       hovertemplate: `order ${order}<br>%{x:.5~g} r/min, %{y:.5~g} Hz<extra></extra>`, paint: (of) => ({ line: { color: of("--muted"), width: 1 }, textfont: { color: of("--muted"), size: 11 } }),
     };
   });
