@@ -7,6 +7,7 @@ mod connection;
 mod documents;
 mod memory;
 mod requests;
+#[allow(dead_code, reason = "shared with the study, which reads other figures of the program")]
 mod service;
 mod store;
 mod times;

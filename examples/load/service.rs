@@ -40,7 +40,18 @@ impl Service {
         let kb = found.and_then(|text| text.trim().trim_end_matches(" kB").parse::<f64>().ok());
         kb.unwrap_or(f64::NAN) * 1024.0 / 1e6
     }
+
+    /// Processor time that the program has used so far, all threads.
+    pub fn processor_s(&self) -> f64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.process.id())).unwrap_or_default();
+        // The command's name may hold spaces; behind its bracket, user and system time are the 12th and 13th field.
+        let fields = stat.rsplit(')').next().unwrap_or_default().split_whitespace().skip(11).take(2);
+        fields.filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / TICKS
+    }
 }
+
+/// Ticks in a second of the times in `/proc/PID/stat` (USER_HZ of Linux).
+const TICKS: f64 = 100.0;
 
 impl Drop for Service {
     fn drop(&mut self) {

@@ -12,7 +12,7 @@ pub type Outcome<T> = Result<T, Box<dyn Error>>;
 /// The running service, and how much was asked of it.
 pub struct Bench {
     connection: Connection,
-    _service: Service,
+    service: Service,
     _directory: TempDir,
     pub jobs: usize,
     pub points: usize,
@@ -29,7 +29,12 @@ impl Bench {
     pub fn start() -> Outcome<Self> {
         let directory = tempfile::tempdir()?;
         let service = Service::start(&directory.path().join("study.db"), &[])?;
-        Ok(Self { connection: service.connect()?, _service: service, _directory: directory, jobs: 0, points: 0 })
+        Ok(Self { connection: service.connect()?, service, _directory: directory, jobs: 0, points: 0 })
+    }
+
+    /// Processor time that the service has used.
+    pub fn processor_s(&self) -> f64 {
+        self.service.processor_s()
     }
 
     /// The result of a document.

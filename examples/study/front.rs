@@ -91,7 +91,12 @@ pub fn cost(study: &mut Study, seconds: f64) {
         sig(seconds, 2),
     ]);
     study.page.table("map | operating points | s", &rows);
-    study.page.say("Wall-clock times of the last run, a processor of two cores. Points that need a contact analysis of their own (torque, relief, stagger, apex offset) cost ten milliseconds and more each, those that share one a millisecond.");
+    study.page.say(format!(
+        "Wall-clock times of the last run on two cores, with whatever else they had to do. The service's processor time was {} s, so that two cores of their own need at least {} s. Points that need a contact analysis of their own (torque, relief, \
+         stagger, apex offset) cost some ten milliseconds each, those that share one about a millisecond.",
+        sig(study.bench.processor_s(), 3),
+        sig(study.bench.processor_s() / 2.0, 2)
+    ));
 }
 
 /// The page's beginning, before what the chapters wrote.

@@ -16,7 +16,7 @@ mod page;
 mod rules;
 mod sensitivity;
 #[path = "../load/service.rs"]
-#[allow(dead_code, reason = "the load report also reads the program's memory")]
+#[allow(dead_code, reason = "shared with the load report, which reads other figures of the program")]
 mod service;
 mod source;
 mod svg;

@@ -208,7 +208,7 @@ pub fn write(study: &mut Study) -> Outcome<()> {
     study.page.claim(
         of("length of the pulse") > 3.0 && of("impact") > 5.0 && support_x < 1.2 && axial(&supports) > 1.2 && of("backlash (2 µm printed)") < 1.0001,
         format!(
-            "The circumferential level hangs on the impact: on its length (up to a factor of {}), on being there at all ({}), on the inertias and on errors that add to the deflection. Supports move it by {} % at most, but the axial level by up to a factor of {}, the masses by {}: \
+            "The circumferential level hangs on the impact: on its length (up to a factor of {}), on being there at all ({}), on the inertias and on errors that add to the deflection. Supports, halved or doubled, move it by {} % at most, but the axial level by up to a factor of {}, the masses by {}: \
              that one cannot be predicted without bearings and bodies. The backlash changes nothing as long as contact is kept: the equations then only see the distance from the flank. \
              No single line comes near the printed levels, but the torque on the gear instead of the pinion halves them.",
             sig(of("length of the pulse"), 2), sig(of("impact"), 2), sig(100.0 * (support_x - 1.0), 1), sig(axial(&supports), 2), sig(axial(&masses), 2)
