@@ -111,7 +111,7 @@ function broken(text, room) {
 export function layoutOf(axes, traces, colours, { width, height }) {
   const { range, yRange, y2Range, title, fromZero, equal, log, top, zoomX, marks = [], levels = [] } = axes;
   const axis = (text) => ({
-    title: { text, standoff: 8 }, gridcolor: colours.grid, zerolinecolor: colours.grid, linecolor: colours.grid, automargin: true, exponentformat: "power", separatethousands: true,
+    title: { text, standoff: 8 }, gridcolor: colours.grid, zerolinecolor: colours.grid, linecolor: colours.grid, automargin: true, exponentformat: "power", minexponent: 5, separatethousands: true,
   });
   const named = traces.some((trace) => trace.showlegend);
   const layout = {

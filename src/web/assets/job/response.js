@@ -30,7 +30,7 @@ export function responseValues(response, input) {
     ["Dynamic factor", value(response.dynamic_factor, 5)],
     ["Least displacement s", value(response.min_displacement_um), "µm"],
     ["Flanks touch from s = b on", typeof gap === "number" ? number(gap / 2, 4) : null, "µm"],
-    ["In contact, left / right", share ? `${number(100 * share.left, 4)} / ${number(100 * share.right, 4)}` : null, "% of the time"],
+    ["In contact, left / right", share ? `${number(100 * share.left, 4)} / ${number(100 * share.right, 4)}` : null, "% of time"],
     ["Mesh frequency", value(response.mesh_frequency_hz, 5), "Hz"],
     ["Repeats after", response.period_mesh_periods ? number(response.period_mesh_periods) : null, response.period_mesh_periods === 1 ? "mesh period" : "mesh periods"],
     ["Largest Floquet multiplier", value(response.floquet_modulus_per_mesh_period), "per mesh period"],

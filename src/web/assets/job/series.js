@@ -13,14 +13,14 @@ const PERIODS = 3;
 const MAX_LINES = 40;
 const QUANTITIES = ["displacement", "velocity", "acceleration", "force", "rotation", "angular_velocity", "angular_acceleration"];
 
-export async function showSeries({ id, result: { response }, catalogue }) {
+export async function showSeries({ id, result: { response, numerics }, catalogue }) {
   if (!catalogue.length) return;
   show(byId("series"));
-  await new SeriesPanel(id, catalogue, response).load();
+  await new SeriesPanel(id, catalogue, response, numerics?.degrees_of_freedom === 6).load();
 }
 
 class SeriesPanel {
-  constructor(id, catalogue, response) {
+  constructor(id, catalogue, response, alike) {
     this.id = id;
     this.channels = new Map(catalogue.map((channel) => [channel.name, channel]));
     this.window = null;
@@ -32,7 +32,8 @@ class SeriesPanel {
     this.second.append(el("option", { value: "" }, "no other"), ...groups(catalogue));
     this.first.value = ["x_left", "s_left"].find((name) => this.channels.has(name)) ?? catalogue[0].name;
     const partner = this.first.value.replace(/left$/, "right");
-    if (partner !== this.first.value && this.channels.has(partner)) this.second.value = partner;
+    // Equal halves have the same curve.
+    if (!alike && partner !== this.first.value && this.channels.has(partner)) this.second.value = partner;
     this.first.addEventListener("change", () => this.load());
     this.second.addEventListener("change", () => this.load());
     byId("whole").addEventListener("click", () => this.zoom(null));

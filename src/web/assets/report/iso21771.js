@@ -42,7 +42,7 @@ export function gearData({ geometry, input }) {
       pair("ε", "α", "Transverse contact ratio", geometry.transverse_contact_ratio),
       pair("ε", "β", "Overlap ratio", geometry.overlap_ratio),
       pair("ε", "γ", "Total contact ratio", geometry.total_contact_ratio),
-      pair("j", "", "Backlash along the mesh displacement s", design.backlash_um, "µm"),
+      pair("j", "", "Backlash along s, total", design.backlash_um, "µm"),
       pair("v", "w", "Pitch line velocity", speed && working[0] ? (PI * working[0] * 1e-3 * speed) / 60 : null, "m/s"),
     ],
     members: [
