@@ -30,6 +30,11 @@ impl Page {
 
     /// Opens the page and waits until everything is there.
     pub async fn open(&self, browser: &Browser) {
+        if self.path == "/" {
+            // The form keeps a draft of what was changed; here it starts as for somebody new.
+            browser.open("/nowhere").await;
+            browser.value("localStorage.clear()").await;
+        }
         browser.open(&self.path).await;
         browser.until(self.ready).await;
         if self.spoilt {
