@@ -74,7 +74,8 @@ function tip(name, meaning) {
   return details;
 }
 
-function impactNote({ source, zhou2008_force_n: zhou, reduction_percent: reduction }) {
+function impactNote({ force_n: force, source, zhou2008_force_n: zhou, reduction_percent: reduction }) {
+  if (force === 0) return "no early contact: the teeth enter without a blow";
   if (typeof zhou !== "number" || zhou <= 0) return IMPACTS[source] ?? source ?? "";
   const used = source === "zhou2008" ? "; Zhou's excites the response" : "";
   return `${number(reduction, 3)} % below Zhou 2008 (${number(zhou, 4)} N)${used}`;
