@@ -173,6 +173,16 @@ async fn two_inputs_make_a_map_with_sections() {
         browser.until("document.querySelector('#sweep-plot').dataset.view === 'curves'").await;
         browser.choose("#sweep-line", "0").await;
         browser.until(&format!("document.querySelector('#sweep-plot').data[0].y[0] === {}", point(0)["left"])).await;
+        // On a telephone nothing sticks out, the table included.
+        browser.driver.set_window_rect(0, 0, 390, 844).await.unwrap();
+        browser.driver.refresh().await.unwrap();
+        succeeded(browser).await;
+        browser.element("#sweep-details > summary").await.click().await.unwrap();
+        browser.until("document.querySelectorAll('#sweep-table tbody tr').length === 18").await;
+        let sticking = "[...document.querySelectorAll('main *')].filter((node) => node.getBoundingClientRect().right > \
+                        window.innerWidth && !node.closest('.scroll, .visually-hidden, defs, clipPath')).map((node) => \
+                        `${node.tagName} ${node.id} ${node.getAttribute('class')}`)";
+        assert_eq!(browser.value(sticking).await, json!([]));
     })
     .await;
 }

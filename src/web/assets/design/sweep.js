@@ -55,7 +55,8 @@ function explanation(pointer, fieldOf, texts) {
   if (!box) return () => {};
   const input = box.querySelector("input, select, textarea");
   const text = el("p", { class: "help sweep-told" });
-  box.append(text);
+  (box.querySelector(".said") ?? box.lastElementChild).before(text);
+  box.classList.add("sweep-wide");
   return () => { text.textContent = texts[input.value] ?? texts[""] ?? ""; };
 }
 
@@ -77,7 +78,7 @@ function recording(pointer, fieldOf, changed) {
   const ticksBox = el("div", { class: "sweep-told" }, ...ticks.map(({ node }) => node), el("p", { class: "help" }, "Rows become larger; for sweeps of up to 5000 points."));
   ticksBox.setAttribute("role", "group");
   ticksBox.setAttribute("aria-label", "Recorded for every point");
-  box.append(ticksBox);
+  (box.querySelector(".said") ?? box.lastElementChild).before(ticksBox);
   box.classList.add("sweep-wide");
   return () => {
     const known = words();

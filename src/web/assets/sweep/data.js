@@ -4,6 +4,8 @@ import * as api from "../common/api.js";
 
 /** Rows asked for at once; fewer where a row carries a list. */
 const PAGE = 10_000;
+/** The first page is small, so that something shows soon. */
+const FIRST_PAGE = 2000;
 const PAGE_OF_LISTS = 500;
 /** Stretches of missing rows that are asked for one by one; more than these are joined over what lies between. */
 const MOST_GAPS = 8;
@@ -61,7 +63,8 @@ export class SweepData {
     const names = [...columns.keys()];
     const limit = names.some((name) => LISTS.has(name)) ? PAGE_OF_LISTS : PAGE;
     for (let next = from; next !== null && next < to; ) {
-      const page = await api.pointColumns(this.id, { names: names.join(), from: next, to, limit });
+      const rows = this.n ? limit : Math.min(limit, FIRST_PAGE);
+      const page = await api.pointColumns(this.id, { names: names.join(), from: next, to, limit: rows });
       page.positions.forEach((position, row) => {
         if (!wanted(position)) return;
         for (const name of names) {

@@ -263,7 +263,9 @@ class Panel {
     if (sweep.rest && !this.there()[view.name]) view.name = grid.axes.length === 2 ? "map" : "curves";
     // What the address asks for may need the end of the sweep.
     const name = this.there()[view.name] ? view.name : "curves";
-    await sweep.data.require([...new Set([...this.columns(name), ...columnsOf(view.quantity)])]);
+    const columns = [...new Set([...this.columns(name), ...columnsOf(view.quantity)])];
+    // What is here is drawn while more is read.
+    if (!sweep.data.has(columns)) await sweep.data.require(columns);
     this.arrange();
     byId("sweep-count").textContent = progressText(sweep, this.job);
     const resumable = ["canceled", "failed"].includes(this.job.state) && sweep.data.n < sweep.data.total;
