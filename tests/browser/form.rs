@@ -80,6 +80,9 @@ async fn the_document_says_what_differs_from_the_defaults() {
         assert_eq!(first["design"]["backlash_um"], Value::Null, "2 µm is the default: {first}");
         browser.fill("/design/backlash_um", "50").await;
         browser.choose("[data-pointer='/kind'] select", "sweep").await;
+        // What is missing altogether is said at the first field of it.
+        let missing = "document.querySelector(\"[data-pointer='/axes/0/pointer'] .error\").textContent";
+        browser.until(&format!("{missing}.includes('is required for a sweep')")).await;
         browser.fill("/axes/0/pointer", "/operation/pinion_speed_rpm").await;
         browser.element("label:has([name='axis-0-mode'][value='list'])").await.click().await.unwrap();
         browser.fill("/axes/0/values", "1000, 2000 3000").await;

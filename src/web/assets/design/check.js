@@ -77,6 +77,8 @@ function showReport({ geometry, drawing: { margins }, memory_mib: memory, warnin
   const count = warnings.length;
   setState(count ? "good warned" : "good", count ? `Can be solved, ${count} ${count === 1 ? "warning" : "warnings"}` : "Can be solved");
   byId("checked").classList.remove("stale");
+  // On a narrow screen the way to the results says what matters most of them.
+  byId("to-results").textContent = HEADLINE.map(([name, , symbol]) => `${symbol} ${fixed(geometry[name], 2)}`).join("  ");
   byId("check-geometry").replaceChildren(
     ...HEADLINE.map(([name, label, symbol]) =>
       el("div", {}, el("dt", {}, label, " ", el("span", { class: "symbol" }, symbol)), el("dd", {}, fixed(geometry[name]))),
@@ -116,7 +118,7 @@ function listWarnings(list, warnings) {
 }
 
 /** A ratio with four decimals: it keeps its width while one types. */
-const fixed = (value) => (Number.isFinite(value) ? value.toFixed(4) : "–");
+const fixed = (value, decimals = 4) => (Number.isFinite(value) ? value.toFixed(decimals) : "–");
 
 function fade() {
   byId("checked").classList.add("stale");

@@ -153,11 +153,11 @@ export function applyConditions(form) {
   document.getElementById("to-sweep").hidden = document.getElementById("group-sweep").hidden;
 }
 
-/** The field that a pointer of the server's is about: itself, or the nearest around it. */
+/** The field that a pointer of the server's is about: itself, the nearest around it, or the first in it. */
 export function fieldAt(fields, pointer) {
   for (let place = pointer; place; place = place.slice(0, place.lastIndexOf("/"))) {
     const field = fields.find((field) => field.pointer === place && !field.box.hidden);
     if (field) return field;
   }
-  return null;
+  return fields.find((field) => pointer && field.pointer.startsWith(`${pointer}/`) && !field.box.hidden) ?? null;
 }

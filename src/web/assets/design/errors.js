@@ -28,7 +28,7 @@ export function showErrors(form, error, { summary }) {
   const entries = (error.errors ?? []).map((entry) => ({ ...entry, field: fieldAt(fields, entry.pointer ?? "") }));
   for (const { field, pointer, detail } of entries) {
     if (!field) continue;
-    const place = field.pointer === pointer ? "" : `${pointer.slice(field.pointer.length + 1)}: `;
+    const place = pointer.startsWith(`${field.pointer}/`) ? `${pointer.slice(field.pointer.length + 1)}: ` : "";
     say(field, "error", `${place}${detail}`, { add: true });
     field.input.setAttribute("aria-invalid", "true");
     unfold(field);

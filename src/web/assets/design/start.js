@@ -78,16 +78,16 @@ export function initStart({ fill, read, failed }) {
   return async function start() {
     const from = new URLSearchParams(window.location.search).get("from");
     const initial = read();
+    const kept = draft();
     if (from) {
       try {
         fill(await api.input(from));
-        say(`From the job ${from}.`);
+        say(`From the job ${from}.`, kept && (() => fill(kept.document)), "My draft instead");
         return;
       } catch (error) {
         failed(error);
       }
     }
-    const kept = draft();
     if (!from && kept && JSON.stringify(kept.document) !== JSON.stringify(initial)) {
       fill(kept.document);
       const discard = () => {
