@@ -174,13 +174,9 @@ impl Solved {
         let (least, most) = Self::extremes(&self.rms);
         self.shades(&mut sheet, &field(0.0), "RMS, m/s²", &self.rms, Scale::logarithmic(least, most.max(1.05 * least)));
         let (least, most) = Self::extremes(&self.factor);
-        self.shades(
-            &mut sheet,
-            &field(1.0),
-            "Dynamic factor",
-            &self.factor,
-            Scale::linear(least, most.max(least + 0.02)),
-        );
+        let most = most.max(least + 0.02);
+        let scale = if most > 3.0 * least { Scale::logarithmic(least, most) } else { Scale::linear(least, most) };
+        self.shades(&mut sheet, &field(1.0), "Dynamic factor", &self.factor, scale);
         self.states(&mut sheet, &field(2.0));
         let ridge = field(0.0);
         let mut dots = String::new();
