@@ -308,8 +308,10 @@ impl Plan<'_> {
     }
 }
 
-/// Work between two checkpoints, in multiplications.
-const PANEL_WORK: usize = 500_000_000;
+/// Work between two checkpoints, in multiplications: some 30 ms for complex numbers.
+const PANEL_WORK: usize = 200_000_000;
+/// Narrower panels would leave the matrix products inefficient.
+const NARROWEST_PANEL: usize = 32;
 
 /// Cholesky elimination of the first unknowns of a Hermitian matrix (lower triangle): `left` has the columns that are
 /// eliminated and becomes their factor, `right` what is below and right of it and becomes the Schur complement.
@@ -320,7 +322,7 @@ pub(super) fn factor_partly<T: ComplexField>(
     checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
 ) -> Result<(), FeError> {
     let (size, inner) = (left.nrows(), left.ncols());
-    let width = (PANEL_WORK / (size * size).max(1)).max(48);
+    let width = (PANEL_WORK / (size * size).max(1)).max(NARROWEST_PANEL);
     let params = Spec::<LltParams, T>::default();
     let mut memory = MemBuffer::new(cholesky_in_place_scratch::<T>(width.min(inner), Par::Seq, params));
     let mut start = 0;
@@ -358,7 +360,7 @@ pub(super) fn solve_lower<T: ComplexField>(
     checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
 ) -> Result<(), FeError> {
     let (size, count) = (columns.nrows(), columns.ncols());
-    let width = (PANEL_WORK / (size * size).max(1)).max(48);
+    let width = (PANEL_WORK / (size * size).max(1)).max(NARROWEST_PANEL);
     for start in (0..count).step_by(width) {
         checkpoint()?;
         let some = columns.as_mut().subcols_mut(start, width.min(count - start));
