@@ -100,7 +100,7 @@ function placed(grid, axis, value, line, branch) {
 /** How far the sweep is. */
 export function progressText(sweep, job) {
   const { n, total } = sweep.data;
-  if (n === total) return `${number(total)} points.`;
+  if (n === total) return total === 1 ? "One point." : `${number(total)} points.`;
   const state = { queued: "waiting", running: "more are coming", canceled: "canceled", failed: "stopped by a failure", succeeded: "reading" }[job.state];
   return `${number(n)} of ${number(total)} points solved (${percent(n / total)}); ${state}.`;
 }
