@@ -141,12 +141,10 @@ fn control(pointer: &str, schema: &Value, value: &str, derived: Option<&str>) ->
 }
 
 /// Words of the document that people would say otherwise: end of the field's pointer, word, label.
-const CHOICES: [(&str, &str, &str); 14] = [
+const CHOICES: [(&str, &str, &str); 12] = [
     ("/kind", "mesh", "mesh (contact, impact)"),
     ("/kind", "response", "response (one point)"),
     ("/kind", "sweep", "sweep (over inputs)"),
-    ("/rotation", "apex_leading", "apex leading (inner first)"),
-    ("/rotation", "apex_trailing", "apex trailing (outer first)"),
     ("/mesh_stiffness/source", "ltca", "loaded tooth contact"),
     ("/mesh_stiffness/source", "iso6336", "ISO 6336-1, closed form"),
     ("/mesh_stiffness/fidelity", "fe", "finite elements"),
