@@ -13,6 +13,7 @@ async fn take(browser: &Browser, name: &str, limit: u64) {
     let width = browser.value("window.innerWidth").await.as_u64().unwrap();
     let height = browser.value("document.documentElement.scrollHeight").await.as_u64().unwrap().min(limit);
     // Plots are drawn when they come into the window: here it is as high as the page.
+    browser.command("Emulation.setScrollbarsHidden", json!({"hidden": true})).await;
     let size = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
     browser.command("Emulation.setDeviceMetricsOverride", size).await;
     browser.until(DRAWN).await;
@@ -151,7 +152,7 @@ async fn pictures_of_every_page() {
         browser.open(&format!("/jobs/{sweep}")).await;
         browser.until(SHOWN).await;
         browser.value("document.querySelector('#sweep-views input[value=bifurcation]').click()").await;
-        browser.until("document.querySelector('#sweep-plot .main-svg')").await;
+        browser.until("document.querySelector('#sweep-plot').data?.some(({mode}) => mode === 'markers')").await;
         take(browser, "sweep-bifurcation", 1300).await;
         browser.resize(1280).await;
         browser.open(&format!("/jobs/{grid}")).await;
