@@ -1,10 +1,9 @@
 // What is known of a compared job: the job, its document, and what it found.
 
 import * as api from "../common/api.js";
-
-/** Points of a sweep that are read at most; they come in pages. */
-const MOST_POINTS = 20_000;
-const PAGE = 5000;
+import { Grid } from "../sweep/axes.js";
+import { SweepData } from "../sweep/data.js";
+import { columnsOf, QUANTITIES } from "../sweep/quantities.js";
 
 /** Reads everything about a job as it stands; `known` is what was read before. */
 export async function load(id, known) {
@@ -18,23 +17,18 @@ export async function load(id, known) {
   const same = known?.job && known.job.revision === job.revision ? known : null;
   if (same) return same;
   const input = known?.input ?? (await api.input(id));
+  // What a sweep has solved is kept when it fails or is canceled.
+  if (job.kind === "sweep" && api.isEnded(job)) return { id, job, input, ...(await sweepOf(id, input)) };
   if (job.state !== "succeeded") return { id, job, input };
-  if (job.kind === "sweep") return { id, job, input, ...(await pointsOf(id)) };
   const [result, channels] = await Promise.all([api.result(id), job.kind === "response" ? api.catalogue(id).then(({ items }) => items) : []]);
   return { id, job, input, result, channels };
 }
 
-async function pointsOf(id) {
-  const points = [];
-  let from = 0;
-  let total = 0;
-  while (from !== null && points.length < MOST_POINTS) {
-    const page = await api.points(id, { from, limit: PAGE });
-    points.push(...page.items.map(({ point }) => point));
-    total = page.n_points;
-    from = page.next_position;
-  }
-  return { points, isCut: points.length < total };
+/** The rows of a sweep, by columns; nothing when it has none. */
+async function sweepOf(id, input) {
+  const grid = new Grid(input);
+  const data = new SweepData(id, grid.total);
+  await data.require([...QUANTITIES.flatMap(columnsOf), "contact"]);
+  await data.refresh();
+  return data.n > 0 ? { sweep: { grid, data } } : {};
 }
-
-export const isSolved = ({ result, points }) => Boolean(result || points);

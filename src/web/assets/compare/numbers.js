@@ -1,6 +1,7 @@
 // The headline numbers of each job, in groups, and how they differ from the reference's.
 
 import { number } from "../common/format.js";
+import { valueText } from "../sweep/axes.js";
 
 /** A quantity: what it is called, its unit, and where it is found. `change` says how differences are told. */
 const quantity = (name, label, unit, pick, options = {}) => ({ name, label, unit, pick, change: "percent", ...options });
@@ -45,11 +46,11 @@ const GROUPS = [
     quantity("center_distance_mm", "Centre distance a", "mm", of("geometry", "center_distance_mm")),
   ]],
   ["Sweep", [
-    halves("sweep_circumferential", "Largest circumferential acceleration, RMS", "m/s²", ({ points }) => largestOfHalves(points, "mesh_circumferential_acceleration_rms_m_s2")),
-    halves("sweep_axial", "Largest axial acceleration of the pinion, RMS", "m/s²", ({ points }) => largestOfHalves(points, "pinion_axial_acceleration_rms_m_s2")),
-    quantity("sweep_dynamic_factor", "Largest dynamic factor", "", ({ points }) => largest(points, (point) => point.dynamic_factor)),
-    quantity("sweep_separated", "Points at which the teeth separate", "", ({ points }) => points && points.filter(({ contact }) => contact && contact !== "continuous").length, { change: "absolute" }),
-    quantity("sweep_points", "Points", "", ({ points }) => points?.length, { change: "absolute" }),
+    halves("sweep_circumferential", "Largest circumferential acceleration, RMS", "m/s²", ({ sweep }) => largestOfHalves(sweep, "mesh_circumferential_acceleration_rms")),
+    halves("sweep_axial", "Largest axial acceleration of the pinion, RMS", "m/s²", ({ sweep }) => largestOfHalves(sweep, "pinion_axial_acceleration_rms")),
+    quantity("sweep_dynamic_factor", "Largest dynamic factor", "", ({ sweep }) => largest(sweep, "dynamic_factor")),
+    quantity("sweep_separated", "Points at which the teeth separate", "", ({ sweep }) => sweep?.data.column("contact").filter((word) => word && word !== "continuous").length, { change: "absolute" }),
+    quantity("sweep_points", "Points solved", "", ({ sweep }) => sweep?.data.n, { change: "absolute" }),
   ]],
 ];
 
@@ -58,13 +59,20 @@ function swing(mesh) {
   return typeof least === "number" && typeof most === "number" ? most - least : null;
 }
 
-function largest(points, pick) {
-  const found = (points ?? []).map((point) => ({ value: pick(point), at: point.values })).filter(({ value }) => typeof value === "number");
-  return found.length ? found.reduce((a, b) => (b.value > a.value ? b : a)) : null;
+/** The largest value of a column, and where it is. */
+function largest(sweep, name) {
+  const values = sweep?.data.column(name) ?? [];
+  let found = -1;
+  values.forEach((value, position) => {
+    if (found < 0 ? !Number.isNaN(value) : value > values[found]) found = position;
+  });
+  if (found < 0) return null;
+  const places = sweep.grid.valuesAt(found).map((value, index) => valueText(sweep.grid.axes[index], value));
+  return { value: values[found], at: `at ${places.join(", ")}` };
 }
 
-function largestOfHalves(points, name) {
-  const [left, right] = ["left", "right"].map((half) => largest(points, (point) => point[name]?.[half]));
+function largestOfHalves(sweep, name) {
+  const [left, right] = ["left", "right"].map((half) => largest(sweep, `${name}_${half}_m_s2`));
   return left || right ? { left, right } : null;
 }
 

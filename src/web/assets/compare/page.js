@@ -13,7 +13,7 @@ import { showSweeps, watchQuantity } from "./sweeps.js";
 import { saveTables, showTables } from "./tables.js";
 
 const LETTERS = "ABCDE";
-const MAX_NAME = 26;
+const MAX_NAME = 34;
 
 const notice = byId("notice");
 let view = address.read();

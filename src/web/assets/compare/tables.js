@@ -51,13 +51,12 @@ function showNumbers(groups, jobs, reference) {
   }
   const isMixed = new Set(jobs.map(({ job }) => job.kind)).size > 1;
   const said = (words, which) => (isMixed && jobs.some(which) ? `${words}: ${jobs.filter(which).map(({ letter }) => letter).join(", ")}.` : "");
-  const missing = jobs.filter(({ result, points }) => !result && !points).map(({ letter }) => letter);
+  const missing = jobs.filter(({ result, sweep }) => !result && !sweep).map(({ letter }) => letter);
   byId("numbers-note").textContent = [
     at >= 0 && jobs.length > 1 ? `Differences are against ${reference.letter}.` : "",
     said("Of sweeps the largest values are compared", ({ job }) => job.kind === "sweep"),
     said("No vibration was asked for in", ({ job }) => job.kind === "mesh"),
     missing.length ? `Without a result: ${missing.join(", ")}.` : "",
-    jobs.some(({ isCut }) => isCut) ? "Of a large sweep the first 20 000 points are compared." : "",
   ].filter(Boolean).join(" ");
 }
 
@@ -69,7 +68,7 @@ function numberRow({ name, label, unit, change, cells }, jobs, at) {
     el("th", { scope: "row" }, ...withSubscripts(label)),
     ...cells.map(({ value, at: place }, index) => {
       const by = index === at ? "" : difference(value, reference, change, unit);
-      const where = place ? el("span", { class: "where" }, `at ${place.map((one) => number(one)).join(", ")}`) : null;
+      const where = place ? el("span", { class: "where" }, place) : null;
       return el("td", { "data-job": jobs[index].id, class: index === at ? "is-reference" : "" }, el("span", { class: "value" }, number(value)), where, by ? el("span", { class: "by" }, by) : null);
     }),
     el("td", {}, unit),
