@@ -18,34 +18,45 @@ export function followJobs({ kind, label }, { onReload, onJob, onDeleted, onMode
   const url = `/api/v1/jobs/events${given.length ? `?${new URLSearchParams(given)}` : ""}`;
   let stopped = false;
   let source = null;
+  let isPolling = false;
+  let polls = 0;
   const timers = { poll: null, patience: null, again: null };
 
   function close() {
     source?.close();
     source = null;
+    isPolling = false;
     Object.values(timers).forEach(clearTimeout);
   }
 
-  function poll() {
+  /** Asks, and again a while after the answer has come. */
+  async function poll() {
     clearTimeout(timers.poll);
     onMode("polling");
-    onReload();
-    timers.poll = setTimeout(poll, POLL_MS);
+    const turn = (polls += 1);
+    await onReload();
+    if (isPolling && turn === polls) timers.poll = setTimeout(poll, POLL_MS);
+  }
+
+  function startPolling() {
+    isPolling = true;
+    poll();
   }
 
   function open() {
     close();
     if (stopped || document.hidden) return;
     if (!window.EventSource) {
-      poll();
+      startPolling();
       return;
     }
     const stream = new EventSource(url);
     source = stream;
-    timers.patience = setTimeout(poll, PATIENCE_MS);
+    timers.patience = setTimeout(startPolling, PATIENCE_MS);
     stream.addEventListener("reload", () => {
       clearTimeout(timers.patience);
       clearTimeout(timers.poll);
+      isPolling = false;
       onMode("live");
       onReload();
     });
@@ -55,7 +66,7 @@ export function followJobs({ kind, label }, { onReload, onJob, onDeleted, onMode
       if (source !== stream) return;
       if (stream.readyState === EventSource.CLOSED) {
         close();
-        poll();
+        startPolling();
         timers.again = setTimeout(open, AGAIN_MS);
       } else {
         // The browser connects again by itself.

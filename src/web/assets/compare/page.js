@@ -13,7 +13,8 @@ import { showSweeps, watchQuantity } from "./sweeps.js";
 import { saveTables, showTables } from "./tables.js";
 
 const LETTERS = "ABCDE";
-const MAX_NAME = 34;
+/** Length of a name in the legends, by the number of jobs: they are to leave room for the curves. */
+const NAME_LENGTHS = [34, 34, 34, 26, 20, 18];
 
 const notice = byId("notice");
 let view = address.read();
@@ -41,7 +42,8 @@ function entries() {
     const slot = slotOf(id);
     const letter = LETTERS[slot];
     const name = found.job ? nameOf(found.job) : `Job …${id.slice(-6)}`;
-    const short = `${letter}  ${name.length > MAX_NAME ? `${name.slice(0, MAX_NAME - 1)}…` : name}`;
+    const most = NAME_LENGTHS[view.ids.length];
+    const short = `${letter}  ${name.length > most ? `${name.slice(0, most - 1).trimEnd()}…` : name}`;
     return { ...found, slot, letter, name, short, mark: () => mark(letter, slot) };
   });
 }

@@ -46,7 +46,7 @@ function showNumbers(groups, jobs, reference) {
   for (const body of [...table.tBodies]) body.remove();
   const at = jobs.indexOf(reference);
   for (const { title, rows } of groups) {
-    const heading = el("tr", { class: "group-title" }, el("th", { scope: "rowgroup", colSpan: jobs.length + 2 }, title));
+    const heading = el("tr", { class: "group-title" }, el("th", { scope: "rowgroup", colSpan: jobs.length + 2 }, el("span", {}, title)));
     table.append(el("tbody", {}, heading, ...rows.map((row) => numberRow(row, jobs, at))));
   }
   const isMixed = new Set(jobs.map(({ job }) => job.kind)).size > 1;

@@ -24,7 +24,9 @@ const labels = new Set();
 let view = address.read();
 let nextCursor = null;
 let newer = new Set();
+/** The question that is under way, and whether its answer will be old when it comes. */
 let asking = null;
+let again = false;
 let stopFollowing = () => {};
 
 const shown = () => [...body.rows].map((node) => rows.get(node.dataset.id));
@@ -37,9 +39,10 @@ function failed(errors) {
   notify(notice, { problem: { ...problem, title: errors.length > 1 ? `${count(errors.length)} could not be changed. ${problem.title}` : problem.title } });
 }
 
-/** Reads this page of the list. */
+/** Reads this page of the list; one question at a time. */
 async function refresh() {
-  asking?.abort();
+  again = asking !== null;
+  if (again) return;
   asking = new AbortController();
   const { signal } = asking;
   heard = new Map();
@@ -50,7 +53,7 @@ async function refresh() {
     notify(notice, null);
     nextCursor = page.next_cursor ?? null;
     fill(page.items.filter((job) => !gone.has(job.id)));
-    newer = new Set();
+    if (cursor === "") newer = new Set();
     for (const job of heard.values()) take(job);
   } catch (error) {
     if (signal.aborted) return;
@@ -58,7 +61,9 @@ async function refresh() {
     if (error.problem?.code === "invalid-cursor") return step({ ...view, cursor: "", trail: [] }, false);
     notify(notice, error);
   }
+  asking = null;
   settle();
+  if (again) await refresh();
 }
 
 /** Puts the rows in order: those that stay keep their places in the document, and with them the focus. */
@@ -118,6 +123,12 @@ function take(job) {
     add(job);
   }
   settle();
+  fitLength();
+}
+
+/** Reads the list again when what came and went leaves too much or too little of this page. */
+function fitLength() {
+  if (asking === null && (rows.size > 2 * LIMIT || (nextCursor !== null && rows.size < LIMIT / 2))) refresh();
 }
 
 function add(job) {
@@ -142,6 +153,7 @@ function remove(id) {
   selection.forget(id);
   drop(id);
   settle();
+  fitLength();
 }
 
 /** What follows from the rows. */
@@ -213,6 +225,8 @@ function step(next, isStep) {
 function turn(next) {
   const other = next.kind !== view.kind || next.label !== view.label;
   view = next;
+  asking?.abort();
+  asking = null;
   newer = new Set();
   address.fillForm(view);
   if (other) follow();
