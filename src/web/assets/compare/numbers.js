@@ -3,7 +3,8 @@
 import { number } from "../common/format.js";
 import { valueText } from "../sweep/axes.js";
 
-/** A quantity: what it is called, its unit, and where it is found. `change` says how differences are told. */
+/** A quantity: what it is called, its unit, and where it is found. `change` says how differences are told: in `percent`, as a `level` as well, in
+ *  `points` of a percentage, `absolute`, or (a `word`) not at all. */
 const quantity = (name, label, unit, pick, options = {}) => ({ name, label, unit, pick, change: "percent", ...options });
 
 /** A value per half: one row when the halves are alike in all jobs. */
@@ -13,8 +14,8 @@ const of = (part, name) => ({ result }) => result?.[part]?.[name];
 
 const GROUPS = [
   ["Vibration", [
-    halves("circumferential", "Circumferential acceleration of the mesh, RMS", "m/s²", ({ result }) => result?.response?.rms?.mesh_circumferential_acceleration_m_s2),
-    halves("axial", "Axial acceleration of the pinion, RMS", "m/s²", ({ result }) => result?.response?.rms?.pinion_axial_acceleration_m_s2),
+    halves("circumferential", "Circumferential acceleration of the mesh, RMS", "m/s²", ({ result }) => result?.response?.rms?.mesh_circumferential_acceleration_m_s2, { change: "level" }),
+    halves("axial", "Axial acceleration of the pinion, RMS", "m/s²", ({ result }) => result?.response?.rms?.pinion_axial_acceleration_m_s2, { change: "level" }),
     quantity("dynamic_factor", "Dynamic factor", "", of("response", "dynamic_factor")),
     quantity("regime", "Motion", "", of("response", "regime"), { change: "word" }),
     quantity("contact", "Contact", "", of("response", "contact"), { change: "word" }),
@@ -46,8 +47,8 @@ const GROUPS = [
     quantity("center_distance_mm", "Centre distance a", "mm", of("geometry", "center_distance_mm")),
   ]],
   ["Sweep", [
-    halves("sweep_circumferential", "Largest circumferential acceleration, RMS", "m/s²", ({ sweep }) => largestOfHalves(sweep, "mesh_circumferential_acceleration_rms")),
-    halves("sweep_axial", "Largest axial acceleration of the pinion, RMS", "m/s²", ({ sweep }) => largestOfHalves(sweep, "pinion_axial_acceleration_rms")),
+    halves("sweep_circumferential", "Largest circumferential acceleration, RMS", "m/s²", ({ sweep }) => largestOfHalves(sweep, "mesh_circumferential_acceleration_rms"), { change: "level" }),
+    halves("sweep_axial", "Largest axial acceleration of the pinion, RMS", "m/s²", ({ sweep }) => largestOfHalves(sweep, "pinion_axial_acceleration_rms"), { change: "level" }),
     quantity("sweep_dynamic_factor", "Largest dynamic factor", "", ({ sweep }) => largest(sweep, "dynamic_factor")),
     quantity("sweep_separated", "Points at which the teeth separate", "", ({ sweep }) => sweep?.data.column("contact").filter((word) => word && word !== "continuous").length, { change: "absolute" }),
     quantity("sweep_points", "Points solved", "", ({ sweep }) => sweep?.data.n, { change: "absolute" }),
@@ -108,6 +109,8 @@ export function difference(value, reference, change, unit) {
   if (change === "absolute" || reference === 0) return `${sign}${number(by, 3)}${unit ? ` ${unit}` : ""}`;
   const percent = (100 * by) / Math.abs(reference);
   if (Math.abs(percent) < 5e-4) return "≈";
-  if (percent >= 1000) return `×${number(value / reference, 3)}`;
-  return `${sign}${number(percent, 3)} %`;
+  const relative = percent >= 1000 ? `×${number(value / reference, 3)}` : `${sign}${number(percent, 3)} %`;
+  // Vibration is compared by levels, too.
+  const level = change === "level" && value > 0 && reference > 0 ? 20 * Math.log10(value / reference) : null;
+  return level === null ? relative : `${relative}, ${sign}${number(Number(level.toFixed(Math.abs(level) < 1 ? 2 : 1)), 3)} dB`;
 }

@@ -2,7 +2,7 @@
 
 import * as api from "../common/api.js";
 import { el, show } from "../common/dom.js";
-import { age, instant, percent } from "../common/format.js";
+import { age, instant } from "../common/format.js";
 import { duration, durationOf, nameOf } from "./words.js";
 
 /** One row. `actions` has what its buttons do: `select`, `filter`, `cancel`, `remove`. */
@@ -93,11 +93,17 @@ export class Row {
 /** What goes on, or what became of the job, and its full text. */
 function stageOf(job) {
   if (!api.isEnded(job) && job.cancel_requested_at) return ["canceling …", ""];
-  if (job.state === "running") return [[percent(job.progress), job.stage].filter(Boolean).join(" · "), ""];
+  if (job.state === "running") return [[percent(job.progress ?? 0), job.stage].filter(Boolean).join(" · "), ""];
   if (job.state === "queued" && job.attempt > 0) return ["waits to go on", "It was interrupted, and goes on when a worker is free"];
   if (job.state === "failed") return [job.error?.title ?? "", job.error?.detail ?? ""];
   if (job.reused_from) return ["result of an equal job", "The input was the same: the stored result was taken"];
   return ["", ""];
+}
+
+/** A long job's first percents count, too. */
+function percent(fraction) {
+  if (fraction > 0 && fraction < .0005) return "below 0.1 %";
+  return `${fraction > 0 && fraction < .0995 ? (100 * fraction).toFixed(1) : Math.round(100 * fraction)} %`;
 }
 
 /** Changes a text only when it differs: selections in the page stay. */
