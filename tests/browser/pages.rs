@@ -92,8 +92,6 @@ pub async fn all(browser: &Browser) -> Vec<Page> {
             format!("/jobs/{failed}"),
             "document.querySelector('#state')?.textContent === 'failed'",
         ),
-        // Its plots lie far below the window: their script comes when somebody goes there.
-        Page::new("compare", format!("/compare?jobs={response},{mesh},{sweep},{failed}"), SHOWN),
         Page::new("not found", "/nowhere", "document.readyState === 'complete'"),
     ]
 }
