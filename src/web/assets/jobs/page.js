@@ -27,6 +27,8 @@ let newer = new Set();
 /** The question that is under way, and whether its answer will be old when it comes. */
 let asking = null;
 let again = false;
+/** Whether the rows are those of this view. */
+let isFilled = false;
 let stopFollowing = () => {};
 
 const shown = () => [...body.rows].map((node) => rows.get(node.dataset.id));
@@ -53,6 +55,7 @@ async function refresh() {
     notify(notice, null);
     nextCursor = page.next_cursor ?? null;
     fill(page.items.filter((job) => !gone.has(job.id)));
+    isFilled = true;
     if (cursor === "") newer = new Set();
     for (const job of heard.values()) take(job);
   } catch (error) {
@@ -113,6 +116,8 @@ function take(job) {
   if (gone.has(job.id)) return;
   heard.set(job.id, job);
   selection.know(job);
+  // Its place is known when the list is: it is taken then.
+  if (!isFilled) return;
   const row = rows.get(job.id);
   const fits = address.fits(job, view);
   if (row) {
@@ -158,11 +163,11 @@ function remove(id) {
 
 /** What follows from the rows. */
 function settle() {
-  const empty = rows.size === 0;
+  const empty = isFilled && rows.size === 0;
   show(byId("empty"), empty);
   show(byId("jobs"), !empty);
   if (empty) byId("empty").replaceChildren(...nothing());
-  byId("jobs").setAttribute("aria-busy", "false");
+  if (isFilled) byId("jobs").setAttribute("aria-busy", "false");
   byId("older").disabled = nextCursor === null;
   byId("newer").disabled = view.cursor === "";
   byId("place").textContent = view.cursor === "" ? "" : view.trail ? `Page ${view.trail.length + 1}` : "Older jobs";
@@ -227,6 +232,7 @@ function turn(next) {
   view = next;
   asking?.abort();
   asking = null;
+  isFilled = false;
   newer = new Set();
   address.fillForm(view);
   if (other) follow();
