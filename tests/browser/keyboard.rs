@@ -2,7 +2,7 @@
 
 use crate::browser::{Browser, flow};
 use crate::job::succeeded;
-use serde_json::json;
+use serde_json::{Value, json};
 use thirtyfour::Key;
 
 /// More steps than any page has.
@@ -35,6 +35,12 @@ async fn tab_to(browser: &Browser, selector: &str) {
     panic!("Tab does not lead to {selector} but to {passed:?}");
 }
 
+/// The document of the job whose page is open, numbers as the page's own language has them.
+async fn document_of(browser: &Browser) -> Value {
+    let path = browser.value("location.pathname").await;
+    browser.fetch(&format!("/api/v1{}/input", path.as_str().unwrap())).await
+}
+
 #[tokio::test]
 async fn the_example_is_submitted_by_keyboard_alone() {
     flow(async |browser| {
@@ -58,11 +64,21 @@ async fn the_example_is_submitted_by_keyboard_alone() {
         press(browser, Key::Enter).await;
         browser.until("location.pathname.startsWith('/jobs/')").await;
         succeeded(browser).await;
+        let mut first = document_of(browser).await;
         // From the result back to the form, with the same document.
         tab_to(browser, "#again").await;
         press(browser, Key::Enter).await;
         browser.until("location.pathname === '/' && location.search.startsWith('?from=')").await;
         browser.until("document.querySelector('#check-state').classList.contains('good')").await;
+        // One field is changed, and nothing else: a job of its own.
+        tab_to(browser, "[data-pointer='/operation/pinion_torque_nm'] input").await;
+        browser.driver.action_chain().send_keys("650").perform().await.unwrap();
+        tab_to(browser, "#submit").await;
+        press(browser, Key::Enter).await;
+        browser.until("location.pathname.startsWith('/jobs/')").await;
+        let changed = document_of(browser).await;
+        first["operation"]["pinion_torque_nm"] = json!(650);
+        assert_eq!(changed, first);
     })
     .await;
 }
