@@ -266,12 +266,13 @@ impl<const D: usize> Search<'_, D> {
         mut numerics: Numerics,
     ) -> Result<Found<D>, DynamicsError> {
         let all = budget.steps(0);
+        let kept = all - all / 8 * 3;
         let mut motion = self.motion(start, budget);
         let mut section = Section::held(self.model)?;
         section.push(motion.state);
         let mut next_try = 8;
         let mut followed = 0;
-        // Half of the budget is kept for what follows.
+        // Of the budget the motion may take a half, tries to close it three eighths; the rest is for what follows.
         while followed < PATIENCE_MESH_PERIODS && motion.numerics.steps <= all / 2 {
             followed += 1;
             let fraction = 0.9 * followed as f64 / PATIENCE_MESH_PERIODS as f64;
@@ -283,15 +284,19 @@ impl<const D: usize> Search<'_, D> {
             }
             if let Some((n, _)) = section.repeats(NEAR_REPEAT) {
                 next_try = followed + BETWEEN_TRIES;
-                let found = self.newton(motion.state, n as u64, section.size(), budget)?;
-                if let Some(mut found) = found {
-                    let shorter = self.shorter_period(&found, n as u64, section.size(), budget)?;
-                    if let Some(again) = shorter.map(|d| self.newton(found.start, d, section.size(), budget)) {
-                        found = again?.unwrap_or(found);
+                match self.closed(motion.state, n as u64, section.size(), budget) {
+                    Ok(Some(mut found)) => {
+                        numerics += motion.numerics;
+                        found.numerics += numerics;
+                        return Ok(found);
                     }
-                    numerics += motion.numerics;
-                    found.numerics += numerics;
-                    return Ok(found);
+                    Ok(None) => {}
+                    // It repeats too late for Newton's method to be afforded: a motion that does not repeat, as far as can be said.
+                    Err(DynamicsError::TooManySteps { .. }) => next_try = u64::MAX,
+                    Err(other) => return Err(other),
+                }
+                if budget.steps(0) < kept {
+                    next_try = u64::MAX;
                 }
             }
         }
@@ -306,6 +311,9 @@ impl<const D: usize> Search<'_, D> {
             return Err(DynamicsError::NotPeriodic { mesh_periods: followed, change });
         }
         let periods = LYAPUNOV_MESH_PERIODS.min(budget.steps(1) / 2 / steps.max(1));
+        if periods == 0 {
+            return Err(exhausted(all, motion.time_s()));
+        }
         let mut exponent_of = |model: &Model<D>| {
             let mut across = self.motion(motion.state, budget);
             let exponent = lyapunov(&mut across, model, periods, self.limits.watch)?;
@@ -326,6 +334,20 @@ impl<const D: usize> Search<'_, D> {
             tolerance: self.limits.tolerance,
             numerics,
         })
+    }
+
+    /// The periodic motion near a state that nearly repeats after `n` mesh periods, with the shortest period it has; None when Newton's
+    /// method does not lead to a stable one.
+    fn closed(
+        &self,
+        near: State<D>,
+        n: u64,
+        size: f64,
+        budget: &mut Budget,
+    ) -> Result<Option<Found<D>>, DynamicsError> {
+        let Some(found) = self.newton(near, n, size, budget)? else { return Ok(None) };
+        let Some(shorter) = self.shorter_period(&found, n, size, budget)? else { return Ok(Some(found)) };
+        Ok(Some(self.newton(found.start, shorter, size, budget)?.unwrap_or(found)))
     }
 
     /// The part of the `n` mesh periods of a motion after which it repeats already: what is left of a transient turns, and comes closer

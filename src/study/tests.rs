@@ -334,6 +334,19 @@ fn a_chaotic_response_has_an_interval_and_no_multipliers() {
     assert!(response.energy_balance_residual.is_some_and(|residual| residual < 1e-8));
 }
 
+/// A motion that comes near to itself after many periods, again and again, uses up what Newton's method may cost: it is then a motion
+/// that does not repeat, not an error.
+#[test]
+fn a_motion_that_is_too_dear_to_close_is_told_as_one_that_does_not_repeat() {
+    let mut value = example("table1");
+    value["design"]["face_width_mm"] = json!(90.0);
+    value["operation"]["pinion_torque_nm"] = json!(11.878);
+    value["model"]["impact"]["base_pitch_error_um"] = json!(8.0);
+    let response = solved(&value).result.response.expect("a response");
+    assert_eq!(response.contact, "double-sided");
+    assert!(["quasi-periodic", "chaotic"].contains(&response.regime.as_str()), "{}", response.regime);
+}
+
 /// Event-exact references over the first twenty mesh periods from the static deflection, through the document: the mean of an
 /// acceleration over a transient counts.
 #[test]
