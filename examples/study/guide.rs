@@ -45,21 +45,13 @@ fn show(study: &mut Study, map: Map) -> Outcome<Solved> {
 
 fn torque(study: &mut Study, base: &Value) -> Outcome<()> {
     study.page.say("### Torque, and where contact is lost");
-    let torques = || spaced(10.0, 1600.0, 41, true);
-    let perfect = show(
-        study,
-        map(
-            ["map_torque", "Torque, perfect flanks"],
-            base.clone(),
-            50,
-            Upwards {
-                pointer: "/operation/pinion_torque_nm",
-                values: torques(),
-                name: "pinion torque, N·m",
-                logarithmic: true,
-            },
-        ),
-    )?;
+    let upwards = Upwards {
+        pointer: "/operation/pinion_torque_nm",
+        values: spaced(10.0, 1600.0, 41, true),
+        name: "pinion torque, N·m",
+        logarithmic: true,
+    };
+    let perfect = show(study, map(["map_torque", "Torque, perfect flanks"], base.clone(), 50, upwards.clone()))?;
     let swing = perfect
         .factor
         .iter()
@@ -76,17 +68,7 @@ fn torque(study: &mut Study, base: &Value) -> Outcome<()> {
     let document = with(base, &[("/model/impact/base_pitch_error_um", json!(8.0))]);
     let erring = show(
         study,
-        map(
-            ["map_torque_error", "Torque, every entering pair 8 µm early"],
-            document,
-            50,
-            Upwards {
-                pointer: "/operation/pinion_torque_nm",
-                values: torques(),
-                name: "pinion torque, N·m",
-                logarithmic: true,
-            },
-        ),
+        map(["map_torque_error", "Torque, every entering pair 8 µm early"], document, 50, upwards.clone()),
     )?;
     let limit = |column: usize| {
         let lost = (0..erring.map.upwards.values.len()).filter(|row| erring.is_separated(column, *row)).max();
@@ -146,17 +128,7 @@ fn torque(study: &mut Study, base: &Value) -> Outcome<()> {
     let document = with(base, &[("/model/impact/duration", json!("energy_balance"))]);
     let long = show(
         study,
-        map(
-            ["map_torque_long", "Torque, pulse as long as the energy balance has it"],
-            document,
-            50,
-            Upwards {
-                pointer: "/operation/pinion_torque_nm",
-                values: torques(),
-                name: "pinion torque, N·m",
-                logarithmic: true,
-            },
-        ),
+        map(["map_torque_long", "Torque, pulse as long as the energy balance has it"], document, 50, upwards),
     )?;
     let row = (0..41)
         .min_by(|a, b| {

@@ -9,6 +9,7 @@ use serde_json::Value;
 use std::fmt::Write;
 
 /// The input of a map that goes upwards.
+#[derive(Clone)]
 pub struct Upwards {
     pub pointer: &'static str,
     pub values: Vec<f64>,
