@@ -56,7 +56,12 @@ async fn a_sweep_goes_from_the_form_to_its_curves_and_table() {
         succeeded(browser).await;
         let result = browser.fetch(&format!("/api/v1/jobs/{id}/result")).await;
         assert_eq!(result["sweep"]["points"].as_array().map(Vec::len), Some(5));
-        assert_eq!(browser.value(CURVES).await, json!(2));
+        // The halves of this pair move alike: one curve says so; of one half alone it has that half's name.
+        assert_eq!(browser.value(CURVES).await, json!(1));
+        let name = "document.querySelector('#sweep-plot').data[0].name";
+        assert_eq!(browser.value(name).await, json!("both halves alike"));
+        browser.choose("#sweep-halves", "right").await;
+        browser.until(&format!("{name} === 'right'")).await;
         browser.element("#sweep-details > summary").await.click().await.unwrap();
         browser.until("document.querySelectorAll('#sweep-table tbody tr').length === 5").await;
         let row = browser.text("#sweep-table tbody tr:nth-child(3)").await;
@@ -88,7 +93,7 @@ async fn both_branches_show_jumps_and_a_point_opens_as_a_response_of_its_own() {
         let result = browser.fetch(&format!("/api/v1/jobs/{id}/result")).await;
         let jumps = result["sweep"]["jumps"].as_array().unwrap().clone();
         assert_eq!(jumps.len(), 2, "{jumps:?}");
-        assert_eq!(browser.value(CURVES).await, json!(4));
+        assert_eq!(browser.value(CURVES).await, json!(2));
         let marked =
             "document.querySelector('#sweep-plot').data.filter(({name}) => name?.startsWith('jump')).map(({x}) => x)";
         let marked = browser.value(marked).await;

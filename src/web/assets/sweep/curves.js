@@ -9,6 +9,8 @@ import { thinned, windowOf } from "./thin.js";
 const MARKED = 150;
 /** Jumps that are drawn; more would hide the curves. */
 const JUMPS = 60;
+/** Curves that differ by less than this part are one to the eye. */
+const ALIKE = 2e-3;
 /** Columns of the strip. */
 const STRIP = 1500;
 
@@ -21,8 +23,8 @@ export function curves(sweep, view) {
   const traces = [];
   grid.branches.forEach((branch, b) => {
     const positions = grid.order.map((first) => grid.at(first, view.line, b));
-    for (const side of sidesOf(quantity, view)) {
-      const column = sweep.data.column(quantity.columns[side]);
+    for (const side of sidesOf(sweep, view)) {
+      const column = columnOf(sweep, quantity, side);
       const y = Float64Array.from(positions, (position) => column[position]);
       traces.push(...curve({ x, y, positions, from, to, branch, side, axis, quantity }));
     }
@@ -45,10 +47,17 @@ export function curves(sweep, view) {
   };
 }
 
-function sidesOf(quantity, view) {
+/** The curves of a branch: that of the pair, of one half, of both, or one for both where they would cover each other. */
+function sidesOf(sweep, { grid, line, quantity, halves }) {
   if (quantity.columns.both) return ["both"];
-  return view.halves === "both" ? ["left", "right"] : [view.halves];
+  if (halves !== "both") return [halves];
+  const [left, right] = ["left", "right"].map((side) => columnOf(sweep, quantity, side));
+  const alike = (position) => !(Math.abs(left[position] - right[position]) > ALIKE * Math.abs(left[position]));
+  const all = grid.branches.every((_, b) => grid.order.every((first) => alike(grid.at(first, line, b))));
+  return all ? ["alike"] : ["left", "right"];
 }
+
+const columnOf = (sweep, quantity, side) => sweep.data.column(quantity.columns[side === "alike" ? "left" : side]);
 
 function curve({ x, y, positions, from, to, branch, side, axis, quantity }) {
   const { colour, dash } = lookOf(branch, side);
@@ -89,8 +98,8 @@ export function hysteresisAt(sweep, view) {
 /** Arrows from the point before to the point after each jump, one trace for each branch. */
 function jumpsOf(sweep, view, x) {
   const { grid, quantity } = view;
-  const side = sidesOf(quantity, view)[0];
-  const column = sweep.data.column(quantity.columns[side]);
+  const side = sidesOf(sweep, view)[0];
+  const column = columnOf(sweep, quantity, side);
   const place = new Map(x.map((value, index) => [value, grid.order[index]]));
   return grid.branches.flatMap((branch, b) => {
     const jumps = jumpsAt(sweep, view).filter((jump) => jump.branch === branch).slice(0, JUMPS);
@@ -125,10 +134,10 @@ function selectedOf(sweep, view) {
   if (selected === null) return [];
   const place = grid.placeOf(selected);
   if (place.second !== view.line) return [];
-  const sides = sidesOf(quantity, view);
+  const sides = sidesOf(sweep, view);
   const at = grid.axes[0].values[place.first];
   return [{
-    type: "scatter", mode: "markers", x: sides.map(() => at), y: sides.map((side) => sweep.data.column(quantity.columns[side])[selected]), hoverinfo: "skip", showlegend: false, aside: true,
+    type: "scatter", mode: "markers", x: sides.map(() => at), y: sides.map((side) => columnOf(sweep, quantity, side)[selected]), hoverinfo: "skip", showlegend: false, aside: true,
     paint: (of) => ({ marker: { size: 15, symbol: "circle-open", color: of("--text"), line: { width: 2.5, color: of("--text") } } }),
   }];
 }

@@ -13,7 +13,7 @@ export const markOf = (branch) => of(branch).mark;
 export const lookOf = (branch, side) => of(branch)[side === "right" ? "right" : "left"];
 
 /** Name of a curve in the legend. */
-export const nameOf = (branch, side) => [side === "both" ? "" : side, branch].filter(Boolean).join(", ");
+export const nameOf = (branch, side) => [{ both: "", alike: "both halves alike" }[side] ?? side, branch].filter(Boolean).join(", ");
 
 /** Colours of kinds as a scale with steps, for heat maps of whole numbers from 0. */
 export function steps(colours) {
