@@ -40,6 +40,7 @@ async fn an_invalid_field_is_marked_with_the_servers_message() {
         // Submitting goes to the list of what is wrong, whose entries lead to the fields.
         browser.element("#submit").await.click().await.unwrap();
         browser.until("!document.querySelector('#problems').hidden").await;
+        browser.until("document.querySelector('#drawing').classList.contains('stale')").await;
         let first = browser.element("#problems li a").await;
         assert_eq!(browser.value("document.activeElement.id").await, json!("problems"));
         first.click().await.unwrap();

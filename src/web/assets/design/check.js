@@ -62,7 +62,16 @@ export function initCheck(form) {
     }
   }
 
-  return { run, stop, notSubmitted: () => setState("bad", "Not submitted") };
+  /** The submission was refused: for what is in the document, or for another reason. */
+  function notSubmitted(error) {
+    byId("check-bar").removeAttribute("aria-busy");
+    setState("bad", "Not submitted");
+    if (!error.errors?.length) return;
+    fade();
+    drawing.fade();
+  }
+
+  return { run, stop, notSubmitted };
 }
 
 function setState(kind, text) {

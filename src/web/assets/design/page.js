@@ -75,7 +75,7 @@ async function submit(event) {
     window.location.assign(`/jobs/${encodeURIComponent(job.id)}`);
   } catch (error) {
     if (touched) keepDraft(document);
-    check.notSubmitted();
+    check.notSubmitted(error);
     showErrors(form, error, { summary: true });
     button.disabled = false;
   }
