@@ -1,5 +1,6 @@
 // What stands below a plot: its data in words and as a table, and as files.
 
+import { csvOf } from "./csv.js";
 import { download, el, fillRows } from "./dom.js";
 import { number } from "./format.js";
 import { parts } from "./plot_style.js";
@@ -111,14 +112,10 @@ function tableOf(figure) {
 
 const same = (a, b) => a === b || (a.length === b.length && a.every((value, index) => value === b[index]));
 
-/** The numbers as RFC 4180 writes them, each so that it reads back exactly. */
+/** The numbers as a file. */
 export function csv(figure) {
   const { names, rows } = tableOf(figure);
-  const field = (value) => {
-    const text = value === null || value === undefined ? "" : String(value);
-    return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-  };
-  return [names, ...rows].map((row) => `${row.map(field).join(",")}\r\n`).join("");
+  return csvOf([names, ...rows]);
 }
 
 function bytes(base64) {

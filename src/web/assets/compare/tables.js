@@ -1,5 +1,6 @@
 // The two tables, side by side, and both as a file.
 
+import { csvOf } from "../common/csv.js";
 import { byId, download, el, show } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { differing, shown } from "./inputs.js";
@@ -95,7 +96,7 @@ export function saveTables(jobs, reference) {
       lines.push([title, label, unit, ...values, ...percents(values, at)]);
     }
   }
-  download("comparison.csv", lines.map((line) => `${line.map(field).join(",")}\r\n`).join(""), "text/csv;charset=utf-8");
+  download("comparison.csv", csvOf(lines), "text/csv;charset=utf-8");
 }
 
 function percents(values, at) {
@@ -103,11 +104,4 @@ function percents(values, at) {
   const reference = values[at];
   const others = values.filter((_, index) => index !== at);
   return others.map((value) => (typeof value === "number" && typeof reference === "number" && reference !== 0 ? (100 * (value - reference)) / Math.abs(reference) : ""));
-}
-
-function field(value) {
-  const text = value === null || value === undefined ? "" : String(value);
-  // A text that a spreadsheet would take for a formula is told to be a text.
-  const safe = typeof value === "string" && /^[=+\-@\t\r]/.test(text) ? `'${text}` : text;
-  return /[",\r\n]/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
 }

@@ -62,7 +62,8 @@ export const meshShare = ({ strain_energy: energy }) => (energy?.mesh_left ?? 0)
 
 /** Whether the halves have to do the opposite of each other in a mode: equal halves do not excite it. */
 const isOpposed = ({ name }) => /opposed$/.test(name);
-const halvesAlike = (numerics) => numerics?.degrees_of_freedom === 6;
+/** Whether the halves mirror each other, so that half of the equations was solved. */
+export const halvesAlike = (numerics) => numerics?.degrees_of_freedom === 6;
 
 /** Modes that the mesh excites, with their number in the list, from 1. */
 const excitedModes = ({ natural_modes: modes = [] }, numerics) =>

@@ -4,7 +4,7 @@ import * as api from "../common/api.js";
 import { byId, notify, show } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { draw } from "../common/plots.js";
-import { phasePlot } from "./motion_plots.js";
+import { halvesAlike, phasePlot } from "./motion_plots.js";
 
 /** Most points of a path: its two channels have to be complete over the time shown. */
 const MAX_POINTS = 20_000;
@@ -18,7 +18,7 @@ export async function showPhase({ id, result: { response, numerics }, input, cat
   const choice = byId("phase-plane");
   for (const option of [...choice.options]) if (!planes.includes(option.value)) option.remove();
   // With half of the equations solved the halves mirror each other.
-  const halves = ["left", "right"].filter((half) => half === "left" || (numerics?.degrees_of_freedom !== 6 && known.has(`x_${half}`)));
+  const halves = ["left", "right"].filter((half) => half === "left" || (!halvesAlike(numerics) && known.has(`x_${half}`)));
   const update = async () => {
     const plane = choice.value;
     const paths = await Promise.all(halves.map((half) => path(id, response, known.get(`${plane}_${half}`), plane, half)));

@@ -4,6 +4,7 @@ import * as api from "../common/api.js";
 import { byId, download, el, notify, show } from "../common/dom.js";
 import { number, sentence } from "../common/format.js";
 import { draw, line, onZoom } from "../common/plots.js";
+import { halvesAlike } from "./motion_plots.js";
 import { channelScale, channelWords } from "./words.js";
 
 const MAX_POINTS = 2000;
@@ -16,7 +17,7 @@ const QUANTITIES = ["displacement", "velocity", "acceleration", "force", "rotati
 export async function showSeries({ id, result: { response, numerics }, catalogue }) {
   if (!catalogue.length) return;
   show(byId("series"));
-  await new SeriesPanel(id, catalogue, response, numerics?.degrees_of_freedom === 6).load();
+  await new SeriesPanel(id, catalogue, response, halvesAlike(numerics)).load();
 }
 
 class SeriesPanel {

@@ -12,7 +12,7 @@ import { pulsePlot } from "../job/impact_plots.js";
 import { meshValues } from "../job/mesh.js";
 import { errorPlot, flankPlot, harmonicsPlot, sharePlot, sharingPlot, stiffnessPlot } from "../job/mesh_plots.js";
 import { modeRows } from "../job/modes.js";
-import { modesPlot, phasePlot, spectrumPlot } from "../job/motion_plots.js";
+import { halvesAlike, modesPlot, phasePlot, spectrumPlot } from "../job/motion_plots.js";
 import { numericsValues } from "../job/numerics.js";
 import { responseValues } from "../job/response.js";
 import { channelScale, channelWords } from "../job/words.js";
@@ -103,7 +103,7 @@ async function motionPlots(response, numerics, input, catalogue) {
     const { t_end: end, t0 } = known.get(name);
     return api.series(id, name, { from: Math.max(t0, end - PERIODS * period), to: end, max_points: POINTS });
   };
-  const halves = numerics.degrees_of_freedom === 6 ? ["left"] : ["left", "right"];
+  const halves = halvesAlike(numerics) ? ["left"] : ["left", "right"];
   const plots = [];
   for (const [title, base] of [["Mesh displacement along the circumference", "x"], ["Mesh acceleration along the circumference", "a_x"]]) {
     const names = halves.map((half) => `${base}_${half}`).filter((name) => known.has(name));

@@ -20,16 +20,17 @@ export function curves(sweep, view) {
   const axis = grid.axes[0];
   const x = grid.order.map((first) => axis.values[first]);
   const [from, to] = windowOf(x, view.range);
+  const sides = sidesOf(sweep, view);
   const traces = [];
   grid.branches.forEach((branch, b) => {
     const positions = grid.order.map((first) => grid.at(first, view.line, b));
-    for (const side of sidesOf(sweep, view)) {
+    for (const side of sides) {
       const column = columnOf(sweep, quantity, side);
       const y = Float64Array.from(positions, (position) => column[position]);
       traces.push(...curve({ x, y, positions, from, to, branch, side, axis, quantity }));
     }
   });
-  traces.push(...jumpsOf(sweep, view, x), ...rangeKey(sweep, view), ...selectedOf(sweep, view));
+  traces.push(...jumpsOf(sweep, view, x, sides[0]), ...rangeKey(sweep, view), ...selectedOf(sweep, view, sides));
   const rows = strip(sweep, view, x, from, to);
   traces.push(...rows.traces);
   const resonances = view.resonances ? resonancesOf(sweep.rest, view, [x[0], x.at(-1)]) : [];
@@ -96,9 +97,8 @@ export function hysteresisAt(sweep, view) {
 }
 
 /** Arrows from the point before to the point after each jump, one trace for each branch. */
-function jumpsOf(sweep, view, x) {
+function jumpsOf(sweep, view, x, side) {
   const { grid, quantity } = view;
-  const side = sidesOf(sweep, view)[0];
   const column = columnOf(sweep, quantity, side);
   const place = new Map(x.map((value, index) => [value, grid.order[index]]));
   return grid.branches.flatMap((branch, b) => {
@@ -129,12 +129,11 @@ function rangeKey(sweep, view) {
   }];
 }
 
-function selectedOf(sweep, view) {
+function selectedOf(sweep, view, sides) {
   const { grid, quantity, selected } = view;
   if (selected === null) return [];
   const place = grid.placeOf(selected);
   if (place.second !== view.line) return [];
-  const sides = sidesOf(sweep, view);
   const at = grid.axes[0].values[place.first];
   return [{
     type: "scatter", mode: "markers", x: sides.map(() => at), y: sides.map((side) => columnOf(sweep, quantity, side)[selected]), hoverinfo: "skip", showlegend: false, aside: true,
