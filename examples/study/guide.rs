@@ -152,36 +152,15 @@ fn torque(study: &mut Study, base: &Value) -> Outcome<()> {
 
 fn speed(study: &mut Study, base: &Value) -> Outcome<()> {
     study.page.say("### Speed");
-    let speeds = || spaced(500.0, 8000.0, 61, false);
-    show(
-        study,
-        map(
-            ["map_speed", "Speed"],
-            base.clone(),
-            41,
-            Upwards {
-                pointer: "/operation/pinion_speed_rpm",
-                values: speeds(),
-                name: "pinion speed, r/min",
-                logarithmic: false,
-            },
-        ),
-    )?;
+    let upwards = Upwards {
+        pointer: "/operation/pinion_speed_rpm",
+        values: spaced(500.0, 8000.0, 61, false),
+        name: "pinion speed, r/min",
+        logarithmic: false,
+    };
+    show(study, map(["map_speed", "Speed"], base.clone(), 41, upwards.clone()))?;
     let relieved = load("examples/tip_relief.json")?;
-    let quiet = show(
-        study,
-        map(
-            ["map_speed_relieved", "Speed, tips relieved by 15 µm"],
-            relieved,
-            41,
-            Upwards {
-                pointer: "/operation/pinion_speed_rpm",
-                values: speeds(),
-                name: "pinion speed, r/min",
-                logarithmic: false,
-            },
-        ),
-    )?;
+    let quiet = show(study, map(["map_speed_relieved", "Speed, tips relieved by 15 µm"], relieved, 41, upwards))?;
     let (_, force) = Solved::extremes(&quiet.force);
     // The transverse contact ratio is the same for all widths: overlap two lies at this total.
     let whole = crate::ask::number(&study.bench.result(base)?, "/geometry/transverse_contact_ratio")? + 2.0;

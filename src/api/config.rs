@@ -15,6 +15,8 @@ pub(super) const MAX_PAGE: u32 = 200;
 /// Rows of a page of a sweep's points: default and cap.
 pub(super) const DEFAULT_ROWS: u32 = 1000;
 pub(super) const MAX_ROWS: u32 = 10_000;
+/// Rows that a sweep can have: its points, up and down.
+pub(super) const MOST_ROWS: u64 = crate::job::MAX_SWEEP_POINTS as u64 * 2;
 /// Points of a downsampled series: default and bounds.
 pub(super) const DEFAULT_POINTS: u64 = 2000;
 pub(super) const MIN_POINTS: u64 = 4;

@@ -8,6 +8,21 @@ use axum::body::{Body, Bytes};
 use futures_util::stream::{self, Stream, StreamExt};
 use std::fmt::Write;
 
+/// Up to `limit` rows of a job from position `from` on and before `to`, and the position of the next one, if there is one.
+pub async fn page(
+    store: &Store,
+    id: JobId,
+    from: u64,
+    to: u64,
+    limit: u32,
+) -> Result<(Vec<PointRow>, Option<u64>), StoreError> {
+    // One more tells whether something follows.
+    let mut rows = store.points(id, from, to, limit + 1).await?;
+    let next_position = rows.get(limit as usize).map(|row| row.position);
+    rows.truncate(limit as usize);
+    Ok((rows, next_position))
+}
+
 /// The body of a result with its rows put in. When some are missing (the job is deleted meanwhile) the answer breaks off.
 pub fn within(store: Store, id: JobId, body: String, place: &PointsOfResult) -> Body {
     let expected = place.n;

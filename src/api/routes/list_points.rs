@@ -1,12 +1,12 @@
 //! `GET /api/v1/jobs/{id}/points`
 
-use crate::api::config::{DEFAULT_ROWS, MAX_ROWS};
+use crate::api::config::{DEFAULT_ROWS, MAX_ROWS, MOST_ROWS};
 use crate::api::points;
 use crate::api::problem::Refusal;
 use crate::api::request::{JobPath, Parameters, chosen};
 use crate::api::state::AppState;
+use crate::job::SweepShape;
 use crate::job::result::SweepPoint;
-use crate::job::{MAX_SWEEP_POINTS, SweepShape};
 use axum::Json;
 use axum::extract::State;
 use axum::http::HeaderMap;
@@ -64,7 +64,7 @@ pub async fn list_points(
     headers: HeaderMap,
 ) -> Result<Response, Refusal> {
     let media_type = chosen(&headers, &["application/json", "text/csv"])?;
-    let from = query.whole("from", 0, MAX_SWEEP_POINTS as u64 * 2, false).unwrap_or(0);
+    let from = query.whole("from", 0, MOST_ROWS, false).unwrap_or(0);
     let limit = query.whole("limit", 1, MAX_ROWS.into(), false);
     query.finish()?;
     let input = super::sweep_input(&state, id).await?;
@@ -76,10 +76,7 @@ pub async fn list_points(
         return Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response());
     }
     let limit = limit.map_or(DEFAULT_ROWS, |limit| limit as u32);
-    // One more tells whether something follows.
-    let mut rows = store.points(id, from, u64::MAX, limit + 1).await?;
-    let next_position = rows.get(limit as usize).map(|row| row.position);
-    rows.truncate(limit as usize);
+    let (rows, next_position) = points::page(store, id, from, u64::MAX, limit).await?;
     let items: Result<Vec<_>, _> = rows
         .into_iter()
         .map(|row| Ok(PointItem { position: row.position, point: RawValue::from_string(row.body)? }))

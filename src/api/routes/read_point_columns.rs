@@ -1,12 +1,13 @@
 //! `GET /api/v1/jobs/{id}/points/columns`
 
 use crate::api::columns::{self, Column, ColumnName, Table};
-use crate::api::config::{DEFAULT_ROWS, MAX_ROWS};
+use crate::api::config::{DEFAULT_ROWS, MAX_ROWS, MOST_ROWS};
+use crate::api::points;
 use crate::api::problem::Refusal;
 use crate::api::request::{JobPath, Parameters};
 use crate::api::state::AppState;
+use crate::job::SweepShape;
 use crate::job::result::SweepPoint;
-use crate::job::{MAX_SWEEP_POINTS, SweepShape};
 use crate::store::PointRow;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
@@ -14,9 +15,6 @@ use axum::response::{IntoResponse, Response};
 use serde::Serialize;
 use std::collections::HashSet;
 use utoipa::ToSchema;
-
-/// Rows that a sweep can have: every point once for each direction.
-const MOST_ROWS: u64 = MAX_SWEEP_POINTS as u64 * 2;
 
 /// A value of a row: a number, a word or, of what `record` asks for, numbers.
 #[derive(Serialize, ToSchema)]
@@ -81,10 +79,7 @@ pub async fn read_point_columns(
     let input = super::sweep_input(&state, id).await?;
     let shape = SweepShape::of_stored(&input).map_err(Refusal::internal)?;
     let store = state.jobs().store();
-    // One more tells whether something follows.
-    let mut rows = store.points(id, from, to, limit + 1).await?;
-    let next_position = rows.get(limit as usize).map(|row| row.position);
-    rows.truncate(limit as usize);
+    let (rows, next_position) = points::page(store, id, from, to, limit).await?;
     let n_solved = store.point_count(id).await?;
     let counts = (n_solved, shape.rows() as u64);
     // A page of large rows takes long enough to keep others waiting.
