@@ -30,6 +30,7 @@ fn parameters(torque_per_half_nm: f64, half_backlash_m: f64, damping_ratio: f64,
         gear_lateral: Spring::with_damping_ratio(6e8, 0.03, mg),
         pinion_axial: Spring::default(),
         gear_axial: Spring::with_damping_ratio(2e8, 0.03, mg),
+        contact_force: None,
         mesh_stiffness: Stiffness::Fourier {
             mean_n_per_m: 9e8,
             harmonics: harmonics.map(|(a, phase_rad)| Harmonic { amplitude: a * amplitude, phase_rad }).to_vec(),

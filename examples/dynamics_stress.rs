@@ -151,6 +151,7 @@ fn case(r: &mut Random, of: &Ranges) -> Case {
         pinion_axial: if r.chance(0.2) { spring(r, pinion_mass_kg) } else { Spring::default() },
         gear_axial: spring(r, gear_mass_kg),
         mesh_damping_n_s_per_m: mesh_damping_n_s_per_m(zeta_mesh, mesh_stiffness.mean_n_per_m(), m_e),
+        contact_force: None,
         mesh_stiffness,
         impact,
         phase_shift_mesh_periods: 0.0,

@@ -129,6 +129,7 @@ impl Case {
             gear_lateral: spring(m.lateral_n_per_m, m.gear_mass_kg),
             pinion_axial: Spring::default(),
             gear_axial: spring(m.gear_axial_n_per_m, m.gear_mass_kg),
+            contact_force: None,
             mesh_stiffness: Stiffness::Fourier {
                 mean_n_per_m: m.mean_stiffness_n_per_m,
                 harmonics: c.amplitudes.iter().zip(&m.phases_rad).map(harmonic).collect(),

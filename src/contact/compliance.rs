@@ -48,6 +48,17 @@ impl Compliance {
         Compliance { influence, local: LocalModel::CenterlineDepth(depths), slices: settings.slice_count(pair) }
     }
 
+    /// Fidelity `uniform`: the contact lines as a uniform elastic foundation of so much force per length of line and approach, both along the
+    /// flank normal; nothing else gives. A model with exact solutions, for comparisons.
+    pub fn uniform(pair: &Pair, settings: &Settings, line_stiffness_n_per_m2: f64) -> Compliance {
+        let stations = 4;
+        let step = pair.spec.face_width_m / stations as f64;
+        let stations_m = (0..stations).map(|i| (i as f64 + 0.5) * step).collect();
+        let influence = Influence::new(vec![pair.pitch_point_m()], stations_m, 0, |_, _, _| 0.0);
+        let local = LocalModel::Foundation { line_stiffness_n_per_m2 };
+        Compliance { influence, local, slices: settings.slice_count(pair) }
+    }
+
     /// What [`Compliance::finite_elements`] needs the flexibility of: pinion and gear.
     pub fn finite_element_inputs(pair: &Pair, settings: &Settings, resolution: Resolution) -> [FlankInput; 2] {
         let offsets = pair_offsets(pair, settings.corner_contact);

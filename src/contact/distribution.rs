@@ -35,14 +35,28 @@ const QUICK_ITERATIONS: u32 = 30;
 /// order of the change's square.
 const TOLERANCE: f64 = 1e-6;
 
-/// Distributes `total` over the points. `start` holds forces of a neighbouring state, zeros and all.
+/// What is prescribed of a distribution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Prescribed {
+    /// The sum of the forces.
+    Force(f64),
+    /// The approach of the bodies, which has to be larger than the least gap; `expected_force` is the size of the forces to
+    /// begin with and to measure changes by.
+    Approach { approach: f64, expected_force: f64 },
+}
+
+/// Distributes the force over the points. `start` holds forces of a neighbouring state, zeros and all.
 pub fn distribute<L: Local>(
     system: &System<'_, L>,
-    total: f64,
+    prescribed: Prescribed,
     start: &[f64],
     work: &mut Workspace,
 ) -> Result<Distribution, Stalled> {
     let n = system.gaps.len();
+    let total = match prescribed {
+        Prescribed::Force(force) => force,
+        Prescribed::Approach { expected_force, .. } => expected_force,
+    };
     let mut forces = vec![0.0; n];
     let sum: f64 = start.iter().sum();
     if sum > 0.0 {
@@ -55,11 +69,15 @@ pub fn distribute<L: Local>(
     let mut member = forces.iter().map(|&f| f > 0.0).collect::<Vec<_>>();
     // Approach and gaps count from the least gap: gaps far above the deflections would drown them in rounding.
     let datum = system.gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    let above_datum = match prescribed {
+        Prescribed::Force(_) => None,
+        Prescribed::Approach { approach, .. } => Some(approach - datum),
+    };
     let limit = QUICK_ITERATIONS + 40 + 6 * n as u32;
     let mut change = f64::INFINITY;
     for iteration in 1..=limit {
         let careful = iteration > QUICK_ITERATIONS;
-        let Some((approach, stiffness)) = system.newton(total, datum, &forces, &member, work) else {
+        let Some((approach, stiffness)) = system.newton((total, above_datum), datum, &forces, &member, work) else {
             return Err(Stalled { iterations: iteration, change });
         };
         let mut same = true;
@@ -200,7 +218,7 @@ mod tests {
                     coupling: &coupling,
                     local: &local,
                 };
-                let got = distribute(&system, total, &[], &mut Workspace::default()).unwrap();
+                let got = distribute(&system, Prescribed::Force(total), &[], &mut Workspace::default()).unwrap();
                 let mean = total / width;
                 // The largest load at the very edge, from the approach there.
                 let factor = got.approach * c / mean;

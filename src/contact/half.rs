@@ -1,7 +1,7 @@
 //! Loaded contact of one helix half, ready to be asked at any phase of the mesh period.
 
 use super::compliance::Compliance;
-use super::position::{Loaded, Solver, Trouble};
+use super::position::{ForceCurve, Loaded, Solver, Trouble};
 use super::settings::{ContactError, Settings};
 use crate::gear::{Half, Pair};
 
@@ -33,6 +33,18 @@ impl<'a> HalfContact<'a> {
             self.solver.start_from(state);
         }
         self.at(phase, force_bt_n)
+    }
+
+    /// Force and stiffness at `approaches_m` above the free position (ascending, above 0) when pair 0 stands `phase` base pitches after its first theoretical
+    /// contact. The lines of contact are cut for the load `force_bt_n`.
+    pub fn force_curve(
+        &mut self,
+        phase: f64,
+        force_bt_n: f64,
+        approaches_m: &[f64],
+    ) -> Result<ForceCurve, ContactError> {
+        let half = self.half;
+        self.solver.force_curve(phase, force_bt_n, approaches_m).map_err(|trouble| failed(trouble, half, phase))
     }
 
     /// Cuts the contact lines into `slices` from here on.

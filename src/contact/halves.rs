@@ -108,7 +108,7 @@ fn check(torque_nm: f64, settings: &Settings) -> Result<(), ContactError> {
 }
 
 /// Whether the initial gaps of both halves are the same everywhere (sampled on a grid finer than any modification needs).
-fn same_gaps(pair: &Pair) -> bool {
+pub fn same_gaps(pair: &Pair) -> bool {
     const GRID: usize = 16;
     (0..=GRID).all(|i| {
         (0..=GRID).all(|j| {

@@ -13,6 +13,8 @@ pub enum LocalModel {
     CenterlineDepth(Vec<[f64; 2]>),
     /// Surface displacement of two half-spaces: the bulk has the half-space part taken out.
     HalfSpace,
+    /// A uniform elastic foundation along the flank normal: force per length of contact line and approach.
+    Foundation { line_stiffness_n_per_m2: f64 },
 }
 
 /// Local contact of the points of one position.
@@ -26,11 +28,21 @@ struct Contact {
     line: LineContact,
     /// Line load per force.
     per_force: f64,
-    /// Length of the segment on a half-space; `None` for plane strain.
-    length_m: Option<f64>,
+    indentation: Indentation,
     /// Difference of the normal gaps at the ends of the point's part of the line, and the force per approach at which it closes.
     spread_m: f64,
     closing_n_per_m: f64,
+}
+
+/// Approach of a point that touches over its whole width, over its line load.
+#[derive(Debug, Clone, Copy)]
+enum Indentation {
+    /// Hertzian in plane strain.
+    PlaneStrain,
+    /// Hertzian on a half-space, for a segment of this length.
+    HalfSpace { length_m: f64 },
+    /// Proportional to the line load.
+    Foundation { line_stiffness_n_per_m2: f64 },
 }
 
 /// Segments on a half-space are kept this many times as long as the band of a line under twice the mean load is wide: the neighbours' bands
@@ -41,7 +53,7 @@ impl LocalModel {
     /// Least axial width of a segment under the normal force `force_n` in all; 0 when there is none.
     pub fn least_width_m(&self, pair: &Pair, force_n: f64) -> f64 {
         match self {
-            LocalModel::CenterlineDepth(_) => 0.0,
+            LocalModel::CenterlineDepth(_) | LocalModel::Foundation { .. } => 0.0,
             LocalModel::HalfSpace => {
                 let material = pair.material();
                 let radius = relative_radius_m(pair, pair.pitch_point_m());
@@ -79,14 +91,20 @@ impl LocalContacts {
             let x = p.x_m.clamp(start, end);
             let depths_m = match model {
                 LocalModel::CenterlineDepth(depths) => interpolated(depths, (x - start) / (end - start)),
-                LocalModel::HalfSpace => [0.0; 2],
+                LocalModel::HalfSpace | LocalModel::Foundation { .. } => [0.0; 2],
             };
             let line = LineContact::new(e, nu, relative_radius_m(pair, x), depths_m);
-            let length_m = (*model == LocalModel::HalfSpace).then_some(p.width_m / cos);
+            let indentation = match *model {
+                LocalModel::CenterlineDepth(_) => Indentation::PlaneStrain,
+                LocalModel::HalfSpace => Indentation::HalfSpace { length_m: p.width_m / cos },
+                LocalModel::Foundation { line_stiffness_n_per_m2 } => {
+                    Indentation::Foundation { line_stiffness_n_per_m2 }
+                }
+            };
             let mut contact = Contact {
                 line,
                 per_force: cos / p.width_m,
-                length_m,
+                indentation,
                 spread_m: p.gap_spread_m * cos,
                 closing_n_per_m: 1.0,
             };
@@ -147,9 +165,10 @@ impl Contact {
     /// Approach of a point that touches over its whole width, and its derivative.
     fn full(&self, force: f64) -> (f64, f64) {
         let w = force * self.per_force;
-        let (value, slope) = match self.length_m {
-            None => self.line.approach(w),
-            Some(length_m) => self.line.half_space_approach(w, length_m),
+        let (value, slope) = match self.indentation {
+            Indentation::PlaneStrain => self.line.approach(w),
+            Indentation::HalfSpace { length_m } => self.line.half_space_approach(w, length_m),
+            Indentation::Foundation { line_stiffness_n_per_m2: c } => (w / c, 1.0 / c),
         };
         (value, slope * self.per_force)
     }

@@ -25,6 +25,7 @@ mod distribution;
 mod edge;
 mod equivalent;
 mod flank;
+mod force_table;
 mod half;
 mod half_space;
 mod halves;
@@ -39,6 +40,7 @@ mod position;
 mod refine;
 mod ring_influence;
 mod settings;
+mod spline;
 mod system;
 mod tooth;
 
@@ -46,11 +48,13 @@ pub use compliance::Compliance;
 pub use cycle::{EntryDeflection, Extent, FlankMap, HalfCycle, MESH_IN_PHASE, harmonics};
 pub use equivalent::equivalent_stiffness;
 pub use flank::{BodyHold, hold_radius_m};
+pub use force_table::ForceTable;
 pub use half::HalfContact;
-pub use halves::{LoadedContact, solve_half, solve_pair_of_halves};
+pub use halves::{LoadedContact, same_gaps, solve_half, solve_pair_of_halves};
 pub use lines::Point;
 pub use position::Loaded;
 pub use settings::{ContactError, Settings};
+pub use spline::SplineKnots;
 
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::compliance::Compliance;
-use super::distribution::{Distribution, Stalled, distribute};
+use super::distribution::{Distribution, Prescribed, Stalled, distribute};
 use super::influence::{LineWeights, Stencil};
 use super::lines::{CORNER_REACH, CornerGaps, Point, Reach, collect, reference_roll_m};
 use super::local::LocalContacts;
@@ -29,6 +29,15 @@ impl Loaded {
         let of_pair: f64 = self.points.iter().zip(&self.forces_n).filter(|(p, _)| p.pair == k).map(|(_, f)| f).sum();
         of_pair / self.forces_n.iter().sum::<f64>()
     }
+}
+
+/// Force over approach at one position. Along the transverse base tangent.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceCurve {
+    /// Approach at which the first point touches.
+    pub free_m: f64,
+    /// F_bt and dF_bt/dδ at every approach above the free one.
+    pub samples: Vec<(f64, f64)>,
 }
 
 /// Why a position could not be solved.
@@ -149,7 +158,8 @@ impl<'a> Solver<'a> {
                 return Err(Trouble::NoContact);
             }
             self.assemble(phase, force_bt_n / cos);
-            let solved = self.distribute(force_bt_n / cos).map_err(Trouble::Stalled)?;
+            self.start_from_previous();
+            let solved = self.distribute(Prescribed::Force(force_bt_n / cos)).map_err(Trouble::Stalled)?;
             let approach_m = solved.approach / cos;
             remember(&mut self.previous, &self.points, &solved.forces);
             if self.corner_contact && approach_m > self.corner_gap_m {
@@ -167,7 +177,55 @@ impl<'a> Solver<'a> {
         Err(Trouble::NoContact)
     }
 
-    fn distribute(&mut self, total: f64) -> Result<Distribution, Stalled> {
+    /// Forces at prescribed approaches: F_bt and dF_bt/dδ at `approaches_m` above the free position (the least
+    /// gap of any point), which ascend from above 0. The lines are cut as finely as `force_bt_n`, the force at the
+    /// usual approach, needs. Depends on nothing that was solved before.
+    pub fn force_curve(&mut self, phase: f64, force_bt_n: f64, approaches_m: &[f64]) -> Result<ForceCurve, Trouble> {
+        let cos = self.pair.base_helix_angle_rad.cos();
+        let least_m = self.compliance.local.least_width_m(self.pair, force_bt_n / cos);
+        let most = (self.pair.spec.face_width_m / least_m).clamp(4.0, 1e6) as usize;
+        let least_part_m = least_m.max(self.corner_width_m(force_bt_n) / CORNER_PARTS);
+        let highest_m = approaches_m.last().copied().unwrap_or(0.0);
+        let mut corner_gap_m = if self.corner_contact { highest_m } else { 0.0 };
+        let free_m = loop {
+            let reach = Reach { lowest_pair: i32::MIN, corner_gap_m, least_part_m };
+            collect(self.pair, &self.corners, self.half, phase, self.slices.min(most), &reach, &mut self.points);
+            let free_m = self.points.iter().map(|p| p.gap_m - 0.5 * p.gap_spread_m).fold(f64::INFINITY, f64::min);
+            if !free_m.is_finite() {
+                return Err(Trouble::NoContact);
+            }
+            if !self.corner_contact || free_m + highest_m <= corner_gap_m {
+                break free_m;
+            }
+            corner_gap_m = 1.01 * (free_m + highest_m);
+        };
+        self.assemble(phase, force_bt_n / cos);
+        let stiffness = PAIR_STIFFNESS * self.pair.material().youngs_modulus_pa * self.pair.spec.face_width_m;
+        let mut expected_force = stiffness * highest_m;
+        let mut samples = vec![(0.0, 0.0); approaches_m.len()];
+        self.start.clear();
+        self.start.resize(self.points.len(), 0.0);
+        let mut above: Option<(f64, f64, f64)> = None;
+        for (sample, &approach_m) in samples.iter_mut().zip(approaches_m).rev() {
+            if let Some((higher_m, force, stiffness)) = above {
+                expected_force = (force - stiffness * (higher_m - approach_m)).max(0.2 * force * approach_m / higher_m);
+            }
+            if expected_force <= 0.0 {
+                break;
+            }
+            let approach = (free_m + approach_m) * cos;
+            let solved =
+                self.distribute(Prescribed::Approach { approach, expected_force }).map_err(Trouble::Stalled)?;
+            let force = solved.forces.iter().sum::<f64>();
+            *sample = (force * cos, solved.stiffness * cos * cos);
+            above = Some((approach_m, force, solved.stiffness * cos));
+            self.start = solved.forces;
+        }
+        Ok(ForceCurve { free_m, samples })
+    }
+
+    /// Expects the forces of the position before.
+    fn start_from_previous(&mut self) {
         // Both lists ascend. What comes onto the path is expected to carry like the rest of its line.
         self.start.clear();
         let mut before = self.previous.iter().peekable();
@@ -182,6 +240,9 @@ impl<'a> Solver<'a> {
             self.start.push(expected * p.width_m);
             beside = expected;
         }
+    }
+
+    fn distribute(&mut self, prescribed: Prescribed) -> Result<Distribution, Stalled> {
         let system = System {
             gaps: &self.gaps,
             stencils: &self.stencils,
@@ -191,7 +252,7 @@ impl<'a> Solver<'a> {
             coupling: &self.coupling,
             local: &self.local,
         };
-        distribute(&system, total, &self.start, &mut self.work)
+        distribute(&system, prescribed, &self.start, &mut self.work)
     }
 
     /// Lines, gaps, bulk flexibility and local contacts of the current points.

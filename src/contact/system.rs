@@ -57,10 +57,11 @@ pub const LEAST_FORCE: f64 = 1e-9;
 /// Diagonals of W.
 const BAND: usize = 2 * STENCIL - 1;
 impl<L: Local> System<'_, L> {
-    /// One Newton step on the active points: their new forces into `work.fresh`; returns approach and stiffness.
+    /// One Newton step on the active points: their new forces into `work.fresh`; returns approach and stiffness. `total` is the sum of
+    /// the forces (their size, where the approach above the datum is `prescribed` instead).
     pub fn newton(
         &self,
-        total: f64,
+        (total, prescribed): (f64, Option<f64>),
         datum: f64,
         forces: &[f64],
         member: &[bool],
@@ -104,7 +105,7 @@ impl<L: Local> System<'_, L> {
         } else {
             self.forces_of_lines(member, work)
         };
-        let approach = (total - rest) / stiffness;
+        let approach = prescribed.unwrap_or_else(|| (total - rest) / stiffness);
         if !approach.is_finite() {
             return None;
         }

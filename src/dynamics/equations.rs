@@ -105,6 +105,11 @@ impl<const D: usize> Equations<D, f64> {
         Self { parity: -1.0, ..self.clone() }
     }
 
+    /// A torsional spring joins the halves of a gear.
+    pub fn couples_rotations(&self) -> bool {
+        self.torsional
+    }
+
     /// Coordinates without which the motion is complete: w, when no torsional spring reads it.
     pub fn active(&self) -> impl Iterator<Item = usize> + use<D> {
         let with_w = self.torsional && (D > PER_HALF || self.parity < 0.0);

@@ -22,6 +22,7 @@
 // Loops over coordinates and Taylor orders read as the formulas do with an index.
 #![allow(clippy::needless_range_loop)]
 
+mod contact_force;
 mod convoy;
 mod crossing;
 mod equations;
@@ -42,6 +43,7 @@ mod taylor;
 mod trajectory;
 mod variation;
 
+pub use contact_force::{ContactForce, FlankForce};
 pub use error::DynamicsError;
 pub use excitation::{Harmonic, Impact, Stiffness};
 pub use integrate::{Integrator, Numerics};

@@ -1,13 +1,16 @@
 //! One pair's equations with their excitations, and the way between solver coordinates and the source's displacements.
 
 use std::ops::Deref;
+use std::sync::Arc;
 
-use super::equations::{Equations, PER_HALF, YG, YP, ZG, ZP};
+use super::contact_force::ContactForce;
+use super::equations::{Equations, PER_HALF, U, YG, YP, ZG, ZP};
 use super::error::DynamicsError;
 use super::excitation::{ImpactCourse, MAX_ORDER, Stiffness, StiffnessCourse};
 use super::parameters::{HalfParameters, Parameters};
 
-/// Which side of the backlash a half is on: 1 driving flanks, 0 apart, −1 back flanks.
+/// Which side of the backlash a half is on: positive driving flanks, 0 apart, negative back flanks. 1 and −1; where the mesh force is that of
+/// the loaded contact, 1 + the level of displacement with the side's sign.
 pub type Contact = i8;
 
 /// State in solver coordinates at a mesh phase.
@@ -27,7 +30,18 @@ pub(crate) struct State<const D: usize> {
 #[derive(Debug, Clone)]
 pub(crate) struct Excitation {
     pub stiffness: StiffnessCourse,
+    pub contact: Option<ContactCourse>,
     pub impact: ImpactCourse,
+}
+
+/// The loaded contact's force, coming a fraction of a mesh period later than tabulated.
+#[derive(Debug, Clone)]
+pub(crate) struct ContactCourse {
+    pub force: Arc<ContactForce>,
+    pub shift: f64,
+    /// Half the backlash, and one mesh period in scaled time.
+    pub b: f64,
+    pub period_tau: f64,
 }
 
 /// The equations of one half (D = 6, mirror symmetric) or both (D = 12) with their excitations.
@@ -68,11 +82,15 @@ impl<const D: usize> Model<D> {
         let omega_ref =
             (0..Self::HALVES).fold(mesh_omega, |w, j| w.max(fastest(p, &p.halves[j], p.equivalent_mass_kg(j))));
         let period_tau = omega_ref / p.mesh_frequency_hz;
-        let excitations: Vec<Excitation> = p.halves[..Self::HALVES].iter().map(|h| excitation(h, period_tau)).collect();
+        let excitations: Vec<Excitation> =
+            p.halves[..Self::HALVES].iter().map(|h| excitation(h, p.half_backlash_m, period_tau)).collect();
         let mut breakpoints = vec![1.0];
         for e in &excitations {
             e.stiffness.breakpoints(&mut breakpoints);
             e.impact.breakpoints(&mut breakpoints);
+            if let Some(contact) = &e.contact {
+                breakpoints.extend(contact.force.knots().iter().map(|knot| (knot + contact.shift).rem_euclid(1.0)));
+            }
         }
         breakpoints.retain(|&phase| phase > SAME_PHASE && phase <= 1.0);
         breakpoints.sort_by(f64::total_cmp);
@@ -117,11 +135,19 @@ impl<const D: usize> Model<D> {
 
     /// Contact can change.
     pub fn switches(&self) -> bool {
-        self.b > 0.0 && !self.hold_contact
+        self.follows_contact() || (self.b > 0.0 && !self.hold_contact)
     }
 
-    /// The side of the backlash s is on. Without backlash the mesh law is linear: always driving.
-    pub fn contact_of(&self, s: f64) -> Contact {
+    /// The mesh force is that of the loaded contact, on all halves.
+    pub fn follows_contact(&self) -> bool {
+        self.excitations.iter().any(|e| e.contact.is_some())
+    }
+
+    /// The side of the backlash the s of a half is on. Without backlash the mesh law of a stiffness is linear: always driving.
+    pub fn contact_of(&self, j: usize, s: f64, phase: f64) -> Contact {
+        if let Some(contact) = &self.excitations[j].contact {
+            return contact.force.contact_of(s, self.b, phase - contact.shift);
+        }
         if self.b == 0.0 || s > self.b {
             1
         } else if s < -self.b {
@@ -133,19 +159,24 @@ impl<const D: usize> Model<D> {
 
     /// Normal mesh force, N.
     #[inline(always)]
-    pub fn mesh_force(&self, j: usize, stiffness: f64, s: f64, s_v: f64) -> f64 {
-        let contact = self.contact_of(s);
-        let damper = if contact != 0 { self.halves[j].cm } else { self.halves[j].cm_in_gap } * s_v;
-        damper + if contact != 0 { stiffness * (s - f64::from(contact) * self.b) } else { 0.0 }
+    pub fn mesh_force(&self, j: usize, (phase, inside): (f64, f64), s: f64, s_v: f64) -> f64 {
+        let e = &self.excitations[j];
+        let damper = |closed: bool| if closed { self.halves[j].cm } else { self.halves[j].cm_in_gap } * s_v;
+        if let Some(contact) = &e.contact {
+            let (force, _) = contact.force.force(s, self.b, phase - contact.shift, inside - contact.shift);
+            return damper(self.contact_of(j, s, phase) != 0) + force;
+        }
+        let contact = self.contact_of(j, s, phase);
+        let spring = e.stiffness.value(phase, inside) * (s - f64::from(contact) * self.b);
+        damper(contact != 0) + if contact != 0 { spring } else { 0.0 }
     }
 
     /// Scaled accelerations at a phase: the right-hand side for Runge–Kutta methods.
     pub fn acceleration(&self, phase: f64, inside: f64, x: &[f64; D], v: &[f64; D]) -> [f64; D] {
         let mut a = [0.0; D];
         for j in 0..Self::HALVES {
-            let e = &self.excitations[j];
-            let force = self.mesh_force(j, e.stiffness.value(phase, inside), self.s(j, x), self.s(j, v));
-            let along = self.halves[j].load - e.impact.value(phase, inside);
+            let force = self.mesh_force(j, (phase, inside), self.s(j, x), self.s(j, v));
+            let along = self.halves[j].load - self.excitations[j].impact.value(phase, inside);
             a[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, x, v, force, along));
         }
         a
@@ -198,9 +229,28 @@ impl<const D: usize> Model<D> {
             convert(&source[12 + 6 * j..18 + 6 * j], &mut state.v, 1.0 / self.omega_ref);
         }
         for j in 0..Self::HALVES {
-            state.contact[j] = self.contact_of(self.s(j, &state.x));
+            state.contact[j] = self.contact_of(j, self.s(j, &state.x), state.phase);
         }
         state
+    }
+
+    /// Where the mesh force is that of the loaded contact: turns the teeth together until each half carries its load at the state's phase, halves
+    /// that are coupled in torsion by the mean of what each needs.
+    pub fn seat_teeth(&self, state: &mut State<D>) {
+        let mut turns = [0.0; 2];
+        for (j, e) in self.excitations.iter().enumerate() {
+            let Some(contact) = &e.contact else { return };
+            let load = self.halves[j].load / self.cos;
+            let s = contact.force.displacement_under(load, self.b, state.phase - contact.shift);
+            turns[j] = (s - self.s(j, &state.x)) / self.cos;
+        }
+        if Self::HALVES == 2 && self.couples_rotations() {
+            turns = [0.5 * (turns[0] + turns[1]); 2];
+        }
+        for j in 0..Self::HALVES {
+            state.x[j * PER_HALF + U] += turns[j];
+            state.contact[j] = self.contact_of(j, self.s(j, &state.x), state.phase);
+        }
     }
 
     /// The source's 12 displacements and 12 velocities of a state.
@@ -239,6 +289,7 @@ fn fastest(p: &Parameters, h: &HalfParameters, equivalent_mass: f64) -> f64 {
         Stiffness::Samples { values_n_per_m } => values_n_per_m.iter().copied().fold(0.0, f64::max),
         other => other.mean_n_per_m(),
     };
+    let k_m = h.contact_force.as_ref().map_or(k_m, |force| force.largest_stiffness_n_per_m().max(k_m));
     let mesh = k_m * (1.0 / equivalent_mass + 1.0 / h.pinion_mass_kg + 1.0 / h.gear_mass_kg);
     let springs = [
         (h.pinion_lateral.stiffness + 2.0 * c.pinion_lateral.stiffness) / h.pinion_mass_kg,
@@ -251,10 +302,16 @@ fn fastest(p: &Parameters, h: &HalfParameters, equivalent_mass: f64) -> f64 {
     springs.into_iter().fold(mesh, f64::max).sqrt()
 }
 
-fn excitation(h: &HalfParameters, period_tau: f64) -> Excitation {
+fn excitation(h: &HalfParameters, b: f64, period_tau: f64) -> Excitation {
     let shift = h.phase_shift_mesh_periods.rem_euclid(1.0);
-    Excitation {
-        stiffness: StiffnessCourse::new(&h.mesh_stiffness, shift, period_tau),
-        impact: ImpactCourse::new(h.impact.as_ref(), shift, period_tau),
-    }
+    let contact = h.contact_force.as_ref().map(|force| ContactCourse { force: force.clone(), shift, b, period_tau });
+    // Where the contact gives the force, the stiffness has no say and no knots.
+    let stiffness = match &contact {
+        None => StiffnessCourse::new(&h.mesh_stiffness, shift, period_tau),
+        Some(_) => {
+            let mean_n_per_m = h.mesh_stiffness.mean_n_per_m();
+            StiffnessCourse::new(&Stiffness::Constant { mean_n_per_m }, shift, period_tau)
+        }
+    };
+    Excitation { stiffness, contact, impact: ImpactCourse::new(h.impact.as_ref(), shift, period_tau) }
 }

@@ -1,7 +1,10 @@
 //! The numbers in the equations of motion, SI.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
+use super::contact_force::ContactForce;
 use super::error::DynamicsError;
 use super::excitation::{Impact, Stiffness};
 
@@ -21,7 +24,7 @@ impl Spring {
 }
 
 /// What belongs to one helix half of the pair (half of a whole gear's mass and inertia, and so on).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct HalfParameters {
     pub pinion_mass_kg: f64,
     pub pinion_inertia_kg_m2: f64,
@@ -37,8 +40,11 @@ pub struct HalfParameters {
     pub pinion_axial: Spring,
     /// k_gz, c_gz.
     pub gear_axial: Spring,
-    /// k_m over the mesh phase, along s.
+    /// k_m over the mesh phase, along s. With a `contact_force`: the tangent stiffness at the working load, for natural modes and as a
+    /// scale; the force is then not taken from it.
     pub mesh_stiffness: Stiffness,
+    /// The mesh force as a function of displacement and phase, in place of k_m(φ) f(s); both halves have one, or neither.
+    pub contact_force: Option<Arc<ContactForce>>,
     /// c_m along s, N s/m; see [`mesh_damping_n_s_per_m`].
     pub mesh_damping_n_s_per_m: f64,
     /// F_s on the two torsional equations.
@@ -63,7 +69,7 @@ pub struct Couplings {
 }
 
 /// Everything the twelve equations need.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     pub mesh_frequency_hz: f64,
     /// R_p of the plane in use: pitch radius (`pitch`) or base radius (`base`).
@@ -131,6 +137,9 @@ impl Parameters {
         let beta = self.helix_angle_rad;
         if beta.is_nan() || beta.abs() >= std::f64::consts::FRAC_PI_2 {
             return Err(invalid("helix angle", beta, "must be between -90 and 90 degrees"));
+        }
+        if self.halves[0].contact_force.is_some() != self.halves[1].contact_force.is_some() {
+            return Err(invalid("mesh force", f64::NAN, "both halves need a contact force, or neither"));
         }
         for h in &self.halves {
             positive("pinion mass", h.pinion_mass_kg)?;

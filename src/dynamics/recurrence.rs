@@ -1,5 +1,6 @@
 //! The recurrence that gives the Taylor coefficients of the motion between two events.
 
+use super::contact_force::Cells;
 use super::equations::{Equations, PER_HALF, W};
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
@@ -12,6 +13,61 @@ pub(crate) struct TaylorWork<const D: usize, R> {
     pub s: [[R; MAX_ORDER + 1]; 2],
     pub force: [[R; MAX_ORDER + 1]; 2],
     pub excitation: ExcitationTerms<R>,
+    contact: [ContactSeries<R>; 2],
+}
+
+/// Powers of a displacement within a cell of the contact force.
+#[derive(Clone, Copy)]
+pub(super) struct ContactSeries<R> {
+    /// e, and e again with the highest order first.
+    e: [R; MAX_ORDER + 1],
+    backwards: [R; MAX_ORDER + 1],
+    square: [R; MAX_ORDER + 1],
+    cube: [R; MAX_ORDER + 1],
+}
+
+impl<R: Real> ContactSeries<R> {
+    pub fn new() -> Self {
+        let zero = [R::splat(0.0); MAX_ORDER + 1];
+        Self { e: zero, backwards: zero, square: zero, cube: zero }
+    }
+
+    /// Adds coefficient `n` of s to the series, and returns coefficient `n` of Σ_a law[a] e^a.
+    #[inline(always)]
+    fn force(&mut self, cells: &Cells<R>, n: usize, s: R) -> R {
+        self.push(cells, n, s);
+        let mut sum = R::splat(0.0);
+        for m in 0..=n.min(3) {
+            let k = n - m;
+            sum += cells.law[1][m] * self.e[k] + cells.law[2][m] * self.square[k] + cells.law[3][m] * self.cube[k];
+        }
+        if n < 4 { sum + cells.law[0][n] } else { sum }
+    }
+
+    /// The same of the stiffness, Σ_a a law[a] e^(a-1).
+    #[inline(always)]
+    pub fn stiffness(&mut self, cells: &Cells<R>, n: usize, s: R) -> R {
+        self.push(cells, n, s);
+        let (two, three) = (R::splat(2.0), R::splat(3.0));
+        let mut sum = R::splat(0.0);
+        for m in 0..=n.min(3) {
+            let k = n - m;
+            sum += two * cells.law[2][m] * self.e[k] + three * cells.law[3][m] * self.square[k];
+        }
+        if n < 4 { sum + cells.law[1][n] } else { sum }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, cells: &Cells<R>, n: usize, s: R) {
+        self.e[n] = cells.side * s;
+        if n < 4 {
+            self.e[n] += cells.near[n];
+        }
+        self.backwards[MAX_ORDER - n] = self.e[n];
+        let back = &self.backwards[MAX_ORDER - n..];
+        self.square[n] = convolution(back, &self.e[..=n], 0);
+        self.cube[n] = convolution(back, &self.square[..=n], 0);
+    }
 }
 
 impl<const D: usize, R: Real> TaylorWork<D, R> {
@@ -22,6 +78,7 @@ impl<const D: usize, R: Real> TaylorWork<D, R> {
             s: [[zero; MAX_ORDER + 1]; 2],
             force: [[zero; MAX_ORDER + 1]; 2],
             excitation: ExcitationTerms::new(),
+            contact: [ContactSeries::new(); 2],
         })
     }
 }
@@ -53,7 +110,7 @@ pub(crate) fn taylor<const D: usize, R: Real>(
     enough: Option<Enough<R>>,
     work: &mut TaylorWork<D, R>,
 ) -> (R, usize) {
-    let TaylorWork { rows, s, force, excitation } = work;
+    let TaylorWork { rows, s, force, excitation, contact: series } = work;
     let halves = D / PER_HALF;
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let mut damper = [zero; 2];
@@ -85,12 +142,19 @@ pub(crate) fn taylor<const D: usize, R: Real>(
         for j in 0..halves {
             let h = &equations.halves[j];
             let mut f = damper[j] * R::splat(n1) * s[j][n + 1];
-            let degree = excitation.degree[j].min(n);
-            if any_closed[j] {
-                let k = &excitation.backwards[j][MAX_ORDER - n..];
-                f += closed[j] * convolution(k, &s[j][..=n], n - degree);
-                if n <= excitation.degree[j] {
-                    f -= excitation.stiffness[j][n] * seat[j];
+            if excitation.cells[j].in_use {
+                if any_closed[j] {
+                    let cells = &excitation.cells[j];
+                    f += closed[j] * cells.side * series[j].force(cells, n, s[j][n]);
+                }
+            } else {
+                let degree = excitation.degree[j].min(n);
+                if any_closed[j] {
+                    let k = &excitation.backwards[j][MAX_ORDER - n..];
+                    f += closed[j] * convolution(k, &s[j][..=n], n - degree);
+                    if n <= excitation.degree[j] {
+                        f -= excitation.stiffness[j][n] * seat[j];
+                    }
                 }
             }
             force[j][n] = f;

@@ -132,7 +132,7 @@ impl<const D: usize> RungeKutta<D> {
             });
             (state.phase, state.x, state.v) = (phase, x, v);
             for j in 0..Model::<D>::HALVES {
-                state.contact[j] = model.contact_of(model.s(j, &state.x));
+                state.contact[j] = model.contact_of(j, model.s(j, &state.x), state.phase);
             }
             return Ok(());
         }

@@ -6,7 +6,9 @@ use super::equations::PER_HALF;
 use super::error::DynamicsError;
 use super::integrate::{Integrator, Motion, Numerics};
 use super::model::{Model, State};
-use super::variation::{Deviation, Variation};
+use super::recurrence::norm;
+use super::segment::{Observer, Segment};
+use super::variation::{Both, Deviation, Variation};
 use crate::watch::Watch;
 
 /// Motions held by nothing move this little, in squared frequency relative to the largest (see `modal`).
@@ -36,7 +38,26 @@ pub(crate) struct MapResult<const D: usize> {
     pub end: State<D>,
     /// Over (active displacements, active velocities).
     pub map: DMatrix<f64>,
+    /// Largest scaled velocity at the start of a step.
+    pub size: f64,
+    /// A half has left its flank.
+    pub separated: bool,
     pub numerics: Numerics,
+}
+
+/// Watches how large a motion is and whether it keeps to its flanks.
+struct Extent {
+    size: f64,
+    separated: bool,
+    first: Option<[i8; 2]>,
+}
+
+impl<const D: usize> Observer<D> for Extent {
+    fn segment(&mut self, segment: &Segment<'_, D>) {
+        let sides = segment.contact.map(i8::signum);
+        self.separated |= *self.first.get_or_insert(sides) != sides || sides[..Model::<D>::HALVES].contains(&0);
+        self.size = self.size.max(norm(&segment.rows[1]));
+    }
 }
 
 impl<'m, const D: usize> Shooting<'m, D> {
@@ -57,8 +78,9 @@ impl<'m, const D: usize> Shooting<'m, D> {
         let Limits { tolerance, max_steps, watch } = self.limits;
         let mut variation = Variation::new(self.model, Variation::units(self.model), tolerance);
         let mut motion = Motion::new(motion_model, start, Integrator::Taylor, tolerance, max_steps);
+        let mut extent = Extent { size: 0.0, separated: false, first: None };
         for _ in 0..periods {
-            motion.advance_period(&mut variation, watch, 0.0)?;
+            motion.advance_period(&mut Both(&mut variation, &mut extent), watch, 0.0)?;
             watch.checkpoint(0.0)?;
         }
         let n = self.active.len();
@@ -69,7 +91,8 @@ impl<'m, const D: usize> Shooting<'m, D> {
         if map.iter().any(|c| !c.is_finite()) {
             return Err(DynamicsError::Diverged { time_s: motion.time_s() });
         }
-        Ok(MapResult { end: motion.state, map, numerics: motion.numerics })
+        let Extent { size, separated, .. } = extent;
+        Ok(MapResult { end: motion.state, map, size, separated, numerics: motion.numerics })
     }
 
     /// Along a free motion: nᵀ M q.

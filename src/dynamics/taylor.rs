@@ -5,6 +5,7 @@
 //! accuracy allows. Changes of contact are zeros of the polynomial s(τ) ∓ b and are located to rounding. Step length after Jorba
 //! and Zou (Experimental Mathematics 14 (2005) 99), from the last two coefficients.
 
+use super::contact_force::{Cells, ContactForce};
 use super::crossing::first_crossing;
 use super::equations::{Equations, PER_HALF};
 use super::error::DynamicsError;
@@ -74,7 +75,7 @@ pub(super) fn step<const D: usize, R: Real>(
     work: &mut TaylorWork<D, R>,
 ) -> Stepped<R> {
     let Stretch { phase, end, inside, period_tau, tolerance, fixed, switching } = stretch;
-    excitations.excite(phase, inside, order, &mut work.excitation);
+    excitations.excite(phase, inside, contact, order, &mut work.excitation);
     let remaining = (end - phase) * period_tau;
     *size = *size * R::splat(0.98);
     let enough = Enough { remaining, tolerance, size: *size };
@@ -99,7 +100,12 @@ pub(super) fn step<const D: usize, R: Real>(
     let mut to = R::splat(0.0);
     if switching.any(|s| s != 0.0) {
         for j in 0..D / PER_HALF {
-            let (at, side) = next_contact(&work.s[j][..=degree], equations.b, contact[j], h, switching);
+            let s = &work.s[j][..=degree];
+            let (at, side) = if work.excitation.cells[j].in_use {
+                next_cell(s, &work.excitation.cells[j], contact[j], h, switching)
+            } else {
+                next_contact(s, equations.b, contact[j], h, switching)
+            };
             for l in 0..R::LANES {
                 if at.get(l) < f64::INFINITY {
                     h.set(l, at.get(l));
@@ -135,6 +141,26 @@ fn next_contact<R: Real>(s: &[R], b: R, contact: R, h: R, switching: R) -> (R, R
         at = at.zip(back, f64::min);
     }
     (at, to)
+}
+
+/// The first change of the cell of a half's contact force within `h`: when (infinite: none), and to what.
+#[inline(always)]
+fn next_cell<R: Real>(s: &[R], cells: &Cells<R>, contact: R, h: R, switching: R) -> (R, R) {
+    let mut g = [R::splat(0.0); MAX_ORDER + 1];
+    let g = &mut g[..s.len()];
+    let mut leaves = |side: R, ends: &[R; 4], h: R| {
+        for (n, (g, s)) in g.iter_mut().zip(s).enumerate() {
+            *g = side * *s;
+            if n < 4 {
+                *g += ends[n];
+            }
+        }
+        first_crossing(g, h, switching)
+    };
+    let near = leaves(cells.side, &cells.near, h);
+    let far = leaves(-cells.side, &cells.far, near.zip(h, f64::min));
+    let to = R::from_fn(|l| f64::from(ContactForce::next(contact.get(l) as Contact, far.get(l) < f64::INFINITY)));
+    (near.zip(far, f64::min), to)
 }
 
 /// The step at which the last two terms are as large as `allowed`.
@@ -201,7 +227,7 @@ impl Rattling {
         }
         state.phase += step;
         for j in 0..Model::<D>::HALVES {
-            state.contact[j] = model.contact_of(model.s(j, &state.x));
+            state.contact[j] = model.contact_of(j, model.s(j, &state.x), state.phase);
         }
         true
     }

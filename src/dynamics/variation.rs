@@ -2,7 +2,7 @@
 
 use super::equations::Equations;
 use super::excitation::MAX_ORDER;
-use super::expansion::{ExcitationTerms, Excite};
+use super::expansion::ExcitationTerms;
 use super::lanes::{Lanes, Real};
 use super::model::{Contact, Model, State};
 use super::recurrence::{TaylorWork, taylor};
@@ -70,7 +70,8 @@ impl<'m, const D: usize> Variation<'m, D> {
             let (was, is) = (before[j], segment.contact[j]);
             let speed = self.model.s(j, &segment.rows[1]);
             let h = &self.model.halves[j];
-            if was == is || speed == 0.0 || h.cm == h.cm_in_gap {
+            // Passing from one level of a contact force to the next changes nothing.
+            if (was == 0) == (is == 0) || speed == 0.0 || h.cm == h.cm_in_gap {
                 continue;
             }
             let damper = (h.cm - h.cm_in_gap) * speed;
@@ -104,10 +105,10 @@ impl<'m, const D: usize> Variation<'m, D> {
         let order = segment.degree.clamp(12, MAX_ORDER);
         let period_tau = self.model.period_tau;
         let inside = segment.phase + 0.5 * segment.h / period_tau;
-        let contact = segment.contact.map(|c| R::splat(f64::from(c)));
+        let contact = segment.contact.map(|c| R::splat(f64::from(c.signum())));
         let mut at = 0.0;
         loop {
-            self.model.excite(segment.phase + at / period_tau, inside, order, terms);
+            self.model.excite_variation(segment, at, inside, order, terms);
             work.excitation.spread(terms, order);
             (work.rows[0], work.rows[1]) = (x, v);
             taylor(equations, contact, order, R::splat(0.0), None, work);

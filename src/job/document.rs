@@ -180,8 +180,19 @@ pub struct Model {
     pub plane: Plane,
     pub mesh_damping_ratio: f64,
     pub damping_in_gap: bool,
+    pub mesh_force: MeshForce,
     pub mesh_stiffness: MeshStiffness,
     pub impact: Impact,
+}
+
+/// What the equations of motion contain of the mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MeshForce {
+    /// k_m(t) f(s) with the backlash function, and an impact pulse: the source's equations.
+    Stiffness,
+    /// The force of the loaded contact as a function of approach and phase; no pulse.
+    Contact,
 }
 
 /// Plane in which the equations of motion are written.
@@ -203,6 +214,8 @@ pub enum MeshStiffness {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ltca {
     pub fidelity: Fidelity,
+    /// Fidelity `uniform`: normal force per length of contact line and approach.
+    pub line_stiffness_n_per_mm_um: f64,
     /// How fine the finite elements of fidelity `fe` are.
     pub elements: Elements,
     pub body: Body,
@@ -234,6 +247,8 @@ pub enum StiffnessLaw {
 pub enum Fidelity {
     Analytic,
     Fe,
+    /// Contact lines as a uniform elastic foundation: a plain model for comparisons.
+    Uniform,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -101,6 +101,9 @@ pub struct Mesh {
     pub convergence: Option<Convergence>,
     /// Where the stiffness came from: `ltca`, `iso6336` or `given`.
     pub source: String,
+    /// How the force of the contact over approach and phase was tabulated for the equations of motion; null where they do not contain it.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub contact_force: Option<ContactForceTable>,
     pub curve: MeshCurve,
     /// Curves of the right half where the halves differ.
     #[serde(skip_serializing_if = "Option::is_none", default)]
@@ -144,6 +147,21 @@ pub struct MeshCurve {
     pub load_share_phase: Vec<f64>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub flank: Option<FlankLoad>,
+}
+
+/// The mesh force of one half as a function of approach and phase.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct ContactForceTable {
+    /// Levels of approach above that of no load.
+    pub levels: u32,
+    /// Positions over the mesh period.
+    pub phases: u32,
+    /// Largest difference from contact analyses between levels and positions, as a part of the force (at least of a fifth of the static one).
+    pub error_percent: f64,
+    /// Force along the transverse base tangent up to which the contact was solved at every position; beyond it the force goes on with the stiffness
+    /// there.
+    pub largest_force_n: f64,
 }
 
 /// Line load over the flank, for a heat map: a row for each place on the roll path, in it the columns along the face width from the inner end.

@@ -95,7 +95,7 @@ impl<const D: usize> Recorder<D> {
 impl<const D: usize> Observer<D> for Recorder<D> {
     fn segment(&mut self, segment: &Segment<'_, D>) {
         for j in 0..Model::<D>::HALVES {
-            self.contact[j][(1 - segment.contact[j]) as usize] += segment.h;
+            self.contact[j][(1 - segment.contact[j].signum()) as usize] += segment.h;
         }
         let mut polynomial = [0.0; MAX_ORDER + 1];
         let period_tau = segment.model.period_tau;

@@ -176,6 +176,9 @@ impl Point<'_> {
             from_start: self.analysis.initial_state.is_some(),
         };
         let mut state = model.state_from(start);
+        if self.analysis.initial_state.is_none() {
+            model.seat_teeth(&mut state);
+        }
         if off_symmetry {
             let mut push: Deviation<D> = ([0.0; D], [0.0; D]);
             for c in 0..PER_HALF - 1 {
@@ -388,7 +391,10 @@ fn integrate<const D: usize>(
         out.push(Err(DynamicsError::Canceled(Canceled)));
         let run = model.as_ref().map_err(Clone::clone).and_then(|model| {
             let recorder = point.recorder(model, end - record_from);
-            let start = model.state_from(&point.start());
+            let mut start = model.state_from(&point.start());
+            if point.analysis.initial_state.is_none() {
+                model.seat_teeth(&mut start);
+            }
             let run = Run::new(model, start, tolerance, (record_from, end), recorder)?;
             Ok(run.keeping(compared_from).with_energy(point.energy(model)))
         });

@@ -81,7 +81,11 @@ impl<const D: usize> Search<'_, D> {
             return Ok(found);
         }
         // Also says whether there is a steady state at all.
-        let keeps_contact = self.without_separation(start, &mut budget, &mut numerics)?;
+        let keeps_contact = if self.model.follows_contact() {
+            self.about_static(start, &mut budget, &mut numerics)?
+        } else {
+            self.without_separation(start, &mut budget, &mut numerics)?
+        };
         if let Some(found) = keeps_contact.filter(|_| !self.from_start) {
             return Ok(found);
         }
@@ -259,6 +263,90 @@ impl<const D: usize> Search<'_, D> {
         }))
     }
 
+    /// Where the mesh force is that of the loaded contact: the period-1 motion about the static deflection, by Newton's method on the period map.
+    /// Its first step solves the equations linearised about a motion that sets out from the static deflection. The map is kept as long as the
+    /// steps converge (chord method), and taken anew at the motion found. None when that separates, is unstable or is not found.
+    fn about_static(
+        &self,
+        start: State<D>,
+        budget: &mut Budget,
+        numerics: &mut Numerics,
+    ) -> Result<Option<Found<D>>, DynamicsError> {
+        const ROUNDS: usize = 12;
+        /// A map is kept while each step leaves less than this part of the defect.
+        const CONVERGES: f64 = 0.2;
+        let deviations = 2 * self.model.active().count();
+        let shooting = self.shooting(self.model, budget)?;
+        let mut at = State { period: 0, ..start };
+        let mut round = shooting.map(self.model, at, 1)?;
+        budget.spend(&round.numerics, deviations);
+        *numerics += round.numerics;
+        let mut defect = difference(&round.end, &at);
+        self.balanced(&shooting, &defect)?;
+        let mut last = f64::INFINITY;
+        let mut fresh_map = true;
+        for _ in 0..ROUNDS {
+            let size = round.size.max(1e-9 * largest(&(at.x, [0.0; D])));
+            let change = largest(&defect) / size;
+            let closed = change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last);
+            if closed && fresh_map {
+                break;
+            }
+            if closed || (!fresh_map && change > CONVERGES * last) {
+                round = shooting.map(self.model, at, 1)?;
+                budget.spend(&round.numerics, deviations);
+                *numerics += round.numerics;
+                defect = difference(&round.end, &at);
+                fresh_map = true;
+                if closed {
+                    break;
+                }
+            }
+            last = change;
+            let Some(correction) = shooting.correction(&defect, &round.map, 1) else { return Ok(None) };
+            at = moved(self.model, at, &correction);
+            let mut motion = self.motion(at, budget);
+            motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
+            budget.spend(&motion.numerics, 0);
+            *numerics += motion.numerics;
+            defect = difference(&motion.state, &at);
+            fresh_map = false;
+        }
+        let size = round.size.max(1e-9 * largest(&(at.x, [0.0; D])));
+        if !fresh_map || round.separated || largest(&defect) / size > 1e-9f64.max(10.0 * self.limits.tolerance) {
+            return Ok(None);
+        }
+        self.stable_orbit(&shooting, at, 1, round.map, budget, numerics)
+    }
+
+    /// The orbit that closes from `at` after `n` mesh periods with its multipliers; None where a deviation grows.
+    fn stable_orbit(
+        &self,
+        shooting: &Shooting<'_, D>,
+        at: State<D>,
+        n: u64,
+        map: DMatrix<f64>,
+        budget: &mut Budget,
+        numerics: &mut Numerics,
+    ) -> Result<Option<Found<D>>, DynamicsError> {
+        let within = shooting.multipliers(&map);
+        let modulus = within.first().map(|m| m.norm());
+        let Some(modulus) = modulus.filter(|m| *m < 1.0) else { return Ok(None) };
+        let start = self.polished(shooting, (at, n), &map, modulus, budget, numerics)?;
+        let (against, multipliers) = self.with_those_against_symmetry(within, start, n, budget)?;
+        Ok(Some(Found {
+            multipliers,
+            start,
+            record: n,
+            orbit: Some((n, map)),
+            floquet: Some(modulus.max(against).powf(1.0 / n as f64)),
+            lyapunov: None,
+            leaves_symmetry: against > 1.0,
+            tolerance: self.limits.tolerance,
+            numerics: *numerics,
+        }))
+    }
+
     fn with_separation(
         &self,
         start: State<D>,
@@ -394,22 +482,7 @@ impl<const D: usize> Search<'_, D> {
             let defect = difference(&round.end, &start);
             let change = largest(&defect) / size;
             if change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last) {
-                let within = shooting.multipliers(&round.map);
-                let modulus = within.first().map(|m| m.norm());
-                let Some(modulus) = modulus.filter(|m| *m < 1.0) else { return Ok(None) };
-                let start = self.polished(&shooting, (start, n), &round.map, modulus, budget, &mut numerics)?;
-                let (against, multipliers) = self.with_those_against_symmetry(within, start, n, budget)?;
-                return Ok(Some(Found {
-                    multipliers,
-                    start,
-                    record: n,
-                    orbit: Some((n, round.map)),
-                    floquet: Some(modulus.max(against).powf(1.0 / n as f64)),
-                    lyapunov: None,
-                    leaves_symmetry: against > 1.0,
-                    tolerance: self.limits.tolerance,
-                    numerics,
-                }));
+                return self.stable_orbit(&shooting, start, n, round.map, budget, &mut numerics);
             }
             last = change;
             let Some(correction) = shooting.correction(&defect, &round.map, n) else { return Ok(None) };
@@ -478,7 +551,7 @@ pub(super) fn moved<const D: usize>(model: &Model<D>, mut state: State<D>, by: &
         state.v[c] += by.1[c];
     }
     for j in 0..Model::<D>::HALVES {
-        state.contact[j] = model.contact_of(model.s(j, &state.x));
+        state.contact[j] = model.contact_of(j, model.s(j, &state.x), state.phase);
     }
     state
 }

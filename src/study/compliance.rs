@@ -44,6 +44,7 @@ pub fn find(
     }
     let (compliance, elements_reused, done) = match case.fidelity {
         Fidelity::Analytic => (Compliance::analytic(pair, &case.settings), false, 0.0),
+        Fidelity::Uniform => (Compliance::uniform(pair, &case.settings, case.line_stiffness_n_per_m2), false, 0.0),
         Fidelity::Fe => {
             let inputs = Compliance::finite_element_inputs(pair, &case.settings, case.resolution);
             let (pinion, pinion_reused) = flank(&inputs[0], surroundings, (0.0, 0.4 * ELEMENTS_PART))?;

@@ -1,9 +1,10 @@
 //! The numbers of the twelve equations, from the document and the results of the earlier stages.
 
 use super::prepare::Prepared;
-use crate::dynamics::{Couplings, HalfParameters, Harmonic, Impact, Parameters, Spring, Stiffness};
+use crate::dynamics::{ContactForce, Couplings, HalfParameters, Harmonic, Impact, Parameters, Spring, Stiffness};
 use crate::dynamics::{equivalent_mass_kg, mesh_damping_n_s_per_m};
 use crate::job::document::{GivenStiffness, JobDocument, Plane};
+use std::sync::Arc;
 
 /// The plane in which the equations are written: radii of both gears and helix angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,6 +60,19 @@ pub fn given_stiffness(given: &GivenStiffness) -> Stiffness {
     }
 }
 
+/// The same parameters with the mesh forces of the loaded contact (left, right) in place of the stiffness.
+///
+/// The mesh damper then has the damping ratio along the transverse direction of the mesh, c = 2 ζ √(k m_e) there with k the mean tangent stiffness at the working
+/// load, so that ζ is the damping ratio of the two bodies turning on their mesh: along s that is 1/cosβ times the source's c_m.
+pub fn with_contact_forces(mut parameters: Parameters, forces: &[Arc<ContactForce>; 2]) -> Parameters {
+    let cos = parameters.helix_angle_rad.cos();
+    for (half, force) in parameters.halves.iter_mut().zip(forces) {
+        half.contact_force = Some(force.clone());
+        half.mesh_damping_n_s_per_m /= cos;
+    }
+    parameters
+}
+
 /// Assembles the parameters. `stiffness` (along s) and `impact` are those of the left and the right half; the excitations of
 /// the right half come `right_lead_mesh_periods` earlier than written (stagger).
 pub fn parameters(
@@ -91,6 +105,7 @@ pub fn parameters(
             m_e,
         ),
         mesh_stiffness: stiffness,
+        contact_force: None,
         impact,
         phase_shift_mesh_periods,
     };

@@ -20,9 +20,14 @@ pub fn mesh_hash(case: &ContactCase) -> String {
     hash("mesh", case)
 }
 
+/// Hash of the contact's force over approach and phase: of the same things as [`mesh_hash`].
+pub fn force_hash(case: &ContactCase) -> String {
+    hash("mesh-force", case)
+}
+
 /// Hash of the teeth's compliance: what [`mesh_hash`] depends on without load, modifications and misalignments.
 pub fn compliance_hash(case: &ContactCase) -> String {
-    hash("compliance", &(bare(case), &case.settings, case.fidelity, case.resolution))
+    hash("compliance", &(bare(case), &case.settings, case.fidelity, case.line_stiffness_n_per_m2, case.resolution))
 }
 
 /// Hash of the finite elements of one gear.

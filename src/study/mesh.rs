@@ -3,14 +3,15 @@
 use super::compliance::{self, ComplianceMemo};
 use super::equations::{MotionPlane, given_stiffness};
 use super::hash::mesh_hash;
+use super::mesh_force::{self, MeshForces};
 use super::prepare::Prepared;
 use super::{SolveError, Stage, Surroundings};
 use crate::contact::iso6336::{Blank, MethodB};
-use crate::contact::{self, BodyHold, ContactError, HalfCycle, LoadedContact, MESH_IN_PHASE, Settings};
+use crate::contact::{self, BodyHold, ContactError, ForceTable, HalfCycle, LoadedContact, MESH_IN_PHASE, Settings};
 use crate::dynamics::Stiffness;
 use crate::fe::Resolution;
 use crate::gear::{Pair, PairSpec};
-use crate::job::document::{Body, Elements, Fidelity, JobDocument, Ltca, MeshStiffness, StiffnessLaw};
+use crate::job::document::{Body, Elements, Fidelity, JobDocument, Kind, Ltca, MeshForce, MeshStiffness, StiffnessLaw};
 use crate::job::result::{ApexSensitivity, Convergence, FlankLoad, Mesh, MeshCurve, PerHalf};
 use crate::watch::Watch;
 use serde::Serialize;
@@ -29,6 +30,8 @@ pub struct MeshStage {
     /// Whether the right half's stiffness is already shifted by the stagger.
     pub stagger_included: bool,
     pub entry: [EntryState; 2],
+    /// The mesh force over approach and phase, where the equations contain that.
+    pub forces: Option<MeshForces>,
 }
 
 /// The mesh of one half when a pair enters. Stiffness and deflection along the transverse base tangent.
@@ -63,17 +66,28 @@ pub struct ContactCase<'a> {
     torque_nm: f64,
     half_stagger: f64,
     pub fidelity: Fidelity,
+    pub line_stiffness_n_per_m2: f64,
     pub resolution: Resolution,
     pub settings: Settings,
 }
 
 impl<'a> ContactCase<'a> {
+    /// F_bt of one half.
+    pub fn half_force_n(&self, pair: &Pair) -> f64 {
+        0.5 * self.torque_nm / pair.pinion.base_radius_m
+    }
+
     pub fn new(document: &JobDocument, ltca: &Ltca, prepared: &'a Prepared) -> Self {
         Self {
             spec: &prepared.pair.spec,
             torque_nm: document.operation.pinion_torque_nm,
             half_stagger: document.design.half_stagger,
             fidelity: ltca.fidelity,
+            line_stiffness_n_per_m2: match ltca.fidelity {
+                // N/(mm µm) over N/m².
+                Fidelity::Uniform => ltca.line_stiffness_n_per_mm_um * 1e9,
+                Fidelity::Analytic | Fidelity::Fe => 0.0,
+            },
             resolution: match ltca.elements {
                 Elements::Coarse => Resolution::Coarse,
                 Elements::Medium => Resolution::Medium,
@@ -97,22 +111,32 @@ impl<'a> ContactCase<'a> {
 /// Contact analyses of one job and the compliances under them, so that the points of a sweep share them.
 #[derive(Default)]
 pub struct MeshMemo {
-    contacts: Mutex<HashMap<String, Arc<LoadedContact>>>,
-    compliances: ComplianceMemo,
+    contacts: Memo<LoadedContact>,
+    pub(super) forces: Memo<Vec<ForceTable>>,
+    pub(super) compliances: ComplianceMemo,
 }
 
-impl MeshMemo {
-    fn get(&self, key: &str) -> Option<Arc<LoadedContact>> {
-        self.contacts.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
+/// Outcomes kept by the hash of what they depend on.
+pub struct Memo<T>(Mutex<HashMap<String, Arc<T>>>);
+
+impl<T> Default for Memo<T> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<T> Memo<T> {
+    pub fn get(&self, key: &str) -> Option<Arc<T>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
     }
 
-    fn put(&self, key: String, contact: Arc<LoadedContact>) {
-        let mut map = self.contacts.lock().unwrap_or_else(PoisonError::into_inner);
+    pub fn put(&self, key: String, outcome: Arc<T>) {
+        let mut map = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         // A sweep over the teeth has no use for old entries; one over speed has one.
         if map.len() >= 64 {
             map.clear();
         }
-        map.insert(key, contact);
+        map.insert(key, outcome);
     }
 }
 
@@ -131,7 +155,15 @@ pub fn run(
         MeshStiffness::Ltca(ltca) => {
             let case = ContactCase::new(document, ltca, prepared);
             let (contact, reused) = loaded_contact(&case, &prepared.pair, surroundings, memo)?;
-            Ok((from_contact(&contact, ltca, prepared, plane), reused))
+            let mut stage = from_contact(&contact, ltca, prepared, plane);
+            if document.model.mesh_force == MeshForce::Contact && document.kind != Kind::Mesh {
+                let forces = mesh_force::run(&case, &prepared.pair, plane, surroundings, memo)?;
+                stage.summary.contact_force = Some(forces.summary.clone());
+                stage.stiffness = tangent_stiffness(&contact, plane);
+                stage.stagger_included = false;
+                stage.forces = Some(forces);
+            }
+            Ok((stage, reused))
         }
         MeshStiffness::Iso6336 => Ok((iso6336(document, prepared, plane)?, Vec::new())),
         MeshStiffness::Given(given) => {
@@ -151,7 +183,7 @@ fn loaded_contact(
     memo: &MeshMemo,
 ) -> Result<(Arc<LoadedContact>, Vec<&'static str>), SolveError> {
     let key = mesh_hash(case);
-    if let Some(contact) = memo.get(&key) {
+    if let Some(contact) = memo.contacts.get(&key) {
         return Ok((contact, vec![Stage::Mesh.word()]));
     }
     let stored = surroundings.stages.load(&key).and_then(|bytes| serde_json::from_slice::<LoadedContact>(&bytes).ok());
@@ -165,7 +197,7 @@ fn loaded_contact(
         }
     };
     let contact = Arc::new(contact);
-    memo.put(key, contact.clone());
+    memo.contacts.put(key, contact.clone());
     Ok((contact, reused))
 }
 
@@ -178,12 +210,15 @@ fn solve_contact(
     let progress = |fraction: f64| (surroundings.progress)(Stage::Mesh, found.done + (1.0 - found.done) * fraction);
     let watch = Watch::new(&progress, surroundings.canceled);
     let (torque_nm, stagger) = (case.torque_nm, case.half_stagger);
-    contact::solve_pair_of_halves(pair, torque_nm, stagger, &found.compliance, &case.settings, watch).map_err(|error| {
-        match error {
-            ContactError::Canceled(canceled) => canceled.into(),
-            other => SolveError::failed(Stage::Mesh, contact_code(&other), &other),
-        }
-    })
+    contact::solve_pair_of_halves(pair, torque_nm, stagger, &found.compliance, &case.settings, watch)
+        .map_err(contact_failed)
+}
+
+pub fn contact_failed(error: ContactError) -> SolveError {
+    match error {
+        ContactError::Canceled(canceled) => canceled.into(),
+        other => SolveError::failed(Stage::Mesh, contact_code(&other), &other),
+    }
 }
 
 fn contact_code(error: &ContactError) -> &'static str {
@@ -240,6 +275,7 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
             slice_error_percent: 100.0 * most(&|half| half.slice_error),
         }),
         source: "ltca".to_owned(),
+        contact_force: None,
         curve: curve(left, &|i| left.transmission_error_m[i]),
         right_curve: (!contact.equal_halves).then(|| curve(right, &|i| right.transmission_error_m[i])),
     };
@@ -264,7 +300,16 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
         stiffness: [stiffness(left), stiffness(right)],
         stagger_included: true,
         entry: [entry(left), entry(right)],
+        forces: None,
     }
+}
+
+/// dF/dδ of both halves along s, each over its own phase.
+fn tangent_stiffness(contact: &LoadedContact, plane: &MotionPlane) -> [Stiffness; 2] {
+    [&contact.halves[0], &contact.halves[1]].map(|half| {
+        let values = half.stiffness_n_per_m.iter().map(|k| k * plane.stiffness_factor).collect();
+        Stiffness::Samples { values_n_per_m: values }
+    })
 }
 
 /// Both halves at one rotation, the axial shift u opening one by u tanβ_b and closing the other: k_L and k_R in series move the load,
@@ -367,5 +412,6 @@ fn closed_form(source: &str, prepared: &Prepared, curve: impl Fn(f64) -> f64) ->
         stiffness: [Stiffness::Constant { mean_n_per_m: k.mean }, Stiffness::Constant { mean_n_per_m: k.mean }],
         stagger_included: false,
         entry: [entry.clone(), entry],
+        forces: None,
     }
 }

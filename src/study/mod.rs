@@ -12,6 +12,7 @@ mod equations;
 mod hash;
 mod impact;
 mod mesh;
+mod mesh_force;
 mod point;
 mod points;
 mod prepare;

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{pair, spec};
-use crate::contact::distribution::distribute;
+use crate::contact::distribution::{Prescribed, distribute};
 use crate::contact::influence::Stencil;
 use crate::contact::lines::{CornerGaps, Reach, collect, reference_roll_m};
 use crate::contact::system::{Local, System, Workspace};
@@ -195,7 +195,7 @@ fn a_constant_foundation_gives_the_length_of_the_lines_and_relief_unloads_it() {
                 local: &local,
             };
             let total = 4e3;
-            let found = distribute(&system, total, &[], &mut Workspace::default()).unwrap();
+            let found = distribute(&system, Prescribed::Force(total), &[], &mut Workspace::default()).unwrap();
             if relief_m == 0.0 {
                 let length: f64 = pair.contact_lines(reference_roll_m(&pair, phase)).iter().map(|l| l.width_m()).sum();
                 lengths.push(found.stiffness / (STIFFNESS * length) - 1.0);

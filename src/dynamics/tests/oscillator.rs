@@ -26,6 +26,7 @@ fn oscillator(omega: f64, epsilon: f64, amplitude: f64) -> Parameters {
         gear_lateral: Spring::default(),
         pinion_axial: Spring::default(),
         gear_axial: Spring::default(),
+        contact_force: None,
         mesh_stiffness: Stiffness::Fourier {
             mean_n_per_m: 1.0,
             harmonics: vec![Harmonic { amplitude: epsilon, phase_rad: 0.0 }],
@@ -89,7 +90,7 @@ fn motion(omega: f64, epsilon: f64, amplitude: f64, from: &mut (f64, f64)) -> [f
     let model = Model::<6>::new(&oscillator(omega, epsilon, amplitude)).unwrap();
     let mut state = model.state_from(&[0.0; 24]);
     (state.x[U], state.v[U]) = (from.0, from.1 / model.omega_ref);
-    state.contact = [model.contact_of(from.0); 2];
+    state.contact = [model.contact_of(0, from.0, 0.0); 2];
     let mut path = Motion::new(&model, state, Integrator::Taylor, 1e-9, u64::MAX);
     for _ in 0..200 {
         path.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();

@@ -22,6 +22,7 @@ fn natural_frequencies_with_couplings() {
         gear_lateral: Spring { stiffness: 9e8, damping: 0.0 },
         pinion_axial: Spring::default(),
         gear_axial: Spring { stiffness: 3e8, damping: 0.0 },
+        contact_force: None,
         mesh_stiffness: Stiffness::Constant { mean_n_per_m: 8e8 },
         mesh_damping_n_s_per_m: 0.0,
         impact: None,

@@ -78,6 +78,7 @@ pub fn parameters(name: &str) -> Parameters {
         gear_lateral: Spring::with_damping_ratio(m.lateral_n_per_m, z, m.gear_mass_kg),
         pinion_axial: Spring::default(),
         gear_axial: Spring::with_damping_ratio(m.gear_axial_n_per_m, z, m.gear_mass_kg),
+        contact_force: None,
         mesh_stiffness: Stiffness::Fourier {
             mean_n_per_m: m.mean_stiffness_n_per_m,
             harmonics: c

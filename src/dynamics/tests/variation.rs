@@ -12,7 +12,7 @@ fn limits<'a>(watch: &'a Watch<'static>) -> Limits<'a> {
 
 fn advance<const D: usize>(model: &Model<D>, mut state: State<D>, periods: u64) -> State<D> {
     for j in 0..Model::<D>::HALVES {
-        state.contact[j] = model.contact_of(model.s(j, &state.x));
+        state.contact[j] = model.contact_of(j, model.s(j, &state.x), state.phase);
     }
     let mut motion = Motion::new(model, state, Integrator::Taylor, 1e-14, u64::MAX);
     for _ in 0..periods {

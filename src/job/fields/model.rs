@@ -6,6 +6,24 @@ use crate::job::reader::Object;
 use crate::job::violation::Violation;
 
 pub(super) fn model(object: Object) -> Model {
+    let mesh_stiffness = mesh_stiffness(object.object("mesh_stiffness", false, "Where the mesh stiffness comes from."));
+    let from_contact = matches!(mesh_stiffness, MeshStiffness::Ltca(_));
+    let mesh_force = object.choice(
+        "mesh_force",
+        &[("stiffness", MeshForce::Stiffness), ("contact", MeshForce::Contact)],
+        if from_contact { MeshForce::Contact } else { MeshForce::Stiffness },
+        if from_contact { "contact" } else { "stiffness" },
+        "What the equations contain of the mesh: contact (the force of the loaded contact over approach and phase, entry shock and loss of contact \
+         included, no impact pulse; default with source ltca) or stiffness (the source's: k(t) over the backlash function, and the impact; \
+         default with the other sources).",
+    );
+    if mesh_force == MeshForce::Contact && !from_contact {
+        conflict(
+            &object,
+            "mesh_force",
+            "is contact, which needs a loaded contact analysis: mesh_stiffness.source ltca; with given and iso6336 it is stiffness",
+        );
+    }
     let model = Model {
         plane: object.choice(
             "plane",
@@ -21,7 +39,8 @@ pub(super) fn model(object: Object) -> Model {
             true,
             "Whether the mesh damper acts while the teeth are apart.",
         ),
-        mesh_stiffness: mesh_stiffness(object.object("mesh_stiffness", false, "Where the mesh stiffness comes from.")),
+        mesh_force,
+        mesh_stiffness,
         impact: impact(object.object("impact", false, "Where the mesh-in impact comes from.")),
     };
     object.finish();
@@ -38,10 +57,20 @@ fn mesh_stiffness(object: Object) -> MeshStiffness {
     );
     let fidelity = object.choice(
         "fidelity",
-        &[("analytic", Fidelity::Analytic), ("fe", Fidelity::Fe)],
+        &[("analytic", Fidelity::Analytic), ("fe", Fidelity::Fe), ("uniform", Fidelity::Uniform)],
         Fidelity::Analytic,
         "analytic",
-        "ltca: how the tooth and body compliance is found: analytic (milliseconds) or fe (finite elements of both gears, seconds; kept for the next job).",
+        "ltca: how the tooth and body compliance is found: analytic (milliseconds) or fe (finite elements of both gears, seconds; kept for the next job); uniform is a plain elastic foundation along the contact lines, for comparisons.",
+    );
+    let line_stiffness_n_per_mm_um = object.number(
+        "line_stiffness_n_per_mm_um",
+        number(
+            0.01,
+            1000.0,
+            "N/(mm um)",
+            Some(14.0),
+            "ltca, uniform: normal force per length of contact line and approach along the flank normal.",
+        ),
     );
     let elements = object.choice(
         "elements",
@@ -99,7 +128,17 @@ fn mesh_stiffness(object: Object) -> MeshStiffness {
     let given = given_stiffness(&object, source == 2);
     object.finish();
     match source {
-        0 => MeshStiffness::Ltca(Ltca { fidelity, elements, body, corner_contact, law, accuracy, positions, slices }),
+        0 => MeshStiffness::Ltca(Ltca {
+            fidelity,
+            line_stiffness_n_per_mm_um,
+            elements,
+            body,
+            corner_contact,
+            law,
+            accuracy,
+            positions,
+            slices,
+        }),
         1 => MeshStiffness::Iso6336,
         _ => MeshStiffness::Given(given),
     }

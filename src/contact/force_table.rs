@@ -1,0 +1,262 @@
+//! The force of one half's loaded contact as a function of approach and phase.
+//!
+//! F_bt(δ, φ) along the transverse base tangent: zero up to the free approach δ₀(φ), at which the first point of any tooth pair touches, then
+//! rising with every line of contact, every slice and every tip corner that comes in. Tabulated over η = δ − δ₀(φ) at levels common to all
+//! phases; between levels cubics with the tangent stiffness of the contact analysis as slopes (Fritsch and Carlson's limits keep them
+//! monotone), between phases periodic splines.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::compliance::Compliance;
+use super::half::HalfContact;
+use super::position::ForceCurve;
+use super::settings::{ContactError, Settings};
+use super::spline::SplineKnots;
+use crate::gear::{Half, Pair};
+use crate::watch::Watch;
+
+/// F_bt(δ, φ) of one half: values at knots of phase and levels of approach.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ForceTable {
+    /// Phases of the knots, ascending in [0, 1).
+    pub phase: Vec<f64>,
+    /// Approach above the free one, ascending from 0. Beyond the last the force goes on with its stiffness there.
+    pub level_m: Vec<f64>,
+    /// δ₀ at every knot.
+    pub free_m: Vec<f64>,
+    /// F_bt, level by level over the knots; 0 on the first level.
+    pub force_n: Vec<Vec<f64>>,
+    /// dF_bt/dδ, level by level over the knots.
+    pub stiffness_n_per_m: Vec<Vec<f64>>,
+    /// The load for which the table was made.
+    pub working_force_n: f64,
+    /// Largest difference between the table and contact analyses between its knots and levels, as a part of the mean force of the level,
+    /// at least of a fifth of the working load.
+    pub error: f64,
+}
+
+/// Levels to begin with, as parts of the mean approach under the working load.
+const LEVELS: [f64; 11] = [0.06, 0.15, 0.3, 0.5, 0.75, 1.0, 1.35, 1.8, 2.6, 4.0, 6.0];
+/// Most levels, the one of no load apart.
+const MOST_LEVELS: usize = 20;
+/// Phases at which levels are tried.
+const TRIED: usize = 5;
+/// Equally spaced phases to begin with, and the most.
+const COARSE: usize = 24;
+const MOST_KNOTS: usize = 192;
+/// Smallest interval between knots.
+const FINEST: f64 = 1.0 / 1024.0;
+/// Agreement between knots and levels, as a part of the accuracy asked of the curves.
+const AGREEMENT: f64 = 0.1;
+/// Forces below this part of the working load need not be relatively accurate.
+const SMALL_FORCE: f64 = 0.2;
+
+/// Solves the contact of one half where F(δ, φ) needs it.
+struct Sampler<'a> {
+    pair: &'a Pair,
+    half: Half,
+    compliance: &'a Compliance,
+    settings: &'a Settings,
+    force_bt_n: f64,
+    watch: Watch<'a>,
+}
+
+impl Sampler<'_> {
+    fn contact(&self) -> HalfContact<'_> {
+        HalfContact::new(self.pair, self.half, self.compliance, self.settings)
+    }
+
+    /// The curves at all phases, on the threads of the pool.
+    fn curves(&self, phases: &[f64], approaches_m: &[f64]) -> Result<Vec<ForceCurve>, ContactError> {
+        phases
+            .par_iter()
+            .map_init(
+                || self.contact(),
+                |contact, &phase| {
+                    self.watch.checkpoint_quietly()?;
+                    contact.force_curve(phase, self.force_bt_n, approaches_m)
+                },
+            )
+            .collect()
+    }
+
+    /// Approach above the free one under the working load, mean over a few phases.
+    fn working_approach_m(&self) -> Result<f64, ContactError> {
+        let mut sum = 0.0;
+        for i in 0..TRIED {
+            let mut contact = self.contact();
+            let phase = i as f64 / TRIED as f64;
+            let loaded = contact.at(phase, self.force_bt_n)?;
+            let free = loaded.points.iter().map(|p| p.gap_m - 0.5 * p.gap_spread_m).fold(f64::INFINITY, f64::min);
+            sum += loaded.approach_m - free;
+        }
+        Ok(sum / TRIED as f64)
+    }
+}
+
+/// Error scale of a level: its force, at least a small part of the working load.
+fn scale(force: f64, working: f64) -> f64 {
+    force.max(SMALL_FORCE * working)
+}
+
+/// Value at the middle between two levels.
+fn middle(low: (f64, f64), high: (f64, f64), step: f64) -> f64 {
+    0.5 * (low.0 + high.0) + 0.125 * step * (low.1 - high.1)
+}
+
+impl ForceTable {
+    /// Tabulates the contact of `half` about the load `force_bt_n` > 0, from no load to several times that.
+    pub fn new(
+        pair: &Pair,
+        half: Half,
+        force_bt_n: f64,
+        compliance: &Compliance,
+        settings: &Settings,
+        watch: Watch<'_>,
+    ) -> Result<ForceTable, ContactError> {
+        let sampler = Sampler { pair, half, compliance, settings, force_bt_n, watch };
+        let tolerance = AGREEMENT * settings.accuracy;
+        let level_m = levels(&sampler, tolerance)?;
+        // The first step is halved once more: its middle says how the contact begins.
+        let mut solved_m = level_m.clone();
+        solved_m[0] = 0.5 * level_m[1];
+        let mut knots: Vec<(f64, ForceCurve)> = Vec::new();
+        let mut fresh = start(pair);
+        let mut intervals: Vec<(f64, f64)> = Vec::new();
+        let mut error: f64 = 0.0;
+        loop {
+            let curves = sampler.curves(&fresh, &solved_m)?;
+            if intervals.is_empty() {
+                knots = fresh.into_iter().zip(curves).collect();
+                let next = |i: usize| knots.get(i + 1).map_or(knots[0].0 + 1.0, |k| k.0);
+                intervals = (0..knots.len()).map(|i| (knots[i].0, next(i))).collect();
+            } else {
+                let table = ForceTable::of(&knots, &level_m, force_bt_n, 0.0);
+                let mut split = Vec::new();
+                error = 0.0;
+                for ((&(from, to), phase), curve) in intervals.iter().zip(fresh).zip(curves) {
+                    let distance = table.distance(&knots, phase, &curve);
+                    let narrow = 0.5 * (to - from) <= FINEST;
+                    if distance > tolerance && !narrow {
+                        split.extend([(from, 0.5 * (from + to)), (0.5 * (from + to), to)]);
+                    } else {
+                        error = error.max(distance);
+                    }
+                    knots.push((phase, curve));
+                }
+                knots.sort_by(|a, b| a.0.total_cmp(&b.0));
+                intervals = split;
+            }
+            if intervals.is_empty() || knots.len() >= MOST_KNOTS {
+                break;
+            }
+            fresh = intervals.iter().map(|(from, to)| (0.5 * (from + to)).rem_euclid(1.0)).collect();
+        }
+        Ok(ForceTable::of(&knots, &level_m, force_bt_n, error))
+    }
+
+    /// The table of solved curves; the first sample of each stands halfway up the first level.
+    fn of(knots: &[(f64, ForceCurve)], level_m: &[f64], working_force_n: f64, error: f64) -> ForceTable {
+        let levels = level_m.len();
+        let column = |of: &dyn Fn(&ForceCurve) -> f64| knots.iter().map(|(_, curve)| of(curve)).collect::<Vec<f64>>();
+        let mut force_n: Vec<Vec<f64>> = (0..levels).map(|i| column(&|c| c.samples[i].0)).collect();
+        let mut stiffness_n_per_m: Vec<Vec<f64>> = (0..levels).map(|i| column(&|c| c.samples[i].1)).collect();
+        // The first cubic goes through no force at no approach and the force halfway up the level, with the slope at its end.
+        let first_m = level_m[1];
+        for (j, (_, curve)) in knots.iter().enumerate() {
+            let (half_n, (end_n, end_slope)) = (curve.samples[0].0, curve.samples[1]);
+            force_n[0][j] = 0.0;
+            stiffness_n_per_m[0][j] =
+                (end_slope + 8.0 * (half_n - 0.5 * end_n) / first_m).clamp(0.0, 3.0 * end_n / first_m);
+        }
+        for j in 0..knots.len() {
+            for i in 1..levels {
+                // Fritsch and Carlson (SIAM J. Numer. Anal. 17 (1980) 238): monotone where both slopes are at most three times the rise.
+                let rise = (force_n[i][j] - force_n[i - 1][j]) / (level_m[i] - level_m[i - 1]);
+                for row in [i - 1, i] {
+                    let slope = &mut stiffness_n_per_m[row][j];
+                    *slope = slope.clamp(0.0, (3.0 * rise).max(0.0));
+                }
+            }
+        }
+        ForceTable {
+            phase: knots.iter().map(|(phase, _)| *phase).collect(),
+            level_m: level_m.to_vec(),
+            free_m: column(&|c| c.free_m),
+            force_n,
+            stiffness_n_per_m,
+            working_force_n,
+            error,
+        }
+    }
+
+    /// Largest difference of the splines over the phase from a solved curve.
+    fn distance(&self, knots: &[(f64, ForceCurve)], phase: f64, curve: &ForceCurve) -> f64 {
+        let spline = SplineKnots::new(self.phase.clone());
+        let at = |values: &[f64]| spline.value(values, &spline.slopes(values), phase);
+        let mut worst = 0.0f64;
+        let mean = |i: usize| knots.iter().map(|(_, c)| c.samples[i].0).sum::<f64>() / knots.len() as f64;
+        for i in 1..self.level_m.len() {
+            let difference = at(&self.force_n[i]) - curve.samples[i].0;
+            worst = worst.max(difference.abs() / scale(mean(i), self.working_force_n));
+        }
+        // A free position off by this moves the force by as much as the stiffness under the working load says.
+        let top = self.stiffness_n_per_m.len() - 1;
+        let stiffness = self.stiffness_n_per_m[top].iter().fold(0.0f64, |m, k| m.max(*k));
+        worst.max((at(&self.free_m) - curve.free_m).abs() * stiffness / self.working_force_n)
+    }
+}
+
+/// Levels of approach from 0 on, between which cubics agree with the contact at a few phases.
+fn levels(sampler: &Sampler<'_>, tolerance: f64) -> Result<Vec<f64>, ContactError> {
+    let working_m = sampler.working_approach_m()?;
+    let phases: Vec<f64> = (0..TRIED).map(|i| (i as f64 + 0.37) / TRIED as f64).collect();
+    let mut level_m: Vec<f64> = std::iter::once(0.0).chain(LEVELS.map(|l| l * working_m)).collect();
+    let mut open: Vec<usize> = (1..level_m.len() - 1).collect();
+    while !open.is_empty() && level_m.len() <= MOST_LEVELS {
+        // Middles of the open steps are solved along with the levels around them.
+        let mut solved_m: Vec<f64> = level_m[1..].to_vec();
+        solved_m.extend(open.iter().map(|&i| 0.5 * (level_m[i] + level_m[i + 1])));
+        solved_m.sort_by(f64::total_cmp);
+        let curves = sampler.curves(&phases, &solved_m)?;
+        let at = |curve: &ForceCurve, approach: f64| {
+            curve.samples[solved_m.partition_point(|&m| m < approach).min(solved_m.len() - 1)]
+        };
+        let mut added = Vec::new();
+        for &i in &open {
+            let (low, high) = (level_m[i], level_m[i + 1]);
+            let error = curves.iter().fold(0.0f64, |worst, curve| {
+                let (a, b, m) = (at(curve, low), at(curve, high), at(curve, 0.5 * (low + high)));
+                worst.max((middle(a, b, high - low) - m.0).abs() / scale(m.0, sampler.force_bt_n))
+            });
+            if error > tolerance {
+                added.push((error, 0.5 * (low + high)));
+            }
+        }
+        // The worst first, where not all have room.
+        added.sort_by(|a, b| b.0.total_cmp(&a.0));
+        added.truncate((MOST_LEVELS + 1).saturating_sub(level_m.len()));
+        let fresh: Vec<f64> = added.iter().map(|a| a.1).collect();
+        level_m.extend(&fresh);
+        level_m.sort_by(f64::total_cmp);
+        open = (1..level_m.len() - 1)
+            .filter(|&i| fresh.contains(&level_m[i]) || fresh.contains(&level_m[i + 1]))
+            .collect();
+    }
+    Ok(level_m)
+}
+
+/// Equally spaced phases and those at which a line of contact begins, ends or reaches another edge of the field.
+fn start(pair: &Pair) -> Vec<f64> {
+    let mut phases: Vec<f64> = (0..COARSE).map(|i| i as f64 / COARSE as f64).collect();
+    for ratio in [pair.transverse_contact_ratio, pair.overlap_ratio, pair.total_contact_ratio()] {
+        let phase = ratio.rem_euclid(1.0);
+        let apart = |p: &f64| (p - phase).abs().min(1.0 - (p - phase).abs());
+        if phases.iter().map(apart).fold(1.0, f64::min) > 4.0 * FINEST {
+            phases.push(phase);
+        }
+    }
+    phases.sort_by(f64::total_cmp);
+    phases
+}
