@@ -37,7 +37,7 @@ pub struct ForceTable {
 }
 
 /// Levels to begin with, as parts of the mean approach under the working load.
-const LEVELS: [f64; 11] = [0.06, 0.15, 0.3, 0.5, 0.75, 1.0, 1.35, 1.8, 2.6, 4.0, 6.0];
+const LEVELS: [f64; 8] = [0.1, 0.3, 0.6, 1.0, 1.5, 2.4, 3.8, 6.0];
 /// Most levels, the one of no load apart.
 const MOST_LEVELS: usize = 20;
 /// Phases at which levels are tried.
@@ -48,7 +48,7 @@ const MOST_KNOTS: usize = 192;
 /// Smallest interval between knots.
 const FINEST: f64 = 1.0 / 1024.0;
 /// Agreement between knots and levels, as a part of the accuracy asked of the curves.
-const AGREEMENT: f64 = 0.1;
+const AGREEMENT: f64 = 0.2;
 /// Forces below this part of the working load need not be relatively accurate.
 const SMALL_FORCE: f64 = 0.2;
 
@@ -133,22 +133,29 @@ impl ForceTable {
                 intervals = (0..knots.len()).map(|i| (knots[i].0, next(i))).collect();
             } else {
                 let table = ForceTable::of(&knots, &level_m, force_bt_n, 0.0);
-                let mut split = Vec::new();
-                error = 0.0;
+                let mut split: Vec<(f64, f64, f64)> = Vec::new();
                 for ((&(from, to), phase), curve) in intervals.iter().zip(fresh).zip(curves) {
                     let distance = table.distance(&knots, phase, &curve);
                     let narrow = 0.5 * (to - from) <= FINEST;
                     if distance > tolerance && !narrow {
-                        split.extend([(from, 0.5 * (from + to)), (0.5 * (from + to), to)]);
+                        split.push((distance, from, 0.5 * (from + to)));
+                        split.push((distance, 0.5 * (from + to), to));
                     } else {
                         error = error.max(distance);
                     }
                     knots.push((phase, curve));
                 }
                 knots.sort_by(|a, b| a.0.total_cmp(&b.0));
-                intervals = split;
+                // The worst first, where not all have room; what is left is told as the error it had.
+                split.sort_by(|a, b| b.0.total_cmp(&a.0));
+                let room = MOST_KNOTS.saturating_sub(knots.len());
+                if let Some((distance, ..)) = split.get(room) {
+                    error = error.max(*distance);
+                }
+                split.truncate(room);
+                intervals = split.into_iter().map(|(_, from, to)| (from, to)).collect();
             }
-            if intervals.is_empty() || knots.len() >= MOST_KNOTS {
+            if intervals.is_empty() {
                 break;
             }
             fresh = intervals.iter().map(|(from, to)| (0.5 * (from + to)).rem_euclid(1.0)).collect();
