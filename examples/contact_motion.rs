@@ -20,7 +20,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         input["analysis"]["samples_per_mesh_period"] = serde_json::json!(1024);
         let document = parse_value(&input).map_err(|e| format!("{e:?}"))?;
         let started = Instant::now();
-        let outcome = match study::solve(&document, &Surroundings { clock_ms: &|| started.elapsed().as_secs_f64() * 1e3, ..Surroundings::none() }) {
+        let outcome = match study::solve(
+            &document,
+            &Surroundings { clock_ms: &|| started.elapsed().as_secs_f64() * 1e3, ..Surroundings::none() },
+        ) {
             Ok(outcome) => outcome,
             Err(error) => {
                 println!("{}: {error}", case["name"]);
@@ -53,7 +56,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             response.rms.mesh_circumferential_acceleration_m_s2.left,
             response.error_estimate,
             mesh.contact_force.map(|c| (c.levels, c.phases, (c.error_percent * 1e4).round() / 1e4)),
-            format!("{} steps, mesh {:.1} ms, response {:.1} ms", result.numerics.steps, result.numerics.wall_ms.mesh, result.numerics.wall_ms.response),
+            format!(
+                "{} steps, mesh {:.1} ms, response {:.1} ms",
+                result.numerics.steps, result.numerics.wall_ms.mesh, result.numerics.wall_ms.response
+            ),
         );
     }
     Ok(())

@@ -104,6 +104,13 @@ impl ContactForce {
         cubic(&self.flank(side).free[i], u)
     }
 
+    /// Its slope per mesh period.
+    pub(super) fn free_rate_m(&self, side: Contact, phase: f64) -> f64 {
+        let (i, u, width) = self.interval(phase, phase);
+        let c = &self.flank(side).free[i];
+        (c[1] + u * (2.0 * c[2] + u * 3.0 * c[3])) / width
+    }
+
     /// Force and stiffness on a flank at the displacement `e` beyond its free one.
     fn at(&self, side: Contact, e: f64, phase: f64, inside: f64) -> (f64, f64) {
         if e <= 0.0 {

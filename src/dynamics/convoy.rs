@@ -55,15 +55,33 @@ pub(crate) fn carry<'m, const D: usize, P: Passenger<'m, D>>(
     max_steps: u64,
     watch: &Watch<'_>,
 ) -> Result<(), Canceled> {
+    // Lanes share one law of the mesh force.
+    let (by_contact, by_stiffness): (Vec<usize>, Vec<usize>) =
+        (0..passengers.len()).partition(|&i| passengers[i].model().follows_contact());
+    for waiting in [by_stiffness, by_contact] {
+        carry_alike(passengers, &waiting, order_tolerance, max_steps, watch)?;
+    }
+    Ok(())
+}
+
+/// Takes the passengers of these indices, whose mesh forces follow the same law.
+fn carry_alike<'m, const D: usize, P: Passenger<'m, D>>(
+    passengers: &mut [P],
+    waiting: &[usize],
+    order_tolerance: f64,
+    max_steps: u64,
+    watch: &Watch<'_>,
+) -> Result<(), Canceled> {
+    let mut waiting = waiting.iter().copied();
     let mut convoy = Convoy::<D, SIDE_BY_SIDE>::new(order_for(order_tolerance), max_steps);
-    let mut waiting = 0;
     let mut arrived = 0;
     let mut since_checkpoint = 0;
     loop {
         for lane in 0..SIDE_BY_SIDE {
-            if convoy.riders[lane].is_none() && waiting < passengers.len() {
-                convoy.board(lane, waiting, &passengers[waiting]);
-                waiting += 1;
+            if convoy.riders[lane].is_none()
+                && let Some(next) = waiting.next()
+            {
+                convoy.board(lane, next, &passengers[next]);
             }
         }
         if convoy.riders.iter().all(Option::is_none) {

@@ -157,6 +157,12 @@ impl<const D: usize> Model<D> {
         }
     }
 
+    /// Scaled rate at which the distance from mid-gap to where contact of a side (1 driving, −1 back) begins grows: 0 but for contact forces.
+    pub fn contact_begins_rate(&self, j: usize, side: Contact, phase: f64) -> f64 {
+        let contact = self.excitations[j].contact.as_ref();
+        contact.map_or(0.0, |c| c.force.free_rate_m(side, phase - c.shift) / self.period_tau)
+    }
+
     /// Normal mesh force, N.
     #[inline(always)]
     pub fn mesh_force(&self, j: usize, (phase, inside): (f64, f64), s: f64, s_v: f64) -> f64 {

@@ -77,8 +77,14 @@ impl<'m, const D: usize> Variation<'m, D> {
             let damper = (h.cm - h.cm_in_gap) * speed;
             let change = f64::from(i8::from(is != 0) - i8::from(was != 0)) * damper;
             let push = self.model.push(j, change);
+            // How fast s passes the place where contact begins, which may move itself.
+            let side = if is != 0 { is.signum() } else { was.signum() };
+            let passing = speed - f64::from(side) * self.model.contact_begins_rate(j, side, segment.phase);
+            if passing == 0.0 {
+                continue;
+            }
             for (x, v) in &mut self.columns {
-                let later = self.model.s(j, x) / speed;
+                let later = self.model.s(j, x) / passing;
                 for c in 0..D {
                     v[c] += push[c] * later;
                 }

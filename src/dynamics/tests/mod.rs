@@ -1,5 +1,6 @@
 //! Tests of the equations and methods against independent answers.
 
+mod contact_force;
 mod cost;
 mod drift;
 mod lanes;
