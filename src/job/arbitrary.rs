@@ -146,6 +146,10 @@ fn periods(analysis: &mut Value) {
 }
 
 fn given(model: &mut Value) {
+    let source = model["mesh_stiffness"]["source"].as_str().unwrap_or("ltca");
+    if source != "ltca" && model["mesh_force"] == "contact" {
+        model["mesh_force"] = json!("stiffness");
+    }
     let stiffness = &mut model["mesh_stiffness"];
     if stiffness["source"] == "given" {
         match stiffness["samples_n_per_um"].is_array() {
