@@ -39,6 +39,7 @@ mod position;
 mod refine;
 mod ring_influence;
 mod settings;
+mod short_face;
 mod system;
 mod tooth;
 
@@ -51,6 +52,7 @@ pub use halves::{LoadedContact, solve_half, solve_pair_of_halves};
 pub use lines::Point;
 pub use position::Loaded;
 pub use settings::{ContactError, Settings};
+pub use short_face::{SHORT_FACE_NOTICE, stiffness_excess};
 
 #[cfg(test)]
 mod tests;

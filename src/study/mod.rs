@@ -189,4 +189,6 @@ pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outc
 }
 
 #[cfg(test)]
+mod limits_tests;
+#[cfg(test)]
 mod tests;
