@@ -165,7 +165,7 @@ fn each_way(study: &mut Study) -> Outcome<Vec<Vec<Option<Impact>>>> {
         height.windows(2).all(|pair| pair[1] > pair[0]) && falls(&width) && falls(&helix),
         format!(
             "Tooth height raises the impact ({} to {} kN), face width ({} to {} kN) and helix angle ({} to {} kN) lower it. So \"the impact falls with the contact ratio\" holds for the overlap, not \
-             for the tooth height by which the source says to have changed it. Tooth height ends at 3.41: from an addendum of 1.205 m_n on undercut takes from the pinion's flank what the gear's tip gains, and at 1.27 the tip interferes (3.48 if nothing were undercut); \
+             for the tooth height by which the source says to have changed it. Tooth height ends at 3.41: from an addendum of 1.205 m_n on undercut takes from the pinion's flank what the gear's tip gains, and at 1.27 the tip passes the pinion's base tangent point (3.48 if nothing were undercut); \
              the helix ends at {}; only the face width reaches all five. Inertias: with the face they would grow in proportion; an impact goes with the root of \
              the inertia, so that at 4.07 by face width a gear of that width would have {} kN instead of {} kN.",
             sig(height[0], 2), sig(height[height.len() - 1], 2), sig(width[0], 2), sig(width[width.len() - 1], 2), sig(helix[0], 2), sig(helix[helix.len() - 1], 2),

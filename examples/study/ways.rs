@@ -21,7 +21,7 @@ pub const WAYS: [Way; 3] = [
         name: "tooth height",
         unit: "m_n",
         range: [0.65, 1.2695],
-        limit: "undercut from 1.205, interference from 1.27 m_n",
+        limit: "undercut from 1.205, tip beyond the base tangent from 1.27 m_n",
         make: height,
     },
     Way {

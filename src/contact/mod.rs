@@ -40,6 +40,7 @@ mod position;
 mod refine;
 mod ring_influence;
 mod settings;
+mod short_face;
 mod spline;
 mod system;
 mod tooth;
@@ -54,6 +55,7 @@ pub use halves::{LoadedContact, same_gaps, solve_half, solve_pair_of_halves};
 pub use lines::Point;
 pub use position::Loaded;
 pub use settings::{ContactError, Settings};
+pub use short_face::{SHORT_FACE_NOTICE, stiffness_excess};
 pub use spline::SplineKnots;
 
 #[cfg(test)]

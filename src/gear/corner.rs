@@ -71,7 +71,7 @@ impl<'a> Corner<'a> {
         (self.corner.base_radius_m / self.radius_m).clamp(-1.0, 1.0).acos() - self.working_pressure_angle_rad
     }
 
-    /// Roll length of the mate at which the corner crosses the line of action.
+    /// Roll length of the mate at which the corner crosses the line of action; negative before the mate's base tangent point.
     fn start_roll_m(&self) -> f64 {
         self.line_of_action_m - self.corner.roll_length_m(self.radius_m)
     }
@@ -86,7 +86,11 @@ impl<'a> Corner<'a> {
         // sin² of the half angle keeps a - r cos(gamma) exact near the line of centres.
         let flank_radius = ((a - r).powi(2) + 4.0 * a * r * (0.5 * gamma).sin().powi(2)).sqrt();
         let base = self.mate.base_radius_m;
-        let start_half_angle = self.mate.base_half_angle_rad - inv_at_radius(self.start_roll_m().hypot(base), base);
+        // Where the corner crosses the line of action before the base tangent point, the flank conjugate to its own is the
+        // other branch of the involute.
+        let start_roll_m = self.start_roll_m();
+        let start_inv = inv_at_radius(start_roll_m.hypot(base), base);
+        let start_half_angle = self.mate.base_half_angle_rad - if start_roll_m < 0.0 { -start_inv } else { start_inv };
         let flank_ahead = start_half_angle - self.mate.half_angle_rad(flank_radius);
         let ratio = f64::from(self.corner.teeth) / f64::from(self.mate.teeth);
         let inclination = phi(gamma) + (base / flank_radius).clamp(-1.0, 1.0).acos();
@@ -112,8 +116,36 @@ impl<'a> Corner<'a> {
         (low..=high).contains(&standing.flank_radius_m).then_some(standing)
     }
 
-    /// Depth by which the corner would cut into the mate's tooth on its way from the start of the line of action to the line
-    /// of centres (positive: it cuts). Only a fillet that rises above the conjugate path can be in its way.
+    /// The edge at another radius of the same member.
+    fn with_radius(&self, radius_m: f64) -> Corner<'a> {
+        Corner { radius_m, ..*self }
+    }
+
+    /// Whether the corner's circle crosses the line of action before the mate's base tangent point, where the mate has no
+    /// conjugate flank.
+    pub fn passes_base_tangent(&self) -> bool {
+        self.radius_m > self.line_of_action_m.hypot(self.corner.base_radius_m)
+    }
+
+    /// Largest radius of the corner, between the pitch circle and its own, at which it cuts at most `depth_m` deep into the
+    /// mate's tooth.
+    pub fn radius_with_cut_m(&self, depth_m: f64) -> f64 {
+        let pitch_m = self.corner.base_radius_m / self.working_pressure_angle_rad.cos();
+        let (mut low, mut high) = (pitch_m.min(self.radius_m), self.radius_m);
+        for _ in 0..RADIUS_STEPS {
+            let mid = 0.5 * (low + high);
+            if self.with_radius(mid).fillet_cut_m() <= depth_m {
+                low = mid;
+            } else {
+                high = mid;
+            }
+        }
+        low
+    }
+
+    /// Depth by which the corner would cut into the mate's tooth, as its cutter has left it, on the way from the line of action to
+    /// the line of centres (positive: it cuts). Only a fillet that rises above the conjugate path can be in its way; a corner that
+    /// passes the base tangent point meets what is left of the flank near the base circle.
     pub fn fillet_cut_m(&self) -> f64 {
         let start = self.start_angle_rad();
         (1..=FILLET_SAMPLES)
@@ -141,6 +173,9 @@ const ROUNDING: f64 = 1e-12;
 
 /// Positions of the corner between the line of action and the line of centres at which its way is checked.
 const FILLET_SAMPLES: u32 = 96;
+
+/// Bisections for the radius of a corner that cuts to a given depth.
+const RADIUS_STEPS: u32 = 40;
 
 impl Pair {
     /// Contact `overrun_m >= 0` of roll before the path of contact starts: the gear's tip corner against the pinion's flank;

@@ -6,7 +6,7 @@
 
 use super::corner::Corner;
 use super::member::Member;
-use super::pair::Pair;
+use super::pair::{Fit, Pair};
 use super::spec::{Infeasibility, PairSpec, Warning};
 use super::tooth::Cutter;
 
@@ -23,6 +23,14 @@ const FILLET_CUT_LIMIT: f64 = 0.02;
 const FILLET_CUT_NOTICE: f64 = 1e-6;
 /// Negative play along the base tangent that is not yet reported: below the resolution of gear inspection.
 const JAM_NOTICE_M: f64 = 1e-6;
+/// Negative play along the base tangent, in normal modules, beyond which the design is refused: thinner teeth make up for it, and no
+/// thickness allowance is larger (the least backlash of ISO/TR 10064-2 for the centre distance and module stays below it).
+const JAM_LIMIT: f64 = 0.1;
+/// Play along the base tangent, in normal modules, beyond which a given centre distance that takes the transverse contact ratio below 1
+/// is refused: no thickness allowance or axis tolerance asks for such a play.
+const PLAY_LIMIT: f64 = 0.5;
+/// Teeth of nominal thickness overlap by more than [`JAM_LIMIT`].
+const FLANKS_OVERLAP: &str = "flanks-overlap";
 /// Play along the base tangent, in normal modules, above which the given centre distance is reported as not belonging to the
 /// profile shifts (backlash allowances of ISO/TR 10064-2 stay below it).
 const PLAY_NOTICE: f64 = 0.1;
@@ -40,6 +48,12 @@ pub(super) struct Findings {
 impl Findings {
     pub fn refuse(&mut self, code: &str, pointer: String, detail: String, value: f64, limit: f64, unit: &str) {
         self.reasons.push(Infeasibility { code: code.into(), pointer, detail, value, limit, unit: unit.into() });
+    }
+
+    /// Takes over what another check found.
+    pub fn add(&mut self, other: Findings) {
+        self.reasons.extend(other.reasons);
+        self.warnings.extend(other.warnings);
     }
 
     fn warn(&mut self, code: &str, pointer: String, detail: String) {
@@ -108,12 +122,13 @@ impl Findings {
         } else {
             self.check_tip_thickness(side, member, m);
         }
-        if member.root_half_angle_rad() <= 0.0 || member.half_angle_rad(member.root_form_radius_m) <= 0.0 {
+        let waist = member.root_half_angle_rad().min(member.waist_half_angle_rad());
+        if waist <= 0.0 {
             self.refuse(
                 "tooth-cut-off",
                 format!("/design/{side}/teeth"),
                 format!("the cutter leaves no tooth on the {side}: undercut takes its whole thickness"),
-                member.half_angle_rad(member.root_form_radius_m) * 2.0 * member.root_form_radius_m / m,
+                waist * 2.0 * member.root_form_radius_m / m,
                 0.0,
                 "m_n",
             );
@@ -181,12 +196,12 @@ impl Findings {
     }
 
     /// Working centre distance with its error, or `None` when no line of action exists.
-    pub fn center_distance_m(&mut self, spec: &PairSpec, base_sum_m: f64, zero_play_rad: Option<f64>) -> Option<f64> {
-        let nominal = match (spec.center_distance_m, zero_play_rad) {
+    pub fn center_distance_m(&mut self, spec: &PairSpec, base_sum_m: f64, fit: &Fit) -> Option<f64> {
+        let nominal = match (spec.center_distance_m, fit.center_distance_m) {
             (Some(a), _) => a,
-            (None, Some(alpha)) => base_sum_m / alpha.cos(),
+            (None, Some(a)) => a,
             (None, None) => {
-                let sum = spec.pinion.profile_shift + spec.gear.profile_shift;
+                let sum = fit.shift_sum;
                 let z = f64::from(spec.pinion.teeth + spec.gear.teeth);
                 let alpha_t = (spec.normal_pressure_angle_rad.tan() / spec.helix_angle_rad.cos()).atan();
                 let limit = -super::involute::inv(alpha_t) * z / (2.0 * spec.normal_pressure_angle_rad.tan());
@@ -205,15 +220,14 @@ impl Findings {
         if working > base_sum_m * (1.0 + 1e-9) {
             return Some(working);
         }
-        let pointer =
-            if spec.center_distance_m.is_some() { "center_distance_mm" } else { "assembly/center_distance_error_um" };
         self.refuse(
             "center-distance-too-small",
-            format!("/design/{pointer}"),
+            center_distance_pointer(spec, fit),
             format!(
-                "the working centre distance {:.4} mm is not above the sum of the base radii, {:.4} mm",
+                "the working centre distance {:.4} mm is not above the sum of the base radii, {:.4} mm, at any profile shifts; {}",
                 working * MM,
-                base_sum_m * MM
+                base_sum_m * MM,
+                fitting(fit, working)
             ),
             working * MM,
             base_sum_m * MM,
@@ -223,13 +237,13 @@ impl Findings {
     }
 
     /// The engagement of the two members.
-    pub fn check_pair(&mut self, pair: &Pair) {
+    pub fn check_pair(&mut self, pair: &Pair, fit: &Fit) {
         self.check_interference("gear", "pinion", &pair.gear, &Corner::mesh_in(pair), pair);
         self.check_interference("pinion", "gear", &pair.pinion, &Corner::mesh_out(pair), pair);
         self.check_clearance("pinion", "gear", &pair.pinion, &pair.gear, pair);
         self.check_clearance("gear", "pinion", &pair.gear, &pair.pinion, pair);
         self.check_contact_ratio(pair);
-        self.check_play(pair);
+        self.check_play(pair, fit);
         self.check_relief(pair);
     }
 
@@ -237,24 +251,22 @@ impl Findings {
         let m = pair.spec.normal_module_m;
         let at_tip = if side == "pinion" { &pair.spec.pinion } else { &pair.spec.gear };
         let pointer = format!("/design/{side}/addendum");
-        let limit_radius = pair.line_of_action_m.hypot(member.base_radius_m);
-        if member.tip_radius_m > limit_radius {
-            let limit = at_tip.addendum - (member.tip_radius_m - limit_radius) / m;
+        let cut = corner.fillet_cut_m() / m;
+        if cut > FILLET_CUT_LIMIT && corner.passes_base_tangent() {
+            let limit_m = corner.radius_with_cut_m(FILLET_CUT_LIMIT * m);
+            let limit = at_tip.addendum - (member.tip_radius_m - limit_m) / m;
             self.refuse(
                 "tip-interference",
                 pointer,
                 format!(
-                    "the {side}'s tip passes the point where the line of action leaves the {other}'s base circle: addendum {:.4} m_n, at most {limit:.4} m_n",
+                    "the {side}'s tip passes the point where the line of action leaves the {other}'s base circle and cuts {cut:.4} m_n deep into what the cutter has left standing there: addendum {:.4} m_n, at most {limit:.4} m_n",
                     at_tip.addendum
                 ),
                 at_tip.addendum,
                 limit,
                 "m_n",
             );
-            return;
-        }
-        let cut = corner.fillet_cut_m() / m;
-        if cut > FILLET_CUT_LIMIT {
+        } else if cut > FILLET_CUT_LIMIT {
             self.refuse(
                 "fillet-interference",
                 pointer,
@@ -296,53 +308,132 @@ impl Findings {
         }
     }
 
+    /// Lines of contact must exist at every phase: the path of contact has a length, and transverse and overlap ratio together exceed 1.
     fn check_contact_ratio(&mut self, pair: &Pair) {
-        let ratio = pair.transverse_contact_ratio;
+        let (ratio, overlap) = (pair.transverse_contact_ratio, pair.overlap_ratio);
         if ratio >= 1.0 {
             return;
         }
+        // The tips alone would give enough: what shortens the path is the undercut of one member.
+        let first_m = (pair.line_of_action_m - pair.gear.tip_roll_m()).max(0.0);
+        let last_m = pair.pinion.tip_roll_m().min(pair.line_of_action_m);
         let undercut = pair.pinion.is_undercut() || pair.gear.is_undercut();
+        let pointer = if last_m - first_m < pair.base_pitch_m || !undercut {
+            "/design/pinion/addendum"
+        } else if pair.path_start_m - first_m >= last_m - pair.path_end_m {
+            "/design/pinion/profile_shift"
+        } else {
+            "/design/gear/profile_shift"
+        };
         let why = if undercut { ", undercut included" } else { "" };
+        let [shortest_m, _] = pair.contact_length_range_m();
+        if ratio > 0.0 && shortest_m > 0.0 && pair.total_contact_ratio() > 1.0 {
+            self.warn(
+                "transverse-contact-ratio-below-one",
+                pointer.into(),
+                format!(
+                    "the transverse contact ratio is {ratio:.4}{why}, below 1: in a transverse section no teeth touch during a part of the mesh period; the overlap ratio {overlap:.4} keeps lines of contact at every phase, the shortest {:.1} % of their mean",
+                    100.0 * shortest_m / pair.mean_contact_length_m()
+                ),
+            );
+            return;
+        }
+        let (value, sum) = if ratio > 0.0 && overlap > 0.0 {
+            let total = pair.total_contact_ratio();
+            (total, format!(", with the overlap ratio {overlap:.4} together {total:.4}"))
+        } else {
+            (ratio, String::new())
+        };
         self.refuse(
             "contact-ratio-below-one",
-            "/design/pinion/addendum".into(),
-            format!("the transverse contact ratio is {ratio:.4}{why}; below 1 the teeth do not hand over"),
-            ratio,
+            pointer.into(),
+            format!("the transverse contact ratio is {ratio:.4}{why}{sum}; below 1 the teeth do not hand over: lines of contact are missing during a part of the mesh period"),
+            value,
             1.0,
             "1",
         );
     }
 
-    fn check_play(&mut self, pair: &Pair) {
+    fn check_play(&mut self, pair: &Pair, fit: &Fit) {
         let play = pair.geometric_backlash_m;
-        let pointer = || {
-            let field = if pair.spec.center_distance_m.is_some() {
-                "center_distance_mm"
-            } else {
-                "assembly/center_distance_error_um"
-            };
-            format!("/design/{field}")
-        };
-        if play < -JAM_NOTICE_M {
+        let limit = JAM_LIMIT * pair.spec.normal_module_m;
+        let pointer = center_distance_pointer(&pair.spec, fit);
+        if play < -limit {
+            self.refuse(
+                FLANKS_OVERLAP,
+                pointer,
+                format!(
+                    "teeth of nominal thickness overlap by {:.1} um along the base tangent, more than {:.1} um ({JAM_LIMIT} m_n), which thinner teeth could make up for",
+                    -play * UM,
+                    limit * UM
+                ),
+                play * MM,
+                -limit * MM,
+                "mm",
+            );
+        } else if play < -JAM_NOTICE_M {
             self.warn(
                 "negative-play",
-                pointer(),
+                pointer,
                 format!(
-                    "at the working centre distance {:.4} mm teeth of nominal thickness overlap by {:.1} um along the base tangent: they must be thinner by that and the play",
+                    "at the working centre distance {:.4} mm teeth of nominal thickness overlap by {:.1} um along the base tangent: they must be thinner by that and the play; {}",
                     pair.center_distance_m * MM,
-                    -play * UM
+                    -play * UM,
+                    fitting(fit, pair.center_distance_m)
                 ),
             );
         } else if play > PLAY_NOTICE * pair.spec.normal_module_m {
             self.warn(
                 "large-play",
-                pointer(),
+                pointer,
                 format!(
-                    "at the working centre distance {:.4} mm teeth of nominal thickness have {:.0} um play along the base tangent; the dynamics take the play stated as backlash_um",
+                    "at the working centre distance {:.4} mm teeth of nominal thickness have {:.0} um play along the base tangent; the dynamics take the play stated as backlash_um; {}",
                     pair.center_distance_m * MM,
-                    play * UM
+                    play * UM,
+                    fitting(fit, pair.center_distance_m)
                 ),
             );
+        }
+    }
+
+    /// Reasons that the pair would not have at the centre distance of its profile shifts are the centre distance's: they become one
+    /// that names it, that distance, and the profile shifts that fit the one given. Its other reasons are told as they are there.
+    pub fn blame_center_distance(&mut self, without_play: Findings, pair: &Pair, fitting_pair: &Pair, fit: &Fit) {
+        let pointer = center_distance_pointer(&pair.spec, fit);
+        let known = |reason: &Infeasibility| {
+            without_play.reasons.iter().any(|r| r.code == reason.code && r.pointer == reason.pointer)
+        };
+        let reach = |pair: &Pair| pair.path_end_m - pair.path_start_m;
+        let apart = reach(pair) <= 0.0 && reach(fitting_pair) > 0.0;
+        let mut consequences: Vec<String> = self
+            .reasons
+            .iter()
+            .filter(|reason| !known(reason) || (apart && reason.code == "contact-ratio-below-one"))
+            .map(|reason| reason.detail.clone())
+            .collect();
+        let play = pair.geometric_backlash_m / pair.spec.normal_module_m;
+        let [ratio, without] = [pair, fitting_pair].map(|pair| pair.transverse_contact_ratio);
+        if consequences.is_empty() && ratio < 1.0 && without >= 1.0 && play > PLAY_LIMIT {
+            consequences.push(format!(
+                "the transverse contact ratio falls from {without:.4} to {ratio:.4}, and the teeth have {play:.3} m_n play along the base tangent, more than {PLAY_LIMIT} m_n"
+            ));
+        }
+        if !consequences.is_empty() {
+            let limit = fit.center_distance_m.unwrap_or(fitting_pair.center_distance_m) * MM;
+            let detail = format!(
+                "the working centre distance {:.4} mm does not belong to the profile shifts; {}. At {:.4} mm: {}",
+                pair.center_distance_m * MM,
+                fitting(fit, pair.center_distance_m),
+                pair.center_distance_m * MM,
+                consequences.join("; ")
+            );
+            self.reasons = without_play.reasons;
+            self.refuse("center-distance-does-not-fit", pointer, detail, pair.center_distance_m * MM, limit, "mm");
+            return;
+        }
+        const RATIO: &str = "transverse-contact-ratio-below-one";
+        if !without_play.warnings.iter().any(|warning| warning.code == RATIO) {
+            self.warnings.iter_mut().filter(|w| w.code == RATIO).for_each(|w| w.pointer.clone_from(&pointer));
         }
     }
 
@@ -363,4 +454,28 @@ impl Findings {
             }
         }
     }
+}
+
+/// The field that moves the axes away from the distance of the profile shifts: the stated centre distance, or its error where
+/// that moves them further.
+fn center_distance_pointer(spec: &PairSpec, fit: &Fit) -> String {
+    let error_m = spec.assembly.center_distance_error_m.abs();
+    let stated = spec.center_distance_m.is_some_and(|stated| {
+        fit.center_distance_m.is_none_or(|fitting| error_m == 0.0 || (stated - fitting).abs() >= error_m)
+    });
+    format!("/design/{}", if stated { "center_distance_mm" } else { "assembly/center_distance_error_um" })
+}
+
+/// What fits: the centre distance of the given profile shifts, the profile shifts of the given centre distance.
+fn fitting(fit: &Fit, center_distance_m: f64) -> String {
+    let sum = fit.shift_sum;
+    let distance = match fit.center_distance_m {
+        Some(a) => format!("the given profile shifts add up to {sum:.4} and fit {:.4} mm without play", a * MM),
+        None => format!("the given profile shifts add up to {sum:.4} and fit no centre distance"),
+    };
+    let shifts = match fit.shift_sum_at(center_distance_m) {
+        Some(sum) => format!("{:.4} mm fits a sum of {sum:.4}", center_distance_m * MM),
+        None => format!("no sum fits {:.4} mm", center_distance_m * MM),
+    };
+    format!("{distance}; {shifts}")
 }

@@ -22,8 +22,8 @@ impl Pair {
     /// - `tip-thickness`: at the tip circle in the normal section; below the limit (usual practice) there is a warning.
     /// - `tip-clearance`: between the member's tip and the mate's root.
     /// - `profile-shift`: coefficient; below the limit the rack undercuts the tooth.
-    /// - `active-profile`: diameter at which the mate's tip ends the contact; the involute starts at the limit, the root
-    ///   form circle (ISO 21771).
+    /// - `active-profile`: diameter at which the mate's tip ends the contact (the base circle where the tip passes the base tangent
+    ///   point); the involute starts at the limit, the root form circle (ISO 21771).
     pub fn margins(&self) -> Vec<Margin> {
         let mut margins = self.margins_of("pinion", &self.pinion, &self.gear);
         margins.extend(self.margins_of("gear", &self.gear, &self.pinion));
@@ -33,7 +33,7 @@ impl Pair {
     fn margins_of(&self, name: &'static str, member: &Member, mate: &Member) -> Vec<Margin> {
         let m = self.spec.normal_module_m;
         let margin = |code, value, limit, unit| Margin { code, member: name, value, limit, unit };
-        let last_roll_m = self.line_of_action_m - mate.tip_roll_m();
+        let last_roll_m = (self.line_of_action_m - mate.tip_roll_m()).max(0.0);
         vec![
             margin("tip-thickness", member.normal_thickness_m(member.tip_radius_m) / m, TIP_THICKNESS_WARNING, "m_n"),
             margin(

@@ -67,6 +67,15 @@ impl Member {
         self.form.root_half_angle_rad()
     }
 
+    /// Least half angle of the tooth between root circle and root form circle, where undercut makes it thinnest.
+    pub(super) fn waist_half_angle_rad(&self) -> f64 {
+        const STEPS: u32 = 32;
+        let span_m = self.root_form_radius_m - self.root_radius_m;
+        (1..=STEPS)
+            .map(|i| self.half_angle_rad(self.root_radius_m + span_m * f64::from(i) / f64::from(STEPS)))
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// Roll length from the base tangent point to the circle of radius `r_m`; zero below the base circle.
     pub fn roll_length_m(&self, r_m: f64) -> f64 {
         roll_length_m(r_m, self.base_radius_m)

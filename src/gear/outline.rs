@@ -73,10 +73,10 @@ impl Pair {
     }
 
     /// Roll coordinates of the points B and D, between which one pair alone touches in a transverse section; none where
-    /// two or more always do.
+    /// two or more always do, and where the path is shorter than a base pitch, so that never more than one does.
     pub fn single_contact_m(&self) -> Option<[f64; 2]> {
         let single = [self.path_end_m - self.base_pitch_m, self.path_start_m + self.base_pitch_m];
-        (single[0] <= single[1]).then_some(single)
+        (single[0] >= self.path_start_m && single[0] <= single[1]).then_some(single)
     }
 
     /// Mesh position `x0` at a phase of the mesh period; at phase 0 a pair stands at its first contact at the mesh-in end.

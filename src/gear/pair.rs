@@ -64,38 +64,22 @@ impl Pair {
             findings.check_member(side, member, spec);
         }
 
-        // Involute function of the working pressure angle without play.
-        let zero_play_inv = inv(alpha_t)
-            + 2.0 * alpha_n.tan() * (pinion.profile_shift + gear.profile_shift) / f64::from(pinion.teeth + gear.teeth);
-        let base_sum = pinion.base_radius_m + gear.base_radius_m;
-        let Some(center_distance_m) = findings.center_distance_m(spec, base_sum, inverse_inv(zero_play_inv)) else {
+        let gearing = Gearing { spec, pinion, gear, alpha_t, m_t };
+        let fit = gearing.fit();
+        let base_sum = gearing.base_sum_m();
+        let Some(center_distance_m) = findings.center_distance_m(spec, base_sum, &fit) else {
             return Err(findings.reasons);
         };
-        let alpha_wt = (base_sum / center_distance_m).acos();
-        let base_helix = (beta.tan() * alpha_t.cos()).atan();
-        let base_pitch_m = std::f64::consts::PI * m_t * alpha_t.cos();
-        let line_of_action_m = base_sum * alpha_wt.tan();
-        let path_start_m = (line_of_action_m - gear.tip_roll_m()).max(pinion.root_form_roll_m());
-        let path_end_m = pinion.tip_roll_m().min(line_of_action_m - gear.root_form_roll_m());
-        let pair = Pair {
-            spec: *spec,
-            transverse_pressure_angle_rad: alpha_t,
-            working_pressure_angle_rad: alpha_wt,
-            base_helix_angle_rad: base_helix,
-            center_distance_m,
-            transverse_module_m: m_t,
-            base_pitch_m,
-            line_of_action_m,
-            path_start_m,
-            path_end_m,
-            transverse_contact_ratio: (path_end_m - path_start_m) / base_pitch_m,
-            overlap_ratio: spec.face_width_m * base_helix.tan() / base_pitch_m,
-            // The play on the working pitch circles, unrolled on the base circles.
-            geometric_backlash_m: 2.0 * base_sum * (inv(alpha_wt) - zero_play_inv),
-            pinion,
-            gear,
-        };
-        findings.check_pair(&pair);
+        let pair = gearing.at(center_distance_m, &fit);
+        let mut engagement = Findings::default();
+        engagement.check_pair(&pair, &fit);
+        if let Some(fitting_m) = fit.center_distance_m.filter(|a| *a != center_distance_m && *a > base_sum) {
+            let fitting = gearing.at(fitting_m, &fit);
+            let mut without_play = Findings::default();
+            without_play.check_pair(&fitting, &fit);
+            engagement.blame_center_distance(without_play, &pair, &fitting, &fit);
+        }
+        findings.add(engagement);
         if findings.reasons.is_empty() { Ok((pair, findings.warnings)) } else { Err(findings.reasons) }
     }
 
@@ -124,6 +108,92 @@ impl Pair {
         match self.spec.rotation {
             Rotation::ApexLeading => self.spec.face_width_m - y_m,
             Rotation::ApexTrailing => y_m,
+        }
+    }
+}
+
+/// The centre distance that belongs to the profile shifts, and the profile shifts that belong to a centre distance.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fit {
+    /// Involute function of the working pressure angle without play between teeth of nominal thickness (ISO 21771).
+    zero_play_inv: f64,
+    /// Centre distance without play; none where no centre distance brings both flanks into contact.
+    pub center_distance_m: Option<f64>,
+    /// Sum of the profile shift coefficients.
+    pub shift_sum: f64,
+    base_sum_m: f64,
+    transverse_inv: f64,
+    /// Change of the involute function per profile shift coefficient, `2 tan(alpha_n) / (z1 + z2)`.
+    inv_per_shift: f64,
+}
+
+impl Fit {
+    /// Sum of the profile shift coefficients with which the teeth run without play at `center_distance_m`; none up to the sum of
+    /// the base radii.
+    pub fn shift_sum_at(&self, center_distance_m: f64) -> Option<f64> {
+        let cos = self.base_sum_m / center_distance_m;
+        (cos < 1.0).then(|| (inv(cos.acos()) - self.transverse_inv) / self.inv_per_shift)
+    }
+}
+
+/// Teeth of both members, before they are brought together.
+struct Gearing<'a> {
+    spec: &'a PairSpec,
+    pinion: Member,
+    gear: Member,
+    alpha_t: f64,
+    m_t: f64,
+}
+
+impl Gearing<'_> {
+    fn base_sum_m(&self) -> f64 {
+        self.pinion.base_radius_m + self.gear.base_radius_m
+    }
+
+    fn fit(&self) -> Fit {
+        let (pinion, gear, alpha_t) = (&self.pinion, &self.gear, self.alpha_t);
+        let alpha_n = self.spec.normal_pressure_angle_rad;
+        let teeth = f64::from(pinion.teeth + gear.teeth);
+        let shift_sum = pinion.profile_shift + gear.profile_shift;
+        let zero_play_inv = inv(alpha_t) + 2.0 * alpha_n.tan() * shift_sum / teeth;
+        let base_sum_m = self.base_sum_m();
+        Fit {
+            zero_play_inv,
+            center_distance_m: inverse_inv(zero_play_inv).map(|alpha| base_sum_m / alpha.cos()),
+            shift_sum,
+            base_sum_m,
+            transverse_inv: inv(alpha_t),
+            inv_per_shift: 2.0 * alpha_n.tan() / teeth,
+        }
+    }
+
+    /// The pair at a working centre distance above the sum of the base radii.
+    fn at(&self, center_distance_m: f64, fit: &Fit) -> Pair {
+        let Gearing { spec, pinion, gear, alpha_t, m_t } = self;
+        let base_sum = self.base_sum_m();
+        let alpha_wt = (base_sum / center_distance_m).acos();
+        let base_helix = (spec.helix_angle_rad.tan() * alpha_t.cos()).atan();
+        let base_pitch_m = std::f64::consts::PI * m_t * alpha_t.cos();
+        let line_of_action_m = base_sum * alpha_wt.tan();
+        let path_start_m = (line_of_action_m - gear.tip_roll_m()).max(pinion.root_form_roll_m());
+        let path_end_m = pinion.tip_roll_m().min(line_of_action_m - gear.root_form_roll_m());
+        Pair {
+            spec: **spec,
+            transverse_pressure_angle_rad: *alpha_t,
+            working_pressure_angle_rad: alpha_wt,
+            base_helix_angle_rad: base_helix,
+            center_distance_m,
+            transverse_module_m: *m_t,
+            base_pitch_m,
+            line_of_action_m,
+            path_start_m,
+            path_end_m,
+            transverse_contact_ratio: (path_end_m - path_start_m) / base_pitch_m,
+            overlap_ratio: spec.face_width_m * base_helix.tan() / base_pitch_m,
+            // The play on the working pitch circles, unrolled on the base circles.
+            geometric_backlash_m: 2.0 * base_sum * (inv(alpha_wt) - fit.zero_play_inv),
+            pinion: pinion.clone(),
+            gear: gear.clone(),
         }
     }
 }

@@ -192,4 +192,6 @@ pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outc
 #[cfg(test)]
 mod contact_tests;
 #[cfg(test)]
+mod limits_tests;
+#[cfg(test)]
 mod tests;

@@ -36,6 +36,7 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
         Pair::new(&spec).map_err(|reasons| DocumentError::Invalid(reasons.into_iter().map(violation).collect()))?;
     warnings.extend(pair_warnings);
     warnings.extend(held_elsewhere(document, &pair));
+    warnings.extend(short_face(document, &pair));
     let design = &document.design;
     let [pinion_disc, gear_disc] = [&pair.pinion, &pair.gear].map(|member| {
         let (material, width_m) = (pair.material(), pair.spec.face_width_m);
@@ -176,6 +177,28 @@ fn held_elsewhere(document: &JobDocument, pair: &Pair) -> Vec<Warning> {
             })
         })
         .collect()
+}
+
+/// The analytic compliance is wrong for short faces, by a known amount.
+fn short_face(document: &JobDocument, pair: &Pair) -> Option<Warning> {
+    let doc::MeshStiffness::Ltca(doc::Ltca { fidelity: doc::Fidelity::Analytic, .. }) = &document.model.mesh_stiffness
+    else {
+        return None;
+    };
+    let excess = contact::stiffness_excess(pair);
+    let modules = pair.spec.face_width_m / pair.spec.normal_module_m;
+    (excess.abs() > contact::SHORT_FACE_NOTICE).then(|| Warning {
+        code: "short-face".to_owned(),
+        pointer: "/design/face_width_mm".to_owned(),
+        detail: format!(
+            "is {:.2} mm, {modules:.2} normal modules, at a helix angle of {:.1} deg: the analytic mesh stiffness is about {:.0} % too {} against finite elements, more than {:.0} %; fidelity `fe` does not have this error",
+            pair.spec.face_width_m * 1e3,
+            pair.spec.helix_angle_rad.to_degrees(),
+            excess.abs() * 100.0,
+            if excess > 0.0 { "stiff" } else { "soft" },
+            contact::SHORT_FACE_NOTICE * 100.0
+        ),
+    })
 }
 
 /// The geometry block of the result.

@@ -1,6 +1,6 @@
 //! Designs that cannot run, each with its reason and limit; and no design, however wild, makes the room fail otherwise.
 
-use crate::gear::fixtures::{close, gear, pair, source_pair, spec, undercut_pair, worked_pair};
+use crate::gear::fixtures::{gear, source_pair, spec, undercut_pair, worked_pair};
 use crate::gear::{FlankModification, GearSpec, Half, Infeasibility, Pair, PairSpec, ReliefShape, TipRelief};
 use crate::oracle::Tolerance::Absolute;
 use crate::oracle::check;
@@ -20,25 +20,6 @@ fn reason(spec: &PairSpec, code: &str) -> Infeasibility {
 
 fn warning_codes(spec: &PairSpec) -> Vec<String> {
     Pair::new(spec).map(|(_, warnings)| warnings.into_iter().map(|w| w.code).collect()).unwrap_or_default()
-}
-
-/// The source's pair: the gear's tip meets the pinion's base tangent point where `r_a2² = r_b2² + (T1T2)²`, at an addendum
-/// of 1.2697 (a total contact ratio of 3.48).
-#[test]
-fn interference_limit_of_the_source_pair() {
-    let refused = reason(&source_pair(1.30), "tip-interference");
-    assert_eq!(refused.pointer, "/design/gear/addendum");
-    let topic = "Geometry: limits of feasible designs";
-    check(topic, "source pair, addendum at which the gear's tip interferes", refused.limit, 1.26970, Absolute(5e-6));
-    close(refused.value, 1.30, 1e-12);
-    let unclipped = {
-        let p = pair(&source_pair(1.0));
-        let m = p.spec.normal_module_m;
-        let roll = |r: f64, rb: f64| (r * r - rb * rb).sqrt();
-        let e = roll(p.pinion.reference_radius_m + m * refused.limit, p.pinion.base_radius_m);
-        e / p.base_pitch_m + p.overlap_ratio
-    };
-    check(topic, "source pair, total contact ratio at that addendum", unclipped, 3.48, Absolute(5e-3));
 }
 
 #[test]
@@ -64,14 +45,6 @@ fn stated_values_out_of_range() {
     for pointer in ["/design/gap_width_mm", "/design/face_width_mm", "/design/pinion/teeth"] {
         assert!(pointers.iter().any(|p| p == pointer), "{pointer} is not in {pointers:?}");
     }
-}
-
-#[test]
-fn contact_ratio_below_one() {
-    let low = GearSpec { addendum: 0.5, ..gear(17, 0.0) };
-    let refused = reason(&spec(6.0, 20.0, 24.43, 55.0, low, GearSpec { teeth: 44, ..low }), "contact-ratio-below-one");
-    assert!(refused.value < 1.0);
-    close(refused.limit, 1.0, 0.0);
 }
 
 #[test]
@@ -168,7 +141,8 @@ fn check_finite(spec: &PairSpec) -> Result<(), TestCaseError> {
 }
 
 fn check_pair(p: &Pair) -> Result<(), TestCaseError> {
-    prop_assert!(p.transverse_contact_ratio >= 1.0 && p.overlap_ratio >= 0.0);
+    prop_assert!(p.transverse_contact_ratio > 0.0 && p.overlap_ratio >= 0.0);
+    prop_assert!(p.transverse_contact_ratio >= 1.0 || p.total_contact_ratio() > 1.0);
     prop_assert!(p.path_start_m >= 0.0 && p.path_end_m <= p.line_of_action_m);
     for member in [&p.pinion, &p.gear] {
         let span = member.tip_radius_m - member.root_radius_m;

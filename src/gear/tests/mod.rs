@@ -1,6 +1,7 @@
 //! The geometry against published pairs, closed formulas and independent constructions.
 
 mod corner;
+mod engagement;
 mod feasibility;
 mod lines;
 mod modification;
