@@ -53,6 +53,17 @@ pub fn write(out: &mut impl Write, result: &JobResult) -> Result<()> {
         let failed = sweep.points.iter().filter(|point| point.error.is_some()).count();
         writeln!(out, "{:<46} {} points, {failed} without a response", "sweep", sweep.points.len())?;
     }
+    if let Some(accuracy) = &result.accuracy {
+        let model = &accuracy.model;
+        let percent = |value: Option<f64>| value.map_or("unknown".to_owned(), |value| format!("{value} %"));
+        let (stiffness, harmonic) =
+            (percent(model.mesh_stiffness_percent), percent(model.transmission_error_harmonic_percent));
+        let name = "error of the model";
+        writeln!(out, "{name:<46} mesh stiffness {stiffness}, transmission error's first harmonic {harmonic}")?;
+        if let Some(numerical) = accuracy.numerical {
+            writeln!(out, "{:<46} {numerical:.1e}", "numerical error, relative")?;
+        }
+    }
     for warning in &result.warnings {
         writeln!(out, "warning ({}): {} {}", warning.code, warning.pointer, warning.detail)?;
     }

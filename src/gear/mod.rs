@@ -11,6 +11,7 @@
 //!   rotation `ApexLeading` teeth enter at the inner end (`entry = b - y`), with `ApexTrailing` at the outer (`entry = y`).
 //! - Tooth pair `k` touches along `x = x0 + k p_bt + entry tan(beta_b)`: pair `k + 1` entered before pair `k`.
 
+mod body;
 mod corner;
 mod feasibility;
 mod involute;
@@ -24,6 +25,7 @@ mod spec;
 mod tooth;
 mod values;
 
+pub use body::BodyStiffness;
 pub use corner::CornerContact;
 pub use lines::ContactLine;
 pub use margins::Margin;

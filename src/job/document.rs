@@ -146,18 +146,19 @@ pub struct EndRelief {
     pub length_mm: f64,
 }
 
+/// Shafts and bearings, per half. What is null is derived (`study::supports`), and zero is not there.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Supports {
-    pub pinion_lateral_n_per_um: f64,
-    pub gear_lateral_n_per_um: f64,
-    pub pinion_halves_axial_n_per_um: f64,
-    pub gear_axial_n_per_um: f64,
-    pub gear_halves_axial_n_per_um: f64,
+    pub pinion_lateral_n_per_um: Option<f64>,
+    pub gear_lateral_n_per_um: Option<f64>,
+    pub pinion_halves_axial_n_per_um: Option<f64>,
+    pub gear_axial_n_per_um: Option<f64>,
+    pub gear_halves_axial_n_per_um: Option<f64>,
     pub damping_ratio: f64,
-    pub pinion_halves_torsional_nm_per_rad: f64,
-    pub gear_halves_torsional_nm_per_rad: f64,
-    pub pinion_halves_lateral_n_per_um: f64,
-    pub gear_halves_lateral_n_per_um: f64,
+    pub pinion_halves_torsional_nm_per_rad: Option<f64>,
+    pub gear_halves_torsional_nm_per_rad: Option<f64>,
+    pub pinion_halves_lateral_n_per_um: Option<f64>,
+    pub gear_halves_lateral_n_per_um: Option<f64>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -14,6 +14,12 @@ pub struct JobResult {
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub sweep: Option<Sweep>,
     pub numerics: Numerics,
+    /// Springs of the equations of motion; null for a job without a response.
+    #[serde(default)]
+    pub supports: Option<Supports>,
+    /// How far the numbers may be off: from the solution of their own equations, and from a gear pair.
+    #[serde(default)]
+    pub accuracy: Option<Accuracy>,
     #[cfg_attr(feature = "server", schema(value_type = Vec<WarningEntry>))]
     pub warnings: Vec<Warning>,
 }
@@ -25,6 +31,53 @@ pub struct WarningEntry {
     pub code: String,
     pub detail: String,
     pub pointer: String,
+}
+
+/// Supports of each half and couplings between the halves of a gear, as they stand in the equations; of a sweep those of its base document.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Supports {
+    pub pinion_lateral_n_per_um: SpringValue,
+    pub gear_lateral_n_per_um: SpringValue,
+    pub gear_axial_n_per_um: SpringValue,
+    pub pinion_halves_axial_n_per_um: SpringValue,
+    pub gear_halves_axial_n_per_um: SpringValue,
+    pub pinion_halves_lateral_n_per_um: SpringValue,
+    pub gear_halves_lateral_n_per_um: SpringValue,
+    pub pinion_halves_torsional_nm_per_rad: SpringValue,
+    pub gear_halves_torsional_nm_per_rad: SpringValue,
+}
+
+/// A stiffness in the unit of its name, and where it came from.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct SpringValue {
+    pub value: f64,
+    /// `given` by the document, `derived` from the gear body, or `assumed` after the size of the pair.
+    pub origin: String,
+}
+
+/// Numerical error and model error, which are different things.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct Accuracy {
+    /// Relative error of the solution of the equations: the estimate for the RMS values (of a sweep the largest of its points; null where none
+    /// was solved); without a response that of the contact's discretisation. 0 for a closed form.
+    pub numerical: Option<f64>,
+    pub model: ModelError,
+}
+
+/// How far the mesh of the model is from that of a gear pair with exact flanks, by the comparisons of docs/VALIDATION.md and docs/BENCHMARKS.md:
+/// the largest difference found in pairs of the same kind. Supports, damping, friction and manufacture are not in it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct ModelError {
+    /// Of the mean mesh stiffness; null where the model claims nothing.
+    pub mesh_stiffness_percent: Option<f64>,
+    /// Of the first harmonic of the loaded transmission error, in per cent of itself; null where the model claims nothing.
+    pub transmission_error_harmonic_percent: Option<f64>,
+    /// What the numbers rest on.
+    pub basis: String,
 }
 
 /// Two values, one per helix half.

@@ -20,7 +20,12 @@ pub fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
         check_axes(document)?;
     }
     let memory_mib = demand(document, 1).total_mib();
-    Ok(CheckReport { geometry: geometry(&prepared), memory_mib, warnings: prepared.warnings })
+    Ok(CheckReport {
+        geometry: geometry(&prepared),
+        supports: (document.kind != Kind::Mesh).then_some(prepared.supports),
+        memory_mib,
+        warnings: prepared.warnings,
+    })
 }
 
 #[cfg(test)]

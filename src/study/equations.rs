@@ -4,6 +4,7 @@ use super::prepare::Prepared;
 use crate::dynamics::{ContactForce, Couplings, HalfParameters, Harmonic, Impact, Parameters, Spring, Stiffness};
 use crate::dynamics::{equivalent_mass_kg, mesh_damping_n_s_per_m};
 use crate::job::document::{GivenStiffness, JobDocument, Plane};
+use crate::job::result::SpringValue;
 use std::sync::Arc;
 
 /// The plane in which the equations are written: radii of both gears and helix angle.
@@ -83,11 +84,12 @@ pub fn parameters(
     impact: [Option<Impact>; 2],
     right_lead_mesh_periods: f64,
 ) -> Parameters {
-    let supports = &document.design.supports;
-    let zeta = supports.damping_ratio;
+    let supports = &prepared.supports;
+    let zeta = document.design.supports.damping_ratio;
     let [pinion_mass_kg, gear_mass_kg] = prepared.mass_kg.map(|mass| mass / 2.0);
     let [pinion_inertia_kg_m2, gear_inertia_kg_m2] = prepared.inertia_kg_m2.map(|inertia| inertia / 2.0);
-    let lateral = |n_per_um: f64, mass| Spring::with_damping_ratio(n_per_um * 1e6, zeta, mass);
+    let spring = |n_per_um: &SpringValue, mass| Spring::with_damping_ratio(n_per_um.value * 1e6, zeta, mass);
+    let torsion = |nm_per_rad: &SpringValue, inertia| Spring::with_damping_ratio(nm_per_rad.value, zeta, inertia);
     let m_e = equivalent_mass_kg(plane.pinion_radius_m, pinion_inertia_kg_m2, plane.gear_radius_m, gear_inertia_kg_m2);
     let half = |stiffness: Stiffness, impact: Option<Impact>, phase_shift_mesh_periods: f64| HalfParameters {
         pinion_mass_kg,
@@ -95,10 +97,10 @@ pub fn parameters(
         gear_mass_kg,
         gear_inertia_kg_m2,
         pinion_torque_nm: document.operation.pinion_torque_nm / 2.0,
-        pinion_lateral: lateral(supports.pinion_lateral_n_per_um, pinion_mass_kg),
-        gear_lateral: lateral(supports.gear_lateral_n_per_um, gear_mass_kg),
+        pinion_lateral: spring(&supports.pinion_lateral_n_per_um, pinion_mass_kg),
+        gear_lateral: spring(&supports.gear_lateral_n_per_um, gear_mass_kg),
         pinion_axial: Spring::default(),
-        gear_axial: lateral(supports.gear_axial_n_per_um, gear_mass_kg),
+        gear_axial: spring(&supports.gear_axial_n_per_um, gear_mass_kg),
         mesh_damping_n_s_per_m: mesh_damping_n_s_per_m(
             document.model.mesh_damping_ratio,
             stiffness.mean_n_per_m(),
@@ -120,20 +122,12 @@ pub fn parameters(
         damping_in_gap: document.model.damping_in_gap,
         halves: [half(left_stiffness, left_impact, 0.0), half(right_stiffness, right_impact, -right_lead_mesh_periods)],
         couplings: Couplings {
-            pinion_axial: lateral(supports.pinion_halves_axial_n_per_um, pinion_mass_kg),
-            gear_axial: lateral(supports.gear_halves_axial_n_per_um, gear_mass_kg),
-            pinion_lateral: lateral(supports.pinion_halves_lateral_n_per_um, pinion_mass_kg),
-            gear_lateral: lateral(supports.gear_halves_lateral_n_per_um, gear_mass_kg),
-            pinion_torsion: Spring::with_damping_ratio(
-                supports.pinion_halves_torsional_nm_per_rad,
-                zeta,
-                pinion_inertia_kg_m2,
-            ),
-            gear_torsion: Spring::with_damping_ratio(
-                supports.gear_halves_torsional_nm_per_rad,
-                zeta,
-                gear_inertia_kg_m2,
-            ),
+            pinion_axial: spring(&supports.pinion_halves_axial_n_per_um, pinion_mass_kg),
+            gear_axial: spring(&supports.gear_halves_axial_n_per_um, gear_mass_kg),
+            pinion_lateral: spring(&supports.pinion_halves_lateral_n_per_um, pinion_mass_kg),
+            gear_lateral: spring(&supports.gear_halves_lateral_n_per_um, gear_mass_kg),
+            pinion_torsion: torsion(&supports.pinion_halves_torsional_nm_per_rad, pinion_inertia_kg_m2),
+            gear_torsion: torsion(&supports.gear_halves_torsional_nm_per_rad, gear_inertia_kg_m2),
         },
     };
     parameters.balance_axially();

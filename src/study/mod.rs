@@ -1,6 +1,7 @@
 //! What a job needs: which stages run, what can be reused, in which order; and the only place where documents
 //! meet physics.
 
+mod accuracy;
 mod answer;
 mod axes;
 mod branches;
@@ -17,6 +18,7 @@ mod point;
 mod points;
 mod prepare;
 mod row;
+mod supports;
 mod sweep;
 mod vibration;
 
@@ -149,6 +151,8 @@ pub enum SolveError {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct CheckReport {
     pub geometry: Geometry,
+    /// Springs of the equations of motion; null for a job without a response.
+    pub supports: Option<crate::job::result::Supports>,
     /// Memory that the calculation takes at most (an estimate).
     pub memory_mib: f64,
     #[cfg_attr(feature = "server", schema(value_type = Vec<crate::job::result::WarningEntry>))]
@@ -179,6 +183,8 @@ pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outc
     let sweep = sweep::run(document, kept, surroundings, &memo)?;
     let mut result = JobResult {
         geometry: Some(report.geometry),
+        supports: report.supports,
+        accuracy: Some(accuracy::of_sweep(document, &sweep)),
         sweep: Some(sweep),
         warnings: report.warnings,
         ..JobResult::default()

@@ -3,7 +3,7 @@
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
 use super::prepare::{geometry, prepare};
-use super::{Channel, SolveError, Stage, Surroundings, impact, vibration};
+use super::{Channel, SolveError, Stage, Surroundings, accuracy, impact, vibration};
 use crate::dynamics::{DynamicsError, Parameters};
 use crate::job::document::{JobDocument, Kind, Recorded};
 use crate::job::result::{JobResult, Numerics, Poincare};
@@ -108,6 +108,7 @@ pub fn stage<'a>(
         geometry: Some(geometry(&prepared)),
         mesh: Some(mesh.summary),
         impact: impact.summary,
+        supports: (document.kind != Kind::Mesh).then_some(prepared.supports),
         warnings,
         numerics,
         ..JobResult::default()
@@ -142,10 +143,12 @@ pub fn answered(
 ) -> Result<Point, SolveError> {
     let Staged { mut result, parameters, mut clock } = staged;
     let (Some(parameters), Some(response)) = (parameters, response) else {
+        result.accuracy = Some(accuracy::of(document, &result));
         return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });
     };
     let vibration = vibration::told(document, &parameters, wanted, response, &mut result.numerics)?;
     result.response = Some(vibration.summary);
+    result.accuracy = Some(accuracy::of(document, &result));
     result.warnings.extend(vibration.warnings);
     result.numerics.wall_ms.response = clock.lap_ms();
     Ok(Point {

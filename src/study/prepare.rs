@@ -1,9 +1,10 @@
 //! From a document to physics in SI: the pair, its inertias, its operating point, and whether all of it can exist.
 
+use super::supports;
 use crate::contact;
 use crate::gear::{self, Infeasibility, Pair, PairSpec, Warning};
 use crate::job::document::{self as doc, JobDocument, PressureAnglePlane};
-use crate::job::result::{GearGeometry, Geometry};
+use crate::job::result::{GearGeometry, Geometry, Supports};
 use crate::job::{DocumentError, Violation};
 
 /// Default bore as a fraction of the reference diameter, where none is given.
@@ -17,6 +18,8 @@ pub struct Prepared {
     /// Whole-gear masses and moments of inertia (both halves), pinion and gear.
     pub mass_kg: [f64; 2],
     pub inertia_kg_m2: [f64; 2],
+    /// Supports and couplings of the equations of motion.
+    pub supports: Supports,
     pub mesh_frequency_hz: f64,
     pub pinion_speed_rad_s: f64,
     /// Base-tangent force of one half, T/2 / r_b1.
@@ -37,6 +40,8 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
     warnings.extend(pair_warnings);
     warnings.extend(held_elsewhere(document, &pair));
     warnings.extend(short_face(document, &pair));
+    let supports = supports::used(&document.design.supports, &pair);
+    warnings.extend(supports::assumed(document, &supports));
     let design = &document.design;
     let [pinion_disc, gear_disc] = [&pair.pinion, &pair.gear].map(|member| {
         let (material, width_m) = (pair.material(), pair.spec.face_width_m);
@@ -49,6 +54,7 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
             design.pinion.inertia_kg_m2.unwrap_or(pinion_disc.1),
             design.gear.inertia_kg_m2.unwrap_or(gear_disc.1),
         ],
+        supports,
         mesh_frequency_hz: document.operation.pinion_speed_rpm / 60.0 * f64::from(pair.pinion.teeth),
         pinion_speed_rad_s: speed_rad_s,
         half_force_n: document.operation.pinion_torque_nm / 2.0 / pair.pinion.base_radius_m,

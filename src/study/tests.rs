@@ -594,3 +594,227 @@ fn a_sweep_that_was_stopped_goes_on_where_it_was() {
         assert!(rest(pieced) == rest(whole), "{continuation}, {method}: the rows are alike, but not the rest");
     }
 }
+
+/// The source pair with a given stiffness of one harmonic and no impact. `supports`: what the document says of them.
+fn one_harmonic(supports: Value, rpm: f64, stagger: f64) -> Value {
+    let mut value = example("table1");
+    value["design"]["supports"] = supports;
+    value["design"]["half_stagger"] = json!(stagger);
+    value["operation"]["pinion_speed_rpm"] = json!(rpm);
+    value["model"]["mesh_stiffness"] =
+        json!({"source": "given", "mean_n_per_um": 1300.0, "harmonics": [{"amplitude": 0.05}]});
+    value["model"]["impact"] = json!({"source": "none"});
+    value
+}
+
+/// Amplitude at mesh order 1 of the sum of channels with weights.
+fn first_order(outcome: &Outcome, weights: &[(&str, f64)]) -> f64 {
+    let channel = |name: &str| outcome.series.iter().find(|channel| channel.name == name).expect("a channel");
+    let frequency_hz = outcome.result.response.as_ref().expect("a response").mesh_frequency_hz;
+    let first = channel(weights[0].0);
+    let (mut re, mut im, mut count) = (0.0, 0.0, 0.0);
+    for i in 0..first.values.len() {
+        let value: f64 = weights.iter().map(|(name, weight)| weight * channel(name).values[i]).sum();
+        let angle = std::f64::consts::TAU * frequency_hz * first.dt_s * i as f64;
+        re += value * angle.cos();
+        im -= value * angle.sin();
+        count += 1.0;
+    }
+    2.0 * f64::hypot(re, im) / count
+}
+
+/// Couplings so stiff that the halves of a gear are one rigid body.
+fn rigid_body() -> Value {
+    let halves = ["pinion", "gear"].map(|gear| {
+        [("axial_n_per_um", 1e6), ("lateral_n_per_um", 1e6), ("torsional_nm_per_rad", 1e11)]
+            .map(|(of, value)| (format!("{gear}_halves_{of}"), json!(value)))
+    });
+    Value::Object(halves.into_iter().flatten().collect())
+}
+
+/// Staggered by half a pitch the excitations of the halves oppose each other at the first order: on one body the torsional motion loses it and
+/// the axial one gains it. In the source's model each half turns by itself, and keeps it.
+#[test]
+fn stagger_on_one_body_moves_the_first_order_from_torsion_to_the_axis() {
+    const RESONANCE_RPM: f64 = 12_100.0;
+    let x_mean: &[_] = &[("a_x_left", 0.5), ("a_x_right", 0.5)];
+    let axial: &[_] = &[("a_z_p_left", 0.5), ("a_z_p_right", 0.5)];
+    let orders = |supports: &Value, rpm: f64, of: &[(&str, f64)]| {
+        [0.0, 0.5].map(|stagger| first_order(&solved(&one_harmonic(supports.clone(), rpm, stagger)), of))
+    };
+    let topic = "Job: one body";
+    for (body, supports) in [("derived", json!({})), ("rigid", rigid_body())] {
+        for (rpm, bound) in [(1000.0, 0.06), (RESONANCE_RPM, 0.01)] {
+            let [aligned, staggered] = orders(&supports, rpm, x_mean);
+            let quantity = format!("{body} body, {rpm} r/min: order 1 of the mean x'', stagger 0.5 over 0");
+            check_worst(topic, &quantity, [staggered / aligned], bound);
+            let [before, after] = orders(&supports, rpm, axial);
+            assert!(after > 1000.0 * before, "{body}, {rpm} r/min: axial {before} to {after}");
+        }
+        let [aligned, staggered] = orders(&supports, 1000.0, &[("a_x_left", 1.0)]);
+        let quantity = format!("{body} body, 1000 r/min: order 1 of the left half's own x'', stagger 0.5 over 0");
+        check_worst(topic, &quantity, [staggered / aligned], 0.06);
+    }
+    // Rigid, at resonance: the left half's own motion too.
+    let [aligned, staggered] = orders(&rigid_body(), RESONANCE_RPM, &[("a_x_left", 1.0)]);
+    check_worst(
+        topic,
+        "rigid body, resonance: order 1 of the left half's own x'', stagger 0.5 over 0",
+        [staggered / aligned],
+        0.01,
+    );
+    // Free halves: what fails above if there were no body.
+    let free = example("table1")["design"]["supports"].clone();
+    for rpm in [1000.0, RESONANCE_RPM] {
+        let [aligned, staggered] = orders(&free, rpm, &[("a_x_left", 1.0)]);
+        assert!(staggered > 0.5 * aligned, "free halves, {rpm} r/min: {aligned} to {staggered}");
+    }
+}
+
+/// ISO stiffness, so that nothing takes time.
+fn without_supports() -> Value {
+    let mut value = example("table1");
+    value["design"]["supports"] = Value::Null;
+    value["model"]["mesh_stiffness"] = json!({"source": "iso6336"});
+    value
+}
+
+fn about_supports(result: &crate::job::result::JobResult) -> Option<&Warning> {
+    result.warnings.iter().find(|warning| warning.code == "assumed-supports")
+}
+
+#[test]
+fn supports_that_were_not_given_are_said_with_their_values() {
+    let value = without_supports();
+    let result = solved(&value).result;
+    let warning = about_supports(&result).expect("a warning");
+    assert_eq!(warning.pointer, "/design/supports");
+    for said in
+        ["pinion_lateral_n_per_um 600.4", "gear_axial_n_per_um 200.1", "gear_halves_torsional_nm_per_rad 4.081e8"]
+    {
+        assert!(warning.detail.contains(said), "{said}: {}", warning.detail);
+    }
+    let used = result.supports.expect("a response");
+    assert_eq!(
+        (used.gear_axial_n_per_um.origin.as_str(), used.gear_halves_axial_n_per_um.origin.as_str()),
+        ("assumed", "derived")
+    );
+    // The document as accepted does not pretend that they were given.
+    let accepted = serde_json::to_value(document(&value)).expect("JSON");
+    assert!(accepted["design"]["supports"]["gear_halves_axial_n_per_um"].is_null());
+    assert_eq!(accepted["design"]["supports"]["damping_ratio"], json!(0.03));
+    // The values used, given: the same motion, and nothing to say.
+    let mut given = value.clone();
+    given["design"]["supports"] = json!({});
+    for (name, spring) in supports::named(&used) {
+        given["design"]["supports"][name] = json!(spring.value);
+    }
+    let again = solved(&given).result;
+    assert_eq!(about_supports(&again), None);
+    assert_eq!(again.response, result.response);
+    assert!(supports::named(&again.supports.expect("a response")).iter().all(|(_, spring)| spring.origin == "given"));
+    // One of them given: the others are said.
+    let mut some = value.clone();
+    some["design"]["supports"] = json!({"gear_axial_n_per_um": 0.0});
+    let some = solved(&some).result;
+    assert!(about_supports(&some).is_some_and(|warning| !warning.detail.contains("gear_axial_n_per_um")));
+    assert_eq!(some.supports.expect("a response").gear_axial_n_per_um.value, 0.0);
+    // Without equations of motion nothing is assumed.
+    let mut mesh = value;
+    mesh["kind"] = json!("mesh");
+    let mesh = solved(&mesh).result;
+    assert_eq!((about_supports(&mesh), &mesh.supports), (None, &None));
+}
+
+#[test]
+fn a_sweep_varies_a_support_that_was_not_given() {
+    let mut value = without_supports();
+    value["kind"] = json!("sweep");
+    value["axes"] = json!([{"pointer": "/design/supports/gear_halves_torsional_nm_per_rad", "values": [0.0, 1e9]},
+        {"pointer": "/design/gap_width_mm", "values": [10.0, 60.0]}]);
+    value["design"]["half_stagger"] = json!(0.3);
+    let result = solved(&value).result;
+    let warning = about_supports(&result).expect("a warning");
+    assert!(
+        !warning.detail.contains("gear_halves_torsional") && warning.detail.contains("pinion_halves_torsional"),
+        "{}",
+        warning.detail
+    );
+    assert!(warning.detail.contains("each point has its own"));
+    let rms = |point: &SweepPoint| point.mesh_circumferential_acceleration_rms_m_s2.expect("a response").left;
+    let points = result.sweep.expect("a sweep").points;
+    let values: Vec<f64> = points.iter().map(rms).collect();
+    assert!(values.windows(2).all(|two| (two[0] / two[1] - 1.0).abs() > 1e-6), "{values:?}");
+    let largest = points.iter().filter_map(|point| point.error_estimate).fold(0.0, f64::max);
+    assert_eq!(result.accuracy.expect("said").numerical, Some(largest));
+}
+
+#[test]
+fn a_result_says_both_its_errors() {
+    let result = solved(&example("table1")).result;
+    let (accuracy, response) = (result.accuracy.expect("said"), result.response.expect("a response"));
+    assert_eq!(accuracy.numerical, Some(response.error_estimate));
+    assert!(accuracy.model.mesh_stiffness_percent.is_some() && accuracy.model.basis.contains("docs/"));
+    let mut mesh = example("table1");
+    mesh["kind"] = json!("mesh");
+    let result = solved(&mesh).result;
+    let (numerical, found) = (result.accuracy.expect("said").numerical, result.mesh.and_then(|mesh| mesh.convergence));
+    let found = found.expect("a contact analysis");
+    let largest = found.position_error_percent.expect("chosen").max(found.slice_error_percent);
+    assert!(largest > 0.0 && numerical == Some(0.01 * largest), "{numerical:?} {found:?}");
+    let written = serde_json::to_value(solved(&example("given_stiffness")).result).expect("JSON");
+    assert!(
+        written["accuracy"]["model"]["mesh_stiffness_percent"].is_null()
+            && written["accuracy"]["numerical"].is_number()
+    );
+    assert!(written["accuracy"]["model"]["basis"].as_str().is_some_and(|basis| basis.contains("given")));
+}
+
+/// What a result says of the model's error is not below what finite elements find, on short and steep faces and on few teeth too.
+#[test]
+fn the_model_error_that_is_said_is_not_below_the_error() {
+    let pairs = [
+        ([25, 40], 0.0, 1.25),
+        ([25, 40], 20.0, 1.25),
+        ([25, 40], 20.0, 5.0),
+        ([17, 44], 30.0, 0.6),
+        ([17, 44], 45.0, 1.0),
+        ([17, 44], 45.0, 4.0),
+        ([10, 10], 30.0, 1.0),
+        ([10, 10], 40.0, 1.25),
+        ([10, 10], 40.0, 3.0),
+    ];
+    for (teeth, helix_deg, modules) in pairs {
+        let of = |stiffness: Value| {
+            let value = json!({
+                "kind": "mesh",
+                "design": {"normal_module_mm": 2.0, "helix_angle_deg": helix_deg, "face_width_mm": 2.0 * modules,
+                    "gap_width_mm": 0.0, "pinion": {"teeth": teeth[0]}, "gear": {"teeth": teeth[1]}},
+                // 1.6 N m on 10 teeth per module of face.
+                "operation": {"pinion_speed_rpm": 1000.0, "pinion_torque_nm": 0.16 * modules * f64::from(teeth[0])},
+                "model": {"mesh_stiffness": stiffness},
+            });
+            let result = solved(&value).result;
+            let mesh = result.mesh.expect("a mesh");
+            (
+                mesh.stiffness_mean_n_per_um,
+                mesh.transmission_error_harmonics_um[0],
+                result.accuracy.expect("said").model,
+            )
+        };
+        let (stiffness, harmonic, said) = of(json!({"source": "ltca"}));
+        let (fe_stiffness, fe_harmonic, fe_said) =
+            of(json!({"source": "ltca", "fidelity": "fe", "elements": "coarse"}));
+        let topic = "Job: model error of the analytic compliance, said and found";
+        let pair = format!("z {}/{}, helix {helix_deg}°, face {modules} modules", teeth[0], teeth[1]);
+        let bound = |analytic: Option<f64>, fe: Option<f64>| 0.01 * (analytic.expect("said") + fe.expect("said"));
+        check_worst(
+            topic,
+            &format!("{pair}: mean stiffness"),
+            [stiffness / fe_stiffness - 1.0],
+            bound(said.mesh_stiffness_percent, fe_said.mesh_stiffness_percent),
+        );
+        let said = bound(said.transmission_error_harmonic_percent, fe_said.transmission_error_harmonic_percent);
+        check_worst(topic, &format!("{pair}: first harmonic"), [harmonic / fe_harmonic - 1.0], said);
+    }
+}

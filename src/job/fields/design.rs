@@ -201,41 +201,46 @@ fn flank(object: &Object, base: Option<&Flank>) -> Flank {
 }
 
 fn supports(object: Object) -> Supports {
-    let spring = |name, default, help| object.number(name, number(0.0, 1e7, "N/um", Some(default), help));
-    let torsion = |name, help| object.number(name, number(0.0, 1e13, "N m/rad", Some(0.0), help));
+    let spring = |name, help| object.optional_number(name, number(0.0, 1e7, "N/um", None, help));
+    let torsion = |name, help| object.optional_number(name, number(0.0, 1e13, "N m/rad", None, help));
     let supports = Supports {
-        pinion_lateral_n_per_um: spring("pinion_lateral_n_per_um", 600.0, "Lateral support of each pinion half."),
-        gear_lateral_n_per_um: spring("gear_lateral_n_per_um", 600.0, "Lateral support of each gear half."),
+        pinion_lateral_n_per_um: spring(
+            "pinion_lateral_n_per_um",
+            "Lateral support of each pinion half; scaled with the centre distance when null.",
+        ),
+        gear_lateral_n_per_um: spring(
+            "gear_lateral_n_per_um",
+            "Lateral support of each gear half; scaled with the centre distance when null.",
+        ),
         pinion_halves_axial_n_per_um: spring(
             "pinion_halves_axial_n_per_um",
-            300.0,
-            "Axial spring between the pinion halves.",
+            "Axial spring between the pinion halves; that of the gear body when null.",
         ),
-        gear_axial_n_per_um: spring("gear_axial_n_per_um", 200.0, "Axial support of each gear half."),
+        gear_axial_n_per_um: spring(
+            "gear_axial_n_per_um",
+            "Axial support of each gear half; scaled with the centre distance when null.",
+        ),
         gear_halves_axial_n_per_um: spring(
             "gear_halves_axial_n_per_um",
-            300.0,
-            "Axial spring between the gear halves.",
+            "Axial spring between the gear halves; that of the gear body when null.",
         ),
         damping_ratio: object
             .number("damping_ratio", number(0.0, 2.0, "1", Some(0.03), "Damping ratio of supports and couplings.")),
         pinion_halves_torsional_nm_per_rad: torsion(
             "pinion_halves_torsional_nm_per_rad",
-            "Torsional spring between the pinion halves; none in the source's model.",
+            "Torsional spring between the pinion halves; that of the gear body when null, 0 (none) in the source's model.",
         ),
         gear_halves_torsional_nm_per_rad: torsion(
             "gear_halves_torsional_nm_per_rad",
-            "Torsional spring between the gear halves; none in the source's model.",
+            "Torsional spring between the gear halves; that of the gear body when null, 0 (none) in the source's model.",
         ),
         pinion_halves_lateral_n_per_um: spring(
             "pinion_halves_lateral_n_per_um",
-            0.0,
-            "Lateral (bending) spring between the pinion halves; none in the source's model.",
+            "Lateral (bending) spring between the pinion halves; that of the gear body when null, 0 (none) in the source's model.",
         ),
         gear_halves_lateral_n_per_um: spring(
             "gear_halves_lateral_n_per_um",
-            0.0,
-            "Lateral (bending) spring between the gear halves; none in the source's model.",
+            "Lateral (bending) spring between the gear halves; that of the gear body when null, 0 (none) in the source's model.",
         ),
     };
     object.finish();

@@ -9,7 +9,7 @@ import { IMPACTS, STIFFNESS, contactWords, regimeWords } from "./words.js";
 const GRAVITY = 9.80665;
 
 /** [name, number, unit, note, explanation] of each; what a result does not have is left out. */
-export function headlines({ geometry, mesh, impact, response, numerics }) {
+export function headlines({ geometry, mesh, impact, response, numerics, accuracy }) {
   const tiles = [];
   const add = (...tile) => tiles.push(tile);
   if (response) {
@@ -41,7 +41,20 @@ export function headlines({ geometry, mesh, impact, response, numerics }) {
     const { order, ratio, mode } = nearest;
     add("Nearest resonance", number(ratio, 3), "", `order ${order} at ${number(ratio, 3)} of mode ${mode.index} (${number(mode.frequency_hz, 4)} Hz)`, "The mesh order that lies closest to a natural frequency which the mesh excites: the order's frequency over the natural frequency. Close to 1 the vibration grows until damping holds it.");
   }
+  if (accuracy) add("Error of the model", ...accuracyTexts(accuracy));
   return tiles;
+}
+
+/** [number, unit, note, explanation]: how far the model may be from the gear, beside how far the numbers may be from the model. */
+export function accuracyTexts({ numerical, model }) {
+  const { mesh_stiffness_percent: stiffness, transmission_error_harmonic_percent: harmonic, basis } = model;
+  const claims = typeof stiffness === "number";
+  const solved = typeof numerical === "number" ? `numerical error ${number(numerical, 2)}` : "";
+  const notes = [claims ? `of the mesh stiffness; ${number(harmonic, 2)} % of the transmission error's first harmonic` : "the mesh stiffness is given", solved];
+  return [
+    claims ? number(stiffness, 2) : "Not known", claims ? "%" : "", notes.filter(Boolean).join("; "),
+    `The numerical error is relative and says how well the equations were solved; it says nothing about the gear. The error of the model is the largest that comparisons with references found in pairs of this kind. Basis: ${basis}. Supports, damping, friction and manufacture are not in it.`,
+  ];
 }
 
 export function showHeadline(result) {

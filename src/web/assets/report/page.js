@@ -6,7 +6,7 @@ import { instant, number } from "../common/format.js";
 import { line } from "../common/plot_traces.js";
 import { summary } from "../common/plot_tools.js";
 import { picture } from "../common/plots.js";
-import { headlines } from "../job/headline.js";
+import { accuracyTexts, headlines } from "../job/headline.js";
 import { impactRows, impactValues } from "../job/impact.js";
 import { pulsePlot } from "../job/impact_plots.js";
 import { meshValues } from "../job/mesh.js";
@@ -160,6 +160,7 @@ async function start() {
   }
   fillValues(byId("numerics-values"), [
     ["Error of the RMS values, estimated", typeof result.response?.error_estimate === "number" ? number(result.response.error_estimate, 2) : null],
+    ...(result.accuracy ? [["Error of the model", `${accuracyTexts(result.accuracy).slice(0, 2).join(" ")} ${accuracyTexts(result.accuracy)[2]}`], ["Basis of the model's error", result.accuracy.model.basis]] : []),
     ["Error asked for", result.response ? number(input.analysis?.accuracy, 2) : null],
     ["Time", number(Object.values(result.numerics.wall_ms).reduce((sum, time) => sum + time, 0), 3), "ms"],
     ...numericsValues({ job: null, ...result }),
