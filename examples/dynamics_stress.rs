@@ -2,19 +2,20 @@
 //! bounded time, in finite numbers or in an error that names its reason; and where the answer claims an accuracy, an
 //! independent integration of the reported motion has to agree with it.
 //!
-//! `cargo run --release --no-default-features --example dynamics_stress -- [CASES [SEED [FIRST [usual|extreme]]]]`
+//! `cargo run --release --no-default-features --example dynamics_stress -- [CASES [SEED [FIRST [usual|extreme|both [contact]]]]]`
 //!
 //! Two populations take turns: `usual` pairs (what an engineer would build, at speeds that are run) and `extreme` ones
 //! (stiffness 1e3 … 1e13 N/m, damping ratios 0 … 2, play 0 … 1 mm, 1 … 100 000 r/min, mass and inertia ratios 1e-6 … 1e6,
 //! pulses 1e-6 … 1 mesh period long, torque of either sign or none). A case depends on seed and number alone: `1 SEED N`
-//! repeats it and prints its parameters.
+//! repeats it and prints its parameters. With `contact` the mesh forces are those of a loaded contact over approach and phase (soft at the
+//! beginning, with a free position that varies), without impacts.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use herringbone::dynamics::{
-    Couplings, DynamicsError, HalfParameters, Harmonic, Impact, Integrator, Parameters, Spring, Stiffness,
-    equivalent_mass_kg, mesh_damping_n_s_per_m,
+    ContactForce, Couplings, DynamicsError, FlankForce, HalfParameters, Harmonic, Impact, Integrator, Parameters,
+    Spring, Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m,
 };
 use herringbone::response::{Analysis, Method, Response, solve};
 use herringbone::watch::Watch;
@@ -196,6 +197,54 @@ fn case(r: &mut Random, of: &Ranges) -> Case {
     Case { parameters, words }
 }
 
+/// Puts contact forces in place of the stiffness: F = k(φ) e²/(e + c) beyond a free position that varies with the phase, on knots and levels as a contact
+/// analysis leaves them.
+fn with_contact(p: &mut Parameters, r: &mut Random, of: &Ranges) -> Result<(), DynamicsError> {
+    let knots: Vec<f64> = {
+        let n = r.between(8.0, 160.0) as usize;
+        (0..n).map(|i| (i as f64 + r.between(0.05, 0.95)) / n as f64).collect()
+    };
+    let static_n = |h: &HalfParameters| (h.pinion_torque_nm.abs() / p.pinion_radius_m).max(of.torque_nm.0);
+    let working_m = static_n(&p.halves[0]) / p.halves[0].mesh_stiffness.mean_n_per_m();
+    let onset_m = if r.chance(0.3) { 0.0 } else { working_m * r.log(0.01, 3.0) };
+    let free_m = if r.chance(0.3) { 0.0 } else { working_m * r.log(1e-3, 2.0) };
+    let levels = r.between(4.0, 20.0) as usize;
+    let top_m = working_m * r.between(2.0, 6.0);
+    let level_m: Vec<f64> = (0..=levels).map(|i| top_m * (i as f64 / levels as f64).powf(1.4)).collect();
+    let flank = |stiffness: &Stiffness, shift: f64| {
+        let k = |phase: f64| stiffness.at(phase + shift).max(1e-3 * stiffness.mean_n_per_m());
+        // Slopes over the phase by differences: continuous, as accurate as a table is.
+        let per_phase = |phase: f64| (k(phase + 1e-4) - k(phase - 1e-4)) / 2e-4;
+        let shape = |e: f64| match onset_m {
+            0.0 => (e, 1.0),
+            _ if e == 0.0 => (0.0, 0.0),
+            c => (e * e / (e + c), e * (e + 2.0 * c) / (e + c).powi(2)),
+        };
+        let node = |e: f64, phase: f64| {
+            let (f, slope) = shape(e);
+            [k(phase) * f, k(phase) * slope, per_phase(phase) * f, per_phase(phase) * slope]
+        };
+        let turn = std::f64::consts::TAU;
+        FlankForce {
+            nodes: level_m.iter().map(|&e| knots.iter().map(|&phase| node(e, phase)).collect()).collect(),
+            free_m: knots
+                .iter()
+                .map(|phase| [free_m * (turn * phase).cos(), -free_m * turn * (turn * phase).sin()])
+                .collect(),
+            level_m: level_m.clone(),
+        }
+    };
+    let stiffness = p.halves[0].mesh_stiffness.clone();
+    let force =
+        std::sync::Arc::new(ContactForce::new(knots.clone(), [&flank(&stiffness, 0.0), &flank(&stiffness, r.unit())])?);
+    for h in &mut p.halves {
+        h.contact_force = Some(force.clone());
+        h.impact = None;
+    }
+    p.balance_axially();
+    Ok(())
+}
+
 /// Time this thread has had a processor, where the system tells (a machine with other work takes longer by the clock).
 fn processor_time_s() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
@@ -288,16 +337,21 @@ fn main() {
     let number = |at: usize, default: u64| args.get(at).and_then(|a| a.parse().ok()).unwrap_or(default);
     let (wanted, seed, first) = (number(0, 200), number(1, 1), number(2, 0));
     let only = args.get(3).map(String::as_str);
+    let contact = args.get(4).is_some_and(|a| a == "contact");
     let mut tables: [Table; 2] = Default::default();
     let mut slowest: Vec<(f64, String)> = Vec::new();
     for number in first..first + wanted {
         let population = (number % 2) as usize;
         let ranges = [&USUAL, &EXTREME][population];
-        if only.is_some_and(|name| name != ranges.name) {
+        if only.is_some_and(|name| name != "both" && name != ranges.name) {
             continue;
         }
         let mut random = Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ number);
-        let case = case(&mut random, ranges);
+        let mut case = case(&mut random, ranges);
+        if contact && let Err(error) = with_contact(&mut case.parameters, &mut random, ranges) {
+            println!("case {number}: {error}");
+            continue;
+        }
         if wanted == 1 {
             println!("{:#?}", case.parameters);
         }

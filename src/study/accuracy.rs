@@ -116,6 +116,13 @@ fn model(document: &JobDocument, mesh: Option<&Mesh>) -> ModelError {
                 told(if ltca.elements == Elements::Coarse { measured::FE_COARSE } else { measured::FE }, "")
             }
             Fidelity::Analytic => analytic(&document.design, ltca, mesh),
+            Fidelity::Uniform => ModelError {
+                mesh_stiffness_percent: None,
+                transmission_error_harmonic_percent: None,
+                basis: "a uniform elastic foundation along the contact lines is a model for comparisons; how near it is to the gear's teeth is not \
+                        known here"
+                    .to_owned(),
+            },
         },
     }
 }

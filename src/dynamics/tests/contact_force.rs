@@ -165,7 +165,9 @@ fn deviations_are_differences_of_motions() {
             let step = 2e-10;
             let (up, down) = (moved(step), moved(-step));
             let size = column.0.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-            let worst = (0..5).map(|r| ((up.x[r] - down.x[r]) / (2.0 * step) - column.0[r]) / size).fold(0.0f64, |m, e| m.max(e.abs()));
+            let worst = (0..5)
+                .map(|r| ((up.x[r] - down.x[r]) / (2.0 * step) - column.0[r]) / size)
+                .fold(0.0f64, |m, e| m.max(e.abs()));
             errors.push(worst);
         }
     }
