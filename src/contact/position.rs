@@ -111,7 +111,7 @@ impl<'a> Solver<'a> {
         {
             return width_m;
         }
-        let stiffness = PAIR_STIFFNESS * self.pair.material().youngs_modulus_pa * self.pair.spec.face_width_m;
+        let stiffness = PAIR_STIFFNESS * self.pair.reduced_youngs_modulus_pa() * self.pair.spec.face_width_m;
         let gap_m = force_bt_n / stiffness;
         let (mut low, mut high) = (0.0, CORNER_REACH * self.pair.base_pitch_m);
         for _ in 0..12 {

@@ -11,6 +11,7 @@
 //!   rotation `ApexLeading` teeth enter at the inner end (`entry = b - y`), with `ApexTrailing` at the outer (`entry = y`).
 //! - Tooth pair `k` touches along `x = x0 + k p_bt + entry tan(beta_b)`: pair `k + 1` entered before pair `k`.
 
+mod coast;
 mod corner;
 mod feasibility;
 mod involute;
