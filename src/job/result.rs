@@ -49,6 +49,11 @@ pub struct Geometry {
     pub base_helix_angle_deg: f64,
     pub transverse_base_pitch_mm: f64,
     pub path_of_contact_mm: f64,
+    /// Face width of one half that both gears have in common, and the gap between those of the halves.
+    #[serde(default)]
+    pub face_width_mm: Option<f64>,
+    #[serde(default)]
+    pub gap_width_mm: Option<f64>,
     pub pinion: GearGeometry,
     pub gear: GearGeometry,
 }
@@ -63,6 +68,9 @@ pub struct GearGeometry {
     pub root_form_diameter_mm: f64,
     pub tip_thickness_normal_mm: f64,
     pub bore_diameter_mm: f64,
+    /// Face width of one half of this gear.
+    #[serde(default)]
+    pub face_width_mm: Option<f64>,
     pub mass_kg: f64,
     pub inertia_kg_m2: f64,
 }
@@ -153,7 +161,9 @@ pub struct MeshCurve {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct FlankLoad {
+    /// Distance from the inner end of the common face width.
     pub face_mm: Vec<f64>,
+    /// Roll length of the pinion's flank in contact.
     pub roll_mm: Vec<f64>,
     pub line_load_n_per_mm: Vec<Vec<f64>>,
 }

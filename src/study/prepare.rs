@@ -207,6 +207,7 @@ pub fn geometry(prepared: &Prepared) -> Geometry {
         root_form_diameter_mm: member.root_form_radius_m * 2e3,
         tip_thickness_normal_mm: member.normal_thickness_m(member.tip_radius_m) * 1e3,
         bore_diameter_mm: member.bore_radius_m * 2e3,
+        face_width_mm: Some(member.face_width_m * 1e3),
         mass_kg: prepared.mass_kg[index],
         inertia_kg_m2: prepared.inertia_kg_m2[index],
     };
@@ -222,6 +223,8 @@ pub fn geometry(prepared: &Prepared) -> Geometry {
         base_helix_angle_deg: pair.base_helix_angle_rad.to_degrees(),
         transverse_base_pitch_mm: pair.base_pitch_m * 1e3,
         path_of_contact_mm: (pair.path_end_m - pair.path_start_m) * 1e3,
+        face_width_mm: Some(pair.spec.face_width_m * 1e3),
+        gap_width_mm: Some(pair.spec.gap_width_m * 1e3),
         pinion: member(&pair.pinion, 0),
         gear: member(&pair.gear, 1),
     }

@@ -67,22 +67,28 @@ fn coasting_is_the_exchanged_pair_driving() {
     let got = coast(&real, torque, stagger);
     let ratio = exchanged.pinion.base_radius_m / real.pinion.base_radius_m;
     let expected = drive(&exchanged, torque * ratio, stagger);
-    for (i, (got, expected)) in got.halves.iter().zip(&expected.halves).enumerate() {
+    for ((got, expected), side) in got.halves.iter().zip(&expected.halves).zip(["left", "right"]) {
+        let of = |what: &str| format!("{what}, {side} half against the exchanged pair");
         let [a, b] = [got, expected].map(|half| harmonics(&half.transmission_error_m));
-        check_worst(TOPIC, "means", [got.transmission_error.mean / expected.transmission_error.mean - 1.0], 2e-3);
-        check_worst(TOPIC, "stiffness", [got.stiffness.mean / expected.stiffness.mean - 1.0], 2e-3);
+        check_worst(
+            TOPIC,
+            &of("mean transmission error"),
+            [got.transmission_error.mean / expected.transmission_error.mean - 1.0],
+            2e-3,
+        );
+        check_worst(TOPIC, &of("mean stiffness"), [got.stiffness.mean / expected.stiffness.mean - 1.0], 2e-3);
         let scale = b[0];
-        check_worst(TOPIC, "harmonics of the error", a.iter().zip(&b).take(3).map(|(a, b)| (a - b) / scale), 0.03);
+        check_worst(TOPIC, &of("harmonics of the error"), a.iter().zip(&b).take(3).map(|(a, b)| (a - b) / scale), 0.03);
         // The course in time, whatever its start: 2 φ1 - φ2 turns its sign with the direction of time.
         let course = |values: &[f64]| 2.0 * angle(values, 1.0) - angle(values, 2.0);
         let difference = course(&got.transmission_error_m) - course(&expected.transmission_error_m);
-        check_worst(TOPIC, "direction of time", [(difference + 0.5).rem_euclid(1.0) - 0.5], 0.03);
+        check_worst(TOPIC, &of("direction of time"), [(difference + 0.5).rem_euclid(1.0) - 0.5], 0.03);
         let reversed = course(&got.transmission_error_m) + course(&expected.transmission_error_m);
-        assert!(((reversed + 0.5).rem_euclid(1.0) - 0.5).abs() > 0.06, "the pair cannot tell the direction: half {i}");
+        assert!(((reversed + 0.5).rem_euclid(1.0) - 0.5).abs() > 0.06, "the pair cannot tell the direction: {side}");
         let share = got.load_share_at_mesh_in - expected.load_share_at_mesh_in;
-        check_worst(TOPIC, "share at mesh-in", [share], 0.01);
+        check_worst(TOPIC, &of("share at mesh-in"), [share], 0.01);
         let range = (0..2).map(|k| got.load_begins_and_ends[k] - expected.load_begins_and_ends[k]);
-        check_worst(TOPIC, "begin and end of load", range, 0.03);
+        check_worst(TOPIC, &of("begin and end of load"), range, 0.03);
     }
     // Left and right lie apart by the stagger, in the same sense.
     let lag = |contact: &LoadedContact| {
@@ -109,7 +115,7 @@ fn every_phase_is_that_of_the_mirrored_pair() {
             let state = contact.at(real.coast_phase(*phase), force).unwrap();
             error / state.approach_m - 1.0
         });
-        check_worst(TOPIC, "phase by phase", errors.collect::<Vec<_>>(), 1e-6);
+        check_worst(TOPIC, &format!("phase by phase, {side:?} half"), errors.collect::<Vec<_>>(), 1e-6);
     }
     // The axial shift is the real pinion's: it closes the left half's drive flanks, so it opens its coast flanks.
     let tan = real.base_helix_angle_rad.tan();
@@ -132,12 +138,13 @@ fn alike_flanks_are_alike_on_both_sides() {
         for stagger in [0.0, 0.4] {
             let (coast, drive) = (coast(&real, 200.0, stagger), drive(&real, 200.0, stagger));
             // Of equal gears the exchanged pair is the pair itself.
-            for (c, d) in coast.halves.iter().zip(&drive.halves) {
+            for ((c, d), side) in coast.halves.iter().zip(&drive.halves).zip(["left", "right"]) {
                 let means = [
                     c.transmission_error.mean / d.transmission_error.mean - 1.0,
                     c.stiffness.mean / d.stiffness.mean - 1.0,
                 ];
-                check_worst(TOPIC, "equal gears, both sides", means, 2e-3);
+                let quantity = format!("equal gears on either side, helix {helix}°, stagger {stagger}, {side} half");
+                check_worst(TOPIC, &quantity, means, 2e-3);
             }
             assert_eq!(coast.equal_halves, drive.equal_halves);
         }

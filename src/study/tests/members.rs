@@ -64,7 +64,13 @@ fn the_closed_form_takes_the_reduced_modulus_of_both() {
         let mut value = value.clone();
         value["design"][member]["material"] = plastic();
         let ratio = mesh(&value).stiffness_mean_n_per_um / steel;
-        check_value(TOPIC, "ISO 6336-1, plastic on steel over steel", ratio, 2.0 * 2.8 / 208.8, Relative(1e-12));
+        check_value(
+            TOPIC,
+            &format!("ISO 6336-1, plastic {member} over steel"),
+            ratio,
+            2.0 * 2.8 / 208.8,
+            Relative(1e-12),
+        );
     }
 }
 
