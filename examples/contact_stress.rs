@@ -49,7 +49,6 @@ fn design(r: &mut Random) -> (PairSpec, f64, f64, Settings) {
         end_relief: EndRelief { amount_m: if r.chance(0.2) { 50e-6 } else { 0.0 }, length_m: module },
     };
     let gear = |r: &mut Random, z: u32| GearSpec {
-        teeth: z,
         profile_shift: if r.chance(0.5) { r.between(-0.3, 0.8) } else { 0.0 },
         addendum,
         dedendum: addendum + 0.25,
@@ -58,6 +57,7 @@ fn design(r: &mut Random) -> (PairSpec, f64, f64, Settings) {
         // From a solid shaft to a rim of one and a half modules.
         bore_radius_m: (r.between(0.05, 0.95) * (0.5 * f64::from(z) - addendum - 1.5) * module).max(0.1 * module),
         flanks: if r.chance(0.6) { [FlankModification::NONE; 2] } else { [flank(r), flank(r)] },
+        ..GearSpec::plain(z)
     };
     let spec = PairSpec {
         normal_module_m: module,

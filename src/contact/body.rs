@@ -83,13 +83,15 @@ impl WidthBasis {
         }
     }
 
-    /// Mean of every polynomial over `count` equal slices of the face moved by `shift_m`: `count` rows of `order + 1`.
-    pub fn slice_means(&self, count: usize, shift_m: f64) -> Vec<f64> {
+    /// Mean of every polynomial over `count` equal slices of a part of the face (its start and its width) moved by `shift_m`:
+    /// `count` rows of `order + 1`.
+    pub fn slice_means(&self, count: usize, (from_m, width_m): (f64, f64), shift_m: f64) -> Vec<f64> {
         /// 3-point Gauss rule on [-1, 1].
         const GAUSS_3: [(f64, f64); 3] =
             [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
         let size = self.order + 1;
-        let step = self.width_m / count as f64;
+        let step = width_m / count as f64;
+        let shift_m = from_m + shift_m;
         let mut out = vec![0.0; count * size];
         let mut values = vec![0.0; size];
         for (i, row) in out.chunks_exact_mut(size).enumerate() {

@@ -39,6 +39,8 @@ pub struct Parts<'a> {
     pub root_radius_m: f64,
     pub root_helix_angle_rad: f64,
     pub slices: usize,
+    /// Where the bearing part of the face starts, and its width: what is cut into slices.
+    pub bearing_m: (f64, f64),
 }
 
 impl BulkCompliance {
@@ -57,7 +59,8 @@ impl BulkCompliance {
     fn fill(&mut self, parts: &Parts<'_>) {
         let size = parts.basis.order + 1;
         let n = parts.slices;
-        let shapes = parts.places.map(|place| transposed(&parts.basis.slice_means(n, place.shift_m), size));
+        let shapes =
+            parts.places.map(|place| transposed(&parts.basis.slice_means(n, parts.bearing_m, place.shift_m), size));
         let [forces, moments] = [0, 1].map(|which| parts.places.map(|place| parts.plate.root(which, place.lever_m)));
         let loads: [RootLoad; NODES] = std::array::from_fn(|a| parts.root_load(a, &forces[a], &moments[a]));
         let remainder = parts.remainder();

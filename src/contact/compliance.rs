@@ -1,7 +1,7 @@
 //! The compliance of both members of one half, from either model, in the form the load distribution works with.
 
 use super::flank::{Flank, hold_radius_m};
-use super::influence::{Influence, stencil};
+use super::influence::{Influence, Stencil, stencil};
 use super::lines::CORNER_REACH;
 use super::local::LocalModel;
 use super::settings::Settings;
@@ -90,8 +90,16 @@ impl Compliance {
             let base = members[side].base_radius_m;
             rolls[side].iter().map(|roll| stencil(&centers, (roll * roll - form * form) / (2.0 * base))).collect()
         });
-        let stations_m = hat_centers(flanks[0].stations_m());
-        let stations = stations_m.len();
+        let common_m = pair.spec.face_width_m;
+        let stations_of = |side: usize| hat_centers(flanks[side].stations_m());
+        // The narrower member's stations are those of both; the other's flexibility is read between its own.
+        let bearing = usize::from(members[0].face_width_m > common_m && members[1].face_width_m <= common_m);
+        let stations_m = stations_of(bearing);
+        let across: [Option<Vec<Stencil>>; 2] = std::array::from_fn(|side| {
+            let margin_m = 0.5 * (members[side].face_width_m - common_m);
+            let own = stations_of(side);
+            (own != stations_m).then(|| stations_m.iter().map(|z| stencil(&own, z + margin_m)).collect())
+        });
         let offsets = flanks[0].offsets().min(flanks[1].offsets());
         let influence = Influence::new(places_m, stations_m, offsets, |offset, (i, a), (j, b)| {
             (0..2)
@@ -99,6 +107,10 @@ impl Compliance {
                     let nodes = flanks[side].nodes();
                     let Some(bulk) = flanks[side].bulk(offset) else { return 0.0 };
                     let (pa, pb) = (&profiles[side][a], &profiles[side][b]);
+                    let stations = flanks[side].stations_m().len();
+                    if let Some(across) = &across[side] {
+                        return between(bulk, (stations, nodes), [pa, pb], [&across[i], &across[j]]);
+                    }
                     let mut sum = 0.0;
                     for (k, wa) in pa.weights.iter().enumerate() {
                         let row = &bulk[((pa.first + k) * stations + i) * nodes..];
@@ -117,6 +129,18 @@ impl Compliance {
     pub fn slices(&self) -> usize {
         self.slices
     }
+}
+
+/// A table of finite elements between two places read between its nodes along the profile and along the face.
+fn between(bulk: &[f64], (stations, nodes): (usize, usize), profile: [&Stencil; 2], face: [&Stencil; 2]) -> f64 {
+    let places = |side: usize| {
+        let (along, across) = (profile[side], face[side]);
+        along.weights.iter().enumerate().flat_map(move |(k, w)| {
+            let row = (along.first + k) * stations + across.first;
+            across.weights.iter().enumerate().map(move |(l, v)| (row + l, w * v))
+        })
+    };
+    places(0).map(|(at, w)| w * places(1).map(|(load, v)| v * bulk[at * nodes + load]).sum::<f64>()).sum()
 }
 
 /// Centres of gravity of the hats on `nodes`.

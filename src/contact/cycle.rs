@@ -4,8 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::curve::PeriodicCurve;
 use super::half::HalfContact;
-use super::hertz::LineContact;
-use super::local::relative_radius_m;
+use super::local::line_contact;
 use super::position::Loaded;
 use super::refine::Positions;
 use super::settings::ContactError;
@@ -63,7 +62,8 @@ impl EntryDeflection {
     }
 }
 
-fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
+/// Linear interpolation between ascending `x`, constant beyond both ends.
+pub(super) fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
     let i = x.partition_point(|&v| v <= at).clamp(1, x.len() - 1);
     let t = ((at - x[i - 1]) / (x[i] - x[i - 1])).clamp(0.0, 1.0);
     y[i - 1] + t * (y[i] - y[i - 1])
@@ -271,7 +271,6 @@ impl<'a> CycleBuilder<'a> {
 
     /// Largest line load, largest away from the ends of the lines, largest pressure.
     fn extremes(&self) -> [f64; 3] {
-        let material = self.pair.material();
         let cos = self.pair.base_helix_angle_rad.cos();
         let sliver = 0.5 * self.pair.spec.face_width_m / self.slices as f64;
         let end = LINE_END_MODULES * self.pair.spec.normal_module_m * cos;
@@ -289,12 +288,7 @@ impl<'a> CycleBuilder<'a> {
                         continue;
                     }
                     let w = f * cos / p.width_m;
-                    let contact = LineContact::new(
-                        material.youngs_modulus_pa,
-                        material.poissons_ratio,
-                        relative_radius_m(self.pair, p.x_m),
-                        [0.0; 2],
-                    );
+                    let contact = line_contact(self.pair, p.x_m, [0.0; 2]);
                     let interior = p.entry_m > low + end && p.entry_m < high - end;
                     let values = [w, if interior { w } else { 0.0 }, contact.pressure_pa(w)];
                     largest.iter_mut().zip(values).for_each(|(l, v)| *l = l.max(v));

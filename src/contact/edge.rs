@@ -46,6 +46,8 @@ pub struct EndFaces {
     reach: f64,
     /// Length of a slice across the edge.
     slice_m: f64,
+    /// Distance of the outermost slices from their end faces, along the same line.
+    margin_m: f64,
     slices: usize,
 }
 
@@ -58,13 +60,21 @@ fn wedge_factor(degrees: f64) -> f64 {
 }
 
 impl EndFaces {
-    /// Ends of the pinion's (`side` +1) or gear's teeth, whose faces of `width_m` are cut into `slices`.
-    pub fn new(base_helix_angle_rad: f64, side: f64, width_m: f64, slices: usize, youngs_pa: f64, nu: f64) -> EndFaces {
+    /// Ends of the pinion's (`side` +1) or gear's teeth, which stand out by `margin_m` on both sides of the bearing part of
+    /// `width_m`, which is cut into `slices`.
+    pub fn new(
+        base_helix_angle_rad: f64,
+        side: f64,
+        (width_m, margin_m): (f64, f64),
+        slices: usize,
+        (youngs_pa, nu): (f64, f64),
+    ) -> EndFaces {
         let lean = side * base_helix_angle_rad.to_degrees();
         EndFaces {
             factors: [90.0 + lean, 90.0 - lean].map(|angle| wedge_factor(angle) * (1.0 - nu * nu) / (PI * youngs_pa)),
             reach: 2.0 * (1.0 - nu) / (3.0 - 2.0 * nu),
             slice_m: width_m / slices as f64 / base_helix_angle_rad.cos(),
+            margin_m: margin_m / base_helix_angle_rad.cos(),
             slices,
         }
     }
@@ -78,8 +88,10 @@ impl EndFaces {
         let d = self.slice_m;
         let mean = |x: f64| (twice(x + 2.0 * d) - 2.0 * twice(x + d) + twice(x)) / (d * d);
         let n = self.slices;
-        let by_sum: Vec<f64> =
-            (0..2 * n - 1).map(|s| s as f64 * d).map(|x| (mean(x) - mean(x + reach)).max(0.0)).collect();
+        let by_sum: Vec<f64> = (0..2 * n - 1)
+            .map(|s| s as f64 * d + 2.0 * self.margin_m)
+            .map(|x| (mean(x) - mean(x + reach)).max(0.0))
+            .collect();
         let [first, last] = self.factors;
         for (i, row) in matrix.chunks_exact_mut(n).enumerate() {
             for (j, value) in row.iter_mut().enumerate() {
@@ -97,7 +109,7 @@ mod tests {
 
     #[test]
     fn slices_see_the_mean_of_the_kernel() {
-        let ends = EndFaces::new(0.5, 1.0, 40.0, 20, 1.0, 0.3);
+        let ends = EndFaces::new(0.5, 1.0, (40.0, 0.0), 20, (1.0, 0.3));
         let (d, depth) = (ends.slice_m, 3.0);
         let mut matrix = vec![0.0; 400];
         ends.add(&mut matrix, depth);
@@ -123,7 +135,7 @@ mod tests {
 
     #[test]
     fn places_of_different_depth_stay_positive() {
-        let end = EndFaces::new(0.6, -1.0, 30.0, 6, 1.0, 0.3);
+        let end = EndFaces::new(0.6, -1.0, (30.0, 0.0), 6, (1.0, 0.3));
         let depths = [1.0, 1.7, 2.5, 4.0];
         let n = 6 * depths.len();
         let mut matrix = vec![0.0; n * n];

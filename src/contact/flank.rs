@@ -54,7 +54,8 @@ pub struct Flank {
 }
 
 impl Flank {
-    /// The pinion (`side` +1) or the gear (`side` -1) of `pair`, for `slices` and teeth up to `offsets` pitches apart.
+    /// The pinion (`side` +1) or the gear (`side` -1) of `pair`, for `slices` of the common face width and teeth up to
+    /// `offsets` pitches apart. Tooth and ring have the member's own width, with the common one in their middle.
     pub fn new(pair: &Pair, side: f64, hold: BodyHold, slices: usize, offsets: usize) -> Flank {
         let member = if side > 0.0 { &pair.pinion } else { &pair.gear };
         let rolls = if side > 0.0 {
@@ -63,7 +64,7 @@ impl Flank {
             (pair.line_of_action_m - pair.path_end_m, pair.line_of_action_m - pair.path_start_m)
         };
         let module = pair.spec.normal_module_m;
-        let material = pair.material();
+        let material = &member.material;
         let twist = pair.base_helix_angle_rad.tan() / member.base_radius_m;
         let form = ToothForm {
             base_radius_m: member.base_radius_m,
@@ -80,7 +81,7 @@ impl Flank {
         let ring = Ring {
             outer_radius_m: member.root_radius_m,
             inner_radius_m: hold_radius_m(member, hold, module),
-            face_width_m: pair.spec.face_width_m,
+            face_width_m: member.face_width_m,
             element_m: RING_ELEMENT * module,
             youngs_pa: e,
             nu,
@@ -99,12 +100,14 @@ impl Flank {
             0.5 * (rolls.0 + rolls.1) - 0.5 * (rolls.1 - rolls.0) * angle.cos()
         });
         let places = places_m.map(|roll| tooth.at(roll, side));
-        let basis = WidthBasis::new(width_order(pair.spec.face_width_m / module), pair.spec.face_width_m);
+        let basis = WidthBasis::new(width_order(member.face_width_m / module), member.face_width_m);
+        // What the member is wider than the bearing part, at either end.
+        let margin_m = 0.5 * (member.face_width_m - pair.spec.face_width_m);
         let bulk = BulkCompliance::new(&Parts {
             plate: &plate(&form, nu, &basis),
             root: &RootRemainder::new(&form, nu, &|wave| 1.0 - ring_weight(wave, module)),
             ring: &RingFlexibility::new(&ring, &basis, &layout, offsets),
-            ends: EndFaces::new(pair.base_helix_angle_rad, side, pair.spec.face_width_m, slices, e, nu),
+            ends: EndFaces::new(pair.base_helix_angle_rad, side, (pair.spec.face_width_m, margin_m), slices, (e, nu)),
             basis: &basis,
             places: &places,
             compression_m: places.map(|p| compression(&form, nu, p.lever_m)),
@@ -112,6 +115,7 @@ impl Flank {
             root_radius_m: member.root_radius_m,
             root_helix_angle_rad: layout.root_helix_angle_rad,
             slices,
+            bearing_m: (margin_m, pair.spec.face_width_m),
         });
         Flank { tooth, bulk, side, places_m }
     }

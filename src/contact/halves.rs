@@ -65,24 +65,38 @@ pub fn solve_pair_of_halves(
     settings: &Settings,
     watch: Watch<'_>,
 ) -> Result<LoadedContact, ContactError> {
+    solve_from(0.0, pair, torque_nm, half_stagger, compliance, settings, watch)
+}
+
+/// The same with the curves of the left half from the phase `from`, in [0, 1), on.
+pub(super) fn solve_from(
+    from: f64,
+    pair: &Pair,
+    torque_nm: f64,
+    half_stagger: f64,
+    compliance: &Compliance,
+    settings: &Settings,
+    watch: Watch<'_>,
+) -> Result<LoadedContact, ContactError> {
     check(torque_nm, settings)?;
     watch.checkpoint(0.0)?;
     let force = 0.5 * torque_nm / pair.pinion.base_radius_m;
     let stagger = half_stagger - half_stagger.floor();
+    let right_from = (from + stagger).fract();
     let same_gaps = same_gaps(pair);
     let tan = pair.base_helix_angle_rad.tan();
     let halves = if same_gaps && stagger == 0.0 {
         let mut progress = |fraction: f64| watch.checkpoint(fraction).map_err(ContactError::from);
-        let left = period(pair, Half::Left, compliance, 0.0, force, settings, &mut progress)?;
+        let left = period(pair, Half::Left, compliance, from, force, settings, &mut progress)?;
         [left.clone(), left]
     } else if pair.spec.helix_angle_rad.abs() > SPUR {
         let mut first = |fraction: f64| watch.checkpoint(0.5 * fraction).map_err(ContactError::from);
-        let left = period(pair, Half::Left, compliance, 0.0, force, settings, &mut first)?;
+        let left = period(pair, Half::Left, compliance, from, force, settings, &mut first)?;
         let mut second = |fraction: f64| watch.checkpoint(0.5 + 0.5 * fraction).map_err(ContactError::from);
-        let right = period(pair, Half::Right, compliance, stagger, force, settings, &mut second)?;
+        let right = period(pair, Half::Right, compliance, right_from, force, settings, &mut second)?;
         [left, right]
     } else {
-        shared(pair, compliance, stagger, 2.0 * force, settings, watch)?
+        shared(pair, compliance, [from, right_from], 2.0 * force, settings, watch)?
     };
     let [left, right] = &halves;
     let both = || left.transmission_error_m.iter().zip(&right.transmission_error_m);
@@ -124,7 +138,7 @@ fn period(
     pair: &Pair,
     half: Half,
     compliance: &Compliance,
-    stagger: f64,
+    from: f64,
     force: f64,
     settings: &Settings,
     progress: &mut dyn FnMut(f64) -> Result<(), ContactError>,
@@ -135,7 +149,7 @@ fn period(
             let mut states = Vec::with_capacity(count);
             for i in 0..count {
                 let position = i as f64 / count as f64;
-                let phase = (position + stagger).fract();
+                let phase = (position + from).fract();
                 states.push((phase, contact.at(phase, force)?));
                 progress(position)?;
             }
@@ -152,17 +166,17 @@ fn period(
                 progress(solved / (solved + 32.0))?;
                 contact.at_near(phase, force, near)
             })?;
-            CycleBuilder::refined(pair, compliance.slices(), positions, force, stagger)
+            CycleBuilder::refined(pair, compliance.slices(), positions, force, from)
         }
     };
     builder.finish(&mut contact, &|_| force)
 }
 
-/// Halves without axial coupling: equal deflection, found by Newton on the split of the force.
+/// Halves without axial coupling: equal deflection, found by Newton on the split of the force. The halves' curves start at the phases `from`.
 fn shared(
     pair: &Pair,
     compliance: &Compliance,
-    stagger: f64,
+    from: [f64; 2],
     total: f64,
     settings: &Settings,
     watch: Watch<'_>,
@@ -175,7 +189,7 @@ fn shared(
     for i in 0..count {
         let position = i as f64 / count as f64;
         watch.checkpoint(position)?;
-        let phases = [position, (position + stagger).fract()];
+        let phases = from.map(|from| (position + from).fract());
         let (mut low, mut high) = (LEAST_PART, 1.0 - LEAST_PART);
         left_part = left_part.clamp(low, high);
         let mut difference = f64::INFINITY;
@@ -205,11 +219,11 @@ fn shared(
         }
         forces.push(left_part);
     }
-    let part = |phase: f64| forces[(phase * forces.len() as f64).round() as usize % forces.len()];
+    let part = |position: f64| forces[(position.rem_euclid(1.0) * forces.len() as f64).round() as usize % forces.len()];
     let [left_contact, right_contact] = &mut contacts;
     let [left, right] = states.map(|states| CycleBuilder::at_positions(pair, compliance.slices(), states));
     Ok([
-        left.finish(left_contact, &|phase| part(phase) * total)?,
-        right.finish(right_contact, &|phase| (1.0 - part((phase - stagger).rem_euclid(1.0))) * total)?,
+        left.finish(left_contact, &|phase| part(phase - from[0]) * total)?,
+        right.finish(right_contact, &|phase| (1.0 - part(phase - from[1])) * total)?,
     ])
 }

@@ -1,33 +1,40 @@
 //! Local contact of two flanks on a line: exact plane-strain Hertz approach of one body referenced to a depth.
 //!
 //! δ(w) = 2(1-ν²)w/(πE) [asinh(h/b) - ν/(1-ν) h/(√(h²+b²)+h)], b the half width of the contact band, h the depth: the
-//! strain under a Hertzian pressure integrated from the surface to h (Weber's logarithm is its limit for h >> b).
+//! strain under a Hertzian pressure integrated from the surface to h (Weber's logarithm is its limit for h >> b). Each body
+//! has its own E, ν and h; the band is that of both, b² = 4 R w/(π E*) with 1/E* = (1-ν1²)/E1 + (1-ν2²)/E2 (Johnson, Contact
+//! Mechanics, 1985, section 4.2).
 
 use std::f64::consts::PI;
 
 use super::half_space;
+use crate::gear::Material;
 
 /// One point of contact: curvature and depths are fixed, the line load varies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineContact {
-    /// 2(1-ν²)/(πE), per Pa.
+    /// 2(1-ν²)/(πE), per Pa, mean of both bodies.
     factor: f64,
-    /// ν/(1-ν).
-    lateral: f64,
+    /// What each body has of it: 1 for equal materials.
+    parts: [f64; 2],
+    /// ν/(1-ν) of each body.
+    lateral: [f64; 2],
     /// b² per line load, m² per (N/m).
     band2_per_load: f64,
     depths_m: [f64; 2],
 }
 
 impl LineContact {
-    /// `radius_m` is the relative radius of curvature in the normal section, `depths_m` the depths of both tooth
-    /// centrelines.
-    pub fn new(youngs_pa: f64, nu: f64, radius_m: f64, depths_m: [f64; 2]) -> LineContact {
-        let plane = (1.0 - nu * nu) / youngs_pa;
+    /// `materials` are those of both bodies, `radius_m` is the relative radius of curvature in the normal section, `depths_m`
+    /// the depths of both tooth centrelines.
+    pub fn new(materials: [&Material; 2], radius_m: f64, depths_m: [f64; 2]) -> LineContact {
+        let compliances = materials.map(Material::plane_strain_compliance_per_pa);
+        let mean = 0.5 * (compliances[0] + compliances[1]);
         LineContact {
-            factor: 2.0 * plane / PI,
-            lateral: nu / (1.0 - nu),
-            band2_per_load: 8.0 * plane * radius_m / PI,
+            factor: 2.0 * mean / PI,
+            parts: compliances.map(|compliance| compliance / mean),
+            lateral: materials.map(|material| material.poissons_ratio / (1.0 - material.poissons_ratio)),
+            band2_per_load: 8.0 * mean * radius_m / PI,
             depths_m,
         }
     }
@@ -69,13 +76,13 @@ impl LineContact {
         let b = self.half_width_m(w);
         let b2 = b * b;
         let (mut value, mut change) = (0.0, 0.0);
-        for h in self.depths_m {
+        for ((h, part), lateral) in self.depths_m.into_iter().zip(self.parts).zip(self.lateral) {
             let root = (h * h + b2).sqrt();
             let ratio = h / (root + h);
             // asinh(h/b), written out: both are positive, nothing cancels.
-            value += ((h + root) / b).ln() - self.lateral * ratio;
+            value += part * (((h + root) / b).ln() - lateral * ratio);
             // d asinh(h/b)/dw = -h/(2 w root); d ratio/dw = -h b²/(2 w root (root+h)²).
-            change += -h / (2.0 * root) + self.lateral * h * b2 / (2.0 * root * (root + h).powi(2));
+            change += part * (-h / (2.0 * root) + lateral * h * b2 / (2.0 * root * (root + h).powi(2)));
         }
         (self.factor * w * value, self.factor * (value + change))
     }
@@ -84,8 +91,43 @@ impl LineContact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::oracle::Tolerance::Absolute;
+    use crate::oracle::Tolerance::{Absolute, Relative};
     use crate::oracle::{check, check_worst};
+
+    const PLASTIC: Material = Material { youngs_modulus_pa: 2.8e9, poissons_ratio: 0.38, density_kg_m3: 1410.0 };
+
+    /// Band and pressure of Hertz for two materials, and what each body gives by itself under that band.
+    #[test]
+    fn two_materials_share_one_band() {
+        let topic = "Contact: Hertzian approach of line contacts";
+        let (radius, w, depths) = (8e-3, 50e3, [6e-3, 9e-3]);
+        let contact = LineContact::new([&Material::STEEL, &PLASTIC], radius, depths);
+        let effective = 1.0 / ((1.0 - 0.09) / 206e9 + (1.0 - 0.38 * 0.38) / 2.8e9);
+        let pressure = (w * effective / (PI * radius)).sqrt();
+        check(
+            topic,
+            "pressure, plastic on steel, MPa",
+            contact.pressure_pa(w) * 1e-6,
+            pressure * 1e-6,
+            Relative(1e-12),
+        );
+        // The strain integral of one body from the surface to its depth, by its closed form.
+        let b = (4.0 * radius * w / (PI * effective)).sqrt();
+        let body = |material: &Material, h: f64| {
+            let nu = material.poissons_ratio;
+            let plane = 2.0 * (1.0 - nu * nu) * w / (PI * material.youngs_modulus_pa);
+            plane * ((h / b).asinh() - nu / (1.0 - nu) * h / (h.hypot(b) + h))
+        };
+        let sum = body(&Material::STEEL, depths[0]) + body(&PLASTIC, depths[1]);
+        check(topic, "approach, plastic on steel, µm", contact.approach(w).0 * 1e6, sum * 1e6, Relative(1e-12));
+        // Half-spaces: the sum of both compliances, whichever body has which.
+        let turned = LineContact::new([&PLASTIC, &Material::STEEL], radius, depths);
+        let [one, other] = [contact, turned].map(|contact| contact.half_space_approach(w, 5e-3).0);
+        check(topic, "half-spaces with the materials exchanged, µm", one * 1e6, other * 1e6, Relative(1e-14));
+        let step = 1e-4 * w;
+        let (up, down) = (contact.approach(w + step).0, contact.approach(w - step).0);
+        check_worst(topic, "slope, plastic on steel", [(up - down) / (2.0 * step) / contact.approach(w).1 - 1.0], 1e-6);
+    }
 
     #[test]
     fn approach_matches_reference_values() {
@@ -96,7 +138,7 @@ mod tests {
             (8e-3, 6e-3, [(10.0, 0.325), (50.0, 1.398), (100.0, 2.602), (300.0, 6.879), (1000.0, 19.547)]),
             (4e-3, 1.6e-3, [(10.0, 0.270), (50.0, 1.124), (100.0, 2.054), (300.0, 5.236), (1000.0, 14.088)]),
         ] {
-            let contact = LineContact::new(206e9, 0.3, radius, [depth; 2]);
+            let contact = LineContact::new([&Material::STEEL; 2], radius, [depth; 2]);
             for (w, micrometres) in table {
                 let (value, slope) = contact.approach(w * 1e3);
                 let quantity = format!("ρ {} mm, depths {} mm, {w} N/mm, µm", radius * 1e3, depth * 1e3);

@@ -72,7 +72,7 @@ pub struct MethodB {
     pub face_load_mesh_n_per_m2: f64,
     pub blank_factor: f64,
     pub rack_factor: f64,
-    /// Young's modulus over that of steel.
+    /// Young's modulus over that of steel; of two materials E = 2 E1 E2 / (E1 + E2).
     pub material_factor: f64,
     /// 1 from 100 N/mm upwards.
     pub low_load_factor: f64,
@@ -97,7 +97,7 @@ impl MethodB {
             return Err(Iso6336Error::Rack { rack_factor });
         }
         let theoretical = N_PER_MM_UM / flexibility_mm_um_per_n;
-        let material_factor = pair.spec.material.youngs_modulus_pa / STEEL_PA;
+        let material_factor = pair.reduced_youngs_modulus_pa() / STEEL_PA;
         let line_load = tangential_force_n / pair.spec.face_width_m;
         let low_load_factor = (line_load / LOW_LOAD_N_PER_M).min(1.0).powf(LOW_LOAD_EXPONENT);
         let single = theoretical
@@ -189,7 +189,7 @@ pub fn course(pair: &Pair, x0_m: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::gear::fixtures::{close, gear, pair, spec};
-    use crate::gear::{GearSpec, PairSpec};
+    use crate::gear::{GearSpec, Material, PairSpec};
     use crate::oracle::Tolerance::Absolute;
     use crate::oracle::{check, check_worst};
     use std::f64::consts::PI;
@@ -244,8 +244,14 @@ mod tests {
         let light = MethodB::new(&p, &Blank::Solid, 10e3 / 16.0)?;
         close(full.low_load_factor, 1.0, 0.0);
         close(light.mesh_n_per_m2 / full.mesh_n_per_m2, 0.5, 1e-12);
-        p.spec.material.youngs_modulus_pa = 103e9;
+        let (steel, soft) = (p.pinion.material, Material { youngs_modulus_pa: 103e9, ..Material::STEEL });
+        (p.pinion.material, p.gear.material) = (soft, soft);
         close(MethodB::new(&p, &Blank::Solid, 10e3)?.mesh_n_per_m2 / full.mesh_n_per_m2, 0.5, 1e-12);
+        // Two materials: 2 E1 E2 / (E1 + E2), whichever member has which.
+        for materials in [(steel, soft), (soft, steel)] {
+            (p.pinion.material, p.gear.material) = materials;
+            close(MethodB::new(&p, &Blank::Solid, 10e3)?.mesh_n_per_m2 / full.mesh_n_per_m2, 2.0 / 3.0, 1e-12);
+        }
         assert!(MethodB::new(&p, &Blank::Solid, 0.0).is_err());
         Ok(())
     }

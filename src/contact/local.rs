@@ -55,9 +55,7 @@ impl LocalModel {
         match self {
             LocalModel::CenterlineDepth(_) | LocalModel::Foundation { .. } => 0.0,
             LocalModel::HalfSpace => {
-                let material = pair.material();
-                let radius = relative_radius_m(pair, pair.pitch_point_m());
-                let line = LineContact::new(material.youngs_modulus_pa, material.poissons_ratio, radius, [0.0; 2]);
+                let line = line_contact(pair, pair.pitch_point_m(), [0.0; 2]);
                 let band = 2.0 * line.half_width_m(2.0 * force_n / pair.mean_contact_length_m());
                 LENGTH_PER_BAND * band * pair.base_helix_angle_rad.cos()
             }
@@ -80,8 +78,6 @@ impl LocalContacts {
         lines: &[std::ops::Range<usize>],
         coupling: &mut Vec<Vec<f64>>,
     ) {
-        let material = pair.material();
-        let (e, nu) = (material.youngs_modulus_pa, material.poissons_ratio);
         let cos = pair.base_helix_angle_rad.cos();
         let (start, end) = (pair.path_start_m, pair.path_end_m);
         let length = points.iter().filter(|p| p.zone == 1).map(|p| p.width_m).sum::<f64>() / cos;
@@ -93,7 +89,7 @@ impl LocalContacts {
                 LocalModel::CenterlineDepth(depths) => interpolated(depths, (x - start) / (end - start)),
                 LocalModel::HalfSpace | LocalModel::Foundation { .. } => [0.0; 2],
             };
-            let line = LineContact::new(e, nu, relative_radius_m(pair, x), depths_m);
+            let line = line_contact(pair, x, depths_m);
             let indentation = match *model {
                 LocalModel::CenterlineDepth(_) => Indentation::PlaneStrain,
                 LocalModel::HalfSpace => Indentation::HalfSpace { length_m: p.width_m / cos },
@@ -123,8 +119,13 @@ impl LocalContacts {
     }
 }
 
+/// Contact of both flanks at roll coordinate `x_m`, with the depths to which the indentation of pinion and gear is counted.
+pub fn line_contact(pair: &Pair, x_m: f64, depths_m: [f64; 2]) -> LineContact {
+    LineContact::new([&pair.pinion.material, &pair.gear.material], relative_radius_m(pair, x_m), depths_m)
+}
+
 /// Relative radius of curvature in the normal section at roll coordinate `x_m`.
-pub fn relative_radius_m(pair: &Pair, x_m: f64) -> f64 {
+fn relative_radius_m(pair: &Pair, x_m: f64) -> f64 {
     let cos = pair.base_helix_angle_rad.cos();
     let radius = x_m * (pair.line_of_action_m - x_m) / pair.line_of_action_m / cos;
     radius.max(SMALLEST_RADIUS * pair.spec.normal_module_m)

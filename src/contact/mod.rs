@@ -18,6 +18,7 @@
 mod annulus;
 mod body;
 mod bulk;
+mod coast;
 mod compliance;
 mod curve;
 mod cycle;
@@ -45,6 +46,7 @@ mod spline;
 mod system;
 mod tooth;
 
+pub use coast::solve_coast_halves;
 pub use compliance::Compliance;
 pub use cycle::{EntryDeflection, Extent, FlankMap, HalfCycle, MESH_IN_PHASE, harmonics};
 pub use equivalent::equivalent_stiffness;

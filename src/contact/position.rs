@@ -120,7 +120,7 @@ impl<'a> Solver<'a> {
         {
             return width_m;
         }
-        let stiffness = PAIR_STIFFNESS * self.pair.material().youngs_modulus_pa * self.pair.spec.face_width_m;
+        let stiffness = PAIR_STIFFNESS * self.pair.reduced_youngs_modulus_pa() * self.pair.spec.face_width_m;
         let gap_m = force_bt_n / stiffness;
         let (mut low, mut high) = (0.0, CORNER_REACH * self.pair.base_pitch_m);
         for _ in 0..12 {
@@ -200,7 +200,7 @@ impl<'a> Solver<'a> {
             corner_gap_m = 1.01 * (free_m + highest_m);
         };
         self.assemble(phase, force_bt_n / cos);
-        let stiffness = PAIR_STIFFNESS * self.pair.material().youngs_modulus_pa * self.pair.spec.face_width_m;
+        let stiffness = PAIR_STIFFNESS * self.pair.reduced_youngs_modulus_pa() * self.pair.spec.face_width_m;
         let mut expected_force = stiffness * highest_m;
         let mut samples = vec![(0.0, 0.0); approaches_m.len()];
         self.start.clear();

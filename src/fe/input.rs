@@ -79,10 +79,10 @@ impl FlankInput {
             dedendum: spec.dedendum,
             fillet_radius: spec.fillet_radius,
             tip_radius_m: member.tip_radius_m,
-            face_width_m: pair.spec.face_width_m,
+            face_width_m: member.face_width_m,
             hold_radius_m,
-            youngs_modulus_pa: pair.spec.material.youngs_modulus_pa,
-            poissons_ratio: pair.spec.material.poissons_ratio,
+            youngs_modulus_pa: member.material.youngs_modulus_pa,
+            poissons_ratio: member.material.poissons_ratio,
             offsets,
         };
         FlankInput { key, member: member.clone(), base_helix_angle_rad: pair.base_helix_angle_rad }

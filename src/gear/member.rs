@@ -1,7 +1,7 @@
 //! One member of the pair with its derived geometry.
 
 use super::involute::roll_length_m;
-use super::spec::{GearSpec, Material};
+use super::spec::{GearSpec, Material, PairSpec};
 use super::tooth::{Cutter, ToothForm};
 
 /// One member with its derived geometry (ISO 21771). Lengths in m, angles in rad.
@@ -16,6 +16,9 @@ pub struct Member {
     /// Where fillet and involute join.
     pub root_form_radius_m: f64,
     pub bore_radius_m: f64,
+    pub material: Material,
+    /// Face width of one half of this member: the common one of the pair, or more.
+    pub face_width_m: f64,
     /// Half tooth angle at the base circle, psi_b.
     pub base_half_angle_rad: f64,
     /// Least profile shift coefficient that the rack cuts without undercut.
@@ -25,7 +28,7 @@ pub struct Member {
 }
 
 impl Member {
-    pub(super) fn new(cutter: &Cutter, spec: &GearSpec) -> Member {
+    pub(super) fn new(cutter: &Cutter, spec: &GearSpec, pair: &PairSpec) -> Member {
         let form = ToothForm::new(cutter);
         let r = cutter.reference_radius_m();
         Member {
@@ -37,6 +40,8 @@ impl Member {
             root_radius_m: form.root_radius_m(),
             root_form_radius_m: form.join_radius_m(),
             bore_radius_m: spec.bore_radius_m,
+            material: spec.material.unwrap_or(pair.material),
+            face_width_m: spec.face_width_m.unwrap_or(pair.face_width_m),
             base_half_angle_rad: form.base_half_angle_rad(),
             undercut_profile_shift: cutter.undercut_limit(),
             helix_angle_rad: cutter.helix_angle_rad,
@@ -98,14 +103,14 @@ impl Member {
 
     /// Mass of the whole member, both halves: two discs of the face width from the bore to the reference circle. The hub in
     /// the gap between the halves is not counted.
-    pub fn mass_kg(&self, material: &Material, face_width_m: f64) -> f64 {
+    pub fn mass_kg(&self) -> f64 {
         let (r, bore) = (self.reference_radius_m, self.bore_radius_m);
-        material.density_kg_m3 * 2.0 * face_width_m * std::f64::consts::PI * (r - bore) * (r + bore)
+        self.material.density_kg_m3 * 2.0 * self.face_width_m * std::f64::consts::PI * (r - bore) * (r + bore)
     }
 
     /// Polar moment of inertia about the axis of the same two discs.
-    pub fn inertia_kg_m2(&self, material: &Material, face_width_m: f64) -> f64 {
+    pub fn inertia_kg_m2(&self) -> f64 {
         let (r, bore) = (self.reference_radius_m, self.bore_radius_m);
-        0.5 * self.mass_kg(material, face_width_m) * (r * r + bore * bore)
+        0.5 * self.mass_kg() * (r * r + bore * bore)
     }
 }

@@ -60,9 +60,12 @@ impl Pair {
     pub fn initial_gap_m(&self, half: Half, x_m: f64, y_m: f64) -> f64 {
         let b = self.spec.face_width_m;
         let i = half.index();
-        let pinion = self.spec.pinion.flanks[i].removed_m(self.pinion.tip_roll_m() - x_m, y_m, b);
-        let gear_roll = self.line_of_action_m - x_m;
-        let gear = self.spec.gear.flanks[i].removed_m(self.gear.tip_roll_m() - gear_roll, y_m, b);
+        // Stations of a wider member are counted from its own inner end.
+        let [pinion_y_m, gear_y_m] = [&self.pinion, &self.gear].map(|member| y_m + 0.5 * (member.face_width_m - b));
+        let pinion_to_tip_m = self.pinion.tip_roll_m() - x_m;
+        let pinion = self.spec.pinion.flanks[i].removed_m(pinion_to_tip_m, pinion_y_m, self.pinion.face_width_m);
+        let gear_to_tip_m = self.gear.tip_roll_m() - (self.line_of_action_m - x_m);
+        let gear = self.spec.gear.flanks[i].removed_m(gear_to_tip_m, gear_y_m, self.gear.face_width_m);
         pinion + gear + self.assembly_gap_m(half, y_m)
     }
 

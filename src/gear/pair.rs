@@ -3,7 +3,7 @@
 use super::feasibility::Findings;
 use super::involute::{inv, inverse_inv};
 use super::member::Member;
-use super::spec::{GearSpec, Infeasibility, Material, PairSpec, Rotation, Warning};
+use super::spec::{GearSpec, Infeasibility, PairSpec, Rotation, Warning};
 use super::tooth::Cutter;
 
 /// A feasible pair: every length of the engagement is known and finite.
@@ -58,8 +58,8 @@ impl Pair {
         if cutters.iter().any(|cutter| cutter.root_radius_m() <= 0.0) {
             return Err(findings.reasons);
         }
-        let pinion = Member::new(&cutters[0], &spec.pinion);
-        let gear = Member::new(&cutters[1], &spec.gear);
+        let pinion = Member::new(&cutters[0], &spec.pinion, spec);
+        let gear = Member::new(&cutters[1], &spec.gear, spec);
         for (side, member) in SIDES.into_iter().zip([&pinion, &gear]) {
             findings.check_member(side, member, spec);
         }
@@ -83,8 +83,10 @@ impl Pair {
         if findings.reasons.is_empty() { Ok((pair, findings.warnings)) } else { Err(findings.reasons) }
     }
 
-    pub fn material(&self) -> &Material {
-        &self.spec.material
+    /// Young's modulus that stands for both members where one number has to: E_red = 2 E1 E2 / (E1 + E2), ISO 6336-1:2019.
+    pub fn reduced_youngs_modulus_pa(&self) -> f64 {
+        let [one, other] = [&self.pinion, &self.gear].map(|member| member.material.youngs_modulus_pa);
+        if one == other { one } else { 2.0 * one * other / (one + other) }
     }
 
     /// Transverse plus overlap ratio of the unloaded pair.

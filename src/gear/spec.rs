@@ -32,7 +32,17 @@ pub enum Rotation {
     ApexTrailing,
 }
 
-/// Linear-elastic material of both gears.
+impl Rotation {
+    /// The other direction of rotation of the same gears.
+    pub fn reversed(self) -> Rotation {
+        match self {
+            Rotation::ApexLeading => Rotation::ApexTrailing,
+            Rotation::ApexTrailing => Rotation::ApexLeading,
+        }
+    }
+}
+
+/// Linear-elastic, isotropic material.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     pub youngs_modulus_pa: f64,
@@ -43,6 +53,12 @@ pub struct Material {
 impl Material {
     /// Steel: the defaults of the job document.
     pub const STEEL: Material = Material { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 };
+
+    /// Plane-strain compliance (1-ν²)/E. Those of both bodies add up to 1/E* of their contact (Hertz; Johnson, Contact
+    /// Mechanics, 1985, equation 4.2c).
+    pub fn plane_strain_compliance_per_pa(&self) -> f64 {
+        (1.0 - self.poissons_ratio * self.poissons_ratio) / self.youngs_modulus_pa
+    }
 }
 
 /// Course of a tip relief over its roll length.
@@ -105,8 +121,15 @@ pub struct GearSpec {
     pub tip_alteration: f64,
     /// Radius of the bore.
     pub bore_radius_m: f64,
-    /// Modifications of the left and the right half.
+    /// Material of this member; the pair's when `None`.
+    pub material: Option<Material>,
+    /// Face width of one half of this member; the pair's when `None`. At least the pair's: what stands out on both sides
+    /// alike bears nothing.
+    pub face_width_m: Option<f64>,
+    /// Modifications of the left and the right half: of the flanks in contact while the pinion drives.
     pub flanks: [FlankModification; 2],
+    /// Modifications of the other flanks, in contact while the pinion is driven; as `flanks` when `None`.
+    pub coast_flanks: Option<[FlankModification; 2]>,
 }
 
 impl GearSpec {
@@ -120,7 +143,10 @@ impl GearSpec {
             fillet_radius: 0.38,
             tip_alteration: 0.0,
             bore_radius_m: 0.0,
+            material: None,
+            face_width_m: None,
             flanks: [FlankModification::NONE; 2],
+            coast_flanks: None,
         }
     }
 }
@@ -151,12 +177,13 @@ pub struct PairSpec {
     /// Pressure angle in the normal section.
     pub normal_pressure_angle_rad: f64,
     pub helix_angle_rad: f64,
-    /// Face width of one half.
+    /// Face width of one half that both members have in common: where the teeth bear.
     pub face_width_m: f64,
-    /// Gap between the halves.
+    /// Gap between the halves of the common face width.
     pub gap_width_m: f64,
     /// Working centre distance; derived from the profile shifts when `None`.
     pub center_distance_m: Option<f64>,
+    /// Material of each member that names none of its own.
     pub material: Material,
     pub rotation: Rotation,
     pub pinion: GearSpec,

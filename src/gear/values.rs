@@ -1,7 +1,7 @@
 //! Ranges of the stated values in which the formulas of this room hold.
 
 use super::feasibility::{Findings, MM, UM};
-use super::spec::{FlankModification, GearSpec, PairSpec};
+use super::spec::{FlankModification, GearSpec, Material, PairSpec};
 
 impl Findings {
     /// A stated value outside `[low, high]`; not a number is outside.
@@ -29,10 +29,7 @@ impl Findings {
         if let Some(a) = spec.center_distance_m {
             self.range("center_distance_mm", a * MM, [1e-3, 1e6], "mm");
         }
-        let material = &spec.material;
-        self.range("material/youngs_modulus_gpa", material.youngs_modulus_pa * 1e-9, [0.01, 2000.0], "GPa");
-        self.range("material/poissons_ratio", material.poissons_ratio, [0.0, 0.499], "1");
-        self.range("material/density_kg_m3", material.density_kg_m3, [1.0, 50_000.0], "kg/m3");
+        self.check_material("material", &spec.material);
         let assembly = &spec.assembly;
         for (name, value) in [
             ("center_distance_error_um", assembly.center_distance_error_m),
@@ -47,6 +44,13 @@ impl Findings {
         }
     }
 
+    fn check_material(&mut self, at: &str, material: &Material) {
+        let of = |name: &str| format!("{at}/{name}");
+        self.range(&of("youngs_modulus_gpa"), material.youngs_modulus_pa * 1e-9, [0.01, 2000.0], "GPa");
+        self.range(&of("poissons_ratio"), material.poissons_ratio, [0.0, 0.499], "1");
+        self.range(&of("density_kg_m3"), material.density_kg_m3, [1.0, 50_000.0], "kg/m3");
+    }
+
     fn check_gear_values(&mut self, side: &str, gear: &GearSpec, spec: &PairSpec) {
         let at = |name: &str| format!("{side}/{name}");
         self.range(&at("teeth"), f64::from(gear.teeth), [5.0, 1000.0], "1");
@@ -56,8 +60,16 @@ impl Findings {
         self.range(&at("fillet_radius"), gear.fillet_radius, [0.0, 2.0], "m_n");
         self.range(&at("tip_alteration"), gear.tip_alteration, [-5.0, 5.0], "m_n");
         self.range(&at("bore_diameter_mm"), gear.bore_radius_m * 2.0 * MM, [0.0, 1e5], "mm");
-        let half_width_mm = 0.5 * spec.face_width_m * MM;
-        for FlankModification { tip_relief, lead_crowning_m, helix_slope_m, end_relief } in &gear.flanks {
+        if let Some(material) = &gear.material {
+            self.check_material(&at("material"), material);
+        }
+        let width_m = gear.face_width_m.unwrap_or(spec.face_width_m);
+        // What both halves stand out towards the middle has to find room in the gap.
+        let widest_m = spec.face_width_m + spec.gap_width_m;
+        self.range(&at("face_width_mm"), width_m * MM, [spec.face_width_m * MM, widest_m * MM * (1.0 + 1e-12)], "mm");
+        let half_width_mm = 0.5 * width_m.max(spec.face_width_m) * MM;
+        let flanks = gear.flanks.iter().chain(gear.coast_flanks.iter().flatten());
+        for FlankModification { tip_relief, lead_crowning_m, helix_slope_m, end_relief } in flanks {
             self.range(&at("tip_relief/amount_um"), tip_relief.amount_m * UM, [0.0, 1e4], "um");
             self.range(&at("tip_relief/length_mm"), tip_relief.length_m * MM, [0.0, 1e4], "mm");
             self.range(&at("lead_crowning_um"), lead_crowning_m * UM, [-1e4, 1e4], "um");

@@ -78,14 +78,29 @@ fn of_object(schema: &Value) -> BoxedStrategy<Value> {
 fn reconcile(document: &mut Value) {
     let is_sweep = document["kind"] == "sweep";
     axes(document, is_sweep);
+    // What a gear is wider than the design finds room in the gap.
+    let of = |name: &str, default: f64| document["design"][name].as_f64().unwrap_or(default);
+    let widest_mm = of("face_width_mm", 0.5) + of("gap_width_mm", 30.0);
     for gear in ["pinion", "gear"] {
         let gear = &mut document["design"][gear];
+        if let Some(width_mm) = gear["face_width_mm"].as_f64() {
+            gear["face_width_mm"] = json!(width_mm.min(widest_mm));
+        }
         // Mating halves have opposite hands; left out, they do.
         gear.as_object_mut().map(|gear| gear.remove("left_half_hand"));
         reliefs(gear);
         for half in ["left", "right"] {
             if gear[half].is_object() {
                 reliefs(&mut gear[half]);
+            }
+        }
+        if gear["coast"].is_object() {
+            let coast = &mut gear["coast"];
+            reliefs(coast);
+            for half in ["left", "right"] {
+                if coast[half].is_object() {
+                    reliefs(&mut coast[half]);
+                }
             }
         }
     }

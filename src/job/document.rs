@@ -113,6 +113,26 @@ pub struct Gear {
     pub bore_diameter_mm: Option<f64>,
     pub mass_kg: Option<f64>,
     pub inertia_kg_m2: Option<f64>,
+    /// Face width of one half of this gear; the design's when null.
+    pub face_width_mm: Option<f64>,
+    /// Material of this gear where it differs from the design's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub material: Option<Material>,
+    #[serde(flatten)]
+    pub flank: Flank,
+    /// Modifications of one half where they differ from those of both.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left: Option<Flank>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub right: Option<Flank>,
+    /// Modifications of the other flanks, those in contact under negative torque, where they differ.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coast: Option<Coast>,
+}
+
+/// Flank modifications of the flanks that are in contact while the pinion is driven.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Coast {
     #[serde(flatten)]
     pub flank: Flank,
     /// Modifications of one half where they differ from those of both.
@@ -352,6 +372,9 @@ pub enum Integrator {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Axis {
     pub pointer: String,
+    /// Further inputs that take the same value.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub also: Vec<String>,
     #[serde(flatten)]
     pub points: AxisPoints,
 }
@@ -371,6 +394,11 @@ pub enum Spacing {
 }
 
 impl Axis {
+    /// Every input that takes the axis' value.
+    pub fn pointers(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(&self.pointer).chain(&self.also).map(String::as_str)
+    }
+
     pub fn len(&self) -> usize {
         match &self.points {
             AxisPoints::Range { points, .. } => *points as usize,

@@ -102,6 +102,11 @@ pub struct Geometry {
     pub base_helix_angle_deg: f64,
     pub transverse_base_pitch_mm: f64,
     pub path_of_contact_mm: f64,
+    /// Face width of one half that both gears have in common, and the gap between those of the halves.
+    #[serde(default)]
+    pub face_width_mm: Option<f64>,
+    #[serde(default)]
+    pub gap_width_mm: Option<f64>,
     pub pinion: GearGeometry,
     pub gear: GearGeometry,
 }
@@ -116,6 +121,9 @@ pub struct GearGeometry {
     pub root_form_diameter_mm: f64,
     pub tip_thickness_normal_mm: f64,
     pub bore_diameter_mm: f64,
+    /// Face width of one half of this gear.
+    #[serde(default)]
+    pub face_width_mm: Option<f64>,
     pub mass_kg: f64,
     pub inertia_kg_m2: f64,
 }
@@ -128,6 +136,8 @@ pub struct Mesh {
     pub stiffness_min_n_per_um: f64,
     pub stiffness_max_n_per_um: f64,
     pub secant_stiffness_mean_n_per_um: f64,
+    /// Loaded transmission error: displacement of the flanks in contact along the transverse base tangent, in the sense of the mesh displacement s:
+    /// positive where the pinion's drive flanks carry (the pinion leads), negative where its coast flanks do (negative torque).
     pub transmission_error_mean_um: f64,
     pub transmission_error_pp_um: f64,
     pub load_share_at_mesh_in: Option<f64>,
@@ -141,7 +151,7 @@ pub struct Mesh {
     pub max_contact_pressure_mpa: Option<f64>,
     pub pairs_in_contact_min: Option<u32>,
     pub pairs_in_contact_max: Option<u32>,
-    /// Transverse base-tangent force of one half.
+    /// Transverse base-tangent force of one half; negative, as the axial force, under negative torque.
     pub force_n: f64,
     pub axial_force_n: PerHalf,
     /// Axial position that the floating pinion takes, mean over the mesh period.
@@ -190,13 +200,14 @@ pub struct Convergence {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct MeshCurve {
-    /// Position in the mesh period, 0 to 1; 0 is the theoretical start of contact of a pair.
+    /// Position in the mesh period, 0 to 1; 0 is the theoretical start of contact of a pair's drive flanks. Under negative torque the curves are
+    /// those of the coast flanks at the same positions of the pinion.
     pub phase: Vec<f64>,
     pub stiffness_n_per_um: Vec<f64>,
     pub transmission_error_um: Vec<f64>,
     /// Share of the load of one pair over its whole path, one list per half solved.
     pub load_share: Vec<Vec<f64>>,
-    /// Base pitches since the theoretical start of contact of the pair, for `load_share`.
+    /// Base pitches since the theoretical start of contact of the pair (of its flanks in contact), for `load_share`.
     pub load_share_phase: Vec<f64>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub flank: Option<FlankLoad>,
@@ -221,7 +232,9 @@ pub struct ContactForceTable {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct FlankLoad {
+    /// Distance from the inner end of the common face width.
     pub face_mm: Vec<f64>,
+    /// Roll length of the pinion's flank in contact.
     pub roll_mm: Vec<f64>,
     pub line_load_n_per_mm: Vec<Vec<f64>>,
 }
@@ -464,6 +477,9 @@ pub struct CampbellCrossing {
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct SweepAxis {
     pub pointer: String,
+    /// Further inputs that take the same values.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub also: Vec<String>,
     pub values: Vec<f64>,
 }
 

@@ -143,7 +143,7 @@ mod tests {
     use crate::job::result::PerHalf;
 
     fn axis(values: &[f64]) -> Axis {
-        Axis { pointer: "/x".into(), points: AxisPoints::Values { values: values.to_vec() } }
+        Axis { pointer: "/x".into(), also: Vec::new(), points: AxisPoints::Values { values: values.to_vec() } }
     }
 
     fn line(rms: &[f64]) -> Vec<SweepPoint> {

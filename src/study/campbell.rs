@@ -22,9 +22,11 @@ pub fn run(
     surroundings: &Surroundings,
     memo: &MeshMemo,
 ) -> Result<Vec<Campbell>, SolveError> {
-    let Some(at) = sweep.axes.iter().position(|axis| axis.pointer == SPEED) else { return Ok(Vec::new()) };
+    let Some(at) = sweep.axes.iter().position(|axis| axis.pointers().any(|pointer| pointer == SPEED)) else {
+        return Ok(Vec::new());
+    };
     let speed = &sweep.axes[at];
-    let other = sweep.axes.iter().find(|axis| axis.pointer != SPEED);
+    let other = sweep.axes.get(1 - at);
     let quiet = Surroundings { progress: &|_, _| {}, ..*surroundings };
     let mut found = Vec::new();
     for index in 0..other.map_or(1, Axis::len) {

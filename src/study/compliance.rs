@@ -5,7 +5,7 @@ use super::mesh::ContactCase;
 use super::{SolveError, Stage, Surroundings};
 use crate::contact::Compliance;
 use crate::fe::{FeError, FlankFlexibility, FlankInput};
-use crate::gear::{FlankModification, Pair};
+use crate::gear::{FlankModification, Pair, Rotation};
 use crate::job::document::Fidelity;
 use crate::watch::Watch;
 use std::collections::HashMap;
@@ -89,7 +89,10 @@ pub fn bare(case: &ContactCase) -> crate::gear::PairSpec {
     let mut spec = *case.spec;
     for gear in [&mut spec.pinion, &mut spec.gear] {
         gear.flanks = [FlankModification::NONE; 2];
+        gear.coast_flanks = None;
     }
+    // Drive and coast flanks of the same teeth share it.
+    spec.rotation = Rotation::ApexLeading;
     spec.assembly.in_plane_misalignment_m = 0.0;
     spec.assembly.out_of_plane_misalignment_m = 0.0;
     spec.assembly.apex_offset_m = 0.0;

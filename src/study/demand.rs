@@ -56,7 +56,8 @@ pub fn demand(document: &JobDocument, threads: usize) -> Demand {
         }
         Kind::Mesh | Kind::Sweep => 0.0,
     };
-    let over_design = is_sweep && document.axes.iter().any(|axis| axis.pointer.starts_with("/design"));
+    let over_design =
+        is_sweep && document.axes.iter().flat_map(Axis::pointers).any(|pointer| pointer.starts_with("/design"));
     let gears_at_once = if over_design { threads.min(document.sweep_points()).max(1) } else { 1 };
     let row_bytes = if document.record.is_empty() { ROW_BYTES } else { RECORDED_ROW_BYTES };
     Demand {
@@ -90,9 +91,12 @@ fn finite_elements_mib(document: &JobDocument) -> f64 {
 
 /// Face width of the widest point, mm.
 fn widest(document: &JobDocument) -> f64 {
-    let swept = document.axes.iter().filter(|axis| axis.pointer == "/design/face_width_mm");
+    let is_width = |pointer: &str| pointer.starts_with("/design") && pointer.ends_with("/face_width_mm");
+    let swept = document.axes.iter().filter(|axis| axis.pointers().any(is_width));
     let values = swept.flat_map(|axis: &Axis| (0..axis.len()).map(|index| axis.value(index)));
-    values.fold(document.design.face_width_mm, f64::max)
+    let design = &document.design;
+    let own = [design.pinion.face_width_mm, design.gear.face_width_mm].into_iter().flatten();
+    values.chain(own).fold(design.face_width_mm, f64::max)
 }
 
 #[cfg(test)]

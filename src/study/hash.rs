@@ -20,9 +20,9 @@ pub fn mesh_hash(case: &ContactCase) -> String {
     hash("mesh", case)
 }
 
-/// Hash of the contact's force over approach and phase: of the same things as [`mesh_hash`].
-pub fn force_hash(case: &ContactCase) -> String {
-    hash("mesh-force", case)
+/// Hash of the contact's force over approach and phase, on the flanks that carry the torque or on the `idle` ones: of the same things as [`mesh_hash`].
+pub fn force_hash(case: &ContactCase, idle: bool) -> String {
+    hash("mesh-force", &(case, idle))
 }
 
 /// Hash of the teeth's compliance: what [`mesh_hash`] depends on without load, modifications and misalignments.

@@ -47,6 +47,14 @@ pub fn run(
     }
 }
 
+fn not_calculated(why: &dyn std::fmt::Display) -> Warning {
+    Warning {
+        code: "impact-not-calculated".to_owned(),
+        pointer: "/model/impact".to_owned(),
+        detail: format!("{why}; mesh and response are without a mesh-in impact"),
+    }
+}
+
 fn calculated(
     prepared: &Prepared,
     plane: &MotionPlane,
@@ -56,6 +64,15 @@ fn calculated(
     shift: f64,
     warnings: &mut Vec<Warning>,
 ) -> ImpactStage {
+    if prepared.half_force_n <= 0.0 {
+        let why = if prepared.half_force_n < 0.0 {
+            "the torque is negative: the gear drives, and pairs enter the mesh at the pinion's tip corner, which the impact of the gear's tip corner does not cover"
+        } else {
+            "the torque is 0 N m: no pair in mesh is deflected"
+        };
+        warnings.push(not_calculated(&why));
+        return ImpactStage { summary: None, pulses: [None, None] };
+    }
     let [pinion_kg_m2, gear_kg_m2] = prepared.inertia_kg_m2.map(|inertia| inertia / 2.0);
     let solve = |half: Half| {
         let state = &mesh.entry[half.index()];
@@ -73,11 +90,7 @@ fn calculated(
         (Ok(left), Ok(right)) => (left, right),
         (Err(error), _) | (_, Err(error)) => {
             // The contact itself is solved: it is not thrown away for an impact that its model does not cover.
-            warnings.push(Warning {
-                code: "impact-not-calculated".to_owned(),
-                pointer: "/model/impact".to_owned(),
-                detail: format!("{error}; mesh and response are without a mesh-in impact"),
-            });
+            warnings.push(not_calculated(&error));
             return ImpactStage { summary: None, pulses: [None, None] };
         }
     };

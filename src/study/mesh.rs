@@ -63,7 +63,7 @@ impl EntryState {
 #[derive(Debug, Serialize)]
 pub struct ContactCase<'a> {
     pub spec: &'a PairSpec,
-    torque_nm: f64,
+    pub torque_nm: f64,
     half_stagger: f64,
     pub fidelity: Fidelity,
     pub line_stiffness_n_per_m2: f64,
@@ -80,7 +80,7 @@ impl<'a> ContactCase<'a> {
     pub fn new(document: &JobDocument, ltca: &Ltca, prepared: &'a Prepared) -> Self {
         Self {
             spec: &prepared.pair.spec,
-            torque_nm: document.operation.pinion_torque_nm,
+            torque_nm: prepared.contact_torque_nm,
             half_stagger: document.design.half_stagger,
             fidelity: ltca.fidelity,
             line_stiffness_n_per_m2: match ltca.fidelity {
@@ -165,7 +165,7 @@ pub fn run(
             }
             Ok((stage, reused))
         }
-        MeshStiffness::Iso6336 => Ok((iso6336(document, prepared, plane)?, Vec::new())),
+        MeshStiffness::Iso6336 => Ok((iso6336(prepared, plane)?, Vec::new())),
         MeshStiffness::Given(given) => {
             let stiffness = given_stiffness(given);
             let curve = |phase: f64| stiffness.at(phase) / plane.stiffness_factor;
@@ -210,8 +210,8 @@ fn solve_contact(
     let progress = |fraction: f64| (surroundings.progress)(Stage::Mesh, found.done + (1.0 - found.done) * fraction);
     let watch = Watch::new(&progress, surroundings.canceled);
     let (torque_nm, stagger) = (case.torque_nm, case.half_stagger);
-    contact::solve_pair_of_halves(pair, torque_nm, stagger, &found.compliance, &case.settings, watch)
-        .map_err(contact_failed)
+    let solve = if torque_nm < 0.0 { contact::solve_coast_halves } else { contact::solve_pair_of_halves };
+    solve(pair, torque_nm.abs(), stagger, &found.compliance, &case.settings, watch).map_err(contact_failed)
 }
 
 pub fn contact_failed(error: ContactError) -> SolveError {
@@ -231,6 +231,9 @@ fn contact_code(error: &ContactError) -> &'static str {
 
 fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane: &MotionPlane) -> MeshStage {
     let [left, right] = &contact.halves;
+    // Along s, which is negative where the coast flanks carry.
+    let sign = if prepared.half_force_n < 0.0 { -1.0 } else { 1.0 };
+    let loaded = if prepared.half_force_n == 0.0 { 0.0 } else { sign };
     let both = |of: &dyn Fn(&HalfCycle) -> f64| 0.5 * (of(left) + of(right));
     let most = |of: &dyn Fn(&HalfCycle) -> f64| of(left).max(of(right));
     let transmission_error = contact::Extent::of(&contact.transmission_error_m);
@@ -238,7 +241,7 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
     let curve = |half: &HalfCycle, shift: &dyn Fn(usize) -> f64| MeshCurve {
         phase: left.phase.clone(),
         stiffness_n_per_um: half.stiffness_n_per_m.iter().map(|k| k * 1e-6).collect(),
-        transmission_error_um: (0..left.phase.len()).map(|i| shift(i) * 1e6).collect(),
+        transmission_error_um: (0..left.phase.len()).map(|i| sign * shift(i) * 1e6).collect(),
         load_share: vec![half.load_share.clone()],
         load_share_phase: half.load_share_phase.clone(),
         flank: Some(flank_load(half)),
@@ -248,7 +251,7 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
         stiffness_min_n_per_um: left.stiffness.min.min(right.stiffness.min) * 1e-6,
         stiffness_max_n_per_um: most(&|half| half.stiffness.max) * 1e-6,
         secant_stiffness_mean_n_per_um: both(&|half| half.secant_stiffness.mean) * 1e-6,
-        transmission_error_mean_um: transmission_error.mean * 1e6,
+        transmission_error_mean_um: sign * transmission_error.mean * 1e6,
         transmission_error_pp_um: (transmission_error.max - transmission_error.min) * 1e6,
         load_share_at_mesh_in: Some(both(&|half| half.load_share_at_mesh_in)),
         loaded_contact_ratio: Some(both(&|half| half.loaded_contact_ratio)),
@@ -262,9 +265,9 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
         pairs_in_contact_min: pairs().min(),
         pairs_in_contact_max: pairs().max(),
         force_n: prepared.half_force_n,
-        axial_force_n: PerHalf { left: contact.axial_force_n[0], right: contact.axial_force_n[1] },
+        axial_force_n: PerHalf { left: loaded * contact.axial_force_n[0], right: loaded * contact.axial_force_n[1] },
         pinion_axial_shift_um: contact.axial_shift_m.iter().sum::<f64>() / contact.axial_shift_m.len() as f64 * 1e6,
-        apex_sensitivity: Some(apex_sensitivity(contact, prepared)),
+        apex_sensitivity: (loaded != 0.0).then(|| apex_sensitivity(contact, prepared)),
         convergence: Some(Convergence {
             positions: left.positions.max(right.positions) as u32,
             position_error_percent: left
@@ -352,12 +355,16 @@ fn flank_load(half: &HalfCycle) -> FlankLoad {
     }
 }
 
-fn iso6336(document: &JobDocument, prepared: &Prepared, plane: &MotionPlane) -> Result<MeshStage, SolveError> {
+fn iso6336(prepared: &Prepared, plane: &MotionPlane) -> Result<MeshStage, SolveError> {
     let pair = &prepared.pair;
-    let tangential_n = document.operation.pinion_torque_nm / 2.0 / pair.pinion.reference_radius_m;
+    let tangential_n = prepared.contact_torque_nm.abs() / 2.0 / pair.pinion.reference_radius_m;
     let method = MethodB::new(pair, &Blank::Solid, tangential_n)
         .map_err(|error| SolveError::failed(Stage::Mesh, "iso6336-failed", &error))?;
-    let curve = |phase: f64| method.at_n_per_m(pair, foot_m(pair, phase));
+    let coast = (prepared.contact_torque_nm < 0.0).then(|| pair.coast());
+    let curve = |phase: f64| match &coast {
+        None => method.at_n_per_m(pair, foot_m(pair, phase)),
+        Some(coast) => method.at_n_per_m(coast, foot_m(coast, pair.coast_phase(phase))),
+    };
     let mut stage = closed_form("iso6336", prepared, curve);
     let samples = stage.summary.curve.stiffness_n_per_um.iter().map(|k| k * 1e6 * plane.stiffness_factor).collect();
     let stiffness = Stiffness::Samples { values_n_per_m: samples };

@@ -20,14 +20,20 @@ pub struct MeshForces {
     pub summary: ContactForceTable,
 }
 
-/// Tables of one half, or of both where they differ, from the job's memory, the store, or solved.
-pub fn tables(
+/// Accuracy of the table of the flanks that carry no load, over that of the others: they are met only after the whole play.
+const IDLE_FLANKS: f64 = 10.0;
+/// The loosest accuracy of a table.
+const LOOSEST: f64 = 0.05;
+
+/// Tables of one half, or of both where they differ, of the flanks that carry the torque or of the others; from the job's memory, the store, or solved.
+fn tables(
     case: &ContactCase,
     pair: &Pair,
+    flanks: Flanks,
     surroundings: &Surroundings,
     memo: &MeshMemo,
 ) -> Result<Arc<Vec<ForceTable>>, SolveError> {
-    let key = force_hash(case);
+    let key = force_hash(case, flanks.are_idle);
     if let Some(tables) = memo.forces.get(&key) {
         return Ok(tables);
     }
@@ -39,11 +45,15 @@ pub fn tables(
             let found = compliance::find(case, pair, surroundings, &memo.compliances)?;
             let quiet = |_: f64| {};
             let watch = Watch::new(&quiet, surroundings.canceled);
-            let force_n = case.half_force_n(pair);
-            let halves: &[Half] = if same_gaps(pair) { &[Half::Left] } else { &Half::BOTH };
+            let force_n = case.half_force_n(pair).abs();
+            let mut settings = case.settings;
+            if flanks.are_idle {
+                settings.accuracy = (IDLE_FLANKS * settings.accuracy).min(LOOSEST);
+            }
+            let halves: &[Half] = if same_gaps(flanks.pair) { &[Half::Left] } else { &Half::BOTH };
             let tables: Result<Vec<_>, _> = halves
                 .iter()
-                .map(|&half| ForceTable::new(pair, half, force_n, &found.compliance, &case.settings, watch))
+                .map(|&half| ForceTable::new(flanks.pair, half, force_n, &found.compliance, &settings, watch))
                 .collect();
             let tables = tables.map_err(contact_failed)?;
             surroundings.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&tables).unwrap_or_default());
@@ -53,6 +63,14 @@ pub fn tables(
     let tables = Arc::new(tables);
     memo.forces.put(key, tables.clone());
     Ok(tables)
+}
+
+/// The flanks on one side of the teeth, as the drive flanks of a pair.
+#[derive(Clone, Copy)]
+struct Flanks<'a> {
+    pair: &'a Pair,
+    /// They do not carry the torque.
+    are_idle: bool,
 }
 
 /// The forces of both halves in the equations' coordinates.
@@ -66,18 +84,35 @@ pub fn run(
     surroundings: &Surroundings,
     memo: &MeshMemo,
 ) -> Result<MeshForces, SolveError> {
-    let tables = tables(case, pair, surroundings, memo)?;
-    let force = |table: &ForceTable| {
-        let knots = table.phase.clone();
-        let driving = flank_force(table, &knots, plane, |phase| (phase, 1.0));
-        let turn = coast_phase_sum(pair);
-        let back = flank_force(table, &knots, plane, |phase| (turn - phase, -1.0));
+    let coast = pair.coast();
+    let driven = case.torque_nm < 0.0;
+    let (working, idle) = if driven { (&coast, pair) } else { (pair, &coast) };
+    let loaded = tables(case, pair, Flanks { pair: working, are_idle: false }, surroundings, memo)?;
+    let unloaded = if same_flanks(working, idle) {
+        loaded.clone()
+    } else {
+        tables(case, pair, Flanks { pair: idle, are_idle: true }, surroundings, memo)?
+    };
+    let of_half = |tables: &'_ Arc<Vec<ForceTable>>, half: usize| half.min(tables.len() - 1);
+    let force = |half: usize| {
+        let (loaded_table, unloaded_table) = (&loaded[of_half(&loaded, half)], &unloaded[of_half(&unloaded, half)]);
+        // Phases of the coast flanks fall as those of the equations grow.
+        let mut knots = loaded_table.phase.clone();
+        if driven {
+            knots = knots.into_iter().map(|phase| pair.coast_phase(phase)).collect();
+            knots.sort_by(f64::total_cmp);
+        }
+        let (of_driving, of_coast) =
+            if driven { (unloaded_table, loaded_table) } else { (loaded_table, unloaded_table) };
+        let driving = flank_force(of_driving, &knots, plane, |phase| (phase, 1.0));
+        let back = flank_force(of_coast, &knots, plane, |phase| (pair.coast_phase(phase), -1.0));
         ContactForce::new(knots, [&driving, &back])
             .map(Arc::new)
             .map_err(|error| SolveError::failed(Stage::Mesh, "contact-failed", &error))
     };
-    let forces: Vec<Arc<ContactForce>> = tables.iter().map(force).collect::<Result<_, _>>()?;
-    let most = |of: &dyn Fn(&ForceTable) -> f64| tables.iter().map(of).fold(0.0f64, f64::max);
+    let left = force(0)?;
+    let right = if loaded.len() == 1 && unloaded.len() == 1 { left.clone() } else { force(1)? };
+    let most = |of: &dyn Fn(&ForceTable) -> f64| loaded.iter().map(of).fold(0.0f64, f64::max);
     let top = |table: &ForceTable| {
         let row = table.force_n.last();
         row.into_iter().flatten().copied().fold(f64::INFINITY, f64::min)
@@ -86,10 +121,28 @@ pub fn run(
         levels: most(&|table| (table.level_m.len() - 1) as f64) as u32,
         phases: most(&|table| table.phase.len() as f64) as u32,
         error_percent: 100.0 * most(&|table| table.error),
-        largest_force_n: tables.iter().map(top).fold(f64::INFINITY, f64::min),
+        largest_force_n: loaded.iter().map(top).fold(f64::INFINITY, f64::min),
     };
-    let last = forces.len() - 1;
-    Ok(MeshForces { forces: [forces[0].clone(), forces[last].clone()], summary })
+    Ok(MeshForces { forces: [left, right], summary })
+}
+
+/// Whether both sides of the teeth meet the same gaps on their ways through the mesh (sampled on a grid finer than any modification needs).
+fn same_flanks(one: &Pair, other: &Pair) -> bool {
+    const GRID: usize = 16;
+    let (length_m, width_m) = (one.path_end_m - one.path_start_m, one.spec.face_width_m);
+    let gap = |pair: &Pair, half: Half, i: usize, j: usize| {
+        let entry_m = width_m * j as f64 / GRID as f64;
+        // entry_m is its own inverse.
+        pair.initial_gap_m(half, pair.path_start_m + length_m * i as f64 / GRID as f64, pair.entry_m(entry_m))
+    };
+    Half::BOTH.into_iter().all(|half| {
+        (0..=GRID).all(|i| {
+            (0..=GRID).all(|j| {
+                let (a, b) = (gap(one, half, i, j), gap(other, half, i, j));
+                (a - b).abs() <= 1e-12 * (1e-6 + a.abs())
+            })
+        })
+    })
 }
 
 /// A flank's force at `knots`, along s of the plane in use. `place` gives the phase of the table at a phase of the equations, and the sign with which it
@@ -131,14 +184,4 @@ fn flank_force(
         free_m: at(&table.free_m).into_iter().map(|free| free.map(|v| v / force_factor)).collect(),
         nodes,
     }
-}
-
-/// Sum of the phases of the driving flanks' and of the back flanks' contact, from the symmetry of the pinion's tooth.
-///
-/// The flanks of one tooth touch at the roll lengths x and x' with x + x' = 2 r_b1 (α_wt + ψ_b1), ψ_b1 half the angle of the tooth at the base circle; the back
-/// flanks' contact is that of the mirrored pair run backwards, whose lines enter at the other end of the face.
-fn coast_phase_sum(pair: &Pair) -> f64 {
-    let both = 2.0 * pair.pinion.base_radius_m * (pair.working_pressure_angle_rad + pair.pinion.base_half_angle_rad);
-    let lines = pair.spec.face_width_m * pair.base_helix_angle_rad.tan();
-    (both - 2.0 * pair.path_start_m + lines) / pair.base_pitch_m
 }

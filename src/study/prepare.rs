@@ -22,17 +22,21 @@ pub struct Prepared {
     pub supports: Supports,
     pub mesh_frequency_hz: f64,
     pub pinion_speed_rad_s: f64,
-    /// Base-tangent force of one half, T/2 / r_b1.
+    /// Base-tangent force of one half, T/2 / r_b1; negative on the coast flanks.
     pub half_force_n: f64,
+    /// Torque for which the contact is solved: that of the document, or a light one where it is zero.
+    pub contact_torque_nm: f64,
 }
+
+/// Line load for which the contact is solved where the torque is zero, N/m of face width: 1 N/mm, about a hundredth of a micrometre to a
+/// tenth of deflection.
+const LIGHT_LINE_LOAD_N_PER_M: f64 = 1e3;
 
 /// Derives everything about the gear that costs no solving.
 ///
 /// # Errors
-/// [`DocumentError::Invalid`] with every reason why the gear cannot exist; [`DocumentError::Unsupported`] for what this
-/// version does not compute.
+/// [`DocumentError::Invalid`] with every reason why the gear cannot exist.
 pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
-    supported(document)?;
     let mut warnings = Vec::new();
     let spec = pair_spec(document, &mut warnings);
     let (pair, pair_warnings) =
@@ -43,10 +47,20 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
     let supports = supports::used(&document.design.supports, &pair);
     warnings.extend(supports::assumed(document, &supports));
     let design = &document.design;
-    let [pinion_disc, gear_disc] = [&pair.pinion, &pair.gear].map(|member| {
-        let (material, width_m) = (pair.material(), pair.spec.face_width_m);
-        (member.mass_kg(material, width_m), member.inertia_kg_m2(material, width_m))
-    });
+    let [pinion_disc, gear_disc] = [&pair.pinion, &pair.gear].map(|member| (member.mass_kg(), member.inertia_kg_m2()));
+    let torque_nm = document.operation.pinion_torque_nm;
+    let mut contact_torque_nm = torque_nm;
+    if torque_nm == 0.0 && !matches!(document.model.mesh_stiffness, doc::MeshStiffness::Given(_)) {
+        contact_torque_nm = 2.0 * LIGHT_LINE_LOAD_N_PER_M * pair.spec.face_width_m * pair.pinion.base_radius_m;
+        warnings.push(Warning {
+            code: "no-load".to_owned(),
+            pointer: "/operation/pinion_torque_nm".to_owned(),
+            detail: format!(
+                "is 0 N m: nothing is loaded and the gears are at rest between their flanks; the mesh is that of a light load of {contact_torque_nm:.3} N m, assumed ({} N/mm of face width)",
+                LIGHT_LINE_LOAD_N_PER_M * 1e-3
+            ),
+        });
+    }
     let speed_rad_s = document.operation.pinion_speed_rpm * std::f64::consts::TAU / 60.0;
     Ok(Prepared {
         mass_kg: [design.pinion.mass_kg.unwrap_or(pinion_disc.0), design.gear.mass_kg.unwrap_or(gear_disc.0)],
@@ -57,32 +71,27 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
         supports,
         mesh_frequency_hz: document.operation.pinion_speed_rpm / 60.0 * f64::from(pair.pinion.teeth),
         pinion_speed_rad_s: speed_rad_s,
-        half_force_n: document.operation.pinion_torque_nm / 2.0 / pair.pinion.base_radius_m,
+        half_force_n: torque_nm / 2.0 / pair.pinion.base_radius_m,
+        contact_torque_nm,
         pair,
         warnings,
     })
-}
-
-fn supported(document: &JobDocument) -> Result<(), DocumentError> {
-    let mut unsupported = Vec::new();
-    let mut refuse = |pointer: &str, detail: &str| unsupported.push(Violation::new(pointer, "unsupported", detail));
-    let given = matches!(document.model.mesh_stiffness, doc::MeshStiffness::Given(_));
-    if !given && document.operation.pinion_torque_nm <= 0.0 {
-        let detail = "is zero or negative; the contact analysis needs a driving torque above 0 N m (a given mesh stiffness does not)";
-        refuse("/operation/pinion_torque_nm", detail);
-    }
-    let calculated = matches!(document.model.impact, doc::Impact::CornerContact(_) | doc::Impact::Zhou2008(_));
-    if calculated && document.operation.pinion_torque_nm <= 0.0 && given {
-        let detail = "is zero or negative; the corner-contact impact needs a driving torque above 0 N m (a given impact, or none, does not)";
-        refuse("/operation/pinion_torque_nm", detail);
-    }
-    if unsupported.is_empty() { Ok(()) } else { Err(DocumentError::Unsupported(unsupported)) }
 }
 
 fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
     let design = &document.design;
     let helix_angle_rad = design.helix_angle_deg.to_radians();
     let pressure_angle_rad = design.pressure_angle_deg.to_radians();
+    // The common part of both faces bears; the halves' middles stand where the design puts them.
+    let common_mm = [&design.pinion, &design.gear]
+        .map(|gear| gear.face_width_mm.unwrap_or(design.face_width_mm))
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    let gap_mm = if common_mm == design.face_width_mm {
+        design.gap_width_mm
+    } else {
+        design.gap_width_mm + design.face_width_mm - common_mm
+    };
     PairSpec {
         normal_module_m: design.normal_module_mm * 1e-3,
         normal_pressure_angle_rad: match design.pressure_angle_plane {
@@ -90,14 +99,10 @@ fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
             PressureAnglePlane::Transverse => (pressure_angle_rad.tan() * helix_angle_rad.cos()).atan(),
         },
         helix_angle_rad,
-        face_width_m: design.face_width_mm * 1e-3,
-        gap_width_m: design.gap_width_mm * 1e-3,
+        face_width_m: common_mm * 1e-3,
+        gap_width_m: gap_mm * 1e-3,
         center_distance_m: design.center_distance_mm.map(|mm| mm * 1e-3),
-        material: gear::Material {
-            youngs_modulus_pa: design.material.youngs_modulus_gpa * 1e9,
-            poissons_ratio: design.material.poissons_ratio,
-            density_kg_m3: design.material.density_kg_m3,
-        },
+        material: material(&design.material),
         rotation: document.operation.rotation,
         pinion: gear_spec(design, &design.pinion, "/design/pinion", warnings),
         gear: gear_spec(design, &design.gear, "/design/gear", warnings),
@@ -123,7 +128,9 @@ fn gear_spec(design: &doc::Design, gear: &doc::Gear, pointer: &str, warnings: &m
         });
         assumed_mm
     });
-    let both = &gear.flank;
+    let flanks = |both: &doc::Flank, [left, right]: [&Option<doc::Flank>; 2]| {
+        [left.as_ref().unwrap_or(both), right.as_ref().unwrap_or(both)].map(flank)
+    };
     gear::GearSpec {
         teeth: gear.teeth,
         profile_shift: gear.profile_shift,
@@ -132,7 +139,18 @@ fn gear_spec(design: &doc::Design, gear: &doc::Gear, pointer: &str, warnings: &m
         fillet_radius: gear.fillet_radius,
         tip_alteration: gear.tip_alteration,
         bore_radius_m: bore_diameter_mm * 0.5e-3,
-        flanks: [gear.left.as_ref().unwrap_or(both), gear.right.as_ref().unwrap_or(both)].map(flank),
+        material: gear.material.as_ref().map(material),
+        face_width_m: Some(gear.face_width_mm.unwrap_or(design.face_width_mm) * 1e-3),
+        flanks: flanks(&gear.flank, [&gear.left, &gear.right]),
+        coast_flanks: gear.coast.as_ref().map(|coast| flanks(&coast.flank, [&coast.left, &coast.right])),
+    }
+}
+
+fn material(material: &doc::Material) -> gear::Material {
+    gear::Material {
+        youngs_modulus_pa: material.youngs_modulus_gpa * 1e9,
+        poissons_ratio: material.poissons_ratio,
+        density_kg_m3: material.density_kg_m3,
     }
 }
 
@@ -218,6 +236,7 @@ pub fn geometry(prepared: &Prepared) -> Geometry {
         root_form_diameter_mm: member.root_form_radius_m * 2e3,
         tip_thickness_normal_mm: member.normal_thickness_m(member.tip_radius_m) * 1e3,
         bore_diameter_mm: member.bore_radius_m * 2e3,
+        face_width_mm: Some(member.face_width_m * 1e3),
         mass_kg: prepared.mass_kg[index],
         inertia_kg_m2: prepared.inertia_kg_m2[index],
     };
@@ -233,6 +252,8 @@ pub fn geometry(prepared: &Prepared) -> Geometry {
         base_helix_angle_deg: pair.base_helix_angle_rad.to_degrees(),
         transverse_base_pitch_mm: pair.base_pitch_m * 1e3,
         path_of_contact_mm: (pair.path_end_m - pair.path_start_m) * 1e3,
+        face_width_mm: Some(pair.spec.face_width_m * 1e3),
+        gap_width_mm: Some(pair.spec.gap_width_m * 1e3),
         pinion: member(&pair.pinion, 0),
         gear: member(&pair.gear, 1),
     }

@@ -27,7 +27,7 @@ pub struct Solved {
 pub fn document(base: &Value, sweep: &JobDocument, values: &[f64]) -> Result<JobDocument, SolveError> {
     let mut value = base.clone();
     for (axis, number) in sweep.axes.iter().zip(values) {
-        set(&mut value, &axis.pointer, *number);
+        axis.pointers().for_each(|pointer| set(&mut value, pointer, *number));
     }
     parse_value(&value).map_err(SolveError::from)
 }

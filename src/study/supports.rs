@@ -29,7 +29,7 @@ pub fn used(supports: &doc::Supports, pair: &Pair) -> Supports {
     // Between the middles of the halves; the common face width lies in the middle of either gear's own.
     let length_m = middle_distance_m(pair);
     let [pinion, gear]: [BodyStiffness; 2] =
-        [&pair.pinion, &pair.gear].map(|member| member.body_stiffness(pair.material(), length_m));
+        [&pair.pinion, &pair.gear].map(|member| member.body_stiffness(&member.material, length_m));
     Supports {
         pinion_lateral_n_per_um: assumed(supports.pinion_lateral_n_per_um, lateral),
         gear_lateral_n_per_um: assumed(supports.gear_lateral_n_per_um, lateral),

@@ -50,6 +50,7 @@ pub fn run(
     };
     let axes = document.axes.iter().map(|axis| SweepAxis {
         pointer: axis.pointer.clone(),
+        also: axis.also.clone(),
         values: (0..axis.len()).map(|index| axis.value(index)).collect(),
     });
     let mut sweep = Sweep {

@@ -1,5 +1,8 @@
 //! Documents through the stages.
 
+mod members;
+mod sides;
+
 use super::*;
 use crate::job::parse_value;
 use crate::job::result::{Sweep, SweepPoint};

@@ -1,7 +1,9 @@
 //! Tests of the whole room on real pairs.
 
+mod coast;
 mod fidelities;
 mod invariants;
+mod members;
 mod published;
 mod reference_pair;
 mod robustness;

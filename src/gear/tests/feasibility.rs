@@ -83,7 +83,6 @@ fn fillet_interference_grows_with_the_addendum() {
 fn any_gear() -> impl Strategy<Value = GearSpec> {
     (5_u32..300, -1.5..2.0_f64, 0.3..1.8_f64, 0.5..2.2_f64, 0.0..0.6_f64, -0.3..0.1_f64, 0.0..0.1_f64).prop_map(
         |(teeth, profile_shift, addendum, dedendum, fillet_radius, tip_alteration, bore_radius_m)| GearSpec {
-            teeth,
             profile_shift,
             addendum,
             dedendum,
@@ -94,6 +93,7 @@ fn any_gear() -> impl Strategy<Value = GearSpec> {
                 tip_relief: TipRelief { amount_m: 1e-5, length_m: 3e-3, shape: ReliefShape::Linear },
                 ..FlankModification::NONE
             }; 2],
+            ..GearSpec::plain(teeth)
         },
     )
 }

@@ -1,5 +1,6 @@
 //! The geometry against published pairs, closed formulas and independent constructions.
 
+mod coast;
 mod corner;
 mod engagement;
 mod feasibility;

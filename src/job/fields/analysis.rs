@@ -9,8 +9,16 @@ pub(super) fn operation(object: Object) -> Operation {
     let operation = Operation {
         pinion_speed_rpm: object
             .number("pinion_speed_rpm", number(0.1, 200_000.0, "r/min", None, "Speed of the pinion.")),
-        pinion_torque_nm: object
-            .number("pinion_torque_nm", number(-1e7, 1e7, "N m", None, "Torque of the whole pinion (both halves).")),
+        pinion_torque_nm: object.number(
+            "pinion_torque_nm",
+            number(
+                -1e7,
+                1e7,
+                "N m",
+                None,
+                "Torque of the whole pinion (both halves); negative: the gear drives, on the coast flanks.",
+            ),
+        ),
         rotation: object.choice(
             "rotation",
             &[("apex_leading", Rotation::ApexLeading), ("apex_trailing", Rotation::ApexTrailing)],

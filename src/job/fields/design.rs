@@ -6,10 +6,11 @@ use crate::job::reader::Object;
 use crate::job::violation::Violation;
 
 pub(super) fn design(object: Object) -> Design {
+    let of_both = material(object.object("material", false, "Material of both gears."), &STEEL);
     let pinion_hand = Hand::Left;
-    let pinion = gear(object.object("pinion", true, "The driving gear."), pinion_hand);
+    let pinion = gear(object.object("pinion", true, "The driving gear."), pinion_hand, &of_both);
     let gear_hand = pinion.left_half_hand.opposite();
-    let gear = gear(object.object("gear", true, "The driven gear."), gear_hand);
+    let gear = gear(object.object("gear", true, "The driven gear."), gear_hand, &of_both);
     if pinion.left_half_hand == gear.left_half_hand {
         object.reading().violate(Violation::new(
             object.pointer_to("gear/left_half_hand"),
@@ -39,45 +40,80 @@ pub(super) fn design(object: Object) -> Design {
         ),
         backlash_um: object.number(
             "backlash_um",
-            number(0.0, 1000.0, "um", Some(2.0), "Total play along the direction of the mesh displacement s."),
+            number(0.0, 5000.0, "um", Some(2.0), "Total play along the direction of the mesh displacement s."),
         ),
         half_stagger: object.number(
             "half_stagger",
             number(0.0, 1.0, "1", Some(0.0), "Stagger of the right half as a fraction of the transverse pitch."),
         ),
-        material: material(object.object("material", false, "Material of both gears.")),
+        material: of_both,
         supports: supports(object.object("supports", false, "Shafts and bearings, per half.")),
         assembly: assembly(object.object("assembly", false, "Assembly errors.")),
         pinion,
         gear,
     };
+    widths(&object, &design);
     object.finish();
     design
 }
 
-fn material(object: Object) -> Material {
+/// What a gear is wider than the design on the side of the gap has to find room there.
+fn widths(object: &Object, design: &Design) {
+    let widest_mm = design.face_width_mm + design.gap_width_mm;
+    for (name, gear) in [("pinion", &design.pinion), ("gear", &design.gear)] {
+        if let Some(width_mm) = gear.face_width_mm.filter(|width_mm| *width_mm > widest_mm) {
+            let detail = format!(
+                "is {width_mm} mm; its halves, centred on halves of {} mm (face_width_mm) that stand {} mm apart (gap_width_mm), \
+                 would overlap above {widest_mm} mm",
+                design.face_width_mm, design.gap_width_mm
+            );
+            conflict(object, &format!("{name}/face_width_mm"), &detail);
+        }
+    }
+}
+
+const STEEL: Material = Material { youngs_modulus_gpa: 206.0, poissons_ratio: 0.3, density_kg_m3: 7850.0 };
+
+/// A material; what is left out comes from `base`.
+fn material(object: Object, base: &Material) -> Material {
     let material = Material {
-        youngs_modulus_gpa: object
-            .number("youngs_modulus_gpa", number(1.0, 1000.0, "GPa", Some(206.0), "Young's modulus.")),
-        poissons_ratio: object.number("poissons_ratio", number(0.0, 0.49, "1", Some(0.3), "Poisson's ratio.")),
-        density_kg_m3: object.number("density_kg_m3", number(100.0, 30_000.0, "kg/m3", Some(7850.0), "Density.")),
+        youngs_modulus_gpa: object.number(
+            "youngs_modulus_gpa",
+            number(1.0, 1000.0, "GPa", Some(base.youngs_modulus_gpa), "Young's modulus."),
+        ),
+        poissons_ratio: object
+            .number("poissons_ratio", number(0.0, 0.49, "1", Some(base.poissons_ratio), "Poisson's ratio.")),
+        density_kg_m3: object
+            .number("density_kg_m3", number(100.0, 30_000.0, "kg/m3", Some(base.density_kg_m3), "Density.")),
     };
     object.finish();
     material
 }
 
-fn gear(object: Object, default_hand: Hand) -> Gear {
+/// Flank modifications of one half of `object`, where it gives any: what is left out is that of both.
+fn half(object: &Object, name: &'static str, help: &'static str, both: &Flank) -> Option<Flank> {
+    object.optional_object(name, help).map(|half| {
+        let modification = flank(&half, Some(both));
+        half.finish();
+        modification
+    })
+}
+
+const LEFT: &str = "Flank modifications of the left half where they differ.";
+const RIGHT: &str = "Flank modifications of the right half where they differ.";
+
+fn gear(object: Object, default_hand: Hand, of_both: &Material) -> Gear {
     let default_word = if default_hand == Hand::Left { "left" } else { "right" };
     let flank = flank(&object, None);
-    let side = |name: &'static str, help| {
-        object.optional_object(name, help).map(|half| {
-            let modification = self::flank(&half, Some(&flank));
-            half.finish();
-            modification
-        })
-    };
-    let left = side("left", "Flank modifications of the left half where they differ.");
-    let right = side("right", "Flank modifications of the right half where they differ.");
+    let left = half(&object, "left", LEFT, &flank);
+    let right = half(&object, "right", RIGHT, &flank);
+    let coast_help = "Flank modifications of the other flanks, in contact under negative torque, where they differ.";
+    let coast = object.optional_object("coast", coast_help).map(|object| {
+        let flank = self::flank(&object, Some(&flank));
+        let (left, right) = (half(&object, "left", LEFT, &flank), half(&object, "right", RIGHT, &flank));
+        object.finish();
+        Coast { flank, left, right }
+    });
     let gear = Gear {
         teeth: object.integer("teeth", 5, 1000, None, "Number of teeth.") as u32,
         left_half_hand: object.choice(
@@ -123,9 +159,23 @@ fn gear(object: Object, default_hand: Hand) -> Gear {
                 "Moment of inertia of the whole gear; a solid disc of both halves when null.",
             ),
         ),
+        face_width_mm: object.optional_number(
+            "face_width_mm",
+            number(
+                0.5,
+                2000.0,
+                "mm",
+                None,
+                "Face width of one half of this gear; the design's when null. What both gears have in common, centred, bears.",
+            ),
+        ),
+        material: object
+            .optional_object("material", "Material of this gear where it differs.")
+            .map(|own| material(own, of_both)),
         flank,
         left,
         right,
+        coast,
     };
     object.finish();
     gear
@@ -253,11 +303,12 @@ fn assembly(object: Object) -> Assembly {
         center_distance_error_um: error("center_distance_error_um", "Added to the centre distance."),
         in_plane_misalignment_um: error(
             "in_plane_misalignment_um",
-            "Linear gap over the face width of one half, in the plane of action.",
+            "Linear gap over the face width of one half, in the plane of action of the drive flanks.",
         ),
         out_of_plane_misalignment_um: error(
             "out_of_plane_misalignment_um",
-            "Linear deviation over the face width of one half, out of the plane of action.",
+            "Linear deviation over the face width of one half, out of the plane of action of the drive flanks; positive turns the left half's \
+             outer end away from the gear.",
         ),
         apex_offset_um: error("apex_offset_um", "Axial offset between the apexes of pinion and gear."),
     };

@@ -5,6 +5,9 @@ use crate::job::document::*;
 use crate::job::reader::Object;
 use crate::job::violation::Violation;
 
+/// Most inputs that move with the first of an axis.
+const MAX_ALSO: usize = 16;
+
 pub(super) fn axes(root: &Object, kind: Kind) -> Vec<Axis> {
     let help = "sweep: one or two inputs to vary.";
     let Some(objects) = root.objects("axes", 1, 2, help) else {
@@ -28,6 +31,9 @@ pub(super) fn axes(root: &Object, kind: Kind) -> Vec<Axis> {
 fn axis(object: Object) -> Axis {
     let any = |help| number(-1e12, 1e12, "unit of the input", None, help);
     let pointer = object.required_text("pointer", 200, "JSON pointer of the input that varies.");
+    let also = object
+        .texts("also", MAX_ALSO, None, "JSON pointers of further inputs that take the axis' value.")
+        .unwrap_or_default();
     let from = object.optional_number("from", any("First value."));
     let to = object.optional_number("to", any("Last value."));
     let points = object.integer("points", 1, MAX_SWEEP_POINTS as u64, Some(50), "Number of values.") as u32;
@@ -64,7 +70,7 @@ fn axis(object: Object) -> Axis {
         }
     };
     object.finish();
-    Axis { pointer, points }
+    Axis { pointer, also, points }
 }
 
 pub(super) fn continuation(root: &Object, kind: Kind) -> Option<Continuation> {

@@ -49,6 +49,15 @@ const FLANKS: &[(&str, &str)] = &[
     ("Gear, right", "/design/gear/right"),
 ];
 
+const COAST: &[(&str, &str)] = &[("Pinion", "/design/pinion/coast"), ("Gear", "/design/gear/coast")];
+
+const COAST_FLANKS: &[(&str, &str)] = &[
+    ("Pinion, left", "/design/pinion/coast/left"),
+    ("Pinion, right", "/design/pinion/coast/right"),
+    ("Gear, left", "/design/gear/coast/left"),
+    ("Gear, right", "/design/gear/coast/right"),
+];
+
 const MODIFICATIONS: &[&str] = &["tip_relief", "lead_crowning_um", "helix_slope_um", "end_relief"];
 
 const fn pair(names: &'static [&'static str]) -> BlockPlan {
@@ -87,6 +96,11 @@ pub const GROUPS: &[GroupPlan] = &[
             ),
             pair(&["teeth", "bore_diameter_mm", "mass_kg", "inertia_kg_m2"]),
             block("Material of both", &["/design/material"]),
+            BlockPlan {
+                title: "Where the materials differ",
+                folded: true,
+                layout: LayoutPlan::Table { columns: PAIR, names: &["material"] },
+            },
         ],
     },
     GroupPlan {
@@ -101,7 +115,7 @@ pub const GROUPS: &[GroupPlan] = &[
                 "",
                 &["/design/helix_angle_deg", "/design/face_width_mm", "/design/gap_width_mm", "/design/half_stagger"],
             ),
-            pair(&["left_half_hand"]),
+            pair(&["left_half_hand", "face_width_mm"]),
         ],
     },
     GroupPlan {
@@ -127,6 +141,16 @@ pub const GROUPS: &[GroupPlan] = &[
                 title: "Where the halves differ",
                 folded: true,
                 layout: LayoutPlan::Table { columns: FLANKS, names: MODIFICATIONS },
+            },
+            BlockPlan {
+                title: "Coast flanks (negative torque), where they differ",
+                folded: true,
+                layout: LayoutPlan::Table { columns: COAST, names: MODIFICATIONS },
+            },
+            BlockPlan {
+                title: "Coast flanks, where the halves differ",
+                folded: true,
+                layout: LayoutPlan::Table { columns: COAST_FLANKS, names: MODIFICATIONS },
             },
         ],
     },
@@ -233,6 +257,14 @@ pub const CONDITIONS: &[Condition] = &[
 /// shown for them: it would be wrong as soon as the other field changes.
 pub const DERIVED: &[(&str, &str)] = &[
     ("/design/gear/left_half_hand", "opposite of the pinion's"),
+    ("/design/pinion/material", "as both gears"),
+    ("/design/gear/material", "as both gears"),
+    ("/design/pinion/coast/left", "as both halves"),
+    ("/design/pinion/coast/right", "as both halves"),
+    ("/design/gear/coast/left", "as both halves"),
+    ("/design/gear/coast/right", "as both halves"),
+    ("/design/pinion/coast", "as the drive flank"),
+    ("/design/gear/coast", "as the drive flank"),
     ("/design/pinion/left", "as both halves"),
     ("/design/pinion/right", "as both halves"),
     ("/design/gear/left", "as both halves"),

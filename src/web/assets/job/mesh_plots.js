@@ -94,7 +94,8 @@ export function flankPlot(mesh, geometry, input) {
   const left = mesh?.curve?.flank;
   if (!left?.line_load_n_per_mm?.length) return null;
   const right = mesh.right_curve?.flank ?? left;
-  const { face_width_mm: width, gap_width_mm: gap = 0 } = input?.design ?? { face_width_mm: left.face_mm.at(-1) + left.face_mm[0] };
+  const width = geometry?.face_width_mm ?? input?.design?.face_width_mm ?? left.face_mm.at(-1) + left.face_mm[0];
+  const gap = geometry?.gap_width_mm ?? input?.design?.gap_width_mm ?? 0;
   const most = Math.max(...[left, right].flatMap(({ line_load_n_per_mm: load }) => load.flat()));
   const place = (side, face) => side * (gap / 2 + face);
   const map = (side, flank, name) => {
@@ -130,9 +131,12 @@ function contactLines({ roll_mm: roll }, geometry, input, width, place) {
   const step = roll[1] - roll[0];
   const [start, end] = [roll[0] - step / 2, roll.at(-1) + step / 2];
   const slope = Math.tan((helix * Math.PI) / 180);
-  const entry = (face) => (input.operation.rotation === "apex_trailing" ? face : width - face);
+  // Coast flanks are the drive flanks of the mirrored pair, run backwards: the other rotation, and pairs enter where they left.
+  const coast = input.operation.pinion_torque_nm < 0;
+  const entry = (face) => ((input.operation.rotation === "apex_trailing") !== coast ? face : width - face);
   const lines = [];
-  for (let foot = start - width * slope; foot < end; foot += pitch) {
+  const lowest = start - width * slope;
+  for (let foot = coast ? end - Math.floor((end - lowest) / pitch) * pitch : lowest; foot < end; foot += pitch) {
     // Distances from the end where teeth leave at which the line lies on the path of contact.
     const from = slope > 0 ? Math.max(0, (start - foot) / slope) : 0;
     const to = slope > 0 ? Math.min(width, (end - foot) / slope) : width;

@@ -23,6 +23,7 @@ export function gearData({ geometry, input }) {
   const member = (letter, index, name, first, second, unit = "") => ({ symbol: [letter, index], name, pinion: finite(first), gear: finite(second), unit });
   const hand = (member) => design[member]?.left_half_hand ?? null;
   const both = (pick) => [pick(design.pinion ?? {}), pick(design.gear ?? {})];
+  const ownWidths = [pinion, gear].some((one) => one.face_width_mm && one.face_width_mm !== geometry.face_width_mm);
   return {
     pair: [
       pair("m", "n", "Normal module", mn, "mm"),
@@ -34,8 +35,8 @@ export function gearData({ geometry, input }) {
       pair("β", "b", "Base helix angle", geometry.base_helix_angle_deg, "°"),
       pair("u", "", "Gear ratio", ratio),
       pair("a", "", "Centre distance, working", a, "mm"),
-      pair("b", "", "Face width of a half", design.face_width_mm, "mm"),
-      pair("", "", "Gap between the halves", design.gap_width_mm, "mm"),
+      pair("b", "", "Face width of a half", geometry.face_width_mm ?? design.face_width_mm, "mm"),
+      pair("", "", "Gap between the halves", geometry.gap_width_mm ?? design.gap_width_mm, "mm"),
       pair("p", "bt", "Transverse base pitch", geometry.transverse_base_pitch_mm, "mm"),
       pair("p", "x", "Axial pitch", beta > 0 ? (PI * mn) / Math.sin(beta) : null, "mm"),
       pair("g", "α", "Length of the path of contact", geometry.path_of_contact_mm, "mm"),
@@ -59,6 +60,7 @@ export function gearData({ geometry, input }) {
       member("h*", "aP", "Addendum of the rack, modules", ...both((one) => one.addendum)),
       member("h*", "fP", "Dedendum of the rack, modules", ...both((one) => one.dedendum)),
       member("ρ*", "fP", "Root fillet radius of the rack, modules", ...both((one) => one.fillet_radius)),
+      ...(ownWidths ? [member("b", "", "Face width of a half of its own", pinion.face_width_mm, gear.face_width_mm, "mm")] : []),
       member("d", "i", "Bore diameter", pinion.bore_diameter_mm, gear.bore_diameter_mm, "mm"),
       member("n", "", "Speed", speed, speed && ratio ? speed / ratio : null, "r/min"),
       member("T", "", "Torque, both halves", operation.pinion_torque_nm, operation.pinion_torque_nm && ratio ? operation.pinion_torque_nm * ratio : null, "N·m"),
