@@ -3,6 +3,7 @@
 
 mod answer;
 mod axes;
+mod bounds;
 mod branches;
 mod campbell;
 mod check;

@@ -1,5 +1,6 @@
 //! From a document to physics in SI: the pair, its inertias, its operating point, and whether all of it can exist.
 
+use super::bounds;
 use crate::contact;
 use crate::gear::{self, Infeasibility, Pair, PairSpec, Warning};
 use crate::job::document::{self as doc, JobDocument, PressureAnglePlane};
@@ -42,7 +43,7 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
         (member.mass_kg(material, width_m), member.inertia_kg_m2(material, width_m))
     });
     let speed_rad_s = document.operation.pinion_speed_rpm * std::f64::consts::TAU / 60.0;
-    Ok(Prepared {
+    let prepared = Prepared {
         mass_kg: [design.pinion.mass_kg.unwrap_or(pinion_disc.0), design.gear.mass_kg.unwrap_or(gear_disc.0)],
         inertia_kg_m2: [
             design.pinion.inertia_kg_m2.unwrap_or(pinion_disc.1),
@@ -53,7 +54,9 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
         half_force_n: document.operation.pinion_torque_nm / 2.0 / pair.pinion.base_radius_m,
         pair,
         warnings,
-    })
+    };
+    let bounds = bounds::of_document(document, &prepared, [pinion_disc, gear_disc]);
+    Ok(Prepared { warnings: prepared.warnings.iter().cloned().chain(bounds).collect(), ..prepared })
 }
 
 fn supported(document: &JobDocument) -> Result<(), DocumentError> {
