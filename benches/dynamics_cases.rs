@@ -1,7 +1,7 @@
 //! The reference cases, for benches.
 
 use herringbone::dynamics::{
-    Couplings, HalfParameters, Harmonic, Impact, Parameters, Spring, Stiffness, equivalent_mass_kg,
+    Couplings, HalfParameters, Harmonic, Impact, ImpactActsOn, Parameters, Spring, Stiffness, equivalent_mass_kg,
     mesh_damping_n_s_per_m,
 };
 
@@ -46,6 +46,7 @@ fn parameters(torque_per_half_nm: f64, half_backlash_m: f64, damping_ratio: f64,
         helix_angle_rad: 24.43f64.to_radians(),
         half_backlash_m,
         damping_in_gap: true,
+        impact_acts_on: ImpactActsOn::Torsion,
         halves: [half.clone(), half],
         couplings: Couplings {
             pinion_axial: Spring::with_damping_ratio(3e8, 0.03, mp),

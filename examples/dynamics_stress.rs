@@ -14,8 +14,8 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use herringbone::dynamics::{
-    ContactForce, Couplings, DynamicsError, FlankForce, HalfParameters, Harmonic, Impact, Integrator, Parameters,
-    Spring, Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m,
+    ContactForce, Couplings, DynamicsError, FlankForce, HalfParameters, Harmonic, Impact, ImpactActsOn, Integrator,
+    Parameters, Spring, Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m,
 };
 use herringbone::response::{Analysis, Method, Response, solve};
 use herringbone::watch::Watch;
@@ -185,6 +185,7 @@ fn case(r: &mut Random, of: &Ranges) -> Case {
         helix_angle_rad,
         half_backlash_m,
         damping_in_gap,
+        impact_acts_on: ImpactActsOn::Torsion,
         halves: [half, right],
         couplings,
     };

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use herringbone::dynamics::{
-    Couplings, HalfParameters, Harmonic, Impact, Parameters, Spring, Stiffness, mesh_damping_n_s_per_m,
+    Couplings, HalfParameters, Harmonic, Impact, ImpactActsOn, Parameters, Spring, Stiffness, mesh_damping_n_s_per_m,
 };
 use serde::Deserialize;
 
@@ -149,6 +149,7 @@ impl Case {
             helix_angle_rad: m.helix_angle_deg.to_radians(),
             half_backlash_m: c.half_backlash_m,
             damping_in_gap: true,
+            impact_acts_on: ImpactActsOn::Torsion,
             halves: [half.clone(), half],
             couplings: Couplings {
                 pinion_axial: spring(m.pinion_axial_coupling_n_per_m, m.pinion_mass_kg),

@@ -21,7 +21,7 @@ fn half(halves: Option<PerHalf>, pick: fn(PerHalf) -> f64) -> Cell<'static> {
 }
 
 /// The numbers of a row, in the order of the table.
-pub const NUMBERS: [Column; 11] = [
+pub const NUMBERS: [Column; 13] = [
     ("mesh_circumferential_acceleration_rms_left_m_s2", |row| {
         half(row.mesh_circumferential_acceleration_rms_m_s2, |halves| halves.left)
     }),
@@ -41,6 +41,8 @@ pub const NUMBERS: [Column; 11] = [
     ("total_contact_ratio", |row| Cell::Number(row.total_contact_ratio)),
     ("loaded_contact_ratio", |row| Cell::Number(row.loaded_contact_ratio)),
     ("error_estimate", |row| Cell::Number(row.error_estimate)),
+    ("tooth_force_max_left_n", |row| half(row.tooth_force_max_n, |halves| halves.left)),
+    ("tooth_force_max_right_n", |row| half(row.tooth_force_max_n, |halves| halves.right)),
 ];
 
 /// The words of a row that stand at its end.

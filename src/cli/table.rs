@@ -46,6 +46,9 @@ pub fn write(out: &mut impl Write, result: &JobResult) -> Result<()> {
         if let Some(factor) = response.dynamic_factor {
             row("dynamic factor", factor, "")?;
         }
+        let force = &response.tooth_force_n;
+        row("largest tooth force, left", force.left.max_n, "N")?;
+        row("largest tooth force, right", force.right.max_n, "N")?;
         row("smallest mesh displacement", response.min_displacement_um, "um")?;
         writeln!(out, "{:<46} {}, {} contact ({})", "motion", response.regime, response.contact, response.method)?;
     }

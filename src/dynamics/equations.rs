@@ -9,7 +9,7 @@
 //! `Equations<12>` those of both halves. Time is scaled by a reference frequency: τ = ω_ref t; velocities are dx/dτ.
 
 use super::lanes::Real;
-use super::parameters::{Parameters, Spring};
+use super::parameters::{ImpactActsOn, Parameters, Spring};
 
 /// Coordinates per half, and their places.
 pub(crate) const PER_HALF: usize = 6;
@@ -82,6 +82,10 @@ pub(crate) struct Equations<const D: usize, R> {
     pub cos: R,
     /// Half the backlash, m.
     pub b: R,
+    /// What an impact of 1 N along the mesh is beside the load on the torsional equations, and as a normal force on all: 1 and 0, or 0
+    /// and 1/cosβ.
+    pub(super) impact_along: R,
+    pub(super) impact_normal: R,
     torsional: bool,
     /// D = 6 only: the other half moves as the mirror image (1) or as its opposite (−1, for variations).
     parity: f64,
@@ -95,6 +99,8 @@ impl<const D: usize> Equations<D, f64> {
             halves: [half(p, 0, omega_ref), half(p, 1, omega_ref)],
             cos: p.helix_angle_rad.cos(),
             b: p.half_backlash_m,
+            impact_along: if p.impact_acts_on == ImpactActsOn::Torsion { 1.0 } else { 0.0 },
+            impact_normal: if p.impact_acts_on == ImpactActsOn::Torsion { 0.0 } else { 1.0 / p.helix_angle_rad.cos() },
             torsional,
             parity: 1.0,
         }
@@ -146,6 +152,8 @@ impl<const D: usize, R: Real> Equations<D, R> {
             halves: [HalfEquations::default(); 2],
             cos: R::default(),
             b: R::default(),
+            impact_along: R::default(),
+            impact_normal: R::default(),
             torsional: false,
             parity: 1.0,
         }
@@ -159,6 +167,8 @@ impl<const D: usize, R: Real> Equations<D, R> {
         }
         self.cos.set(lane, one.cos);
         self.b.set(lane, one.b);
+        self.impact_along.set(lane, one.impact_along);
+        self.impact_normal.set(lane, one.impact_normal);
         self.torsional |= one.torsional;
         self.parity = one.parity;
         for (to, from) in self.halves.iter_mut().zip(&one.halves) {
@@ -206,7 +216,8 @@ impl<const D: usize, R: Real> Equations<D, R> {
         self.cos * (x[i + YP] - x[i + YG] + x[i + U]) + self.halves[j].sin * (x[i + ZP] - x[i + ZG])
     }
 
-    /// Scaled accelerations of one half given its normal mesh force and the other force along the mesh, T_p/R_p − F_s. Linear
+    /// Scaled accelerations of one half given its normal force on the teeth and the other force along the mesh, T_p/R_p − F_s (of an
+    /// impact that acts on all motions: T_p/R_p, F_s being part of the normal force). Linear
     /// and homogeneous, so it serves single Taylor coefficients and deviations too.
     #[inline(always)]
     pub(super) fn half_acceleration(&self, j: usize, x: &[R; D], v: &[R; D], force: R, along: R) -> [R; PER_HALF] {

@@ -73,7 +73,7 @@ impl Stiffness {
     }
 }
 
-/// Periodic force F_s on the two torsional equations of one half, N.
+/// Periodic force F_s along the mesh of one half in the transverse plane, N.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Impact {
@@ -93,6 +93,14 @@ impl Impact {
         match self {
             Impact::HalfSine { force_n, duration_mesh_periods, .. } => force_n * duration_mesh_periods * 2.0 / PI,
             Impact::Harmonics { .. } => 0.0,
+        }
+    }
+
+    /// Whether there is no force at any phase.
+    pub fn is_zero(&self) -> bool {
+        match self {
+            Impact::HalfSine { force_n, .. } => *force_n == 0.0,
+            Impact::Harmonics { harmonics } => harmonics.iter().all(|h| h.amplitude == 0.0),
         }
     }
 

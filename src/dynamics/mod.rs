@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The mesh forces act on y, z and θ, the impact F_s on the two torsional equations of its half only, as the source paper writes
-//! it. Damping in the gap and springs between the halves of a shaft are options. The plane in use (pitch: R pitch radius, β; base: R_b, β_b) is the caller's choice: it passes the radii and the angle.
+//! it, or on y, z and θ like a mesh force (an option). Damping in the gap and springs between the halves of a shaft are options. The plane in use (pitch: R pitch radius, β; base: R_b, β_b) is the caller's choice: it passes the radii and the angle.
 //!
 //! # How it was validated
 //! Three reference cases solved event-exact in 113-bit arithmetic (`tests/reference.rs`): states after 1, 5 and 20 mesh periods within
@@ -49,7 +49,9 @@ pub use excitation::{Harmonic, Impact, Stiffness};
 pub use integrate::{Integrator, Numerics};
 pub use modal::NaturalModes;
 pub use model::Contact;
-pub use parameters::{Couplings, HalfParameters, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m};
+pub use parameters::{
+    Couplings, HalfParameters, ImpactActsOn, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m,
+};
 pub use trajectory::{Reached, advance, advance_many};
 
 pub(crate) use convoy::{Passenger, carry, carry_one};

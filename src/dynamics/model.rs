@@ -182,8 +182,10 @@ impl<const D: usize> Model<D> {
         let mut a = [0.0; D];
         for j in 0..Self::HALVES {
             let force = self.mesh_force(j, (phase, inside), self.s(j, x), self.s(j, v));
-            let along = self.halves[j].load - self.excitations[j].impact.value(phase, inside);
-            a[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, x, v, force, along));
+            let impact = self.excitations[j].impact.value(phase, inside);
+            let along = self.halves[j].load - self.impact_along * impact;
+            let normal = force + self.impact_normal * impact;
+            a[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, x, v, normal, along));
         }
         a
     }
@@ -209,7 +211,35 @@ impl<const D: usize> Model<D> {
         out
     }
 
-    /// Coefficient `n` of the normal mesh force that moves the gear along y as the polynomials `rows` say.
+    /// Coefficient `n` of the whole normal force on the teeth of a half, mesh force and impact F_s/cosβ, N: what turns the gears as the
+    /// polynomials `rows` say, whatever law the mesh force has. Over a motion that repeats its mean is that of the load, T_p/(R_p cosβ),
+    /// as far as no torsional spring carries torque from half to half; over both halves together always.
+    pub fn tooth_force_behind(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
+        let n1 = (n + 1) as f64;
+        let free = self.half_acceleration(j, &rows[n], &rows[n + 1].map(|c| c * n1), 0.0, 0.0);
+        let a = rows[n + 2][j * PER_HALF + U] * n1 * (n1 + 1.0);
+        let load = if n == 0 { self.halves[j].load } else { 0.0 };
+        (load - (a - free[U]) / self.halves[j].inv_me) / self.cos
+    }
+
+    /// The part of the normal force that moves the gear along y and z which is the impact, as a cubic through four phases of a step: powers of
+    /// the step's fraction.
+    pub fn impact_in_normal(&self, j: usize, phase: f64, step: f64, inside: f64) -> [f64; 4] {
+        if self.impact_normal == 0.0 {
+            return [0.0; 4];
+        }
+        let at = |part: f64| self.impact_normal * self.excitations[j].impact.value(phase + part * step, inside);
+        let [y0, y1, y2, y3] = [at(0.0), at(1.0 / 3.0), at(2.0 / 3.0), at(1.0)];
+        [
+            y0,
+            -5.5 * y0 + 9.0 * y1 - 4.5 * y2 + y3,
+            9.0 * y0 - 22.5 * y1 + 18.0 * y2 - 4.5 * y3,
+            4.5 * (-y0 + 3.0 * y1 - 3.0 * y2 + y3),
+        ]
+    }
+
+    /// Coefficient `n` of the normal force (mesh force, and an impact that acts on all motions) that moves the gear along y as the
+    /// polynomials `rows` say.
     pub fn force_behind(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
         let n1 = (n + 1) as f64;
         let free = self.half_acceleration(j, &rows[n], &rows[n + 1].map(|c| c * n1), 0.0, 0.0);

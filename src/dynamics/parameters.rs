@@ -47,10 +47,22 @@ pub struct HalfParameters {
     pub contact_force: Option<Arc<ContactForce>>,
     /// c_m along s, N s/m; see [`mesh_damping_n_s_per_m`].
     pub mesh_damping_n_s_per_m: f64,
-    /// F_s on the two torsional equations.
+    /// F_s, along the mesh in the transverse plane; what it moves is said by [`Parameters::impact_acts_on`].
     pub impact: Option<Impact>,
     /// The excitations of this half come this fraction of a mesh period later than written (half stagger).
     pub phase_shift_mesh_periods: f64,
+}
+
+/// Which motions the mesh-in impact moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ImpactActsOn {
+    /// The two torsional equations of its half only, as the source paper prints it.
+    #[default]
+    Torsion,
+    /// All motions of its half, as a normal force on the tooth does: with F_s along the mesh in the transverse plane, F_y = F_s and
+    /// F_z = F_s tanβ_j beside the mesh force's.
+    All,
 }
 
 /// Springs and dampers between the two halves of a shaft.
@@ -81,6 +93,7 @@ pub struct Parameters {
     pub half_backlash_m: f64,
     /// True: the mesh damper acts always (the source's law). False: not while |s| ≤ b.
     pub damping_in_gap: bool,
+    pub impact_acts_on: ImpactActsOn,
     /// Left, right.
     pub halves: [HalfParameters; 2],
     pub couplings: Couplings,
@@ -119,8 +132,12 @@ impl Parameters {
     }
 
     /// Moves torque between the halves until the mean impacts no longer push the floating pinion along its screw motion:
-    /// the total stays. ΔT = R_p (mean F_s1 − mean F_s2)/2. Needed only when the impacts of the halves differ.
+    /// the total stays. ΔT = R_p (mean F_s1 − mean F_s2)/2. Needed only when the impacts of the halves differ, and act on torsion
+    /// alone: an impact that pushes the pinion along its axis too is balanced by the same torque that balances its mesh forces.
     pub fn balance_axially(&mut self) {
+        if self.impact_acts_on == ImpactActsOn::All {
+            return;
+        }
         let mean = |h: &HalfParameters| h.impact.as_ref().map_or(0.0, Impact::mean_n);
         let total = self.halves[0].pinion_torque_nm + self.halves[1].pinion_torque_nm;
         let moved = 0.5 * self.pinion_radius_m * (mean(&self.halves[0]) - mean(&self.halves[1]));

@@ -159,13 +159,16 @@ pub(crate) fn taylor<const D: usize, R: Real>(
             }
             force[j][n] = f;
             let mut along = zero;
+            let mut normal = f;
             if excitation.pushed[j] {
-                along -= loads * excitation.impact[j][n];
+                let push = loads * excitation.impact[j][n];
+                along -= equations.impact_along * push;
+                normal += equations.impact_normal * push;
             }
             if n == 0 {
                 along += loads * h.load;
             }
-            let a = equations.half_acceleration(j, x, &v, f, along);
+            let a = equations.half_acceleration(j, x, &v, normal, along);
             let i = j * PER_HALF;
             for c in 0..PER_HALF {
                 next[i + c] = a[c] * scale;

@@ -120,6 +120,12 @@ impl<const D: usize> RungeKutta<D> {
             let a = model.acceleration(phase, inside, &x, &v);
             numerics.force_evaluations += 1;
             self.quintic(model, (&state.x, &state.v, &k[0].1), (&x, &v, &a), h);
+            for j in 0..Model::<D>::HALVES {
+                let impact = model.impact_in_normal(j, state.phase, phase_step, inside);
+                for (n, part) in impact.into_iter().enumerate() {
+                    self.force[j][n] -= part / h.powi(n as i32);
+                }
+            }
             observer.segment(&Segment {
                 model,
                 period: state.period,

@@ -53,6 +53,9 @@ impl JobDocument {
     }
 }
 
+/// Play along s where none is given: what the source states.
+pub const DEFAULT_BACKLASH_UM: f64 = 2.0;
+
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Design {
     pub normal_module_mm: f64,
@@ -62,7 +65,8 @@ pub struct Design {
     pub face_width_mm: f64,
     pub gap_width_mm: f64,
     pub center_distance_mm: Option<f64>,
-    pub backlash_um: f64,
+    /// Total play along s; [`DEFAULT_BACKLASH_UM`] when null.
+    pub backlash_um: Option<f64>,
     pub half_stagger: f64,
     pub material: Material,
     pub pinion: Gear,
@@ -312,8 +316,39 @@ pub enum Impact {
     Given(GivenImpact),
 }
 
+impl Impact {
+    /// What the impact moves.
+    pub fn acts_on(&self) -> ActsOn {
+        match self {
+            Impact::CornerContact(corner) | Impact::Zhou2008(corner) => corner.acts_on,
+            Impact::Given(given) => given.acts_on,
+            Impact::None => ActsOn::Torsion,
+        }
+    }
+}
+
+/// Which motions the impact moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ActsOn {
+    /// The torsional equations only, as the source prints them.
+    Torsion,
+    /// Bending and axial motion too, as a normal force on the tooth does.
+    All,
+}
+
+impl ActsOn {
+    pub fn word(self) -> &'static str {
+        match self {
+            ActsOn::Torsion => "torsion",
+            ActsOn::All => "all",
+        }
+    }
+}
+
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CornerImpact {
+    pub acts_on: ActsOn,
     pub duration: ImpactDuration,
     /// Start of the pulse after the theoretical start of contact; when the pair enters (the corner contact) if null.
     pub start_mesh_periods: Option<f64>,
@@ -331,6 +366,7 @@ pub enum ImpactDuration {
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GivenImpact {
+    pub acts_on: ActsOn,
     pub force_n: f64,
     pub duration_mesh_periods: f64,
     pub start_mesh_periods: f64,

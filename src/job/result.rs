@@ -262,15 +262,32 @@ pub struct Impact {
     pub start_mesh_periods: f64,
     /// Which law excites the response: `corner_contact`, `zhou2008`, `none` or `given`.
     pub source: String,
+    /// Whether the pulse is put on the equations of motion; false: it is only reported.
+    #[serde(default = "always_applied")]
+    pub applied: bool,
+    /// What it moves: `torsion` or `all` (bending and axial motion too).
+    #[serde(default)]
+    pub acts_on: String,
+}
+
+/// Of results stored before impacts could be reported alone.
+fn always_applied() -> bool {
+    true
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
 pub struct Response {
     pub rms: Rms,
-    /// Null without torque.
+    /// Largest normal force on the teeth of a half (mesh force and applied impact) over the static one; null without torque. Never below 1.
     pub dynamic_factor: Option<f64>,
+    /// Normal force on the teeth of each half, impact included, along s of the plane in use.
+    #[serde(default)]
+    pub tooth_force_n: ToothForces,
+    /// How the motion repeats: `period-1`, `period-2`, …, `quasi-periodic`, `chaotic`; `not-settled` where the record ended before the
+    /// motion had settled, `unstable` where it grows without bound (its RMS values then mean nothing).
     pub regime: String,
+    /// `continuous`, `single-sided` (separation), `double-sided` (back flanks too), `apart` (no contact at all).
     pub contact: String,
     pub min_displacement_um: f64,
     pub natural_frequencies_hz: Vec<f64>,
@@ -279,6 +296,9 @@ pub struct Response {
     pub fraction_in_contact: f64,
     /// Whether the mesh damper acted in the gap (the printed law) or not.
     pub damping_in_gap: bool,
+    /// Total play along s in the equations.
+    #[serde(default)]
+    pub backlash_um: Option<f64>,
     pub plane: String,
     pub mesh_frequency_hz: f64,
     /// Mesh periods over which the means were taken.
@@ -298,7 +318,7 @@ pub struct Response {
     /// Modulus of the largest multiplier, as growth per mesh period; below 1 the motion is stable.
     #[serde(default)]
     pub floquet_modulus_per_mesh_period: Option<f64>,
-    /// Largest Lyapunov exponent of a motion that does not repeat; above 0.01 it is called chaotic.
+    /// Largest Lyapunov exponent of a motion that does not repeat; above 0.01 it is called chaotic. Of an unstable one its growth rate.
     #[serde(default)]
     pub lyapunov_per_mesh_period: Option<f64>,
     /// Share of the recorded time in which each half's teeth touch, on either flank.
@@ -315,6 +335,27 @@ pub struct Response {
     /// What each of `natural_frequencies_hz` is, in their order: undamped, contact closed, mean mesh stiffness.
     #[serde(default)]
     pub natural_modes: Vec<NaturalMode>,
+}
+
+/// Tooth force of each half, N, positive on driving flanks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct ToothForces {
+    pub left: ToothForce,
+    pub right: ToothForce,
+}
+
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "server", derive(utoipa::ToSchema))]
+pub struct ToothForce {
+    /// What the torque alone needs.
+    #[serde(rename = "static")]
+    pub static_n: f64,
+    /// Largest and smallest over the record, exact between its steps.
+    #[serde(rename = "max")]
+    pub max_n: f64,
+    #[serde(rename = "min")]
+    pub min_n: f64,
 }
 
 /// A natural mode and what it is made of.
@@ -500,6 +541,9 @@ pub struct SweepPoint {
     pub loaded_contact_ratio: Option<f64>,
     /// Estimated relative error of the RMS values.
     pub error_estimate: Option<f64>,
+    /// Largest normal force on the teeth of each half, impact included.
+    #[serde(default)]
+    pub tooth_force_max_n: Option<PerHalf>,
     /// Why this point has no response.
     pub error: Option<String>,
     /// With continuation: the direction that found the point, `up` or `down`.

@@ -73,6 +73,12 @@ pub enum Regime {
     QuasiPeriodic,
     #[serde(rename = "chaotic")]
     Chaotic,
+    /// The record ended before the motion did: what is left of its start still decays (or grows towards another motion).
+    #[serde(rename = "not-settled")]
+    NotSettled,
+    /// Grows without bound: the stiffness's fluctuation feeds the vibration more than the dampers take (parametric instability).
+    #[serde(rename = "unstable")]
+    Unstable,
 }
 
 /// What the teeth do over the recorded periods.
@@ -85,6 +91,18 @@ pub enum ContactState {
     SingleSided,
     /// They separate and reach the back flanks too.
     DoubleSided,
+    /// They never touch: a pair without load in the middle of its backlash.
+    Apart,
+}
+
+/// Normal force on the teeth of a half, N, positive on driving flanks.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ToothForce {
+    /// T_p/(R_p cosβ) of the half's torque.
+    pub static_n: f64,
+    /// Extremes over the record of everything that acts between the teeth: mesh force and, where one is applied, the impact.
+    pub max_n: f64,
+    pub min_n: f64,
 }
 
 /// A value of each half.
@@ -126,8 +144,11 @@ pub struct Summary {
     pub rms: Rms,
     /// Mean, RMS, minimum and maximum of every channel recorded as a series.
     pub statistics: BTreeMap<String, Statistics>,
-    /// Largest normal mesh force of either half over the static one, T_p/(R_p cosβ); None without torque.
+    /// Largest normal force on the teeth of either half (mesh force and impact) over the static one, T_p/(R_p cosβ); None without
+    /// torque. Never below 1: the mean of the tooth force is the static one over a motion that repeats, and a record of a motion on its way
+    /// there counts the load it goes to.
     pub dynamic_factor: Option<f64>,
+    pub tooth_force: Halves<ToothForce>,
     pub regime: Regime,
     /// Mesh periods after which the motion repeats, when it does.
     pub period_mesh_periods: Option<u64>,
@@ -147,7 +168,7 @@ pub struct Summary {
     /// All Floquet multipliers over one period of the motion, free motions apart, largest modulus first; only from the periodic
     /// method. With mirror-symmetric halves those against the symmetry are among them.
     pub floquet_multipliers: Option<Vec<Multiplier>>,
-    /// Largest Lyapunov exponent per mesh period, where the motion did not repeat.
+    /// Largest Lyapunov exponent per mesh period, where the motion did not repeat; of one that grows without bound its growth rate.
     pub lyapunov_per_mesh_period: Option<f64>,
     /// Where the true RMS values lie with a probability of 95 %, for a motion that does not repeat (see `confidence`); None for
     /// one that does, or when the record is too short to say.

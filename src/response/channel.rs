@@ -58,9 +58,16 @@ enum Source {
     NormalForce,
     TangentialForce,
     AxialForce,
+    ToothForce,
 }
 
-const SOURCES: [(&str, Source); 11] = [
+impl Source {
+    fn is_force(self) -> bool {
+        matches!(self, Source::NormalForce | Source::TangentialForce | Source::AxialForce | Source::ToothForce)
+    }
+}
+
+const SOURCES: [(&str, Source); 12] = [
     ("x", Source::X),
     ("s", Source::S),
     ("y_p", Source::Yp),
@@ -72,10 +79,12 @@ const SOURCES: [(&str, Source); 11] = [
     ("f_n", Source::NormalForce),
     ("f_y", Source::TangentialForce),
     ("f_z", Source::AxialForce),
+    ("tooth_force", Source::ToothForce),
 ];
 
 /// The name of a channel, understood. Names: `x_left` (mesh displacement along the circumference), `s_right` (along the tooth normal), `y_p_left`,
-/// `z_p_…`, `theta_p_…`, `y_g_…`, `z_g_…`, `theta_g_…`, each also with `v_` or `a_` in front; `f_n_…`, `f_y_…`, `f_z_…`.
+/// `z_p_…`, `theta_p_…`, `y_g_…`, `z_g_…`, `theta_g_…`, each also with `v_` or `a_` in front; `f_n_…`, `f_y_…`, `f_z_…` (mesh force);
+/// `tooth_force_…` (the whole normal force on the teeth: mesh force and impact).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ChannelId {
     source: Source,
@@ -104,6 +113,11 @@ impl ChannelId {
         Self { source: Source::NormalForce, derivative: 0, half }
     }
 
+    /// The normal force on the teeth of a half, impact included.
+    pub(super) fn tooth_force(half: u8) -> Self {
+        Self { source: Source::ToothForce, derivative: 0, half }
+    }
+
     /// Reads a name; None when there is no such channel.
     pub fn parse(name: &str) -> Option<Self> {
         Self::all().into_iter().find(|id| id.name() == name)
@@ -114,8 +128,7 @@ impl ChannelId {
         let mut out = Vec::new();
         for half in 0..2 {
             for (_, source) in SOURCES {
-                let force = matches!(source, Source::NormalForce | Source::TangentialForce | Source::AxialForce);
-                for derivative in 0..if force { 1 } else { 3 } {
+                for derivative in 0..if source.is_force() { 1 } else { 3 } {
                     out.push(Self { source, derivative, half });
                 }
             }
@@ -134,7 +147,7 @@ impl ChannelId {
         let linear = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
         let angular = [Quantity::Rotation, Quantity::AngularVelocity, Quantity::AngularAcceleration];
         match self.source {
-            Source::NormalForce | Source::TangentialForce | Source::AxialForce => Quantity::Force,
+            source if source.is_force() => Quantity::Force,
             Source::ThetaP | Source::ThetaG => angular[usize::from(self.derivative)],
             _ => linear[usize::from(self.derivative)],
         }
@@ -168,6 +181,7 @@ impl ChannelId {
             Source::NormalForce => return Probe::Force { half: j, factor: 1.0 },
             Source::TangentialForce => return Probe::Force { half: j, factor: model.cos },
             Source::AxialForce => return Probe::Force { half: j, factor: mirrored * h.sin },
+            Source::ToothForce => return Probe::ToothForce { half: j },
         }
         let factor = model.omega_ref.powi(i32::from(self.derivative));
         let places: Vec<usize> = (0..D).filter(|&c| row[c] != 0.0).collect();
@@ -180,6 +194,7 @@ impl ChannelId {
 pub(super) enum Probe<const D: usize> {
     Linear { row: [f64; D], places: Vec<usize>, derivative: usize },
     Force { half: usize, factor: f64 },
+    ToothForce { half: usize },
 }
 
 impl<const D: usize> Probe<D> {
@@ -208,6 +223,13 @@ impl<const D: usize> Probe<D> {
                 }
                 degree
             }
+            Probe::ToothForce { half } => {
+                let degree = segment.degree - 2;
+                for n in 0..=degree {
+                    out[n] = segment.model.tooth_force_behind(*half, n, segment.rows);
+                }
+                degree
+            }
         }
     }
 }
@@ -219,11 +241,11 @@ mod tests {
     #[test]
     fn every_name_is_understood_and_unique() {
         let all = ChannelId::all();
-        assert_eq!(all.len(), 2 * (8 * 3 + 3));
+        assert_eq!(all.len(), 2 * (8 * 3 + 4));
         for id in &all {
             assert_eq!(ChannelId::parse(&id.name()), Some(*id));
         }
-        for name in ["x_left", "a_x_right", "v_theta_g_left", "f_n_right", "s_left", "a_z_p_left"] {
+        for name in ["x_left", "a_x_right", "v_theta_g_left", "f_n_right", "tooth_force_left", "s_left", "a_z_p_left"] {
             assert!(ChannelId::parse(name).is_some(), "{name}");
         }
         assert!(ChannelId::parse("x_middle").is_none());

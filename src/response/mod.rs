@@ -13,6 +13,8 @@ mod recorder;
 mod recording;
 mod regime;
 mod report;
+mod rest;
+mod settling;
 mod solve;
 mod spectrum;
 mod statistics;
@@ -20,6 +22,7 @@ mod steady;
 
 pub use analysis::{
     Analysis, ContactState, Halves, Method, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals, Summary,
+    ToothForce,
 };
 pub use channel::{Channel, ChannelId, Quantity};
 pub use confidence::Interval;

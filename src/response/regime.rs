@@ -103,6 +103,17 @@ pub(super) fn lyapunov<const D: usize>(
     periods: u64,
     watch: &Watch<'_>,
 ) -> Result<f64, DynamicsError> {
+    lyapunov_seen(motion, variation_model, periods, watch, |_, _| ())
+}
+
+/// The same; `seen` is told the logarithm of the deviation's growth over each mesh period and the state at its end.
+pub(super) fn lyapunov_seen<const D: usize>(
+    motion: &mut Motion<'_, D>,
+    variation_model: &Model<D>,
+    periods: u64,
+    watch: &Watch<'_>,
+    mut seen: impl FnMut(f64, &State<D>),
+) -> Result<f64, DynamicsError> {
     let start = every_way(variation_model);
     let free = FreeMotions::new(variation_model)?;
     let mut variation = Variation::new(variation_model, vec![free.held(&start)], 1e-9);
@@ -116,6 +127,7 @@ pub(super) fn lyapunov<const D: usize>(
         if !(after > 0.0 && after.is_finite()) {
             return Ok(f64::NEG_INFINITY);
         }
+        seen((after / before).ln(), &motion.state);
         if period >= periods / 10 {
             sum += (after / before).ln();
             counted += 1;

@@ -5,12 +5,11 @@ use super::channel::ChannelId;
 use super::energy::EnergyBalance;
 use super::recorder::Recorder;
 use super::recording::{Finished, Run};
-use super::regime::{CHAOS_PER_MESH_PERIOD, lyapunov};
 use super::report::{Asked, Verdict, report, solved_halves};
 use super::steady::{Found, Search, moved};
 use crate::dynamics::{
-    Deviation, DynamicsError, Integrator, Limits, Model, Motion, NaturalModes, PER_HALF, Parameters, Shooting, State,
-    carry, carry_one, difference, is_mirrored,
+    Deviation, DynamicsError, Integrator, Limits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, carry,
+    carry_one, difference, is_mirrored,
 };
 use crate::watch::{Canceled, Watch};
 use rayon::prelude::*;
@@ -23,6 +22,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<Response, DynamicsError> {
     let modes = modes(p, analysis)?;
     let point = Point { p, analysis, modes: &modes, watch };
+    if point.rests() {
+        return point.at_rest();
+    }
     let start = point.start();
     let mirrored = point.is_mirrored(&start);
     match analysis.method {
@@ -94,6 +96,10 @@ fn solve_group(
         match modes {
             Ok(modes) => {
                 let point = Point { p, analysis, modes, watch };
+                if point.rests() {
+                    out[i] = point.at_rest();
+                    continue;
+                }
                 let side = &mut sides[usize::from(!point.is_mirrored(&point.start()))];
                 side.0.push(i);
                 side.1.push(point);
@@ -128,11 +134,11 @@ fn modes(p: &Parameters, analysis: &Analysis) -> Result<NaturalModes, DynamicsEr
 }
 
 /// One operating point and what is asked of it.
-struct Point<'a> {
-    p: &'a Parameters,
-    analysis: &'a Analysis,
-    modes: &'a NaturalModes,
-    watch: &'a Watch<'a>,
+pub(super) struct Point<'a> {
+    pub p: &'a Parameters,
+    pub analysis: &'a Analysis,
+    pub modes: &'a NaturalModes,
+    pub watch: &'a Watch<'a>,
 }
 
 /// Relative size of the push that takes a motion off the mirror symmetry: as far as manufacture keeps halves alike.
@@ -153,7 +159,7 @@ impl Point<'_> {
         self.p.is_symmetric() && (self.analysis.initial_state.is_none() || is_mirrored(start))
     }
 
-    fn asked(&self) -> Asked<'_> {
+    pub(super) fn asked(&self) -> Asked<'_> {
         Asked { p: self.p, analysis: self.analysis, modes: self.modes }
     }
 
@@ -161,7 +167,7 @@ impl Point<'_> {
         Limits { tolerance, max_steps: self.analysis.max_steps, watch: self.watch }
     }
 
-    fn mean_stiffness_n_per_m(&self) -> [f64; 2] {
+    pub(super) fn mean_stiffness_n_per_m(&self) -> [f64; 2] {
         [0, 1].map(|j| self.p.halves[j].mesh_stiffness.mean_n_per_m())
     }
 
@@ -186,18 +192,44 @@ impl Point<'_> {
             }
             state = moved(&model, state, &push);
         }
-        let found = search.run(state)?;
+        let bounded = |error: DynamicsError| {
+            let diverged = matches!(error, DynamicsError::Diverged { .. }) && self.analysis.method == Method::Auto;
+            if diverged { self.unbounded(&model, state, error).map(Some) } else { Err(error) }
+        };
+        let found = match search.run(state) {
+            Ok(found) => found,
+            Err(error) => return bounded(error),
+        };
         if found.leaves_symmetry {
             return Ok(None);
         }
         let mut numerics = found.numerics;
-        let finished = self.record(
+        let recorded = self.record(
             &model,
             (found.start, found.tolerance),
             found.record,
             self.recorder(&model, found.record),
             self.energy(&model),
-        )?;
+        );
+        let finished = match recorded {
+            Ok(finished) => finished,
+            Err(error) => return bounded(error),
+        };
+        let fate = match &found.orbit {
+            Some(_) => None,
+            None => {
+                let by = (Integrator::Taylor, found.tolerance);
+                Some(self.fate(&model, &finished, by, found.lyapunov)?)
+            }
+        };
+        if let Some(fate) = &fate {
+            numerics += fate.numerics;
+            if fate.regime == Regime::Unstable {
+                return bounded(DynamicsError::Diverged {
+                    time_s: finished.from.period as f64 * self.p.mesh_period_s(),
+                });
+            }
+        }
         let section = finished.record;
         numerics += section.numerics;
         let error_estimate = match &found.orbit {
@@ -205,11 +237,10 @@ impl Point<'_> {
             None => section.batch_error,
         };
         let verdict = Verdict {
-            regime: match (&found.orbit, found.lyapunov) {
+            regime: match (&found.orbit, fate) {
                 (Some((1, _)), _) => Regime::Period1,
                 (Some(_), _) => Regime::PeriodN,
-                (None, Some(l)) if l > CHAOS_PER_MESH_PERIOD => Regime::Chaotic,
-                (None, _) => Regime::QuasiPeriodic,
+                (None, fate) => fate.map_or(Regime::QuasiPeriodic, |fate| fate.regime),
             },
             period: found.orbit.as_ref().map(|(n, _)| *n),
             floquet: found.floquet,
@@ -252,13 +283,11 @@ impl Point<'_> {
             numerics: record.numerics,
         };
         if period.is_none() {
-            let mut motion =
-                Motion::new(model, record.last, self.analysis.integrator, tolerance, self.analysis.max_steps);
-            let exponent = lyapunov(&mut motion, model, LYAPUNOV_MESH_PERIODS, self.watch)?;
-            verdict.numerics += motion.numerics;
-            verdict.lyapunov = Some(exponent);
-            if exponent > CHAOS_PER_MESH_PERIOD {
-                verdict.regime = Regime::Chaotic;
+            let fate = self.fate(model, finished, (self.analysis.integrator, tolerance), None)?;
+            verdict.numerics += fate.numerics;
+            verdict.lyapunov = Some(fate.lyapunov);
+            verdict.regime = fate.regime;
+            if fate.regime == Regime::Chaotic {
                 verdict.error_estimate = record.batch_error;
             }
         }
@@ -267,12 +296,12 @@ impl Point<'_> {
     }
 
     /// The energy balance, where it is asked for.
-    fn energy<'m, const D: usize>(&self, model: &'m Model<D>) -> Option<EnergyBalance<'m, D>> {
+    pub(super) fn energy<'m, const D: usize>(&self, model: &'m Model<D>) -> Option<EnergyBalance<'m, D>> {
         self.analysis.energy_balance.then(|| EnergyBalance::new(model))
     }
 
     /// Records `periods` mesh periods of the motion from `start`.
-    fn record<'m, const D: usize>(
+    pub(super) fn record<'m, const D: usize>(
         &self,
         model: &'m Model<D>,
         (start, tolerance): (State<D>, f64),
@@ -309,13 +338,14 @@ impl Point<'_> {
     }
 
     /// Channels every response needs, and those asked for.
-    fn recorder<const D: usize>(&self, model: &Model<D>, periods: u64) -> Recorder<D> {
+    pub(super) fn recorder<const D: usize>(&self, model: &Model<D>, periods: u64) -> Recorder<D> {
         let mut statistics = Vec::new();
         for half in solved_halves::<D>() {
             statistics.push((ChannelId::mesh_acceleration(half), false));
             statistics.push((ChannelId::pinion_axial_acceleration(half), false));
             statistics.push((ChannelId::s(half), true));
-            statistics.push((ChannelId::normal_force(half), true));
+            statistics.push((ChannelId::normal_force(half), false));
+            statistics.push((ChannelId::tooth_force(half), true));
         }
         Recorder::new(model, &statistics, &self.analysis.channels, self.analysis.samples_per_mesh_period, periods)
     }
@@ -421,6 +451,9 @@ fn integrate<const D: usize>(
         });
         match next {
             Err(DynamicsError::Canceled(canceled)) => return Err(canceled),
+            Err(error @ DynamicsError::Diverged { .. }) => {
+                out[i] = point.unbounded(model, model.state_from(&point.start()), error);
+            }
             Err(error) => out[i] = Err(error),
             Ok((finished, verdict, None)) => {
                 out[i] = Ok(report(&point.asked(), model, finished.recorder, finished.record, verdict));
@@ -445,9 +478,7 @@ fn integrate<const D: usize>(
 }
 
 /// Relative change over its period below which an integrated motion counts as repeating.
-const REPEATS: f64 = 1e-3;
-/// Mesh periods over which a Lyapunov exponent is averaged.
-const LYAPUNOV_MESH_PERIODS: u64 = 300;
+pub(super) const REPEATS: f64 = 1e-3;
 /// What an error found by comparison is multiplied by, because it is a comparison with something that has an error too.
 const SAFETY: f64 = 3.0;
 /// Mesh periods before the record from which a run is compared with a more accurate one.

@@ -1,5 +1,6 @@
 //! From a solved response to the result's `response` block.
 
+use super::bounds::backlash_um;
 use crate::dynamics::{DynamicsError, NaturalModes, Parameters};
 use crate::job::document::{JobDocument, Plane};
 use crate::job::result::{self, PerHalf, Poincare, Rms};
@@ -7,6 +8,10 @@ use crate::response::{self, Halves};
 
 fn per_half(halves: Halves<f64>) -> PerHalf {
     PerHalf { left: halves.left, right: halves.right }
+}
+
+fn tooth_force(force: response::ToothForce) -> result::ToothForce {
+    result::ToothForce { static_n: force.static_n, max_n: force.max_n, min_n: force.min_n }
 }
 
 fn interval(halves: Halves<response::Interval>) -> result::IntervalPerHalf {
@@ -87,6 +92,10 @@ pub fn block(document: &JobDocument, parameters: &Parameters, response: &respons
             channels: summary.rms.channels.clone(),
         },
         dynamic_factor: summary.dynamic_factor,
+        tooth_force_n: result::ToothForces {
+            left: tooth_force(summary.tooth_force.left),
+            right: tooth_force(summary.tooth_force.right),
+        },
         regime,
         contact: word(&summary.contact),
         min_displacement_um: summary.min_displacement_m * 1e6,
@@ -95,6 +104,7 @@ pub fn block(document: &JobDocument, parameters: &Parameters, response: &respons
         method: summary.method.clone(),
         fraction_in_contact: 0.5 * (summary.contact_share.left + summary.contact_share.right),
         damping_in_gap: summary.damping_in_gap,
+        backlash_um: Some(backlash_um(document)),
         plane: if document.model.plane == Plane::Base { "base" } else { "pitch" }.to_owned(),
         mesh_frequency_hz: parameters.mesh_frequency_hz,
         averaged_mesh_periods: summary.recorded_mesh_periods,

@@ -1,9 +1,10 @@
 //! The numbers of the twelve equations, from the document and the results of the earlier stages.
 
+use super::bounds::backlash_um;
 use super::prepare::Prepared;
-use crate::dynamics::{ContactForce, Couplings, HalfParameters, Harmonic, Impact, Parameters, Spring, Stiffness};
-use crate::dynamics::{equivalent_mass_kg, mesh_damping_n_s_per_m};
-use crate::job::document::{GivenStiffness, JobDocument, Plane};
+use crate::dynamics::{ContactForce, Couplings, HalfParameters, Harmonic, Impact, ImpactActsOn, Parameters, Spring};
+use crate::dynamics::{Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m};
+use crate::job::document::{ActsOn, GivenStiffness, JobDocument, Plane};
 use crate::job::result::SpringValue;
 use std::sync::Arc;
 
@@ -118,8 +119,12 @@ pub fn parameters(
         pinion_radius_m: plane.pinion_radius_m,
         gear_radius_m: plane.gear_radius_m,
         helix_angle_rad: plane.helix_angle_rad,
-        half_backlash_m: document.design.backlash_um * 0.5e-6,
+        half_backlash_m: backlash_um(document) * 0.5e-6,
         damping_in_gap: document.model.damping_in_gap,
+        impact_acts_on: match document.model.impact.acts_on() {
+            ActsOn::Torsion => ImpactActsOn::Torsion,
+            ActsOn::All => ImpactActsOn::All,
+        },
         halves: [half(left_stiffness, left_impact, 0.0), half(right_stiffness, right_impact, -right_lead_mesh_periods)],
         couplings: Couplings {
             pinion_axial: spring(&supports.pinion_halves_axial_n_per_um, pinion_mass_kg),

@@ -1,5 +1,6 @@
 //! The impact stage: the mesh-in impact of each half, and the pulse it puts on the equations.
 
+use super::bounds;
 use super::equations::MotionPlane;
 use super::mesh::MeshStage;
 use super::prepare::Prepared;
@@ -15,8 +16,35 @@ pub struct ImpactStage {
     pub pulses: [Option<dynamics::Impact>; 2],
 }
 
-/// Runs the impact stage. Where no corner contact can be found there is none, and a warning says why.
+/// Whether the impact of a document is put on the equations of motion, or only reported. The one place where that is decided.
+pub fn applied(document: &JobDocument) -> bool {
+    // A mesh force by stiffness alone knows nothing of early contact: every impact is applied.
+    !matches!(document.model.impact, Impact::None)
+}
+
+/// Runs the impact stage: an impact that is not applied leaves no pulses. Warns of pulses that their model does not cover.
 pub fn run(
+    document: &JobDocument,
+    prepared: &Prepared,
+    plane: &MotionPlane,
+    mesh: &MeshStage,
+    warnings: &mut Vec<Warning>,
+) -> ImpactStage {
+    let mut stage = found(document, prepared, plane, mesh, warnings);
+    let applied = applied(document);
+    if !applied {
+        stage.pulses = [None, None];
+    }
+    if let Some(summary) = &mut stage.summary {
+        summary.applied = applied;
+        summary.acts_on = document.model.impact.acts_on().word().to_owned();
+    }
+    warnings.extend(bounds::of_pulses(document, plane, &stage.pulses));
+    stage
+}
+
+/// The impact, applied or not. Where no corner contact can be found there is none, and a warning says why.
+fn found(
     document: &JobDocument,
     prepared: &Prepared,
     plane: &MotionPlane,
@@ -141,6 +169,7 @@ fn calculated(
         corner_overrun_mm: Some(left.overrun_m * 1e3),
         start_mesh_periods,
         source: if buffered { "corner_contact" } else { "zhou2008" }.to_owned(),
+        ..result::Impact::default()
     };
     ImpactStage { summary: Some(summary), pulses: [pulse(&left, 0.0), pulse(&right, shift)] }
 }

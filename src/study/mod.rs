@@ -4,6 +4,7 @@
 mod accuracy;
 mod answer;
 mod axes;
+mod bounds;
 mod branches;
 mod campbell;
 mod check;

@@ -3,7 +3,7 @@
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
 use super::prepare::{geometry, prepare};
-use super::{Channel, SolveError, Stage, Surroundings, accuracy, impact, vibration};
+use super::{Channel, SolveError, Stage, Surroundings, accuracy, bounds, impact, vibration};
 use crate::dynamics::{DynamicsError, Parameters};
 use crate::job::document::{JobDocument, Kind, Recorded};
 use crate::job::result::{JobResult, Numerics, Poincare};
@@ -87,6 +87,7 @@ pub fn stage<'a>(
     let plane = MotionPlane::new(document.model.plane, &prepared);
     let (mesh, reused) = mesh::run(document, &prepared, &plane, surroundings, memo)?;
     numerics.reused.extend(reused.into_iter().map(str::to_owned));
+    warnings.extend(bounds::of_mesh(document, &mesh.summary));
     numerics.wall_ms.mesh = clock.lap_ms();
 
     let impact = impact::run(document, &prepared, &plane, &mesh, &mut warnings);

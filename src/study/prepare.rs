@@ -1,6 +1,6 @@
 //! From a document to physics in SI: the pair, its inertias, its operating point, and whether all of it can exist.
 
-use super::supports;
+use super::{bounds, supports};
 use crate::contact;
 use crate::gear::{self, Infeasibility, Pair, PairSpec, Warning};
 use crate::job::document::{self as doc, JobDocument, PressureAnglePlane};
@@ -62,7 +62,7 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
         });
     }
     let speed_rad_s = document.operation.pinion_speed_rpm * std::f64::consts::TAU / 60.0;
-    Ok(Prepared {
+    let prepared = Prepared {
         mass_kg: [design.pinion.mass_kg.unwrap_or(pinion_disc.0), design.gear.mass_kg.unwrap_or(gear_disc.0)],
         inertia_kg_m2: [
             design.pinion.inertia_kg_m2.unwrap_or(pinion_disc.1),
@@ -75,7 +75,9 @@ pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
         contact_torque_nm,
         pair,
         warnings,
-    })
+    };
+    let bounds = bounds::of_document(document, &prepared, [pinion_disc, gear_disc]);
+    Ok(Prepared { warnings: prepared.warnings.iter().cloned().chain(bounds).collect(), ..prepared })
 }
 
 fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {

@@ -6,7 +6,7 @@ use super::point::{self, Point, Wanted};
 use super::{SolveError, Surroundings, vibration};
 use crate::dynamics::{DynamicsError, Parameters};
 use crate::job::document::JobDocument;
-use crate::job::result::SweepPoint;
+use crate::job::result::{PerHalf, SweepPoint};
 use crate::job::{DocumentError, parse_value};
 use crate::response::{self, Analysis, Response};
 use crate::watch::Watch;
@@ -122,6 +122,8 @@ pub fn of_point(values: Vec<f64>, point: Point) -> Solved {
         total_contact_ratio: result.geometry.as_ref().map(|geometry| geometry.total_contact_ratio),
         loaded_contact_ratio: result.mesh.as_ref().and_then(|mesh| mesh.loaded_contact_ratio),
         error_estimate: response.map(|r| r.error_estimate),
+        tooth_force_max_n: response
+            .map(|r| PerHalf { left: r.tooth_force_n.left.max_n, right: r.tooth_force_n.right.max_n }),
         error: None,
         branch: None,
         poincare: point.poincare,

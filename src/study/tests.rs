@@ -821,3 +821,122 @@ fn the_model_error_that_is_said_is_not_below_the_error() {
         check_worst(topic, &format!("{pair}: first harmonic"), [harmonic / fe_harmonic - 1.0], said);
     }
 }
+
+fn warned(result: &crate::job::result::JobResult, code: &str, pointer: &str) -> bool {
+    result.warnings.iter().any(|w| w.code == code && w.pointer == pointer)
+}
+
+/// Impacts of the source's model up to several times the load: every force on the tooth counts, on either kind of reaction.
+#[test]
+fn the_dynamic_factor_counts_the_impact() {
+    for (rpm, acts_on) in
+        [(2000, "torsion"), (2000, "all"), (9000, "torsion"), (20_000, "torsion"), (20_000, "all"), (30_000, "torsion")]
+    {
+        let mut value = example("table1");
+        value["operation"]["pinion_speed_rpm"] = json!(rpm);
+        value["model"]["impact"] = json!({"source": "corner_contact", "acts_on": acts_on});
+        let result = solved(&value).result;
+        let impact = result.impact.expect("an impact");
+        assert_eq!((impact.applied, impact.acts_on.as_str()), (true, acts_on));
+        let response = result.response.expect("a response");
+        let factor = response.dynamic_factor.expect("a torque");
+        let force = response.tooth_force_n.left;
+        println!("{rpm} r/min, {acts_on}: impact {:.0} N, factor {factor:.4}, {force:?}", impact.force_n);
+        assert!(factor >= 1.0 && force.max_n >= force.static_n * (1.0 - 1e-9) && force.min_n <= force.static_n);
+        let largest = [response.tooth_force_n.left, response.tooth_force_n.right].map(|f| f.max_n / f.static_n);
+        assert_eq!(factor, largest[0].max(largest[1]).max(1.0));
+    }
+}
+
+/// A record that ends while the start decays, from rest in the middle of the backlash: not settled, with a warning; long after, it is.
+#[test]
+fn a_record_that_ends_before_the_motion_is_not_settled() {
+    let case = |periods: u32, record: u32, rpm: f64, ratio: f64| {
+        let mut value = example("given_stiffness");
+        value["operation"]["pinion_torque_nm"] = json!(800.0);
+        value["operation"]["pinion_speed_rpm"] = json!(rpm);
+        value["model"]["impact"] = json!({"source": "none"});
+        value["model"]["mesh_damping_ratio"] = json!(ratio);
+        value["analysis"] = json!({
+            "method": "integrate", "mesh_periods": periods, "record_mesh_periods": record, "initial_state": vec![0.0; 24]
+        });
+        solved(&value).result
+    };
+    for (periods, record, rpm, ratio) in [
+        (45, 40, 2000.0, 0.03),
+        (30, 20, 2000.0, 0.03),
+        (45, 40, 3500.0, 0.03),
+        (60, 30, 2000.0, 0.01),
+        (80, 60, 5000.0, 0.005),
+    ] {
+        let result = case(periods, record, rpm, ratio);
+        let regime = result.response.as_ref().expect("a response").regime.clone();
+        assert_eq!(regime, "not-settled", "{periods}, {record}, {rpm}, {ratio}");
+        assert!(warned(&result, "not-settled", "/analysis/mesh_periods"));
+        let long = case(3000, 20, rpm, ratio);
+        assert!(long.response.as_ref().expect("a response").regime.starts_with("period-"), "{rpm}, {ratio}");
+        assert!(!warned(&long, "not-settled", "/analysis/mesh_periods"));
+    }
+}
+
+/// Without torque and impact the pair rests, by every method and stiffness, and no accuracy is missed.
+#[test]
+fn an_unloaded_pair_is_at_rest_without_an_alarm() {
+    let samples = json!({"source": "given", "samples_n_per_um": [800.0, 950.0, 1010.0, 900.0]});
+    for method in [
+        json!({"method": "integrate", "mesh_periods": 300, "record_mesh_periods": 100}),
+        json!({}),
+        json!({"method": "periodic"}),
+    ] {
+        for (stiffness, backlash_um) in
+            [(None, json!(40.0)), (Some(&samples), json!(0.0)), (Some(&samples), Value::Null)]
+        {
+            let mut value = example("given_stiffness");
+            value["operation"]["pinion_torque_nm"] = json!(0.0);
+            value["model"]["impact"] = json!({"source": "none"});
+            value["design"]["backlash_um"] = backlash_um;
+            value["analysis"] = method.clone();
+            if let Some(stiffness) = stiffness {
+                value["model"]["mesh_stiffness"] = stiffness.clone();
+            }
+            let result = solved(&value).result;
+            let response = result.response.as_ref().expect("a response");
+            assert_eq!((response.regime.as_str(), response.contact.as_str()), ("period-1", "continuous"), "{method}");
+            assert_eq!((response.error_estimate, response.dynamic_factor), (0.0, None));
+            assert_eq!(response.rms.mesh_circumferential_acceleration_m_s2, Default::default());
+            assert_eq!(response.tooth_force_n, Default::default());
+            assert!(!warned(&result, "accuracy-not-reached", "/analysis/accuracy"), "{:?}", result.warnings);
+        }
+    }
+}
+
+/// Twice the frequency of the mesh mode, hardly damped, no play: the growth is told, with its rate, by every method and in a sweep's row.
+#[test]
+fn parametric_instability_is_told() {
+    let mut value = example("given_stiffness");
+    value["model"]["impact"] = json!({"source": "none"});
+    value["model"]["mesh_damping_ratio"] = json!(0.001);
+    value["design"]["supports"]["damping_ratio"] = json!(0.001);
+    value["design"]["backlash_um"] = json!(0.0);
+    let modes = solved(&value).result.response.expect("a response").natural_modes;
+    let mesh = modes.iter().filter(|mode| mode.name == "mesh mode, meshes in phase").map(|mode| mode.frequency_hz);
+    let rpm = 2.0 * mesh.fold(0.0, f64::max) / 17.0 * 60.0;
+    value["operation"]["pinion_speed_rpm"] = json!(rpm);
+    for analysis in [json!({}), json!({"method": "integrate", "mesh_periods": 200, "record_mesh_periods": 50})] {
+        value["analysis"] = analysis;
+        let result = solved(&value).result;
+        let response = result.response.as_ref().expect("a response");
+        assert_eq!(response.regime, "unstable");
+        assert!(response.lyapunov_per_mesh_period.expect("a rate") > 0.0 && response.confidence_interval_95.is_none());
+        let told = result.warnings.iter().find(|w| w.code == "unstable").expect("a warning");
+        assert!(told.pointer == "/operation/pinion_speed_rpm" && told.detail.contains("growth rate"), "{told:?}");
+        assert!(!warned(&result, "accuracy-not-reached", "/analysis/accuracy"));
+    }
+    value["analysis"] = json!({});
+    value["kind"] = json!("sweep");
+    value["axes"] = json!([{"pointer": "/model/mesh_damping_ratio", "values": [0.001, 0.2]}]);
+    let points = solved(&value).result.sweep.expect("a sweep").points;
+    let regimes: Vec<_> = points.iter().map(|point| point.regime.as_deref()).collect();
+    assert_eq!(regimes, [Some("unstable"), Some("period-1")]);
+    assert!(points[1].tooth_force_max_n.is_some_and(|force| force.left > 0.0));
+}

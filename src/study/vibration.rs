@@ -1,13 +1,13 @@
 //! The response stage: the steady vibration of the pair and its statistics.
 
 use super::point::Wanted;
-use super::{Channel, SolveError, Stage, Surroundings, answer};
+use super::{Channel, SolveError, Stage, Surroundings, answer, bounds};
 use crate::dynamics::{self, DynamicsError, Parameters};
 use crate::gear::Warning;
 use crate::job::document::{Integrator, JobDocument, Method, Recorded};
 use crate::job::result::{self, Numerics};
 use crate::job::{DocumentError, Violation};
-use crate::response::{self, Analysis, ChannelId};
+use crate::response::{self, Analysis, ChannelId, Regime};
 use crate::watch::Watch;
 
 /// What the response stage leaves.
@@ -115,8 +115,9 @@ pub fn told(
         poincare,
         bands: bands.flatten(),
         series: if wanted.whole { channels.into_iter().map(channel).collect() } else { Vec::new() },
-        warnings: warnings(&response.summary, document.analysis.accuracy),
-        end_state: Some(response.final_state.to_vec()),
+        warnings: warnings(document, &response.summary),
+        // From a motion that grows for ever there is nothing to go on.
+        end_state: (response.summary.regime != Regime::Unstable).then(|| response.final_state.to_vec()),
     })
 }
 
@@ -171,9 +172,10 @@ pub fn failed(error: DynamicsError) -> SolveError {
     }
 }
 
-fn warnings(summary: &response::Summary, accuracy: f64) -> Vec<Warning> {
-    let mut warnings = Vec::new();
-    if summary.error_estimate > accuracy {
+fn warnings(document: &JobDocument, summary: &response::Summary) -> Vec<Warning> {
+    let mut warnings = bounds::of_motion(document, summary);
+    // An accuracy of numbers that mean nothing is nothing to be told.
+    if summary.error_estimate > document.analysis.accuracy && summary.regime != Regime::Unstable {
         let repeats = summary.period_mesh_periods.is_some();
         let reason =
             if repeats { "" } else { "; the motion does not repeat, so its means are those of a finite record" };

@@ -45,6 +45,7 @@ fn oscillator(omega: f64, epsilon: f64, amplitude: f64) -> Parameters {
         helix_angle_rad: 0.0,
         half_backlash_m: 1.0,
         damping_in_gap: true,
+        impact_acts_on: ImpactActsOn::Torsion,
         halves: [half.clone(), half],
         couplings: Couplings::default(),
     }

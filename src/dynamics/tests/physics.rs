@@ -36,6 +36,7 @@ fn natural_frequencies_with_couplings() {
         helix_angle_rad: 22f64.to_radians(),
         half_backlash_m: 1e-6,
         damping_in_gap: true,
+        impact_acts_on: ImpactActsOn::Torsion,
         halves: [half(0), half(1)],
         couplings: Couplings {
             pinion_axial: spring(3e9),

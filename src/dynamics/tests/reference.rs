@@ -103,6 +103,7 @@ pub fn parameters(name: &str) -> Parameters {
         helix_angle_rad: m.helix_angle_deg.to_radians(),
         half_backlash_m: c.half_backlash_m,
         damping_in_gap: true,
+        impact_acts_on: ImpactActsOn::Torsion,
         halves: [half.clone(), half],
         couplings: Couplings {
             pinion_axial: Spring::with_damping_ratio(m.pinion_axial_coupling_n_per_m, z, m.pinion_mass_kg),

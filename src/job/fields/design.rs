@@ -38,9 +38,15 @@ pub(super) fn design(object: Object) -> Design {
             "center_distance_mm",
             number(1.0, 20_000.0, "mm", None, "Working centre distance; derived from the profile shifts when null."),
         ),
-        backlash_um: object.number(
+        backlash_um: object.optional_number(
             "backlash_um",
-            number(0.0, 5000.0, "um", Some(2.0), "Total play along the direction of the mesh displacement s."),
+            number(
+                0.0,
+                5000.0,
+                "um",
+                Some(DEFAULT_BACKLASH_UM),
+                "Total play along the direction of the mesh displacement s; the source's 2 um when it is not given.",
+            ),
         ),
         half_stagger: object.number(
             "half_stagger",

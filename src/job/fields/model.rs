@@ -218,7 +218,15 @@ fn impact(object: Object) -> Impact {
         "corner_contact",
         "corner_contact (buffered by the pairs in mesh), zhou2008 (unbuffered), none or given.",
     );
+    let acts_on = object.choice(
+        "acts_on",
+        &[("torsion", ActsOn::Torsion), ("all", ActsOn::All)],
+        ActsOn::Torsion,
+        "torsion",
+        "What the impact moves: the torsional equations only (the source to the letter), or all: bending and axial motion too, as a normal force on the tooth does.",
+    );
     let corner = CornerImpact {
+        acts_on,
         duration: object.choice(
             "duration",
             &[("corner_to_start", ImpactDuration::CornerToStart), ("energy_balance", ImpactDuration::EnergyBalance)],
@@ -260,6 +268,7 @@ fn impact(object: Object) -> Impact {
         1 => Impact::Zhou2008(corner),
         2 => Impact::None,
         _ => Impact::Given(GivenImpact {
+            acts_on,
             force_n: force.unwrap_or(0.0),
             duration_mesh_periods: duration.unwrap_or(1.0),
             start_mesh_periods: corner.start_mesh_periods.unwrap_or(0.0),

@@ -237,6 +237,7 @@ pub const CONDITIONS: &[Condition] = &[
         on: "/model/mesh_stiffness/source",
         values: "given",
     },
+    Condition { pointer: "/model/impact/acts_on", on: "/model/impact/source", values: "corner_contact zhou2008 given" },
     Condition { pointer: "/model/impact/duration", on: "/model/impact/source", values: "corner_contact zhou2008" },
     Condition {
         pointer: "/model/impact/base_pitch_error_um",

@@ -17,6 +17,8 @@ const GROUPS = [
     halves("circumferential", "Circumferential acceleration of the mesh, RMS", "m/s²", ({ result }) => result?.response?.rms?.mesh_circumferential_acceleration_m_s2, { change: "level" }),
     halves("axial", "Axial acceleration of the pinion, RMS", "m/s²", ({ result }) => result?.response?.rms?.pinion_axial_acceleration_m_s2, { change: "level" }),
     quantity("dynamic_factor", "Dynamic factor", "", of("response", "dynamic_factor")),
+    halves("tooth_force_max_n", "Largest tooth force", "N", ({ result }) => extremeOfHalves(result, "max")),
+    halves("tooth_force_min_n", "Least tooth force", "N", ({ result }) => extremeOfHalves(result, "min"), { change: "absolute" }),
     quantity("regime", "Motion", "", of("response", "regime"), { change: "word" }),
     quantity("contact", "Contact", "", of("response", "contact"), { change: "word" }),
     quantity("min_displacement_um", "Least mesh displacement", "µm", of("response", "min_displacement_um"), { change: "absolute" }),
@@ -50,10 +52,16 @@ const GROUPS = [
     halves("sweep_circumferential", "Largest circumferential acceleration, RMS", "m/s²", ({ sweep }) => largestOfHalves(sweep, "mesh_circumferential_acceleration_rms"), { change: "level" }),
     halves("sweep_axial", "Largest axial acceleration of the pinion, RMS", "m/s²", ({ sweep }) => largestOfHalves(sweep, "pinion_axial_acceleration_rms"), { change: "level" }),
     quantity("sweep_dynamic_factor", "Largest dynamic factor", "", ({ sweep }) => largest(sweep, "dynamic_factor")),
+    halves("sweep_tooth_force", "Largest tooth force", "N", ({ sweep }) => largestOfHalves(sweep, "tooth_force_max", "n")),
     quantity("sweep_separated", "Points at which the teeth separate", "", ({ sweep }) => sweep?.data.column("contact").filter((word) => word && word !== "continuous").length, { change: "absolute" }),
     quantity("sweep_points", "Points solved", "", ({ sweep }) => sweep?.data.n, { change: "absolute" }),
   ]],
 ];
+
+function extremeOfHalves(result, which) {
+  const forces = result?.response?.tooth_force_n;
+  return forces ? { left: forces.left[which], right: forces.right[which] } : null;
+}
 
 function swing(mesh) {
   const [least, most] = [mesh?.stiffness_min_n_per_um, mesh?.stiffness_max_n_per_um];
@@ -72,8 +80,8 @@ function largest(sweep, name) {
   return { value: values[found], at: `at ${places.join(", ")}` };
 }
 
-function largestOfHalves(sweep, name) {
-  const [left, right] = ["left", "right"].map((half) => largest(sweep, `${name}_${half}_m_s2`));
+function largestOfHalves(sweep, name, unit = "m_s2") {
+  const [left, right] = ["left", "right"].map((half) => largest(sweep, `${name}_${half}_${unit}`));
   return left || right ? { left, right } : null;
 }
 

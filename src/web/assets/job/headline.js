@@ -18,7 +18,7 @@ export function headlines({ geometry, mesh, impact, response, numerics, accuracy
     const [regime, regimeNote] = regimeWords(response);
     add("Contact", contact, "", contactNote, "Whether the working flanks keep touching while the pair vibrates. Separation makes the system nonlinear: several motions may be possible at one speed, and impacts load the teeth.");
     add("Motion", regime, "", regimeNote, "How the steady motion repeats. Period 1 follows the mesh; longer periods, quasi-periodic and chaotic motions come with separation.");
-    if (typeof response.dynamic_factor === "number") add("Dynamic factor", number(response.dynamic_factor, 4), "", "largest mesh force over the static one", "Greatest normal force between the flanks over one period (or the record), divided by the force that the torque alone needs; that of the half where it is larger.");
+    if (typeof response.dynamic_factor === "number") add("Dynamic factor", number(response.dynamic_factor, 4), "", "largest tooth force over the static one", "Greatest normal force between the flanks over one period (or the record), impact included where one is applied, divided by the force that the torque alone needs; that of the half where it is larger. Never below 1.");
     add("Circumferential acceleration, RMS", pair(rms.mesh_circumferential_acceleration_m_s2), "m/s²", sidesNote(rms.mesh_circumferential_acceleration_m_s2), "Root mean square of the relative acceleration of pinion and gear at the mesh, along the circumference, mean removed; exact over a whole number of periods.");
     add("Axial acceleration of the pinion, RMS", pair(rms.pinion_axial_acceleration_m_s2), "m/s²", sidesNote(rms.pinion_axial_acceleration_m_s2), "Root mean square of the axial acceleration of each half of the pinion. Equal halves move against each other, so that their axial forces cancel on the shaft.");
   }
@@ -87,7 +87,8 @@ function tip(name, meaning) {
   return details;
 }
 
-function impactNote({ force_n: force, source, zhou2008_force_n: zhou, reduction_percent: reduction }) {
+function impactNote({ force_n: force, source, applied, zhou2008_force_n: zhou, reduction_percent: reduction }) {
+  if (applied === false) return "only reported: the mesh force in the equations already holds it";
   if (force === 0) return "no early contact: the teeth enter without a blow";
   if (typeof zhou !== "number" || zhou <= 0) return IMPACTS[source] ?? source ?? "";
   const used = source === "zhou2008" ? "; Zhou's excites the response" : "";

@@ -4,7 +4,7 @@ import { byId, fillRows, fillValues, show } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { draw } from "../common/plots.js";
 import { pulsePlot } from "./impact_plots.js";
-import { IMPACTS } from "./words.js";
+import { ACTS_ON, IMPACTS } from "./words.js";
 
 export async function showImpact({ result: { impact, geometry, response, mesh }, input }) {
   if (!impact) return;
@@ -36,7 +36,8 @@ export function impactRows(impact) {
 export function impactValues(impact) {
   const value = (shown, digits = 4) => (typeof shown === "number" ? number(shown, digits) : null);
   return [
-    ["Excites the response", IMPACTS[impact.source] ?? impact.source],
+    ["Excites the response", impact.applied === false ? "no: only reported" : (IMPACTS[impact.source] ?? impact.source)],
+    ["Moves", impact.applied === false ? null : (ACTS_ON[impact.acts_on] ?? null)],
     ["Impact velocity", value(impact.velocity_m_s), "m/s"],
     ["Length of the pulse", value(impact.duration_us), "µs"],
     ["Length by the balance of energy", value(impact.energy_balance_duration_us), "µs"],

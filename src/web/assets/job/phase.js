@@ -22,7 +22,8 @@ export async function showPhase({ id, result: { response, numerics }, input, cat
   const update = async () => {
     const plane = choice.value;
     const paths = await Promise.all(halves.map((half) => path(id, response, known.get(`${plane}_${half}`), plane, half)));
-    const edge = plane === "s" && typeof input?.design?.backlash_um === "number" ? input.design.backlash_um / 2 : null;
+    const backlash = response.backlash_um ?? input?.design?.backlash_um;
+    const edge = plane === "s" && typeof backlash === "number" ? backlash / 2 : null;
     const { traces, axes } = phasePlot(paths, { x: PLANES[plane], y: "Velocity, mm/s", edge });
     await draw(byId("phase-plot"), traces, axes);
     const [{ place, dots }] = paths;

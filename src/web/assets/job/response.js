@@ -20,14 +20,24 @@ export function showResponse({ result: { response }, catalogue, input }) {
   show(byId("response"));
 }
 
+/** Normal force on the teeth, impact included: one row for each half, or one for both where they are alike. */
+function toothForces(forces) {
+  if (!forces) return [];
+  const row = (name, { static: still, max, min }) => [name, `${number(min, 4)} to ${number(max, 4)} (static ${number(still, 4)})`, "N"];
+  const { left, right } = forces;
+  const alike = ["static", "max", "min"].every((key) => Math.abs(left[key] - right[key]) <= 1e-9 * Math.abs(left.max));
+  return alike ? [row("Tooth force, each half", left)] : [row("Tooth force, left", left), row("Tooth force, right", right)];
+}
+
 export function responseValues(response, input) {
   const value = (shown, digits = 4) => (typeof shown === "number" ? number(shown, digits) : null);
   const share = response.contact_share;
-  const gap = input?.design?.backlash_um;
+  const gap = response.backlash_um ?? input?.design?.backlash_um;
   return [
     ["Motion", regimeWords(response)[0]],
     ["Contact", contactWords(response)[0]],
     ["Dynamic factor", value(response.dynamic_factor, 5)],
+    ...toothForces(response.tooth_force_n),
     ["Least displacement s", value(response.min_displacement_um), "µm"],
     ["Flanks touch from s = b on", typeof gap === "number" ? number(gap / 2, 4) : null, "µm"],
     ["In contact, left / right", share ? `${number(100 * share.left, 4)} / ${number(100 * share.right, 4)}` : null, "% of time"],

@@ -8,6 +8,8 @@ export function regimeWords({ regime, period_mesh_periods: periods, lyapunov_per
   if (periods > 1) return [`Period ${periods}`, `The motion repeats every ${periods} mesh periods: subharmonics at multiples of 1/${periods} of the mesh frequency.`];
   if (regime === "quasi-periodic") return ["Quasi-periodic", "The motion never repeats exactly: it holds frequencies that are no fractions of the mesh frequency."];
   if (regime === "chaotic") return ["Chaotic", `The motion never repeats: small differences grow (Lyapunov exponent ${number(lyapunov, 3)} per mesh period). Its numbers are means over the record.`];
+  if (regime === "not-settled") return ["Not settled", "The record ended before the motion had settled: its numbers are those of this record, not of a steady state."];
+  if (regime === "unstable") return ["Unstable", `The vibration grows without bound, by a factor of ${number(Math.exp(lyapunov), 4)} per mesh period: its numbers mean nothing.`];
   return [sentenceOf(regime), ""];
 }
 
@@ -18,6 +20,7 @@ export function contactWords({ contact, contact_share: share, fraction_in_contac
   if (contact === "continuous") return ["Teeth stay in contact", "The working flanks never separate: the system is linear with periodic stiffness."];
   if (contact === "single-sided") return ["Teeth separate", `The working flanks leave each other for ${apart} % of the time and meet again: rattling on one side of the gap.`];
   if (contact === "double-sided") return ["Teeth hit both flanks", `The teeth cross the whole backlash and hit the back flanks as well; they are free for ${apart} % of the time.`];
+  if (contact === "apart") return ["Teeth do not touch", "Without load the teeth stay in the middle of their backlash."];
   return [sentenceOf(contact), ""];
 }
 
@@ -25,6 +28,8 @@ const sentenceOf = (word) => (word ? `${word.charAt(0).toUpperCase()}${word.slic
 
 export const METHODS = { periodic: "periodic solution, solved for directly", integrate: "integrated in time", "integrate (event-exact)": "integrated in time" };
 export const STIFFNESS = { ltca: "loaded tooth contact analysis", iso6336: "ISO 6336-1, method B", given: "given" };
+/** What an impact moves. */
+export const ACTS_ON = { torsion: "rotations only (the source's law)", all: "rotations, bending and axial motion" };
 export const IMPACTS = { corner_contact: "corner contact, buffered by the pairs in mesh", zhou2008: "Zhou 2008, unbuffered", given: "given", none: "none" };
 
 const SOURCES = {
@@ -32,6 +37,7 @@ const SOURCES = {
   y_p: "pinion, lateral (y)", z_p: "pinion, axial (z)", theta_p: "pinion, rotation (θ)",
   y_g: "gear, lateral (y)", z_g: "gear, axial (z)", theta_g: "gear, rotation (θ)",
   f_n: "mesh force, normal", f_y: "mesh force, tangential", f_z: "mesh force, axial",
+  tooth_force: "tooth force, normal, impact included",
 };
 
 /** A channel's name as words: "mesh, along the circumference (x), left". */

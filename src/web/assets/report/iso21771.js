@@ -8,7 +8,7 @@ const rad = (degrees) => (degrees * PI) / 180;
 
 /** Rows { symbol: [letter, index], name, pinion, gear, unit } of the members and { symbol, name, value, unit } of the pair. What is not known is
  *  null. */
-export function gearData({ geometry, input }) {
+export function gearData({ geometry, input, response }) {
   const { design = {}, operation = {} } = input ?? {};
   const { pinion = {}, gear = {} } = geometry;
   const [z1, z2] = [design.pinion?.teeth, design.gear?.teeth];
@@ -43,7 +43,7 @@ export function gearData({ geometry, input }) {
       pair("ε", "α", "Transverse contact ratio", geometry.transverse_contact_ratio),
       pair("ε", "β", "Overlap ratio", geometry.overlap_ratio),
       pair("ε", "γ", "Total contact ratio", geometry.total_contact_ratio),
-      pair("j", "", "Backlash along s, total", design.backlash_um, "µm"),
+      pair("j", "", "Backlash along s, total", response?.backlash_um ?? design.backlash_um, "µm"),
       pair("v", "w", "Pitch line velocity", speed && working[0] ? (PI * working[0] * 1e-3 * speed) / 60 : null, "m/s"),
     ],
     members: [

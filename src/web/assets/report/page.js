@@ -44,9 +44,9 @@ function showHead(job) {
   ]);
 }
 
-function showGearData(geometry, input) {
+function showGearData({ geometry, response }, input) {
   if (!geometry) return;
-  const { pair, members } = gearData({ geometry, input });
+  const { pair, members } = gearData({ geometry, input, response });
   fillRows(byId("members").tBodies[0], members.filter(({ pinion, gear }) => pinion !== null && gear !== null).map(({ symbol, name, pinion, gear, unit }) => [name, symbolOf(symbol) ?? "", number(pinion, 6), number(gear, 6), unit]));
   fillRows(byId("pair").tBodies[0], pair.filter(({ value }) => value !== null).map(({ symbol, name, value, unit }) => [name, symbolOf(symbol) ?? "", number(value, 6), unit]));
   show(byId("gear-data"));
@@ -122,7 +122,7 @@ async function motionPlots(response, numerics, input, catalogue) {
       const [place, velocity] = await Promise.all([`s_${half}`, `v_s_${half}`].map(exact));
       return { half, place: closed(place.map((value) => value * 1e6)), velocity: closed(velocity.map((value) => value * 1e3)) };
     }));
-    plots.push([`Phase plane, ${channelWords("s_left").split(",")[1].trim()}`, phasePlot(paths, { x: "Displacement s, µm", y: "Velocity, mm/s", edge: input.design?.backlash_um / 2 })]);
+    plots.push([`Phase plane, ${channelWords("s_left").split(",")[1].trim()}`, phasePlot(paths, { x: "Displacement s, µm", y: "Velocity, mm/s", edge: (response.backlash_um ?? input.design?.backlash_um) / 2 })]);
   }
   return plots;
 }
@@ -151,7 +151,7 @@ async function start() {
   show(byId("summary"));
   fillWarnings(byId("warnings"), result.warnings);
   show(byId("warned"), result.warnings?.length > 0);
-  showGearData(result.geometry, input);
+  showGearData(result, input);
   showResults(result, input);
   showInputs(input, kinds);
   if (result.response?.natural_modes?.length) {

@@ -5,6 +5,7 @@ export const QUANTITIES = [
   half("mesh_circumferential_acceleration_rms", "m_s2", "Circumferential acceleration of the mesh, RMS", "m/s²", true),
   half("pinion_axial_acceleration_rms", "m_s2", "Axial acceleration of the pinion, RMS", "m/s²", true),
   whole("dynamic_factor", "Dynamic factor", "", true),
+  half("tooth_force_max", "n", "Largest tooth force", "N", true),
   whole("min_displacement_um", "Least displacement of the mesh", "µm"),
   whole("impact_force_n", "Mesh-in impact force", "N", true),
   whole("stiffness_mean_n_per_um", "Mean mesh stiffness", "N/µm"),
@@ -33,6 +34,8 @@ export const REGIMES = [
   { is: (word) => word.startsWith("period-"), label: "period-n", detail: "repeats after more mesh periods", colour: "--regime-3" },
   { is: (word) => word === "quasi-periodic", label: "quasi-periodic", detail: "never repeats, but is regular", colour: "--regime-4" },
   { is: (word) => word === "chaotic", label: "chaotic", detail: "never repeats and is irregular", colour: "--regime-5" },
+  { is: (word) => word === "not-settled", label: "not settled", detail: "the record ended before the motion had settled", colour: "--regime-6" },
+  { is: (word) => word === "unstable", label: "unstable", detail: "grows without bound", colour: "--regime-7" },
 ];
 
 /** What the teeth do. */
@@ -40,6 +43,7 @@ export const CONTACTS = [
   { is: (word) => word === "continuous", label: "continuous", detail: "the teeth never separate", colour: "--contact-1" },
   { is: (word) => word === "single-sided", label: "single-sided", detail: "the teeth separate and come back to the same flank", colour: "--contact-2" },
   { is: (word) => word === "double-sided", label: "double-sided", detail: "the teeth separate and also hit the other flank", colour: "--contact-3" },
+  { is: (word) => word === "apart", label: "apart", detail: "the teeth do not touch", colour: "--contact-4" },
 ];
 
 export const FAILED = { label: "no response", detail: "the point could not be solved; the table says why", colour: "--no-response" };

@@ -1,0 +1,131 @@
+//! A pair that nothing moves: no load, no impact, and a start at rest. Its answer is exact, where a search would ask rounding.
+
+use super::analysis::{ContactState, Halves, Method, Regime, Response};
+use super::recording::Run;
+use super::report::{Verdict, report};
+use super::solve::Point;
+use crate::dynamics::{DynamicsError, Impact, Integrator, Model, Numerics, PER_HALF, Spring, State, U, carry_one};
+
+impl Point<'_> {
+    /// Whether the pair stays where it starts: without load and impact, set out at rest in the middle of its backlash (all zero) or, where
+    /// no start is given, with the driving flanks just touching, which is where ever smaller loads leave it.
+    pub(super) fn rests(&self) -> bool {
+        let [left, right] = &self.p.halves;
+        let unloaded =
+            [left, right].iter().all(|h| h.pinion_torque_nm == 0.0 && h.impact.as_ref().is_none_or(Impact::is_zero));
+        // A torsional spring between unlike halves would be strained where both touch.
+        let c = &self.p.couplings;
+        let uncoupled = c.pinion_torsion == Spring::default() && c.gear_torsion == Spring::default();
+        let inertias = |h: &crate::dynamics::HalfParameters| (h.pinion_inertia_kg_m2, h.gear_inertia_kg_m2);
+        let still = self.analysis.initial_state.is_none_or(|start| start.iter().all(|c| *c == 0.0));
+        unloaded && still && (uncoupled || inertias(left) == inertias(right))
+    }
+
+    /// The answer of a pair that rests.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] for parameters the equations cannot use.
+    pub(super) fn at_rest(&self) -> Result<Response, DynamicsError> {
+        if self.p.is_symmetric() { self.resting::<6>() } else { self.resting::<12>() }
+    }
+
+    fn resting<const D: usize>(&self) -> Result<Response, DynamicsError> {
+        let model = Model::<D>::new(self.p)?;
+        let touching = self.analysis.initial_state.is_none() || model.b == 0.0;
+        let (method, from, periods) = match self.analysis.method {
+            Method::Integrate { mesh_periods, record_mesh_periods } => {
+                let end = mesh_periods.max(1);
+                let periods = record_mesh_periods.clamp(1, end);
+                ("integrate", end - periods, periods)
+            }
+            Method::Auto | Method::Periodic => ("periodic", 0, 1),
+        };
+        // Touching without force: the contact is held open, so that rounding closes nothing.
+        let side = if model.b == 0.0 { 1 } else { 0 };
+        let mut start = State { period: from, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [side; 2] };
+        if touching {
+            (0..Model::<D>::HALVES).for_each(|j| start.x[j * PER_HALF + U] = model.b / model.cos);
+        }
+        let held = model.holding_contact();
+        let span = (from, from + periods);
+        let mut run = Run::new(&held, start, 1e-6, span, self.recorder(&held, periods))?;
+        carry_one(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
+        let finished = run.finish()?;
+        let verdict = Verdict {
+            regime: Regime::Period1,
+            period: Some(1),
+            floquet: None,
+            multipliers: None,
+            lyapunov: None,
+            method,
+            error_estimate: 0.0,
+            energy_residual: None,
+            t0_s: from as f64 * self.p.mesh_period_s(),
+            numerics: Numerics::default(),
+        };
+        let mut response = report(&self.asked(), &held, finished.recorder, finished.record, verdict);
+        if touching {
+            response.summary.contact = ContactState::Continuous;
+            response.summary.contact_share = Halves { left: 1.0, right: 1.0 };
+        }
+        Ok(response)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::dynamics::tests::reference::parameters;
+    use crate::dynamics::{Impact, Stiffness};
+    use crate::response::{Analysis, ContactState, Method, Regime, solve, solve_many};
+    use crate::watch::Watch;
+
+    /// Without load and impact: exactly at rest, whatever the stiffness, the play and the method.
+    #[test]
+    fn an_unloaded_pair_without_impact_rests() {
+        let integrate = Method::Integrate { mesh_periods: 30, record_mesh_periods: 10 };
+        for (case, half_backlash_m) in [("A", 0.0), ("A", 2e-5), ("B", 1e-6), ("C", 3.7e-5)] {
+            for method in [Method::Auto, Method::Periodic, integrate] {
+                for (pulse, initial_state) in [(None, None), (Some(0.0), None), (None, Some([0.0; 24]))] {
+                    let mut p = parameters(case);
+                    p.half_backlash_m = half_backlash_m;
+                    for h in &mut p.halves {
+                        h.pinion_torque_nm = 0.0;
+                        h.impact = pulse.map(|force_n| Impact::HalfSine {
+                            force_n,
+                            duration_mesh_periods: 0.1,
+                            start_mesh_periods: 0.0,
+                        });
+                    }
+                    let analysis = Analysis { method, initial_state, ..Analysis::default() };
+                    let alone = solve(&p, &analysis, &Watch::none()).unwrap();
+                    let together = solve_many(std::slice::from_ref(&p), &analysis, &Watch::none()).unwrap();
+                    assert_eq!(together, [Ok(alone.clone())]);
+                    let s = alone.summary;
+                    let what = format!("{case}, {half_backlash_m}, {method:?}, start {}", initial_state.is_some());
+                    assert_eq!((s.regime, s.error_estimate, s.dynamic_factor), (Regime::Period1, 0.0, None), "{what}");
+                    assert!(s.rms.channels.values().all(|rms| *rms == 0.0), "{what}: {:?}", s.rms.channels);
+                    let apart = initial_state.is_some() && half_backlash_m > 0.0;
+                    let contact = if apart { ContactState::Apart } else { ContactState::Continuous };
+                    assert_eq!((s.contact, s.contact_share.left), (contact, if apart { 0.0 } else { 1.0 }), "{what}");
+                    let s_m = if apart { 0.0 } else { half_backlash_m };
+                    assert!((s.min_displacement_m - s_m).abs() <= 1e-12 * s_m, "{what}: {}", s.min_displacement_m);
+                }
+            }
+        }
+    }
+
+    /// What moves the pair is not rest: a pulse, or a load however small.
+    #[test]
+    fn a_load_or_a_pulse_moves() {
+        let mut p = parameters("A");
+        p.halves.iter_mut().for_each(|h| h.pinion_torque_nm = 1e-9);
+        assert!(solve(&p, &Analysis::default(), &Watch::none()).unwrap().summary.dynamic_factor.is_some());
+        p.halves.iter_mut().for_each(|h| {
+            h.pinion_torque_nm = 0.0;
+            h.mesh_stiffness = Stiffness::Constant { mean_n_per_m: 9e8 };
+        });
+        p.half_backlash_m = 0.0;
+        let s = solve(&p, &Analysis::default(), &Watch::none()).unwrap().summary;
+        assert!(s.rms.mesh_circumferential_acceleration_m_s2.left > 1.0);
+    }
+}

@@ -1,0 +1,384 @@
+//! What a motion is that was followed and did not come to repeat: on its way to another motion, growing without bound, or one that
+//! never repeats.
+//!
+//! A motion that never repeats is stationary: a quasi-periodic one moves on a torus, along which deviations neither grow nor decay, and
+//! of a chaotic one the statistics stay. One that still decays is told from a quasi-periodic one by its deviations, which decay as it
+//! does. While contact does not change the equations are linear with periodic coefficients, and the Floquet multipliers decide exactly.
+
+use super::analysis::{Regime, Response};
+use super::channel::ChannelId;
+use super::recorder::Recorder;
+use super::recording::Finished;
+use super::regime::{CHAOS_PER_MESH_PERIOD, Section, lyapunov_seen};
+use super::report::{Verdict, report, solved_halves};
+use super::solve::{Point, REPEATS};
+use crate::dynamics::{DynamicsError, Integrator, Limits, Model, Motion, Numerics, Shooting, State};
+
+/// Mesh periods over which a Lyapunov exponent is averaged.
+const FOLLOWED_MESH_PERIODS: u64 = 300;
+/// A multiplier this close to one is one: of an undamped motion, computed.
+const SAME_MODULUS: f64 = 1e-7;
+/// A trend of the logarithm of a deviation per mesh period below which it decays. Along a torus a deviation swings about what it was; the
+/// trend of that over the mesh periods followed stays well below this.
+const DECAY_PER_MESH_PERIOD: f64 = 1e-3;
+/// A motion this many times as far as the backlash is wide is ruled by the stiffness of both flanks alone.
+const FAR: f64 = 100.0;
+/// Parts of a record whose RMS values rise from each to the next, to at least twice in all, when it grows.
+const PARTS: usize = 6;
+/// Of a motion that grows without bound so many mesh periods are recorded, or as many as it takes to grow this much.
+const UNBOUNDED_MESH_PERIODS: f64 = 40.0;
+const UNBOUNDED_GROWTH: f64 = 1e3;
+
+/// What became of a motion.
+pub(super) struct Fate {
+    pub regime: Regime,
+    /// Largest Lyapunov exponent per mesh period; of a motion that grows without bound its growth rate.
+    pub lyapunov: f64,
+    pub numerics: Numerics,
+}
+
+/// A motion followed on with a deviation beside it.
+struct Course {
+    exponent: f64,
+    /// The motion has come to repeat meanwhile, or the deviation decays.
+    settles: bool,
+    numerics: Numerics,
+}
+
+impl Point<'_> {
+    /// What a motion is whose record did not repeat. `known`: its largest Lyapunov exponent, where that was found already.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] where the motion cannot be followed.
+    pub(super) fn fate<const D: usize>(
+        &self,
+        model: &Model<D>,
+        finished: &Finished<'_, D>,
+        (integrator, tolerance): (Integrator, f64),
+        known: Option<f64>,
+    ) -> Result<Fate, DynamicsError> {
+        let last = finished.record.last;
+        let course = match known {
+            Some(exponent) if exponent > CHAOS_PER_MESH_PERIOD => {
+                Ok(Course { exponent, settles: false, numerics: Numerics::default() })
+            }
+            _ => self.follow(model, last, integrator, tolerance),
+        };
+        let linear = kept_contact(&finished.recorder);
+        let modulus = if linear || course.is_err() || grows_far(model, finished) {
+            self.held_modulus(model, &last)?
+        } else {
+            0.0
+        };
+        let grows = modulus > 1.0 + SAME_MODULUS;
+        let (course, diverged) = match course {
+            Ok(course) => (course, false),
+            Err(DynamicsError::Diverged { .. }) if grows => {
+                (Course { exponent: modulus.ln(), settles: false, numerics: Numerics::default() }, true)
+            }
+            Err(other) => return Err(other),
+        };
+        let regime = if linear && !diverged {
+            match grows {
+                true if !model.switches() => Regime::Unstable,
+                true => Regime::NotSettled,
+                false if modulus < 1.0 - SAME_MODULUS => Regime::NotSettled,
+                false => Regime::QuasiPeriodic,
+            }
+        } else if grows {
+            Regime::Unstable
+        } else if course.exponent > CHAOS_PER_MESH_PERIOD {
+            Regime::Chaotic
+        } else if course.settles {
+            Regime::NotSettled
+        } else {
+            Regime::QuasiPeriodic
+        };
+        let exponent = known.unwrap_or(course.exponent);
+        let lyapunov = if regime == Regime::Unstable { modulus.ln() } else { exponent };
+        Ok(Fate { regime, lyapunov, numerics: course.numerics })
+    }
+
+    /// Follows a motion on from where its record ended.
+    fn follow<const D: usize>(
+        &self,
+        model: &Model<D>,
+        from: State<D>,
+        integrator: Integrator,
+        tolerance: f64,
+    ) -> Result<Course, DynamicsError> {
+        let mut motion = Motion::new(model, from, integrator, tolerance, self.analysis.max_steps);
+        let mut section = Section::held(model)?;
+        let mut growth = Vec::with_capacity(FOLLOWED_MESH_PERIODS as usize);
+        let exponent = lyapunov_seen(&mut motion, model, FOLLOWED_MESH_PERIODS, self.watch, |ln, state| {
+            growth.push(ln);
+            section.push(*state);
+        })?;
+        let settles = exponent == f64::NEG_INFINITY
+            || section.settled_period(REPEATS).is_some()
+            || decays(&growth[growth.len() / 10..]);
+        Ok(Course { exponent, settles, numerics: motion.numerics })
+    }
+
+    /// Largest modulus of the Floquet multipliers over one mesh period with contact held, free motions apart: what the vibration of a pair
+    /// that keeps contact, or is far beyond its backlash, is multiplied by.
+    fn held_modulus<const D: usize>(&self, model: &Model<D>, near: &State<D>) -> Result<f64, DynamicsError> {
+        const TOLERANCE: f64 = 1e-12;
+        let limits = Limits { tolerance: TOLERANCE, max_steps: self.analysis.max_steps, watch: self.watch };
+        let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), limits)?;
+        let mut start = State { period: 0, phase: 0.0, ..*near };
+        for j in 0..Model::<D>::HALVES {
+            start.contact[j] = if model.halves[j].load < 0.0 { -1 } else { 1 };
+        }
+        let once = shooting.map(&model.holding_contact(), start, 1)?;
+        Ok(shooting.multipliers(&once.map).first().map_or(0.0, |m| m.norm()))
+    }
+
+    /// The answer where the motion from `start` grows without bound: its first mesh periods, told as such.
+    ///
+    /// # Errors
+    /// `error` where the growth is none of the mesh's own; [`DynamicsError`] where not even a mesh period can be followed.
+    pub(super) fn unbounded<const D: usize>(
+        &self,
+        model: &Model<D>,
+        start: State<D>,
+        error: DynamicsError,
+    ) -> Result<Response, DynamicsError> {
+        const TOLERANCE: f64 = 1e-9;
+        let modulus = self.held_modulus(model, &start)?;
+        if modulus.is_nan() || modulus <= 1.0 + SAME_MODULUS {
+            return Err(error);
+        }
+        let periods = (UNBOUNDED_GROWTH.ln() / modulus.ln()).clamp(1.0, UNBOUNDED_MESH_PERIODS) as u64;
+        let start = State { period: 0, ..start };
+        let recorder = self.recorder(model, periods);
+        let finished = self.record(model, (start, TOLERANCE), periods, recorder, self.energy(model))?;
+        let verdict = Verdict {
+            regime: Regime::Unstable,
+            period: None,
+            floquet: Some(modulus),
+            multipliers: None,
+            lyapunov: Some(modulus.ln()),
+            method: "integrate",
+            // No digit of an RMS of what grows for ever means anything.
+            error_estimate: 1.0,
+            energy_residual: finished.energy.and_then(|e| e.residual()),
+            t0_s: 0.0,
+            numerics: finished.record.numerics,
+        };
+        Ok(report(&self.asked(), model, finished.recorder, finished.record, verdict))
+    }
+}
+
+/// No half changed its contact over the record, and each touched.
+fn kept_contact<const D: usize>(recorder: &Recorder<D>) -> bool {
+    recorder.contact_shares().iter().all(|share| share[0] == 1.0 || share[2] == 1.0)
+}
+
+/// The record grows from each of its parts to the next, and is far beyond the backlash.
+fn grows_far<const D: usize>(model: &Model<D>, finished: &Finished<'_, D>) -> bool {
+    let far = solved_halves::<D>().any(|half| {
+        finished.recorder.gathered(ChannelId::s(half)).is_some_and(|s| {
+            let s = s.finish();
+            s.max > FAR * model.b && s.min < -FAR * model.b
+        })
+    });
+    let squares = finished.record.mean_squares.iter().find(|(id, _)| *id == ChannelId::mesh_acceleration(0));
+    let Some((_, squares)) = squares.filter(|(_, squares)| far && squares.len() >= PARTS) else { return false };
+    let part = squares.len() / PARTS;
+    let means: Vec<f64> = squares.chunks_exact(part).map(|part| part.iter().sum()).collect();
+    means.windows(2).all(|two| two[1] > two[0]) && means[means.len() - 1] > 4.0 * means[0]
+}
+
+/// Whether the sum of the logarithmic growths falls steadily: over the whole and over each half of it.
+fn decays(growth: &[f64]) -> bool {
+    let half = growth.len() / 2;
+    half > 2
+        && trend(growth) < -DECAY_PER_MESH_PERIOD
+        && trend(&growth[..half]) < -0.5 * DECAY_PER_MESH_PERIOD
+        && trend(&growth[half..]) < -0.5 * DECAY_PER_MESH_PERIOD
+}
+
+/// Slope of the line through the running sums, by least squares.
+fn trend(growth: &[f64]) -> f64 {
+    let n = growth.len() as f64;
+    let centre = (n - 1.0) / 2.0;
+    let (mut sum, mut above, mut below) = (0.0, 0.0, 0.0);
+    for (i, g) in growth.iter().enumerate() {
+        sum += g;
+        let x = i as f64 - centre;
+        above += x * sum;
+        below += x * x;
+    }
+    above / below
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::tests::reference::{parameters, reference};
+    use crate::dynamics::{Impact, NaturalModes, Parameters, Stiffness};
+    use crate::response::{Analysis, Method, Summary, solve};
+    use crate::watch::Watch;
+
+    fn summary(p: &Parameters, method: Method, initial_state: Option<[f64; 24]>) -> Summary {
+        let analysis = Analysis { method, initial_state, samples_per_mesh_period: 0, ..Analysis::default() };
+        solve(p, &analysis, &Watch::none()).unwrap().summary
+    }
+
+    fn start(name: &str) -> [f64; 24] {
+        reference().cases[name].initial_state.as_slice().try_into().unwrap()
+    }
+
+    /// Every damper times `factor`.
+    fn damped(mut p: Parameters, factor: f64) -> Parameters {
+        let mut dampers = Vec::new();
+        for h in &mut p.halves {
+            h.mesh_damping_n_s_per_m *= factor;
+            dampers.extend([&mut h.pinion_lateral, &mut h.gear_lateral, &mut h.pinion_axial, &mut h.gear_axial]);
+        }
+        let c = &mut p.couplings;
+        dampers.extend([&mut c.pinion_axial, &mut c.gear_axial, &mut c.pinion_lateral, &mut c.gear_lateral]);
+        dampers.into_iter().for_each(|spring| spring.damping *= factor);
+        p
+    }
+
+    /// A record that ends while the start still decays is not settled; the same motion followed for long repeats.
+    #[test]
+    fn a_record_that_ends_too_soon_is_not_settled() {
+        let begin = start("A").map(|c| 0.3 * c);
+        for (case, factor, periods, record) in [
+            ("A", 0.3, 45, 40),
+            ("A", 0.1, 45, 40),
+            ("A", 0.03, 100, 60),
+            ("C", 1.0, 45, 40),
+            ("C", 0.5, 60, 20),
+            ("A", 0.3, 20, 5),
+        ] {
+            for initial_state in [None, Some(begin), Some([0.0; 24])] {
+                let mut p = damped(parameters(case), factor);
+                p.half_backlash_m = if case == "A" { 0.0 } else { p.half_backlash_m };
+                let s = summary(
+                    &p,
+                    Method::Integrate { mesh_periods: periods, record_mesh_periods: record },
+                    initial_state,
+                );
+                println!(
+                    "{case}, dampers x {factor}, {periods}: {:?}, {:?}, {:?}",
+                    s.regime, s.contact, s.lyapunov_per_mesh_period
+                );
+                let settled = matches!(s.regime, Regime::Period1 | Regime::PeriodN);
+                assert!(
+                    s.regime == Regime::NotSettled || (settled && factor >= 0.3),
+                    "{case}, {factor}: {:?}",
+                    s.regime
+                );
+                assert!(!settled || s.period_mesh_periods.is_some());
+                assert_eq!(s.rms_interval_95, None);
+                if s.regime == Regime::NotSettled && factor >= 0.1 {
+                    let long =
+                        summary(&p, Method::Integrate { mesh_periods: 4000, record_mesh_periods: 40 }, initial_state);
+                    assert!(
+                        matches!(long.regime, Regime::Period1 | Regime::PeriodN),
+                        "{case}, {factor}: {:?}",
+                        long.regime
+                    );
+                }
+            }
+        }
+    }
+
+    /// Without dampers nothing of the start decays: what never repeats and stays is quasi-periodic, however long the record.
+    #[test]
+    fn an_undamped_vibration_is_quasi_periodic() {
+        for (case, periods) in [("A", 45), ("A", 400), ("C", 100)] {
+            let mut p = damped(parameters(case), 0.0);
+            p.half_backlash_m = 0.0;
+            for h in &mut p.halves {
+                h.mesh_stiffness = Stiffness::Constant { mean_n_per_m: 9e8 };
+            }
+            let s = summary(
+                &p,
+                Method::Integrate { mesh_periods: periods, record_mesh_periods: periods },
+                Some(start("A")),
+            );
+            assert_eq!(s.regime, Regime::QuasiPeriodic, "{case}, {periods}: {:?}", s.lyapunov_per_mesh_period);
+        }
+    }
+
+    /// A pair at twice the frequency of its mesh mode: parametric resonance, damped by `factor` of case A's dampers.
+    fn resonant(factor: f64, half_backlash_m: f64) -> Parameters {
+        let mut p = damped(parameters("A"), factor);
+        p.half_backlash_m = half_backlash_m;
+        p.halves.iter_mut().for_each(|h| h.impact = None);
+        let modes = NaturalModes::new(&p).unwrap().describe(&p);
+        let mesh = modes.iter().filter(|m| m.name.starts_with("mesh mode, meshes in phase")).map(|m| m.frequency_hz);
+        p.mesh_frequency_hz = 2.0 * mesh.fold(0.0, f64::max);
+        p
+    }
+
+    /// Growth without bound is told as such by every method, with its rate, which is that of the motion.
+    #[test]
+    fn parametric_instability_is_unstable() {
+        for (factor, half_backlash_m) in [(0.0, 0.0), (0.02, 0.0), (0.1, 0.0), (0.0, 1e-6), (0.1, 1e-6)] {
+            let p = resonant(factor, half_backlash_m);
+            let methods = [
+                Method::Auto,
+                Method::Integrate { mesh_periods: 60, record_mesh_periods: 40 },
+                Method::Integrate { mesh_periods: 300, record_mesh_periods: 100 },
+                Method::Integrate { mesh_periods: 3000, record_mesh_periods: 100 },
+            ];
+            for method in methods {
+                let s = summary(&p, method, None);
+                println!(
+                    "dampers x {factor}, b {half_backlash_m}, {method:?}: {:?}, {:?}, {:?}, RMS {:.3e}",
+                    s.regime, s.contact, s.lyapunov_per_mesh_period, s.rms.mesh_circumferential_acceleration_m_s2.left
+                );
+                if half_backlash_m == 0.0 {
+                    assert_eq!(s.regime, Regime::Unstable, "{factor}, {method:?}");
+                    let rate = s.lyapunov_per_mesh_period.unwrap();
+                    assert!(rate > 0.0 && rate < 1.0, "{rate}");
+                    assert!((s.floquet_modulus.map_or(rate, f64::ln) - rate).abs() < 1e-12);
+                } else {
+                    assert!(!matches!(s.regime, Regime::QuasiPeriodic), "{factor}, {method:?}");
+                }
+                let told = s.period_mesh_periods.is_none() && s.rms_interval_95.is_none();
+                assert!(told || s.regime != Regime::Unstable, "{factor}, {method:?}");
+            }
+        }
+        // The rate is the motion's: from one part of a record to another.
+        let p = resonant(0.02, 0.0);
+        let at = |periods: u64| {
+            let s = summary(&p, Method::Integrate { mesh_periods: periods, record_mesh_periods: 1 }, None);
+            (s.rms.mesh_circumferential_acceleration_m_s2.left.ln(), s.lyapunov_per_mesh_period)
+        };
+        let ((early, _), (late, rate)) = (at(60), at(100));
+        assert!(((late - early) / 40.0 / rate.unwrap() - 1.0).abs() < 1e-2, "{early} {late} {rate:?}");
+        // Enough damping holds it.
+        assert_eq!(summary(&resonant(10.0, 0.0), Method::Auto, None).regime, Regime::Period1);
+    }
+
+    /// Case B stays chaotic, and an impact changes nothing of that.
+    #[test]
+    fn chaos_stays_chaos() {
+        let mut p = parameters("B");
+        for pulse in [true, false] {
+            if !pulse {
+                p.halves.iter_mut().for_each(|h| h.impact = None::<Impact>);
+            }
+            let s = summary(&p, Method::Integrate { mesh_periods: 300, record_mesh_periods: 200 }, Some(start("B")));
+            println!("pulse {pulse}: {:?}, {:?}", s.regime, s.lyapunov_per_mesh_period);
+            assert!(!pulse || s.regime == Regime::Chaotic);
+            assert_ne!(s.regime, Regime::Unstable);
+        }
+    }
+
+    #[test]
+    fn a_swing_is_no_decay_and_a_slow_fall_is() {
+        let swing: Vec<f64> = (0..270).map(|i| (0.37 * f64::from(i)).sin()).collect();
+        assert!(!decays(&swing));
+        let falls: Vec<f64> = swing.iter().map(|g| 0.3 * g - 0.004).collect();
+        assert!(decays(&falls));
+        assert!((trend(&[-0.5; 40]) + 0.5).abs() < 1e-12);
+    }
+}
