@@ -177,10 +177,9 @@ impl ContactForce {
         if back > 0.0 { -1 - self.back.level(back) as Contact } else { 0 }
     }
 
-    /// Largest stiffness at any knot of the driving flank up to its last level, N/m.
-    pub fn largest_stiffness_n_per_m(&self) -> f64 {
-        let of = |flank: &Flank| flank.cells.iter().flatten().fold(0.0f64, |m, c| m.max(c[1][0]));
-        of(&self.driving).max(of(&self.back))
+    /// Largest stiffness of a flank (1 driving, −1 back) at any knot and level, N/m.
+    pub fn largest_stiffness_n_per_m(&self, side: Contact) -> f64 {
+        self.flank(side).cells.iter().flatten().fold(0.0f64, |m, c| m.max(c[1][0]))
     }
 
     /// What the Taylor method needs of the cell a motion is in: polynomials in scaled time about `phase`.

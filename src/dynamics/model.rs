@@ -325,7 +325,8 @@ fn fastest(p: &Parameters, h: &HalfParameters, equivalent_mass: f64) -> f64 {
         Stiffness::Samples { values_n_per_m } => values_n_per_m.iter().copied().fold(0.0, f64::max),
         other => other.mean_n_per_m(),
     };
-    let k_m = h.contact_force.as_ref().map_or(k_m, |force| force.largest_stiffness_n_per_m().max(k_m));
+    let side = if h.pinion_torque_nm < 0.0 { -1 } else { 1 };
+    let k_m = h.contact_force.as_ref().map_or(k_m, |force| force.largest_stiffness_n_per_m(side).max(k_m));
     let mesh = k_m * (1.0 / equivalent_mass + 1.0 / h.pinion_mass_kg + 1.0 / h.gear_mass_kg);
     let springs = [
         (h.pinion_lateral.stiffness + 2.0 * c.pinion_lateral.stiffness) / h.pinion_mass_kg,

@@ -64,7 +64,8 @@ impl Point<'_> {
             }
             _ => self.follow(model, last, integrator, tolerance),
         };
-        let linear = kept_contact(&finished.recorder);
+        // Under a contact force the equations are not linear in contact either.
+        let linear = !model.follows_contact() && kept_contact(&finished.recorder);
         let modulus = if linear || course.is_err() || grows_far(model, finished) {
             self.held_modulus(model, &last)?
         } else {
@@ -128,7 +129,11 @@ impl Point<'_> {
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), limits)?;
         let mut start = State { period: 0, phase: 0.0, ..*near };
         for j in 0..Model::<D>::HALVES {
-            start.contact[j] = if model.halves[j].load < 0.0 { -1 } else { 1 };
+            start.contact[j] = match model.follows_contact() {
+                false if model.halves[j].load < 0.0 => -1,
+                false => 1,
+                true => model.contact_of(j, model.s(j, &start.x), 0.0),
+            };
         }
         let once = shooting.map(&model.holding_contact(), start, 1)?;
         Ok(shooting.multipliers(&once.map).first().map_or(0.0, |m| m.norm()))

@@ -118,11 +118,15 @@ fn backlash(document: &JobDocument, prepared: &Prepared) -> Vec<Warning> {
 /// What the mesh stage shows.
 pub fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
     let mut found = Vec::new();
-    let modulus_gpa = document.design.material.youngs_modulus_gpa;
+    let design = &document.design;
+    let members = [&design.pinion, &design.gear].map(|gear| gear.material.as_ref().unwrap_or(&design.material));
+    let modulus_gpa = members.iter().fold(f64::INFINITY, |m, material| m.min(material.youngs_modulus_gpa));
     let limit_mpa = ALLOWABLE_PRESSURE_MPA * (modulus_gpa / STEEL_GPA).min(1.0);
     if let Some(mpa) = mesh.max_contact_pressure_mpa.filter(|mpa| *mpa > limit_mpa) {
         let material = if modulus_gpa < STEEL_GPA {
-            format!("1650 MPa of case-hardened steel in proportion to Young's modulus {modulus_gpa} GPa")
+            format!(
+                "1650 MPa of case-hardened steel in proportion to the softer gear's Young's modulus {modulus_gpa} GPa"
+            )
         } else {
             "the allowable stress number of case-hardened steel, grade ME".to_owned()
         };

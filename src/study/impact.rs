@@ -7,7 +7,7 @@ use super::prepare::Prepared;
 use crate::dynamics;
 use crate::gear::{Half, Warning};
 use crate::impact::{self, Entry, Inertia};
-use crate::job::document::{CornerImpact, Impact, ImpactDuration, JobDocument};
+use crate::job::document::{CornerImpact, Impact, ImpactDuration, JobDocument, MeshForce};
 use crate::job::result;
 
 /// What the impact stage leaves: its block of the result, and the pulse of each half.
@@ -18,8 +18,8 @@ pub struct ImpactStage {
 
 /// Whether the impact of a document is put on the equations of motion, or only reported. The one place where that is decided.
 pub fn applied(document: &JobDocument) -> bool {
-    // A mesh force by stiffness alone knows nothing of early contact: every impact is applied.
-    !matches!(document.model.impact, Impact::None)
+    // A mesh force by stiffness alone knows nothing of early contact; the loaded contact's contains it.
+    document.model.mesh_force == MeshForce::Stiffness && !matches!(document.model.impact, Impact::None)
 }
 
 /// Runs the impact stage: an impact that is not applied leaves no pulses. Warns of pulses that their model does not cover.

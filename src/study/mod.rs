@@ -40,7 +40,7 @@ pub use points::{KeptPoints, LineEnd, NoPointStore, PointStore};
 pub use vibration::is_channel;
 
 /// Version of the calculation: results and stages stored under another version are not reused.
-pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-5");
+pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-6");
 
 /// Stages in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -96,13 +96,10 @@ pub fn stage<'a>(
 
     let parameters = (document.kind != Kind::Mesh).then(|| {
         let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
+        let parameters = equations::parameters(document, &prepared, &plane, mesh.stiffness, impact.pulses, lead);
         match &mesh.forces {
-            None => equations::parameters(document, &prepared, &plane, mesh.stiffness, impact.pulses, lead),
-            // What the pulse stands for is in the contact.
-            Some(contact) => {
-                let parameters = equations::parameters(document, &prepared, &plane, mesh.stiffness, [None, None], lead);
-                equations::with_contact_forces(parameters, &contact.forces)
-            }
+            None => parameters,
+            Some(contact) => equations::with_contact_forces(parameters, &contact.forces),
         }
     });
     let result = JobResult {
