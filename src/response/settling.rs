@@ -40,8 +40,10 @@ pub(super) struct Fate {
 /// A motion followed on with a deviation beside it.
 struct Course {
     exponent: f64,
-    /// The motion has come to repeat meanwhile, or the deviation decays.
-    settles: bool,
+    /// The motion has come to repeat.
+    repeats: bool,
+    /// The deviation decays.
+    decays: bool,
     numerics: Numerics,
 }
 
@@ -58,9 +60,11 @@ impl Point<'_> {
         known: Option<f64>,
     ) -> Result<Fate, DynamicsError> {
         let last = finished.record.last;
+        // A motion on a torus may come near to itself again and again; one that settles does what it did not do before.
+        let came_near = finished.record.recent.settled_period(REPEATS).is_some();
         let course = match known {
             Some(exponent) if exponent > CHAOS_PER_MESH_PERIOD => {
-                Ok(Course { exponent, settles: false, numerics: Numerics::default() })
+                Ok(Course { exponent, repeats: false, decays: false, numerics: Numerics::default() })
             }
             _ => self.follow(model, last, integrator, tolerance),
         };
@@ -75,7 +79,7 @@ impl Point<'_> {
         let (course, diverged) = match course {
             Ok(course) => (course, false),
             Err(DynamicsError::Diverged { .. }) if grows => {
-                (Course { exponent: modulus.ln(), settles: false, numerics: Numerics::default() }, true)
+                (Course { exponent: modulus.ln(), repeats: false, decays: false, numerics: Numerics::default() }, true)
             }
             Err(other) => return Err(other),
         };
@@ -90,7 +94,7 @@ impl Point<'_> {
             Regime::Unstable
         } else if course.exponent > CHAOS_PER_MESH_PERIOD {
             Regime::Chaotic
-        } else if course.settles {
+        } else if course.decays || (course.repeats && !came_near) {
             Regime::NotSettled
         } else {
             Regime::QuasiPeriodic
@@ -115,10 +119,8 @@ impl Point<'_> {
             growth.push(ln);
             section.push(*state);
         })?;
-        let settles = exponent == f64::NEG_INFINITY
-            || section.settled_period(REPEATS).is_some()
-            || decays(&growth[growth.len() / 10..]);
-        Ok(Course { exponent, settles, numerics: motion.numerics })
+        let decays = exponent == f64::NEG_INFINITY || decays(&growth[growth.len() / 10..]);
+        Ok(Course { exponent, repeats: section.settled_period(REPEATS).is_some(), decays, numerics: motion.numerics })
     }
 
     /// Largest modulus of the Floquet multipliers over one mesh period with contact held, free motions apart: what the vibration of a pair

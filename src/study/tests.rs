@@ -347,6 +347,7 @@ fn a_motion_that_is_too_dear_to_close_is_told_as_one_that_does_not_repeat() {
     value["model"]["impact"]["base_pitch_error_um"] = json!(8.0);
     let response = solved(&value).result.response.expect("a response");
     assert_eq!(response.contact, "double-sided");
+    println!("exponent {:?}", response.lyapunov_per_mesh_period);
     assert!(["quasi-periodic", "chaotic"].contains(&response.regime.as_str()), "{}", response.regime);
 }
 
