@@ -105,7 +105,8 @@ fn numbers_of_the_examples_stay() {
     check_value(topic, "table1, ISO 6336-1, N/µm", mesh(&iso).stiffness_mean_n_per_um, TABLE1[2], Relative(1e-12));
 }
 
-const TABLE1: [f64; 3] = [0.0, 0.0, 0.0];
+/// Mean stiffness and transmission error of the loaded contact, mean stiffness of the closed form.
+const TABLE1: [f64; 3] = [1_404.804_610_565_309_3, 0.458_324_402_579_982_64, 1_187.469_502_748_527_7];
 
 #[test]
 fn the_common_width_bears_and_each_gear_has_its_own_mass() {

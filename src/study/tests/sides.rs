@@ -46,7 +46,8 @@ fn the_closed_form_runs_on_the_other_flank() {
         d.transmission_error_mean_um,
         Relative(1e-4),
     );
-    check_value(TOPIC, "ISO 6336-1, RMS of x''", rms(&coast), rms(&drive), Relative(1e-3));
+    // 128 samples of a curve with kinks, which lie between other samples here.
+    check_value(TOPIC, "ISO 6336-1, RMS of x''", rms(&coast), rms(&drive), Relative(3e-3));
     // At the phases of the coast flanks: the drive's curve mirrored about some phase, not the same curve.
     let curve = |mesh: &crate::job::result::Mesh| mesh.curve.stiffness_n_per_um.clone();
     assert_ne!(curve(c), curve(d));
