@@ -3,6 +3,7 @@
 
 use super::equations::MotionPlane;
 use super::prepare::Prepared;
+use super::supports::shown;
 use crate::dynamics;
 use crate::gear::Warning;
 use crate::job::document::{
@@ -52,7 +53,7 @@ pub fn of_document(document: &JobDocument, prepared: &Prepared, discs: [(f64, f6
                 None => found.push(warning(
                     "assumed-inertia",
                     pointer,
-                    format!("not given: {inertia_kg_m2:.4} kg m2 assumed (solid discs of both halves from the bore to the reference circle; shaft and hub are not counted)"),
+                    format!("not given: {} kg m2 assumed (solid discs of both halves from the bore to the reference circle; shaft and hub are not counted)", shown(inertia_kg_m2)),
                 )),
                 Some(given) => found.extend(implausible("inertia-implausible", pointer, given, inertia_kg_m2, "kg m2")),
             }
@@ -63,7 +64,7 @@ pub fn of_document(document: &JobDocument, prepared: &Prepared, discs: [(f64, f6
                 None => found.push(warning(
                     "assumed-mass",
                     pointer,
-                    format!("not given: {mass_kg:.4} kg assumed (solid discs of both halves from the bore to the reference circle; shaft and hub are not counted)"),
+                    format!("not given: {} kg assumed (solid discs of both halves from the bore to the reference circle; shaft and hub are not counted)", shown(mass_kg)),
                 )),
                 Some(given) => found.extend(implausible("mass-implausible", pointer, given, mass_kg, "kg")),
             }
@@ -82,7 +83,11 @@ fn implausible(code: &str, pointer: String, given: f64, geometry: f64, unit: &st
         let low = geometry / IMPLAUSIBLE_RATIO;
         let high = geometry * IMPLAUSIBLE_RATIO;
         let detail = format!(
-            "is {given:.4} {unit}, {ratio:.2} times what the geometry gives ({geometry:.4} {unit}); outside {low:.4} to {high:.4} {unit} it is that of other parts too, or not of this gear"
+            "is {} {unit}, {ratio:.2} times what the geometry gives ({} {unit}); outside {} to {} {unit} it is that of other parts too, or not of this gear",
+            shown(given),
+            shown(geometry),
+            shown(low),
+            shown(high)
         );
         warning(code, pointer, detail)
     })

@@ -107,12 +107,12 @@ pub fn assumed(document: &JobDocument, used: &Supports) -> Option<Warning> {
 }
 
 /// Four significant digits.
-fn shown(value: f64) -> String {
-    if !(1.0..1e6).contains(&value) && value != 0.0 {
+pub fn shown(value: f64) -> String {
+    if value != 0.0 && !(1e-3..1e6).contains(&value.abs()) {
         return format!("{value:.3e}");
     }
-    let decimals = (0..3).find(|digits| value >= 10f64.powi(3 - digits)).unwrap_or(3);
-    format!("{value:.*}", decimals as usize)
+    let digits_before = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
+    format!("{value:.*}", (3.0 - digits_before).clamp(0.0, 6.0) as usize)
 }
 
 #[cfg(test)]

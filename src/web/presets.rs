@@ -38,9 +38,14 @@ pub const GROUPS: &[PresetGroup] = &[
         title: "One operating point",
         presets: &[
             preset!(
-                "table1",
+                "contact",
                 "Example pair, z 17/44",
-                "The source paper's Table 1: module 6 mm, helix 24.43°, 2 × 75 mm, 800 N·m at 2000 r/min."
+                "Module 6 mm, helix 24.43°, 2 × 75 mm, 800 N·m at 2000 r/min: the loaded contact in the equations, halves of one body."
+            ),
+            preset!(
+                "table1",
+                "The source's Table 1",
+                "The same pair as the source paper models it: mesh stiffness and impact pulse, halves that turn freely."
             ),
             preset!(
                 "tip_relief",

@@ -141,13 +141,16 @@ fn control(pointer: &str, schema: &Value, value: &str, derived: Option<&str>) ->
 }
 
 /// Words of the document that people would say otherwise: end of the field's pointer, word, label.
-const CHOICES: [(&str, &str, &str); 12] = [
+const CHOICES: [(&str, &str, &str); 15] = [
     ("/kind", "mesh", "mesh (contact, impact)"),
     ("/kind", "response", "response (one point)"),
     ("/kind", "sweep", "sweep (over inputs)"),
     ("/mesh_stiffness/source", "ltca", "loaded tooth contact"),
     ("/mesh_stiffness/source", "iso6336", "ISO 6336-1, closed form"),
     ("/mesh_stiffness/fidelity", "fe", "finite elements"),
+    ("/mesh_stiffness/fidelity", "uniform", "uniform foundation"),
+    ("/mesh_force", "contact", "loaded contact"),
+    ("/mesh_force", "stiffness", "stiffness and impact (the source's)"),
     ("/mesh_stiffness/law", "secant", "secant F/δ"),
     ("/mesh_stiffness/law", "tangent", "tangent dF/dδ"),
     ("/impact/source", "zhou2008", "Zhou (2008), unbuffered"),

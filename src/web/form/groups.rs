@@ -202,7 +202,7 @@ pub const GROUPS: &[GroupPlan] = &[
         open: false,
         nothing: DEFAULTS,
         blocks: &[
-            block("", &["/model/plane", "/model/mesh_damping_ratio", "/model/damping_in_gap"]),
+            block("", &["/model/mesh_force", "/model/plane", "/model/mesh_damping_ratio", "/model/damping_in_gap"]),
             block("Mesh stiffness", &["/model/mesh_stiffness"]),
             block("Impact", &["/model/impact"]),
         ],
@@ -223,6 +223,12 @@ pub const CONDITIONS: &[Condition] = &[
     Condition { pointer: "/continuation", on: "/kind", values: "sweep" },
     Condition { pointer: "/record", on: "/kind", values: "sweep" },
     Condition { pointer: "/model/mesh_stiffness/fidelity", on: "/model/mesh_stiffness/source", values: "ltca" },
+    Condition { pointer: "/model/mesh_force", on: "/model/mesh_stiffness/source", values: "ltca" },
+    Condition {
+        pointer: "/model/mesh_stiffness/line_stiffness_n_per_mm_um",
+        on: "/model/mesh_stiffness/fidelity",
+        values: "uniform",
+    },
     Condition { pointer: "/model/mesh_stiffness/elements", on: "/model/mesh_stiffness/fidelity", values: "fe" },
     Condition { pointer: "/model/mesh_stiffness/law", on: "/model/mesh_stiffness/source", values: "ltca" },
     Condition { pointer: "/model/mesh_stiffness/accuracy", on: "/model/mesh_stiffness/source", values: "ltca" },

@@ -60,8 +60,8 @@ impl Block {
     }
 }
 
-/// The form's first contents: the source paper's example.
-const EXAMPLE: &str = include_str!("../../../examples/table1.json");
+/// The form's first contents: the example pair as it is calculated by default.
+const EXAMPLE: &str = include_str!("../../../examples/contact.json");
 
 static GROUPS: LazyLock<Vec<Group>> = LazyLock::new(|| plan(all_fields()));
 
