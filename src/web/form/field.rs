@@ -236,7 +236,7 @@ fn label(pointer: &str, unit: &str) -> String {
 }
 
 /// Declared unit, how field names end with it, how people write it.
-const UNITS: [(&str, &str, &str); 16] = [
+const UNITS: [(&str, &str, &str); 17] = [
     ("1", "", ""),
     ("mm", "_mm", "mm"),
     ("um", "_um", "µm"),
@@ -248,6 +248,7 @@ const UNITS: [(&str, &str, &str); 16] = [
     ("kg m2", "_kg_m2", "kg·m²"),
     ("N", "_n", "N"),
     ("N/um", "_n_per_um", "N/µm"),
+    ("N/(mm um)", "_n_per_mm_um", "N/(mm·µm)"),
     ("N m", "_nm", "N·m"),
     ("N m/rad", "_nm_per_rad", "N·m/rad"),
     ("r/min", "_rpm", "r/min"),
