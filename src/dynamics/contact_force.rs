@@ -104,6 +104,16 @@ impl ContactForce {
         cubic(&self.flank(side).free[i], u)
     }
 
+    /// The least of it over the mesh period, m.
+    pub fn least_free_m(&self, side: Contact) -> f64 {
+        const PLACES: u32 = 16;
+        let free = self.flank(side).free.iter();
+        let least = |c: &[f64; 4]| {
+            (0..PLACES).map(|i| cubic(c, f64::from(i) / f64::from(PLACES))).fold(f64::INFINITY, f64::min)
+        };
+        free.map(least).fold(f64::INFINITY, f64::min)
+    }
+
     /// Its slope per mesh period.
     pub(super) fn free_rate_m(&self, side: Contact, phase: f64) -> f64 {
         let (i, u, width) = self.interval(phase, phase);
@@ -195,7 +205,7 @@ impl ContactForce {
             return Cell { side: -1.0, near, far, law: [[0.0; 4]; 4] };
         }
         let flank = self.flank(contact);
-        let level = usize::from(contact.unsigned_abs()) - 1;
+        let level = (usize::from(contact.unsigned_abs()) - 1).min(flank.level_m.len() - 1);
         let mut far = shifted(&flank.free[i]);
         let mut near = far.map(|c| -c);
         near[0] -= b + flank.level_m[level];
@@ -217,7 +227,7 @@ impl ContactForce {
 }
 
 /// A level that no motion reaches, m.
-const BEYOND_M: f64 = 1e9;
+const BEYOND_M: f64 = 1e300;
 
 /// The cell of one half that a motion is in, polynomials in scaled time: the force is side Σ_a law[a](τ) e^a with e = side s + near(τ); the cell is left
 /// where side s + near(τ) or −side s + far(τ) falls below zero.

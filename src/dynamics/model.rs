@@ -157,6 +157,12 @@ impl<const D: usize> Model<D> {
         }
     }
 
+    /// The largest s of a half at which its driving flanks carry nothing at any phase, m.
+    pub fn touching_m(&self, j: usize) -> f64 {
+        let contact = self.excitations[j].contact.as_ref();
+        self.b + contact.map_or(0.0, |c| c.force.least_free_m(1))
+    }
+
     /// Scaled rate at which the distance from mid-gap to where contact of a side (1 driving, −1 back) begins grows: 0 but for contact forces.
     pub fn contact_begins_rate(&self, j: usize, side: Contact, phase: f64) -> f64 {
         let contact = self.excitations[j].contact.as_ref();

@@ -44,7 +44,7 @@ impl Point<'_> {
         let side = if model.b == 0.0 { 1 } else { 0 };
         let mut start = State { period: from, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [side; 2] };
         if touching {
-            (0..Model::<D>::HALVES).for_each(|j| start.x[j * PER_HALF + U] = model.b / model.cos);
+            (0..Model::<D>::HALVES).for_each(|j| start.x[j * PER_HALF + U] = model.touching_m(j) / model.cos);
         }
         let held = model.holding_contact();
         let span = (from, from + periods);

@@ -137,8 +137,8 @@ impl<const D: usize> Search<'_, D> {
     fn balanced(&self, shooting: &Shooting<'_, D>, defect: &Deviation<D>) -> Result<(), DynamicsError> {
         let unbalanced_n = shooting.unbalanced_n(defect, 1);
         let load = (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.largest_push_n(j)));
-        // Rounding and truncation leave a little; a real imbalance is far above.
-        if unbalanced_n > 1e-6 * load {
+        // Rounding and truncation leave a little; a real imbalance is far above. What is not loaded cannot be unbalanced.
+        if load > 0.0 && unbalanced_n > 1e-6 * load {
             return Err(DynamicsError::Unbalanced { force_n: unbalanced_n });
         }
         Ok(())
