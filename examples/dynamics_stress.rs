@@ -315,7 +315,7 @@ fn independent(p: &Parameters, r: &Response) -> Option<f64> {
         m.max((h.pinion_torque_nm.abs() / p.pinion_radius_m + impact_n) / p.equivalent_mass_kg(j))
     });
     let largest = a.iter().fold(0.0f64, |m, v| m.max(*v));
-    if largest < 1e-9 * possible {
+    if possible == 0.0 || largest < 1e-9 * possible {
         return None;
     }
     let own = again.summary.error_estimate;

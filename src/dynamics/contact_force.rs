@@ -104,14 +104,18 @@ impl ContactForce {
         cubic(&self.flank(side).free[i], u)
     }
 
-    /// The least of it over the mesh period, m.
+    /// A displacement below all of it over the mesh period, by no more than a hundredth of its range, m.
     pub fn least_free_m(&self, side: Contact) -> f64 {
         const PLACES: u32 = 16;
-        let free = self.flank(side).free.iter();
-        let least = |c: &[f64; 4]| {
-            (0..PLACES).map(|i| cubic(c, f64::from(i) / f64::from(PLACES))).fold(f64::INFINITY, f64::min)
-        };
-        free.map(least).fold(f64::INFINITY, f64::min)
+        const MARGIN: f64 = 0.01;
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for c in &self.flank(side).free {
+            for i in 0..PLACES {
+                let free = cubic(c, f64::from(i) / f64::from(PLACES));
+                (least, most) = (least.min(free), most.max(free));
+            }
+        }
+        least - MARGIN * (most - least)
     }
 
     /// Its slope per mesh period.
