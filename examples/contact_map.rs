@@ -64,7 +64,7 @@ fn report(name: &str, points: &[SweepPoint], torques: usize, speeds: usize, seco
                 (s > 0 && s + 1 < speeds).then(|| log(t, s) - 0.5 * (log(t, s - 1) + log(t, s + 1))),
             ];
             for (worst, departure) in worst.iter_mut().zip(along) {
-                if let Some(d) = departure.map(f64::abs).filter(|d| !(*d <= worst.0)) {
+                if let Some(d) = departure.map(f64::abs).filter(|d| d.is_nan() || *d > worst.0) {
                     *worst = (d, t, s);
                 }
             }

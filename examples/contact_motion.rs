@@ -42,8 +42,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .iter()
             .find(|c| c.name == "a_x_left")
             .map_or(f64::NAN, |c| c.values.iter().fold(0.0f64, |m, v| m.max(v.abs())));
+        let table = mesh.contact_force.map_or_else(String::new, |table| {
+            format!("{} levels, {} phases, {:.4} %", table.levels, table.phases, table.error_percent)
+        });
+        let (numerics, wall) = (&result.numerics, result.numerics.wall_ms);
         println!(
-            "{:55} {:9.3} {:8.3} {:8.4} {:9.4} {:9.3} {:8.3} {:>9} {:8.1}  rms {:.3} error {:.1e} force table {:?} {}",
+            "{:55} {:9.3} {:8.3} {:8.4} {:9.4} {:9.3} {:8.3} {:>9} {ms:8.1}  RMS {:.3} m/s2, error {:.1e}, table {table}, {} steps, mesh {:.1} ms, response {:.1} ms",
             case["name"].as_str().unwrap_or(""),
             of(response.rms.mesh_circumferential_acceleration_m_s2.left, "/rms_acceleration_m_s2"),
             of(peak, "/peak_acceleration_m_s2"),
@@ -52,14 +56,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             of(mesh.transmission_error_mean_um, "/static/transmission_error_mean_um"),
             of(mesh.transmission_error_harmonics_um[0], "/static/transmission_error_harmonics_um/0"),
             response.regime,
-            ms,
             response.rms.mesh_circumferential_acceleration_m_s2.left,
             response.error_estimate,
-            mesh.contact_force.map(|c| (c.levels, c.phases, (c.error_percent * 1e4).round() / 1e4)),
-            format!(
-                "{} steps, mesh {:.1} ms, response {:.1} ms",
-                result.numerics.steps, result.numerics.wall_ms.mesh, result.numerics.wall_ms.response
-            ),
+            numerics.steps,
+            wall.mesh,
+            wall.response,
         );
     }
     Ok(())
