@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let table = mesh.contact_force.map_or_else(String::new, |table| {
             format!("{} levels, {} phases, {:.4} %", table.levels, table.phases, table.error_percent)
         });
-        let (numerics, wall) = (&result.numerics, result.numerics.wall_ms);
+        let (numerics, wall) = (&result.numerics, &result.numerics.wall_ms);
         println!(
             "{:55} {:9.3} {:8.3} {:8.4} {:9.4} {:9.3} {:8.3} {:>9} {ms:8.1}  RMS {:.3} m/s2, error {:.1e}, table {table}, {} steps, mesh {:.1} ms, response {:.1} ms",
             case["name"].as_str().unwrap_or(""),
