@@ -49,6 +49,18 @@ fn stages(criterion: &mut Criterion) {
     group.bench_function("response, ISO 6336 stiffness", |b| b.iter(|| solve(black_box(&closed_form))));
     let whole = example(|_| {});
     group.bench_function("response, loaded contact, cold", |b| b.iter(|| solve(black_box(&whole))));
+    let contact = example(|value| value["model"]["mesh_force"] = json!("contact"));
+    group.bench_function("response, contact in the equations, cold", |b| b.iter(|| solve(black_box(&contact))));
+    group.sample_size(10);
+    for force in ["stiffness", "contact"] {
+        let speeds = example(|value| {
+            value["kind"] = json!("sweep");
+            value["model"]["mesh_force"] = json!(force);
+            value["axes"] =
+                json!([{"pointer": "/operation/pinion_speed_rpm", "from": 500, "to": 12_000, "points": 1000}]);
+        });
+        group.bench_function(BenchmarkId::new("1000 speeds", force), |b| b.iter(|| solve(black_box(&speeds))));
+    }
     group.finish();
 }
 
