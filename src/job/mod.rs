@@ -4,6 +4,7 @@
 pub(crate) mod arbitrary;
 pub mod document;
 pub mod drawing;
+mod encoding;
 mod fields;
 mod finite;
 mod json;
@@ -15,6 +16,7 @@ mod shape;
 mod tests;
 mod violation;
 
+pub use encoding::{EncodingError, utf8_text, without_mark};
 pub use fields::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_value};
 pub use finite::not_finite;
 pub use shape::SweepShape;
