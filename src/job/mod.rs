@@ -7,6 +7,7 @@ pub mod drawing;
 mod encoding;
 mod fields;
 mod finite;
+pub mod grid;
 mod json;
 mod reader;
 pub mod result;
