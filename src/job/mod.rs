@@ -8,6 +8,7 @@ mod encoding;
 mod fields;
 mod finite;
 pub mod grid;
+mod hints;
 mod json;
 mod reader;
 pub mod result;
