@@ -19,7 +19,7 @@ pub fn write(study: &mut Study) -> Outcome<()> {
     apex(study, &base)
 }
 
-fn map([name, title]: [&'static str; 2], document: Value, columns: u32, upwards: Upwards) -> Map {
+fn map([name, title]: [&'static str; 2], document: Value, columns: usize, upwards: Upwards) -> Map {
     Map { name, title, document, widths_mm: spaced(50.0, 120.0, columns, false), upwards }
 }
 

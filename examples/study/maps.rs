@@ -5,6 +5,8 @@ use crate::ask::{Outcome, Swept};
 use crate::heat;
 use crate::page::sig;
 use crate::svg::{Field, Scale, Sheet};
+use herringbone::job::document::Spacing;
+use herringbone::job::grid;
 use serde_json::Value;
 use std::fmt::Write;
 
@@ -43,11 +45,8 @@ pub struct Solved {
 }
 
 /// So many values from one to another, in equal steps or equal ratios.
-pub fn spaced(from: f64, to: f64, count: u32, logarithmic: bool) -> Vec<f64> {
-    let part = |index| f64::from(index) / f64::from(count - 1);
-    (0..count)
-        .map(|index| if logarithmic { from * (to / from).powf(part(index)) } else { from + (to - from) * part(index) })
-        .collect()
+pub fn spaced(from: f64, to: f64, count: usize, logarithmic: bool) -> Vec<f64> {
+    grid::values(from, to, count, if logarithmic { Spacing::Logarithmic } else { Spacing::Linear })
 }
 
 impl Map {

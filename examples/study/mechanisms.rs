@@ -4,6 +4,7 @@ use crate::Study;
 use crate::ask::{Outcome, number};
 use crate::documents::{table1, with, without_impact};
 use crate::front::Verdict;
+use crate::maps::spaced;
 use crate::page::sig;
 use crate::svg::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
 use crate::table3::rms;
@@ -36,7 +37,7 @@ pub fn write(study: &mut Study) -> Outcome<()> {
         stiffness (a given constant stiffness of the same mean, with the same impact); the backlash (0 instead of 2 µm).");
     let base = table1()?;
     let steps: [Vec<f64>; 3] = [
-        (0..=25).map(|step| 0.70 + 0.02 * f64::from(step)).chain([1.205, 1.21, 1.22, 1.24, 1.265]).collect(),
+        spaced(0.70, 1.20, 26, false).into_iter().chain([1.205, 1.21, 1.22, 1.24, 1.265]).collect(),
         (0..=35).map(|step| 50.0 + 2.0 * f64::from(step)).collect(),
         (0..=26).map(|step| 14.0 + f64::from(step)).collect(),
     ];

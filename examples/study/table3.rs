@@ -4,6 +4,7 @@ use crate::Study;
 use crate::ask::{Outcome, number};
 use crate::documents::{load, with, without_impact};
 use crate::front::Verdict;
+use crate::maps::spaced;
 use crate::page::sig;
 use crate::source::PRINTED;
 use crate::svg::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
@@ -114,7 +115,7 @@ fn row(study: &mut Study, document: &Value) -> Outcome<Row> {
 
 /// The circumferential RMS that the printed impact forces give, over the pulse's length, and where it is the printed one.
 fn pulse_lengths(study: &mut Study) -> Outcome<Vec<Vec<(f64, f64)>>> {
-    let microseconds: Vec<f64> = (0..=44).map(|step| 10f64.powf(f64::from(step) * 3.2 / 44.0)).collect();
+    let microseconds = spaced(1.0, 10f64.powf(3.2), 45, true);
     let (mut curves, mut needed) = (Vec::new(), Vec::new());
     for printed in PRINTED.iter().filter(|printed| printed.rms.is_some()) {
         let document = load(printed.document)?;

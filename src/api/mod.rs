@@ -8,6 +8,7 @@
 mod columns;
 mod config;
 mod connections;
+mod csv;
 mod downsample;
 mod envelope;
 mod guard;
@@ -25,6 +26,7 @@ mod view;
 
 pub use config::{HttpConfig, MAX_BODY_BYTES, MAX_WAIT_S};
 pub use connections::ConnectionConfig;
+pub use csv::{Decimal, Field as CsvField};
 pub use guard::{Access, AccessConfig, AccessError, LoginNotice, LoginPage};
 pub use openapi::openapi_json;
 pub use problem::{Problem, ProblemCode};

@@ -2,11 +2,11 @@
 
 use super::columns::{Cell, NUMBERS, WORDS};
 use super::config::MAX_ROWS;
+use super::csv::{Decimal, Field};
 use crate::job::result::SweepPoint;
 use crate::store::{JobId, PointRow, PointsOfResult, Store, StoreError};
 use axum::body::{Body, Bytes};
 use futures_util::stream::{self, Stream, StreamExt};
-use std::fmt::Write;
 
 /// Up to `limit` rows of a job from position `from` on and before `to`, and the position of the next one, if there is one.
 pub async fn page(
@@ -50,15 +50,15 @@ pub fn within(store: Store, id: JobId, body: String, place: &PointsOfResult) -> 
 }
 
 /// All rows as CSV, from position `from` on, `limit` at most: a header with a column for each of `axes`, then a line for each point.
-pub fn csv(store: Store, id: JobId, axes: &[String], from: u64, limit: u64) -> Body {
-    let head = Ok(Bytes::from(header(axes)));
+pub fn csv(store: Store, id: JobId, axes: &[String], (from, limit): (u64, u64), decimal: Decimal) -> Body {
+    let head = Ok(Bytes::from(header(axes, decimal)));
     let end = from.saturating_add(limit);
     let lines = pages(store, id, from).map(move |page| {
         let mut text = String::new();
         for row in page?.into_iter().filter(|row| row.position < end) {
             let point: SweepPoint = serde_json::from_str(&row.body)
                 .map_err(|error| StoreError::Corrupt { what: "point", detail: error.to_string() })?;
-            push_line(&mut text, row.position, &point);
+            push_line(&mut text, row.position, &point, decimal);
         }
         Ok::<_, StoreError>(Bytes::from(text))
     });
@@ -79,34 +79,21 @@ fn pages(store: Store, id: JobId, from: u64) -> impl Stream<Item = Result<Vec<Po
     })
 }
 
-fn header(axes: &[String]) -> String {
-    let axes = axes.iter().map(|pointer| quoted(pointer));
-    let names = NUMBERS.iter().chain(&WORDS).map(|column| column.0.to_owned());
-    let columns: Vec<String> = ["position", "branch"].map(str::to_owned).into_iter().chain(axes).chain(names).collect();
-    columns.join(",") + "\n"
+fn header(axes: &[String], decimal: Decimal) -> String {
+    let names = NUMBERS.iter().chain(&WORDS).map(|column| column.0);
+    let columns = ["position", "branch"].into_iter().chain(axes.iter().map(String::as_str)).chain(names);
+    let mut text = decimal.start().to_owned();
+    decimal.push_line(&mut text, columns.map(Field::Text));
+    text
 }
 
-/// Numbers are written so that they read back exactly; what is not there is empty.
-fn push_line(text: &mut String, position: u64, point: &SweepPoint) {
-    // Writing to a string cannot fail.
-    let _ = write!(text, "{position},{}", point.branch.as_deref().unwrap_or_default());
-    let values = point.values.iter().map(|value| Cell::Number(Some(*value)));
-    let cells = NUMBERS.iter().chain(&WORDS).map(|column| (column.1)(point));
-    for cell in values.chain(cells) {
-        let _ = match cell {
-            Cell::Number(Some(number)) => write!(text, ",{number:?}"),
-            Cell::Word(Some(word)) => write!(text, ",{}", quoted(word)),
-            _ => write!(text, ","),
-        };
-    }
-    text.push('\n');
-}
-
-/// A field as RFC 4180 writes it.
-fn quoted(field: &str) -> String {
-    if field.contains(['"', ',', '\n', '\r']) {
-        format!("\"{}\"", field.replace('"', "\"\""))
-    } else {
-        field.to_owned()
-    }
+fn push_line(text: &mut String, position: u64, point: &SweepPoint, decimal: Decimal) {
+    let values = point.values.iter().map(|value| Field::Number(*value));
+    let cells = NUMBERS.iter().chain(&WORDS).map(|column| match (column.1)(point) {
+        Cell::Number(Some(number)) => Field::Number(number),
+        Cell::Word(Some(word)) => Field::Text(word),
+        _ => Field::Nothing,
+    });
+    let branch = Field::Text(point.branch.as_deref().unwrap_or_default());
+    decimal.push_line(text, [Field::Whole(position), branch].into_iter().chain(values).chain(cells));
 }

@@ -4,7 +4,7 @@ use super::cache::DirectoryStages;
 use super::input::{invalid, read_document};
 use super::{problem, table};
 use clap::Args;
-use herringbone::api::Problem;
+use herringbone::api::{CsvField, Decimal, Problem};
 use herringbone::job::document::JobDocument;
 use herringbone::study::{self, Channel, NoStageStore, SolveError, Stage, StageStore, Surroundings};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -20,6 +20,10 @@ pub struct Solve {
     /// Write a recorded channel, full resolution, as CSV (`t_s,value`); may be given several times.
     #[arg(long, value_name = "CHANNEL=FILE.csv", value_parser = series_target)]
     series: Vec<(String, PathBuf)>,
+    /// Decimal sign in these files: `comma` writes them as spreadsheets read them whose language has a decimal comma (fields between
+    /// semicolons, a byte order mark).
+    #[arg(long, value_name = "point|comma", default_value = "point", value_parser = decimal)]
+    decimal: Decimal,
     /// Keep finished stages (finite elements of a gear, contact analyses) in this directory and reuse them.
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
@@ -33,6 +37,11 @@ fn series_target(text: &str) -> Result<(String, PathBuf), String> {
         Some((channel, file)) if !channel.is_empty() && !file.is_empty() => Ok((channel.to_owned(), file.into())),
         _ => Err("give CHANNEL=FILE.csv".to_owned()),
     }
+}
+
+fn decimal(text: &str) -> Result<Decimal, String> {
+    let found = Decimal::ALL.iter().find(|(word, _)| *word == text).map(|(_, decimal)| *decimal);
+    found.ok_or_else(|| "give point or comma".to_owned())
 }
 
 pub fn run(arguments: Solve) -> ExitCode {
@@ -66,7 +75,7 @@ pub fn run(arguments: Solve) -> ExitCode {
             eprintln!("--series {channel}: no such channel; recorded: {known}");
             return ExitCode::from(2);
         };
-        if let Err(error) = write_csv(series, path) {
+        if let Err(error) = write_csv(series, path, arguments.decimal) {
             eprintln!("{}: {error}", path.display());
             return ExitCode::FAILURE;
         }
@@ -132,11 +141,17 @@ fn write_json(result: &herringbone::job::result::JobResult) -> std::io::Result<(
     writeln!(out)
 }
 
-fn write_csv(series: &Channel, path: &PathBuf) -> std::io::Result<()> {
+fn write_csv(series: &Channel, path: &PathBuf, decimal: Decimal) -> std::io::Result<()> {
     let mut out = std::io::BufWriter::new(std::fs::File::create(path)?);
-    writeln!(out, "t_s,value")?;
+    let mut line = decimal.start().to_owned();
+    decimal.push_line(&mut line, ["t_s", "value"].map(CsvField::Text));
     for (index, value) in series.values.iter().enumerate() {
-        writeln!(out, "{:.12e},{value:.17e}", series.t0_s + index as f64 * series.dt_s)?;
+        out.write_all(line.as_bytes())?;
+        line.clear();
+        let time = format!("{:.12e}", series.t0_s + index as f64 * series.dt_s);
+        let value = format!("{value:.17e}");
+        decimal.push_line(&mut line, [&time, &value].map(|number| CsvField::Written(number)));
     }
+    out.write_all(line.as_bytes())?;
     out.flush()
 }

@@ -1,6 +1,7 @@
 //! The job document: what goes in. Names and units are the public contract; every default is filled in, so that a
 //! document written out again says everything that was used.
 
+use super::grid;
 use serde::Serialize;
 
 /// How much a job computes.
@@ -446,23 +447,12 @@ impl Axis {
         self.len() == 0
     }
 
-    /// The value at position `index`; both ends of a range are met exactly.
+    /// The value at position `index`; both ends of a range, and round values between them, are met exactly.
     pub fn value(&self, index: usize) -> f64 {
         match &self.points {
             AxisPoints::Values { values } => values[index],
             AxisPoints::Range { from, to, points, spacing } => {
-                let last = points.saturating_sub(1) as usize;
-                if index == 0 {
-                    return *from;
-                }
-                if index >= last {
-                    return *to;
-                }
-                let fraction = index as f64 / last as f64;
-                match spacing {
-                    Spacing::Linear => from + (to - from) * fraction,
-                    Spacing::Logarithmic => from * (to / from).powf(fraction),
-                }
+                grid::value(*from, *to, *points as usize, *spacing, index)
             }
         }
     }

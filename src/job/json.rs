@@ -1,20 +1,50 @@
 //! JSON in which no object says a thing twice. RFC 8259 leaves open what a repeated member means; a document that could be
 //! read in two ways is refused instead.
 
+use super::encoding::{EncodingError, utf8_text};
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 use std::fmt;
 
-/// Reads JSON text.
+/// Why bytes are not JSON that can be read, and where (counted from 1).
+#[derive(Debug, Clone, PartialEq)]
+pub struct NotJson {
+    pub detail: String,
+    pub line: usize,
+    pub column: usize,
+}
+
+/// Reads JSON text in UTF-8, with or without a byte order mark.
 ///
 /// # Errors
-/// What is not JSON, is nested deeper than 127 levels, has numbers that 64-bit floats cannot hold, or repeats a member; each
-/// with line and column.
-pub fn read(bytes: &[u8]) -> Result<Value, serde_json::Error> {
-    let mut deserializer = serde_json::Deserializer::from_slice(bytes);
-    let value = Unambiguous.deserialize(&mut deserializer)?;
-    deserializer.end()?;
-    Ok(value)
+/// What is not JSON, is encoded otherwise, is nested deeper than 127 levels, has numbers that 64-bit floats cannot hold, or
+/// repeats a member; each with line and column.
+pub fn read(bytes: &[u8]) -> Result<Value, NotJson> {
+    let text = utf8_text(bytes).map_err(|error| {
+        let (line, column) = match error {
+            EncodingError::Other(_) => (1, 1),
+            EncodingError::Invalid { offset, .. } => place(&bytes[..offset]),
+        };
+        NotJson { detail: error.to_string(), line, column }
+    })?;
+    let mut deserializer = serde_json::Deserializer::from_str(text);
+    let value = Unambiguous.deserialize(&mut deserializer).and_then(|value| deserializer.end().map(|()| value));
+    value.map_err(|error| NotJson { detail: without_place(&error), line: error.line(), column: error.column() })
+}
+
+/// Line and column of what follows, the column in bytes as the parser counts it.
+fn place(before: &[u8]) -> (usize, usize) {
+    let start = before.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
+    let mark = if start == 0 && before.starts_with("\u{feff}".as_bytes()) { 3 } else { 0 };
+    (1 + before.iter().filter(|byte| **byte == b'\n').count(), 1 + before.len() - start - mark)
+}
+
+fn without_place(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    match text.rfind(" at line ") {
+        Some(end) => text[..end].to_owned(),
+        None => text,
+    }
 }
 
 /// Builds a value, looking at each member's name.
@@ -109,7 +139,7 @@ mod tests {
             let expected: Value = serde_json::from_str(text).expect("JSON");
             assert_eq!(read(text.as_bytes()).expect("JSON"), expected, "{text}");
         }
-        for text in ["", "1 2", "{", "[1,]", "1e400", "\u{feff}1", r#""\ud800""#, "nul", "{1: 2}"] {
+        for text in ["", "1 2", "{", "[1,]", "1e400", "1\u{feff}", r#""\ud800""#, "nul", "{1: 2}"] {
             assert!(read(text.as_bytes()).is_err(), "{text}");
             assert!(serde_json::from_str::<Value>(text).is_err(), "{text}");
         }
@@ -118,6 +148,19 @@ mod tests {
     #[test]
     fn a_member_given_twice_is_refused_with_its_place() {
         let error = read(b"{\"a\": 1,\n \"b\": {\"a\": 2, \"a\": 2}}").expect_err("repeated");
-        assert_eq!((error.line(), error.to_string().contains("\"a\" is given twice")), (2, true), "{error}");
+        assert_eq!((error.line, error.detail.contains("\"a\" is given twice")), (2, true), "{error:?}");
+    }
+
+    #[test]
+    fn f07_a_byte_order_mark_moves_no_place_and_other_encodings_are_named() {
+        assert_eq!(read("\u{feff}{\"a\": 1}".as_bytes()), read(b"{\"a\": 1}"));
+        assert_eq!(read("\u{feff}{,".as_bytes()), read(b"{,"));
+        assert_eq!(read("\u{feff}".as_bytes()), read(b""));
+        let error = read(b"\xff\xfe{\0}\0").unwrap_err();
+        assert_eq!((error.line, error.column, error.detail.contains("UTF-16")), (1, 1, true), "{error:?}");
+        let error = read(b"{\n \"name\": \"Gr\xf6\xdfe\"}").unwrap_err();
+        assert_eq!((error.line, error.column, error.detail.contains("UTF-8")), (2, 13, true), "{error:?}");
+        let error = read(b"\xef\xbb\xbf\"\xf6\"").unwrap_err();
+        assert_eq!((error.line, error.column), (1, 2), "{error:?}");
     }
 }

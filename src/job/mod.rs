@@ -4,8 +4,11 @@
 pub(crate) mod arbitrary;
 pub mod document;
 pub mod drawing;
+mod encoding;
 mod fields;
 mod finite;
+pub mod grid;
+mod hints;
 mod json;
 mod reader;
 pub mod result;
@@ -15,6 +18,7 @@ mod shape;
 mod tests;
 mod violation;
 
+pub use encoding::{EncodingError, utf8_text, without_mark};
 pub use fields::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_value};
 pub use finite::not_finite;
 pub use shape::SweepShape;

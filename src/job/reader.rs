@@ -4,6 +4,7 @@
 //! A field is declared once, where it is read. Run over an empty document with [`Reading::describe`], the same code
 //! lists all fields instead of reading them.
 
+use super::hints::{self, Unknown};
 use super::violation::Violation;
 use serde_json::{Map, Value, json};
 use std::cell::RefCell;
@@ -69,7 +70,14 @@ impl Reading {
                 None
             }
         };
-        Object { reading: self, map, present: map.is_some(), pointer: String::new(), seen: RefCell::default() }
+        Object {
+            reading: self,
+            document: value,
+            map,
+            present: map.is_some(),
+            pointer: String::new(),
+            seen: RefCell::default(),
+        }
     }
 
     pub fn violate(&self, violation: Violation) {
@@ -109,6 +117,8 @@ impl Reading {
 /// An object of the document (or its absence, in which case every field takes its default or is missing).
 pub struct Object<'a> {
     reading: &'a Reading,
+    /// The whole document.
+    document: &'a Value,
     map: Option<&'a Map<String, Value>>,
     present: bool,
     pointer: String,
@@ -163,7 +173,14 @@ impl<'a> Object<'a> {
         };
         // Left out but optional: required fields inside it are still missing.
         let present = map.is_some() || (value.is_none() && !required && self.present);
-        Object { reading: self.reading, map, present, pointer: self.pointer_to(name), seen: RefCell::default() }
+        Object {
+            reading: self.reading,
+            document: self.document,
+            map,
+            present,
+            pointer: self.pointer_to(name),
+            seen: RefCell::default(),
+        }
     }
 
     /// A nested object that stays absent when left out: `None` unless given (or describing).
@@ -431,6 +448,7 @@ impl<'a> Object<'a> {
         if self.reading.describing {
             let item = Object {
                 reading: self.reading,
+                document: self.document,
                 map: None,
                 present: true,
                 pointer: format!("{pointer}/*"),
@@ -445,6 +463,7 @@ impl<'a> Object<'a> {
             match value {
                 Value::Object(map) => objects.push(Object {
                     reading: self.reading,
+                    document: self.document,
                     map: Some(map),
                     present: true,
                     pointer,
@@ -486,10 +505,10 @@ impl<'a> Object<'a> {
     pub fn finish(self) {
         let Some(map) = self.map else { return };
         let seen = self.seen.borrow();
-        for name in map.keys() {
+        for (name, value) in map {
             if !seen.contains(&name.as_str()) {
-                let known = if self.reading.is_full() { None } else { nearest(name, &seen) };
-                let hint = known.map(|known| format!("; did you mean \"{known}\"?")).unwrap_or_default();
+                let hint = if self.reading.is_full() { None } else { self.hint(name, value, &seen) };
+                let hint = hint.map(|hint| format!("; {hint}")).unwrap_or_default();
                 self.reading.violate(Violation::new(
                     format!("{}/{}", self.pointer, escape(name)),
                     "unknown-field",
@@ -497,6 +516,12 @@ impl<'a> Object<'a> {
                 ));
             }
         }
+    }
+
+    /// What is meant by an unknown name: what it stands for, else the field that is spelt alike.
+    fn hint(&self, name: &str, value: &Value, known: &[&'static str]) -> Option<String> {
+        let unknown = Unknown { document: self.document, object: &self.pointer, name, value, known };
+        hints::hint(&unknown).or_else(|| nearest(name, known).map(|known| format!("did you mean \"{known}\"?")))
     }
 }
 

@@ -33,8 +33,9 @@ const STILL_M_S2: f64 = 1e-9;
 
 /// Positions on an axis from its least value up, or from its greatest down.
 pub fn order(axis: &Axis, way: Way) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..axis.len()).collect();
-    order.sort_by(|&a, &b| axis.value(a).total_cmp(&axis.value(b)));
+    let values: Vec<f64> = (0..axis.len()).map(|index| axis.value(index)).collect();
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
     if way == Way::Down {
         order.reverse();
     }

@@ -75,7 +75,7 @@ fn diagram(speed: &Axis, other_axis_value: Option<f64>, teeth: f64, natural_mode
     Campbell {
         other_axis_value,
         pinion_speed_rpm: range,
-        mesh_frequency_hz: range.map(|rpm| rpm / 60.0 * teeth),
+        mesh_frequency_hz: range.map(|rpm| rpm * teeth / 60.0),
         mesh_orders: (1..=ORDERS).collect(),
         natural_modes,
         crossings,

@@ -6,6 +6,7 @@ mod any_request;
 mod backup;
 mod cancel_job;
 mod connections;
+mod csv;
 mod delete_job;
 mod documents;
 mod errors;

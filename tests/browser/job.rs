@@ -46,7 +46,7 @@ pub async fn assert_complete(browser: &Browser) {
 }
 
 /// The text of the file of a media type that a click on a button saves.
-async fn saved_by(browser: &Browser, selector: &str, media_type: &str) -> String {
+pub async fn saved_by(browser: &Browser, selector: &str, media_type: &str) -> String {
     let script = "const [selector, type, done] = arguments; const make = URL.createObjectURL; \
                   HTMLAnchorElement.prototype.click = function () {}; \
                   URL.createObjectURL = (blob) => { if (blob.type.startsWith(type)) blob.text().then(done); return make.call(URL, blob); }; \

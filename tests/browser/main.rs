@@ -21,3 +21,4 @@ mod server;
 mod speed;
 mod start;
 mod sweep;
+mod typed;

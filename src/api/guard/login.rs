@@ -88,10 +88,15 @@ pub fn login_address(target: &str) -> String {
     address
 }
 
+/// A token without what comes along when it is copied: white space and a byte order mark.
+fn pasted(token: &str) -> &str {
+    token.trim_matches(|letter: char| letter.is_whitespace() || letter == '\u{feff}')
+}
+
 fn log_in(access: &Access, page: LoginPage, headers: &HeaderMap, entry: &Entry) -> Response {
     let Some(lock) = access.lock() else { return StatusCode::NOT_FOUND.into_response() };
     let (now, next) = (Instant::now(), local(&entry.next));
-    if lock.token.is(entry.token.trim().as_bytes()) {
+    if lock.token.is(pasted(&entry.token).as_bytes()) {
         let id = lock.sessions().open(now);
         return (cookie::set(&id, headers).map(|value| [(SET_COOKIE, value)]), Redirect::to(next)).into_response();
     }

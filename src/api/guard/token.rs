@@ -1,5 +1,6 @@
 //! The token: read once at the start, compared in constant time, never shown.
 
+use crate::job::{EncodingError, without_mark};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::Read;
@@ -22,19 +23,24 @@ pub enum TokenError {
     Empty { path: PathBuf },
     #[error("the token in {} is too short or too long: {} to {} characters are needed", path.display(), CHARS.start(), CHARS.end())]
     Length { path: PathBuf },
+    #[error("the token file {} cannot be read: {source}", path.display())]
+    Encoding { path: PathBuf, source: EncodingError },
     #[error("the token in {} is not one word of visible ASCII characters", path.display())]
     Characters { path: PathBuf },
 }
 
 impl Token {
-    /// Reads a token file; white space around the token is left out. Warns when everybody on the machine can read it.
+    /// Reads a token file; a byte order mark before the token and white space around it are left out. Warns when everybody on the machine can read it.
     ///
     /// # Errors
     /// When there is no usable token in it.
     pub fn read(path: &Path) -> Result<Self, TokenError> {
         let (bytes, mode) = contents(path).map_err(|source| TokenError::Unreadable { path: path.into(), source })?;
-        let token = bytes.trim_ascii();
         let path = path.to_owned();
+        let token = match without_mark(&bytes) {
+            Ok(text) => text.trim_ascii(),
+            Err(source) => return Err(TokenError::Encoding { path, source }),
+        };
         if token.is_empty() {
             return Err(TokenError::Empty { path });
         }
@@ -87,6 +93,16 @@ mod tests {
         for wrong in [&b""[..], b"0123456789abcde", b"0123456789abcdef0", b"0123456789abcdeF", b"0123456789abcdef\n"] {
             assert!(!token.is(wrong), "{wrong:?}");
         }
+    }
+
+    #[test]
+    fn f07_a_byte_order_mark_is_not_part_of_the_token_and_other_encodings_are_named() {
+        let token = read(b"\xef\xbb\xbf0123456789abcdef\r\n").unwrap();
+        assert!(token.is(b"0123456789abcdef"));
+        let utf16: Vec<u8> = "\u{feff}0123456789abcdef\r\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let error = read(&utf16).err().unwrap().to_string();
+        assert!(error.contains("UTF-16") && !error.contains("0123456789"), "{error}");
+        assert!(read(b"\xef\xbb\xbf\n").err().unwrap().to_string().contains("empty"));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! `Accept`: which representation the client takes.
 
+use super::query::Parameters;
+use crate::api::csv::Decimal;
 use crate::api::problem::{ProblemCode, Refusal};
 use axum::extract::Request;
 use axum::http::HeaderMap;
@@ -22,6 +24,41 @@ pub fn chosen(headers: &HeaderMap, offers: &[&'static str]) -> Result<&'static s
     }
     best.map(|(offer, _)| offer)
         .ok_or_else(|| Refusal::new(ProblemCode::NotAcceptable, format!("This path has: {}.", offers.join(", "))))
+}
+
+/// Whether a table is wanted as CSV, and with which decimal sign: `?decimal=` asks for CSV and its dialect, `Accept: text/csv` (which may
+/// have the parameter `decimal`) for CSV. None: as JSON.
+///
+/// # Errors
+/// 406 when the client takes neither JSON nor CSV, or not CSV where the query asks for it.
+pub fn json_or_csv(headers: &HeaderMap, query: &mut Parameters) -> Result<Option<Decimal>, Refusal> {
+    if let Some(decimal) = query.choice("decimal", &Decimal::ALL) {
+        return chosen(headers, &["text/csv"]).map(|_| Some(decimal));
+    }
+    match chosen(headers, &["application/json", "text/csv"])? {
+        "text/csv" => accepted_decimal(headers).map(Some),
+        _ => Ok(None),
+    }
+}
+
+/// The parameter `decimal` of the range `text/csv` in `Accept`.
+fn accepted_decimal(headers: &HeaderMap) -> Result<Decimal, Refusal> {
+    let lines = headers.get_all(ACCEPT).into_iter().filter_map(|value| value.to_str().ok());
+    for member in lines.flat_map(|line| line.split(',')) {
+        let mut parts = member.split(';').map(|part| part.trim().to_ascii_lowercase());
+        if parts.next().as_deref() != Some("text/csv") {
+            continue;
+        }
+        let Some(word) =
+            parts.find_map(|part| part.strip_prefix("decimal=").map(|word| word.trim_matches('"').to_owned()))
+        else {
+            continue;
+        };
+        let found = Decimal::ALL.iter().find(|(known, _)| *known == word).map(|(_, decimal)| *decimal);
+        let detail = "The parameter decimal of text/csv is point or comma.".to_owned();
+        return found.ok_or_else(|| Refusal::new(ProblemCode::NotAcceptable, detail));
+    }
+    Ok(Decimal::Point)
 }
 
 /// Middleware of paths that have JSON only.
@@ -86,5 +123,21 @@ mod tests {
         assert_eq!(choice("application/json;q=0, */*"), Some("text/csv"));
         assert_eq!(choice("image/png"), None);
         assert_eq!(chosen(&HeaderMap::new(), &["application/json"]).ok(), Some("application/json"));
+    }
+
+    #[test]
+    fn f12_the_decimal_sign_of_csv_is_a_parameter_of_its_media_type() {
+        for (accept, expected) in [
+            ("text/csv", Some(Decimal::Point)),
+            ("text/csv; decimal=point", Some(Decimal::Point)),
+            ("text/csv; decimal=comma", Some(Decimal::Comma)),
+            ("Text/CSV;Decimal=\"comma\";q=0.9, */*;q=0.1", Some(Decimal::Comma)),
+            ("application/json;q=0.1, text/csv;header=present;decimal=comma", Some(Decimal::Comma)),
+            ("text/csv;decimal=period", None),
+        ] {
+            let mut headers = HeaderMap::new();
+            headers.insert(ACCEPT, accept.parse().unwrap());
+            assert_eq!(accepted_decimal(&headers).ok(), expected, "{accept}");
+        }
     }
 }

@@ -7,7 +7,7 @@ mod headers;
 mod path;
 mod query;
 
-pub use accept::{chosen, event_stream_only, json_only};
+pub use accept::{chosen, event_stream_only, json_only, json_or_csv};
 pub use body::DocumentBody;
 pub use cursor::Cursor;
 pub use headers::{IdempotencyKey, IfNoneMatch, Prefer, RequestId};

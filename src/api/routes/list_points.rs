@@ -1,9 +1,10 @@
 //! `GET /api/v1/jobs/{id}/points`
 
 use crate::api::config::{DEFAULT_ROWS, MAX_ROWS, MOST_ROWS};
+use crate::api::csv::Decimal;
 use crate::api::points;
 use crate::api::problem::Refusal;
-use crate::api::request::{JobPath, Parameters, chosen};
+use crate::api::request::{JobPath, Parameters, json_or_csv};
 use crate::api::state::AppState;
 use crate::job::SweepShape;
 use crate::job::result::SweepPoint;
@@ -47,6 +48,9 @@ pub struct PointItem {
             maximum = 200_000),
         ("limit" = Option<u64>, Query, description = "Points per page, 1 to 10000; 1000 when left out (CSV: all).",
             minimum = 1, maximum = 10_000, example = 1000),
+        ("decimal" = Option<Decimal>, Query, description = "Answer with CSV: `point` (fields between commas, the default of `text/csv`) or \
+            `comma` (decimal commas, fields between semicolons, CR LF, byte order mark: for spreadsheets of such a locale). The \
+            same as `Accept: text/csv; decimal=comma`."),
     ),
     responses(
         (status = 200, description = "The points.", content(
@@ -63,7 +67,7 @@ pub async fn list_points(
     mut query: Parameters,
     headers: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let media_type = chosen(&headers, &["application/json", "text/csv"])?;
+    let as_csv = json_or_csv(&headers, &mut query)?;
     let from = query.whole("from", 0, MOST_ROWS, false).unwrap_or(0);
     let limit = query.whole("limit", 1, MAX_ROWS.into(), false);
     query.finish()?;
@@ -71,8 +75,9 @@ pub async fn list_points(
     let shape = SweepShape::of_stored(&input).map_err(Refusal::internal)?;
     let store = state.jobs().store();
     let vary = (VARY, "accept");
-    if media_type == "text/csv" {
-        let body = points::csv(store.clone(), id, &shape.pointers(), from, limit.unwrap_or(u64::MAX));
+    if let Some(decimal) = as_csv {
+        let rows = (from, limit.unwrap_or(u64::MAX));
+        let body = points::csv(store.clone(), id, &shape.pointers(), rows, decimal);
         return Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response());
     }
     let limit = limit.map_or(DEFAULT_ROWS, |limit| limit as u32);

@@ -1,10 +1,11 @@
 //! `GET /api/v1/jobs/{id}/series/{channel}`
 
 use crate::api::config::{DEFAULT_POINTS, MAX_POINTS, MAX_RAW_POINTS, MIN_POINTS};
+use crate::api::csv::{Decimal, Field};
 use crate::api::downsample::{Method, downsample};
 use crate::api::held::Held;
 use crate::api::problem::Refusal;
-use crate::api::request::{ChannelPath, Parameters, chosen};
+use crate::api::request::{ChannelPath, Parameters, json_or_csv};
 use crate::api::state::AppState;
 use crate::job::Violation;
 use crate::store::PackedSeries;
@@ -14,7 +15,6 @@ use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_TYPE, VARY};
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
-use std::fmt::Write;
 use utoipa::ToSchema;
 
 /// Samples of a channel.
@@ -48,6 +48,9 @@ pub struct SeriesData {
             with `method=none`.", minimum = 4, maximum = 100_000, example = 2000),
         ("method" = Option<Method>, Query, description = "`minmax` (default): smallest and largest of equal stretches; \
             `lttb`: largest triangle three buckets; `none`: every sample, up to 1000000"),
+        ("decimal" = Option<Decimal>, Query, description = "Answer with CSV: `point` (fields between commas, the default of `text/csv`) or \
+            `comma` (decimal commas, fields between semicolons, CR LF, byte order mark: for spreadsheets of such a locale). The \
+            same as `Accept: text/csv; decimal=comma`."),
     ),
     responses(
         (status = 200, description = "The samples.", content(
@@ -55,25 +58,25 @@ pub struct SeriesData {
             (String = "text/csv", example = "t_s,value\n0,1.5\n"))),
         (status = 400, description = "`invalid-parameter`."),
         (status = 404, description = "No such job or channel."),
+        (status = 406, description = "Neither JSON nor CSV is accepted."),
         (status = 409, description = "`result-not-ready` or `job-not-succeeded`."),
     )
 )]
 pub async fn read_series(
     State(state): State<AppState>,
     ChannelPath(id, channel): ChannelPath,
-    query: Parameters,
+    mut query: Parameters,
     headers: HeaderMap,
 ) -> Result<Response, Refusal> {
-    let media_type = chosen(&headers, &["application/json", "text/csv"])?;
+    let as_csv = json_or_csv(&headers, &mut query)?;
     let request = SeriesRequest::read(query)?;
     super::succeeded(&state, id).await?;
     let place = state.series_place().await;
     let packed = state.jobs().store().series(id, &channel).await?;
     let packed = packed.ok_or_else(|| Refusal::not_found("The job has no such channel."))?;
-    let is_csv = media_type == "text/csv";
-    let written = tokio::task::spawn_blocking(move || request.answer(&packed)?.written(is_csv));
+    let written = tokio::task::spawn_blocking(move || request.answer(&packed)?.written(as_csv));
     let body = Body::from(written.await.map_err(Refusal::internal)??);
-    let content_type = if is_csv { "text/csv; charset=utf-8" } else { media_type };
+    let content_type = if as_csv.is_some() { "text/csv; charset=utf-8" } else { "application/json" };
     let headers = [(CONTENT_TYPE, content_type), (VARY, "accept")];
     Ok((headers, Body::new(Held::new(body, place))).into_response())
 }
@@ -129,10 +132,10 @@ impl SeriesRequest {
 }
 
 impl SeriesData {
-    fn written(&self, is_csv: bool) -> Result<Vec<u8>, Refusal> {
-        match is_csv {
-            true => Ok(csv(self).into_bytes()),
-            false => serde_json::to_vec(self).map_err(Refusal::internal),
+    fn written(&self, as_csv: Option<Decimal>) -> Result<Vec<u8>, Refusal> {
+        match as_csv {
+            Some(decimal) => Ok(csv(self, decimal).into_bytes()),
+            None => serde_json::to_vec(self).map_err(Refusal::internal),
         }
     }
 }
@@ -147,12 +150,12 @@ fn too_many(n: usize) -> Refusal {
     Problem::new(ProblemCode::InvalidParameter, detail).with_errors(vec![violation]).into()
 }
 
-fn csv(data: &SeriesData) -> String {
+fn csv(data: &SeriesData, decimal: Decimal) -> String {
     let mut text = String::with_capacity(data.t.len() * 40);
-    text.push_str("t_s,value\n");
+    text.push_str(decimal.start());
+    decimal.push_line(&mut text, ["t_s", "value"].map(Field::Text));
     for (t, y) in data.t.iter().zip(&data.y) {
-        // Writing to a string cannot fail; numbers are written so that they read back exactly, and what is none is empty.
-        let _ = if y.is_finite() { writeln!(text, "{t:?},{y:?}") } else { writeln!(text, "{t:?},") };
+        decimal.push_line(&mut text, [Field::Number(*t), Field::Number(*y)]);
     }
     text
 }

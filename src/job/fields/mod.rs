@@ -23,16 +23,16 @@ const fn number(min: f64, max: f64, unit: &'static str, default: Option<f64>, he
     Number { min, max, unit, default, help }
 }
 
-/// Parses the bytes of a job document; finds every violation in one pass.
+/// Parses the bytes of a job document (UTF-8, with or without a byte order mark); finds every violation in one pass.
 ///
 /// # Errors
-/// [`DocumentError::Malformed`] when the bytes are not JSON or repeat a member, [`DocumentError::Invalid`] with all violations otherwise.
+/// [`DocumentError::Malformed`] when the bytes are not JSON in UTF-8 or repeat a member, [`DocumentError::Invalid`] with all violations otherwise.
 /// Whether the gear can exist is not checked here (see `study::prepare`).
 pub fn parse(bytes: &[u8]) -> Result<JobDocument, DocumentError> {
-    let value = json::read(bytes).map_err(|error| DocumentError::Malformed {
-        detail: malformed_text(&error),
-        line: error.line(),
-        column: error.column(),
+    let value = json::read(bytes).map_err(|json::NotJson { detail, line, column }| DocumentError::Malformed {
+        detail,
+        line,
+        column,
     })?;
     parse_value(&value)
 }
@@ -43,14 +43,6 @@ pub fn parse_value(value: &Value) -> Result<JobDocument, DocumentError> {
     let document = read(reading.root(value));
     let violations = reading.violations();
     if violations.is_empty() { Ok(document) } else { Err(DocumentError::Invalid(violations)) }
-}
-
-fn malformed_text(error: &serde_json::Error) -> String {
-    let text = error.to_string();
-    match text.rfind(" at line ") {
-        Some(end) => text[..end].to_owned(),
-        None => text,
-    }
 }
 
 /// Reads the whole document (or, with [`Reading::describe`], declares all of its fields).

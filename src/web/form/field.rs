@@ -14,7 +14,7 @@ pub enum Control {
         max_length: u64,
     },
     Choice(Vec<Choice>),
-    /// Numbers or words, separated by spaces or commas.
+    /// Numbers or words, separated by spaces, commas or semicolons.
     List {
         of_numbers: bool,
     },

@@ -1,5 +1,6 @@
 //! Malformed job documents: each is refused with the status, code, pointer and range that are documented.
 
+mod encodings;
 mod sizes;
 
 use crate::support::*;

@@ -45,7 +45,7 @@ fn with_member(name: &str, text: &str) -> String {
 #[case::lone_surrogate("{\"name\": \"\\ud800\"}".into())]
 #[case::surrogates_the_wrong_way_round("{\"name\": \"\\udc00\\ud800\"}".into())]
 #[case::raw_control_character("{\"name\": \"a\u{1}\"}".into())]
-#[case::byte_order_mark(format!("\u{feff}{}", document()))]
+#[case::two_byte_order_marks(format!("\u{feff}\u{feff}{}", document()))]
 #[case::garbage_behind(format!("{}\u{0}", document()))]
 #[case::utf_16(document().to_string().chars().flat_map(|letter| [letter, '\0']).collect())]
 #[tokio::test]

@@ -85,15 +85,19 @@ export function newKey() {
   return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
-/** The CSV text of a whole channel. */
-export const seriesCsv = (id, channel) => csv(`${seriesUrl(id, channel)}?method=none`);
+/** Where the CSV file of a whole channel is; `decimal` is "point" or "comma". */
+export const seriesCsvUrl = (id, channel, decimal) => `${seriesUrl(id, channel)}?method=none&decimal=${decimal}`;
 
-/** The CSV text of all points of a sweep, as far as they are solved. */
-export const pointsCsv = (id) => csv(`${BASE}${at(id)}/points`);
+/** The CSV file of a whole channel. */
+export const seriesCsv = (id, channel, decimal) => csv(seriesCsvUrl(id, channel, decimal));
+
+/** The CSV file of all points of a sweep, as far as they are solved. */
+export const pointsCsv = (id, decimal) => csv(`${BASE}${at(id)}/points?decimal=${decimal}`);
 
 async function csv(address) {
   const response = await fetch(address, { headers: { Accept: "text/csv" } });
   if (response.status === 401) logIn();
   if (!response.ok) throw new Problem({ title: `The server answered with status ${response.status}`, status: response.status });
-  return response.text();
+  // As text it would lose its byte order mark.
+  return response.blob();
 }

@@ -1,5 +1,8 @@
 // Between the form and the job document: which value each field has, and where in the document it stands.
 
+import { pointerLabel } from "../common/format.js";
+import { readField, readList } from "./typed.js";
+
 /** The fields of the form, in order. */
 export function fieldsOf(form) {
   return [...form.querySelectorAll("[data-pointer]")].map((box) => ({
@@ -24,11 +27,11 @@ function valueOf(field) {
       return field.input.checked;
     case "number":
     case "integer":
-      return asNumber(text);
+      return text === "" ? text : readTyped(field).value ?? text;
     case "numbers":
-      return words(text).map(asNumber);
+      return readTyped(field).values ?? text;
     case "words":
-      return words(text);
+      return text.split(/[\s,;]+/).filter(Boolean);
     case "json":
       try {
         return JSON.parse(text);
@@ -40,11 +43,36 @@ function valueOf(field) {
   }
 }
 
-const words = (text) => text.split(/[\s,;]+/).filter(Boolean);
+const ofAnAxis = /^(\/axes\/\d+)\/(from|to|values)$/;
 
-function asNumber(text) {
-  const value = Number(text);
-  return text !== "" && Number.isFinite(value) ? value : text;
+/** What the numbers in a field are in; on an axis of a sweep, the unit of the input that varies. */
+function unitOf(field) {
+  const axis = field.pointer.match(ofAnAxis)?.[1];
+  if (!axis) return field.unit;
+  const form = field.box.closest("form");
+  const varied = form.querySelector(`[data-pointer='${axis}/pointer'] input`)?.value.trim() ?? "";
+  const box = [...form.querySelectorAll("[data-pointer]")].find(({ dataset }) => dataset.pointer === varied);
+  return box?.dataset.unit ?? pointerLabel(varied).unit;
+}
+
+/** The numbers typed into a field: { value } or { values }, or { refused } with the reason. */
+function readTyped(field) {
+  const text = field.input.value;
+  if (text.trim() === "") return {};
+  if (field.control === "numbers") return readList(text, unitOf(field));
+  if (field.control === "number" || field.control === "integer") return readField(text, unitOf(field));
+  return {};
+}
+
+/** Why the numbers typed into a field are not taken, if they are not. */
+export const refusalOf = (field) => readTyped(field).refused ?? null;
+
+/** How the numbers typed into a field are read, where that is not what stands there. */
+export function readingOf(field) {
+  const text = field.input.value.trim();
+  const { value, values } = readTyped(field);
+  if (values?.every((one) => typeof one === "number")) return values.join(", ") === text ? "" : values.join("; ");
+  return value === undefined || (/^[+-]?[\d.]+(e[+-]?\d+)?$/i.test(text) && Number(text) === value) ? "" : String(value);
 }
 
 /** Whether a field says what leaving it out says. */
@@ -53,7 +81,7 @@ export function isDefault(field) {
   const text = field.input.value.trim();
   if (text === "") return true;
   if (field.required || field.default === "") return false;
-  if (field.control === "number" || field.control === "integer") return Number(text) === Number(field.default);
+  if (field.control === "number" || field.control === "integer") return readTyped(field).value === Number(field.default);
   return text === field.default;
 }
 

@@ -1,7 +1,7 @@
 // What the server says of the document, shown at the fields it is about: violations and warnings.
 
 import { byId, el, show } from "../common/dom.js";
-import { fieldAt, fieldsOf } from "./document.js";
+import { fieldAt, fieldsOf, readingOf, refusalOf } from "./document.js";
 
 export function clearErrors(form) {
   for (const field of fieldsOf(form)) {
@@ -10,6 +10,15 @@ export function clearErrors(form) {
     field.input.removeAttribute("aria-invalid");
   }
   show(byId("problems"), false);
+}
+
+/** Says below each field how its numbers are read, where that is not what was typed. */
+export function showReadings(form) {
+  for (const field of fieldsOf(form)) {
+    if (!["number", "integer", "numbers"].includes(field.control)) continue;
+    const read = field.box.hidden ? "" : readingOf(field);
+    say(field, "read", read ? `read as ${read}` : "");
+  }
 }
 
 /** Marks the fields that warnings are about. */
@@ -25,7 +34,12 @@ export function showWarnings(form, warnings) {
 export function showErrors(form, error, { summary }) {
   clearErrors(form);
   const fields = fieldsOf(form);
-  const entries = (error.errors ?? []).map((entry) => ({ ...entry, field: fieldAt(fields, entry.pointer ?? "") }));
+  const entries = (error.errors ?? []).map((entry) => {
+    const field = fieldAt(fields, entry.pointer ?? "");
+    // What was not taken for a number went in as text; why says the form itself.
+    const refused = field?.pointer === entry.pointer ? refusalOf(field) : null;
+    return { ...entry, field, detail: refused ?? entry.detail };
+  });
   for (const { field, pointer, detail } of entries) {
     if (!field) continue;
     const place = pointer.startsWith(`${field.pointer}/`) ? `${pointer.slice(field.pointer.length + 1)}: ` : "";

@@ -5,7 +5,7 @@ import { byId, download, el, show } from "../common/dom.js";
 import { initCheck } from "./check.js";
 import { applyConditions, dropExtras, extraPointers, readDocument, writeDocument } from "./document.js";
 import { keepDraft, keepSubmitted } from "./draft.js";
-import { showErrors } from "./errors.js";
+import { showErrors, showReadings } from "./errors.js";
 import { initHelp } from "./help.js";
 import { initStart } from "./start.js";
 import { initResets, showWhatIsSet } from "./summary.js";
@@ -22,6 +22,7 @@ let touched = false;
 function refresh() {
   applyConditions(form);
   showWhatIsSet(form);
+  showReadings(form);
   const document = readDocument(form);
   byId("document-text").textContent = JSON.stringify(document, null, 2);
   showExtras();
@@ -114,8 +115,20 @@ function save() {
   download(fileName(document), `${JSON.stringify(document, null, 2)}\n`);
 }
 
+/** A column of a spreadsheet goes into a list with its lines kept apart; the input itself would run them together. */
+function pasteList(event) {
+  const text = event.clipboardData?.getData("text/plain") ?? "";
+  const list = event.target.closest("[data-control='numbers']");
+  if (!list || !/[\r\n\t]/.test(text.trim())) return;
+  event.preventDefault();
+  const { value, selectionStart, selectionEnd } = event.target;
+  event.target.setRangeText(text.trim().replace(/\s*[\r\n\t]+\s*/g, "; "), selectionStart ?? value.length, selectionEnd ?? value.length, "end");
+  changed();
+}
+
 const isOfAField = (event) => event.target.closest("[data-pointer]") !== null;
 form.addEventListener("input", (event) => isOfAField(event) && changed());
+form.addEventListener("paste", pasteList);
 form.addEventListener("submit", submit);
 form.addEventListener("keydown", (event) => {
   if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) form.requestSubmit();

@@ -3,6 +3,7 @@
 import * as api from "../common/api.js";
 import { byId, el } from "../common/dom.js";
 import { instant } from "../common/format.js";
+import { textOf } from "../common/text.js";
 import { draft, dropDraft, submitted } from "./draft.js";
 
 const SUBMITTED = "submitted";
@@ -55,7 +56,7 @@ export function initStart({ fill, read, failed }) {
 
   async function open(file) {
     try {
-      const document = JSON.parse(await file.text());
+      const document = JSON.parse(textOf(await file.arrayBuffer()));
       if (document === null || typeof document !== "object" || Array.isArray(document)) throw new Error("it is not a JSON object");
       choice.value = "";
       replace(document, `From the file ${file.name}.`);

@@ -1,6 +1,7 @@
 // Time series of one or two channels. Zooming in fetches finer data; the record of a periodic motion is shown several times.
 
 import * as api from "../common/api.js";
+import { decimal } from "../common/csv.js";
 import { byId, download, el, notify, show } from "../common/dom.js";
 import { number, sentence } from "../common/format.js";
 import { draw, line, onZoom } from "../common/plots.js";
@@ -61,7 +62,7 @@ class SeriesPanel {
     this.asking = new AbortController();
     const { signal } = this.asking;
     const names = [...new Set([this.first.value, this.second.value].filter(Boolean))];
-    byId("series-csv").href = api.seriesUrl(this.id, names[0]);
+    byId("series-csv").href = api.seriesCsvUrl(this.id, names[0], decimal());
     this.plot.dataset.state = "loading";
     try {
       const answers = await Promise.all(names.map((name) => this.fetch(name, signal)));
@@ -137,7 +138,7 @@ class SeriesPanel {
   async save(event) {
     event.preventDefault();
     try {
-      download(`${this.first.value}.csv`, await api.seriesCsv(this.id, this.first.value), "text/csv");
+      download(`${this.first.value}.csv`, await api.seriesCsv(this.id, this.first.value, decimal()), "text/csv");
     } catch (error) {
       notify(byId("notice"), error);
     }

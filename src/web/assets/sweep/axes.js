@@ -1,6 +1,7 @@
 // The swept inputs of a document: their names, units and values, and where a point of the table stands on them.
 
 import { number, pointerLabel } from "../common/format.js";
+import { gridOf } from "../common/grid.js";
 
 /** The axes of a sweep's document: {pointer, label, unit, title, values, logarithmic}. */
 export function axesOf(document) {
@@ -11,17 +12,8 @@ export function axesOf(document) {
   });
 }
 
-/** The values of an axis as the solver counts them: both ends of a range are met exactly. */
-export function valuesOf({ values, from, to, points, spacing }) {
-  if (values) return values;
-  const last = points - 1;
-  return Array.from({ length: points }, (_, index) => {
-    if (index === 0) return from;
-    if (index === last) return to;
-    const fraction = index / last;
-    return spacing === "logarithmic" ? from * (to / from) ** fraction : from + (to - from) * fraction;
-  });
-}
+/** The values of an axis as the solver counts them. */
+const valuesOf = (axis) => axis.values ?? gridOf(axis);
 
 export const withUnit = (label, unit) => (unit ? `${label}, ${unit}` : label);
 

@@ -1,6 +1,7 @@
 // The table of a sweep, a page at a time from the server.
 
 import * as api from "../common/api.js";
+import { decimal } from "../common/csv.js";
 import { byId, download, el, notify, show } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { QUANTITIES } from "./quantities.js";
@@ -105,7 +106,7 @@ export class PointTable {
     const button = byId("sweep-csv");
     button.disabled = true;
     try {
-      download(`sweep-${this.sweep.id}.csv`, await api.pointsCsv(this.sweep.id), "text/csv");
+      download(`sweep-${this.sweep.id}.csv`, await api.pointsCsv(this.sweep.id, decimal()), "text/csv");
     } catch (error) {
       notify(byId("notice"), error);
     }
