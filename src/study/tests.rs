@@ -480,7 +480,7 @@ fn a_speed_sweep_has_its_campbell_diagram() {
     assert_eq!(campbell.iter().map(|c| c.other_axis_value).collect::<Vec<_>>(), [Some(200.0), Some(300.0)]);
     let diagram = &campbell[0];
     let teeth = value["design"]["pinion"]["teeth"].as_f64().expect("a number");
-    assert_eq!(diagram.mesh_frequency_hz, [2000.0 / 60.0 * teeth, 12000.0 / 60.0 * teeth]);
+    assert_eq!(diagram.mesh_frequency_hz, [2000.0 * teeth / 60.0, 12000.0 * teeth / 60.0]);
     // Every meeting of an order with a natural frequency in the range of speeds, and no other.
     let mut expected = 0;
     for (mode, natural) in diagram.natural_modes.iter().enumerate() {

@@ -20,7 +20,12 @@ use utoipa_axum::router::OpenApiRouter;
             `X-Request-Id`, the client's own where it sent one that is short and plain.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
-    components(schemas(super::problem::Problem, super::downsample::Method, super::columns::ColumnName)),
+    components(schemas(
+        super::problem::Problem,
+        super::csv::Decimal,
+        super::downsample::Method,
+        super::columns::ColumnName
+    )),
     tags(
         (name = "jobs", description = "Submit, follow, cancel and delete jobs"),
         (name = "results", description = "What succeeded jobs leave behind"),
