@@ -78,7 +78,8 @@ async fn the_document_says_what_differs_from_the_defaults() {
         browser.until("document.querySelector('#document-text').textContent").await;
         let first = document(browser).await;
         assert_eq!(first["design"]["pressure_angle_plane"], json!("transverse"));
-        assert_eq!(first["design"]["backlash_um"], Value::Null, "2 µm is the default: {first}");
+        assert_eq!(first["design"]["pinion"]["addendum"], Value::Null, "1 is the default: {first}");
+        assert_eq!(first["design"]["backlash_um"], json!(230), "{first}");
         browser.fill("/design/backlash_um", "50").await;
         browser.choose("[data-pointer='/kind'] select", "sweep").await;
         // What is missing altogether is said at the first field of it.

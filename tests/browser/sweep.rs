@@ -197,7 +197,7 @@ async fn a_canceled_sweep_keeps_its_points_and_goes_on_when_it_is_resumed() {
     flow(async |browser| {
         let mut document = quick();
         document["axes"] =
-            json!([{"pointer": "/operation/pinion_speed_rpm", "from": 3500, "to": 5500, "points": 20000}]);
+            json!([{"pointer": "/operation/pinion_speed_rpm", "from": 3500, "to": 5500, "points": 100_000}]);
         let id = start(browser, &document).await;
         browser.until("Number(document.querySelector('#sweep-plot').dataset.points) > 0").await;
         let first = browser.value("Number(document.querySelector('#sweep-plot').dataset.points)").await;

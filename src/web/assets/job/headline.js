@@ -14,7 +14,7 @@ export function headlines({ geometry, mesh, impact, response, numerics, accuracy
   const add = (...tile) => tiles.push(tile);
   if (response) {
     const { rms } = response;
-    const [contact, contactNote] = contactWords(response);
+    const [contact, contactNote] = contactWords(response, mesh?.contact_force);
     const [regime, regimeNote] = regimeWords(response);
     add("Contact", contact, "", contactNote, "Whether the working flanks keep touching while the pair vibrates. Separation makes the system nonlinear: several motions may be possible at one speed, and impacts load the teeth.");
     add("Motion", regime, "", regimeNote, "How the steady motion repeats. Period 1 follows the mesh; longer periods, quasi-periodic and chaotic motions come with separation.");

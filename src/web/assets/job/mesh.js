@@ -36,7 +36,7 @@ const value = (shown, digits = 5) => (typeof shown === "number" ? number(shown, 
 
 export function meshValues(mesh, input) {
   const { axial_force_n: axial, apex_sensitivity: apex } = mesh;
-  const law = mesh.source === "ltca" ? LAWS[input?.model?.mesh_stiffness?.law] : null;
+  const law = mesh.contact_force ? "none: the force of the loaded contact over approach and phase" : mesh.source === "ltca" ? LAWS[input?.model?.mesh_stiffness?.law] : null;
   return [
     ["From", STIFFNESS[mesh.source] ?? mesh.source],
     ["Stiffness in the equations", law],

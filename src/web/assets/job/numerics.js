@@ -61,6 +61,8 @@ export function numericsValues({ job, numerics, response, mesh }) {
     ["Evaluations of the forces", count(numerics.force_evaluations)],
     ["Contact: positions per mesh period, slices", convergence ? `${number(convergence.positions)}, ${number(convergence.slices)}` : null],
     ["Contact: change with finer positions", typeof convergence?.position_error_percent === "number" ? number(convergence.position_error_percent, 2) : null, "%"],
+    ["Contact force: levels, phases tabulated", mesh?.contact_force ? `${number(mesh.contact_force.levels)}, ${number(mesh.contact_force.phases)}` : null],
+    ["Contact force: largest difference from the contact", mesh?.contact_force ? number(mesh.contact_force.error_percent, 2) : null, "%"],
     ["Contact: change with half the slices", convergence ? number(convergence.slice_error_percent, 2) : null, "%"],
     ["Balance of work and energy, residual", typeof response?.energy_balance_residual === "number" ? number(response.energy_balance_residual, 2) : null],
     ["Reused", reused.length ? reused.map((name) => REUSED[name] ?? name).join(", ") : "nothing"],

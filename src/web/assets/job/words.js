@@ -13,11 +13,11 @@ export function regimeWords({ regime, period_mesh_periods: periods, lyapunov_per
   return [sentenceOf(regime), ""];
 }
 
-/** How the teeth touch: [name, sentence]. */
-export function contactWords({ contact, contact_share: share, fraction_in_contact: fraction }) {
+/** How the teeth touch: [name, sentence]; `table` is the mesh's contact force, where the equations contain that. */
+export function contactWords({ contact, contact_share: share, fraction_in_contact: fraction }, table) {
   const touching = share ? Math.min(share.left, share.right) : fraction;
   const apart = number(100 * (1 - touching), 3);
-  if (contact === "continuous") return ["Teeth stay in contact", "The working flanks never separate: the system is linear with periodic stiffness."];
+  if (contact === "continuous") return ["Teeth stay in contact", table ? "The working flanks never separate completely." : "The working flanks never separate: the system is linear with periodic stiffness."];
   if (contact === "single-sided") return ["Teeth separate", `The working flanks leave each other for ${apart} % of the time and meet again: rattling on one side of the gap.`];
   if (contact === "double-sided") return ["Teeth hit both flanks", `The teeth cross the whole backlash and hit the back flanks as well; they are free for ${apart} % of the time.`];
   if (contact === "apart") return ["Teeth do not touch", "Without load the teeth stay in the middle of their backlash."];

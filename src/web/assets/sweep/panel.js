@@ -65,6 +65,8 @@ class Panel {
     this.recall();
     byId("sweep-resume").addEventListener("click", () => this.resume());
     byId("sweep-axes").textContent = this.describeAxes();
+    // Warnings come when the sweep has ended: below it, so that nothing moves.
+    byId("sweep").after(byId("warnings"));
     show(byId("sweep"));
   }
 
