@@ -8,7 +8,7 @@ use crate::response::{self, Analysis};
 use crate::watch::Watch;
 use serde_json::{Value, json};
 
-const TOPIC: &str = "Study: contact in the equations";
+const TOPIC: &str = "Job: contact in the equations";
 
 fn references() -> Vec<Value> {
     let file: Value = serde_json::from_str(include_str!("../../tests/data/dynamic_contact.json")).expect("JSON");
