@@ -62,7 +62,7 @@ pub fn elements() -> Value {
 pub fn contact() -> Value {
     let mut document = mesh();
     document["design"] = json!({
-        "normal_module_mm": 6.0, "pressure_angle_deg": 17.5, "helix_angle_deg": 35.0, "face_width_mm": 400.0,
+        "normal_module_mm": 6.0, "pressure_angle_deg": 17.5, "helix_angle_deg": 35.0, "face_width_mm": 800.0,
         "pinion": {"teeth": 100, "addendum": 1.2, "dedendum": 1.5, "bore_diameter_mm": 100.0},
         "gear": {"teeth": 300, "addendum": 1.2, "dedendum": 1.5, "bore_diameter_mm": 300.0},
     });
