@@ -18,6 +18,13 @@ pub struct Bench {
     pub points: usize,
 }
 
+/// An input that a sweep changes, and further ones that take the same values.
+pub struct Axis<'a> {
+    pub pointer: &'a str,
+    pub also: &'a [&'a str],
+    pub values: &'a [f64],
+}
+
 /// A sweep's points, in the order of the axes (the first one fastest; those that were not solved have an `error`), and how long
 /// they took.
 pub struct Swept {
@@ -71,11 +78,11 @@ impl Bench {
         Ok((result, series))
     }
 
-    /// A sweep of a document over one or two inputs.
-    pub fn sweep(&mut self, document: &Value, axes: &[(&str, &[f64])]) -> Outcome<Swept> {
+    /// A sweep of a document over one or two axes.
+    pub fn sweep(&mut self, document: &Value, axes: &[Axis]) -> Outcome<Swept> {
         let mut document = document.clone();
         document["kind"] = "sweep".into();
-        let axis = |(pointer, values): &(&str, &[f64])| serde_json::json!({"pointer": pointer, "values": values});
+        let axis = |Axis { pointer, also, values }: &Axis| serde_json::json!({"pointer": pointer, "also": also, "values": values});
         document["axes"] = axes.iter().map(axis).collect();
         let began = Instant::now();
         let mut result = self.result(&document)?;

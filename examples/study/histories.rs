@@ -2,7 +2,7 @@
 
 use crate::Study;
 use crate::ask::{Outcome, number};
-use crate::documents::load;
+use crate::documents::{load, on_one_body};
 use crate::page::sig;
 use crate::source::PRINTED;
 use crate::svg::{BLUE, Field, ORANGE, Scale, Sheet, Style};
@@ -44,15 +44,7 @@ pub fn write(study: &mut Study) -> Outcome<()> {
     ] {
         let mut histories = Vec::new();
         for printed in PRINTED.iter().filter(|printed| printed.rms.is_some()) {
-            let (result, mut series) = study.bench.series(&load(printed.document)?, &channels)?;
-            if result["response"]["regime"] != "period-1" {
-                return Err("a motion does not repeat every mesh period, as its figure assumes".into());
-            }
-            let (Some(velocity), Some(displacement), Some(acceleration)) = (series.pop(), series.pop(), series.pop())
-            else {
-                return Err("a series is missing".into());
-            };
-            histories.push(History { ratio: printed.ratio, acceleration, displacement, velocity, result });
+            histories.push(history(study, printed.ratio, &load(printed.document)?, &channels)?);
         }
         draw(study, name, quantity, &histories)?;
         if name == "axial" {
@@ -60,6 +52,33 @@ pub fn write(study: &mut Study) -> Outcome<()> {
         }
     }
     Ok(())
+}
+
+/// The steady motion of a document in displacement, velocity and acceleration, whose channels are in the opposite order.
+fn history(study: &mut Study, ratio: f64, document: &Value, channels: &[&str]) -> Outcome<History> {
+    let (result, mut series) = study.bench.series(document, channels)?;
+    if result["response"]["regime"] != "period-1" {
+        return Err("a motion does not repeat every mesh period, as its figure assumes".into());
+    }
+    let (Some(velocity), Some(displacement), Some(acceleration)) = (series.pop(), series.pop(), series.pop()) else {
+        return Err("a series is missing".into());
+    };
+    Ok(History { ratio, acceleration, displacement, velocity, result })
+}
+
+/// The circumferential vibration of the same documents with the contact in the equations, on one body.
+pub fn write_contact(study: &mut Study) -> Outcome<()> {
+    let mut histories = Vec::new();
+    for printed in PRINTED.iter().filter(|printed| printed.rms.is_some()) {
+        let document = on_one_body(&load(printed.document)?);
+        histories.push(history(study, printed.ratio, &document, &["a_x_left", "x_left", "v_x_left"])?);
+    }
+    draw(
+        study,
+        "circumferential_contact",
+        "Mesh circumferential vibration with the contact in the equations",
+        &histories,
+    )
 }
 
 fn draw(study: &mut Study, name: &str, quantity: &str, histories: &[History]) -> Outcome<()> {

@@ -3,13 +3,16 @@
 //! With names of chapters as arguments, only these are run: their figures are written, their text printed.
 
 mod ask;
+mod best;
 #[path = "../load/connection.rs"]
 mod connection;
+mod contact;
 mod documents;
 mod front;
 mod guide;
 mod heat;
 mod histories;
+mod loss;
 mod maps;
 mod mechanisms;
 mod page;
@@ -41,6 +44,13 @@ pub struct Study {
 }
 
 impl Study {
+    /// What the contact in the equations answers to a claim of the source, where the claim's chapter was run.
+    fn under_contact(&mut self, claim: &str, contact: String, survives: &'static str) {
+        for verdict in self.verdicts.iter_mut().filter(|verdict| verdict.source.starts_with(claim)) {
+            (verdict.contact, verdict.survives) = (contact.clone(), survives);
+        }
+    }
+
     /// Adds a figure to the page.
     fn figure(&mut self, name: &str, sheet: Sheet, caption: &str) {
         self.page.figure(name, caption);
@@ -59,12 +69,17 @@ fn main() -> Outcome<()> {
         maps: Vec::new(),
         verdicts: Vec::new(),
     };
-    let chapters: [(&str, Chapter); 8] = [
+    let chapters: [(&str, Chapter); 13] = [
         ("table2", table2::write),
         ("table3", table3::write),
         ("histories", histories::write),
         ("sensitivity", sensitivity::write),
         ("mechanisms", mechanisms::write),
+        ("loss", loss::write),
+        ("contact", contact::write),
+        ("contact-histories", histories::write_contact),
+        ("contact-ratio", best::write),
+        ("contact-sensitivity", sensitivity::write_contact),
         ("guide", guide::write),
         ("rules", rules::write),
         ("differences", front::differences),
@@ -79,13 +94,16 @@ fn main() -> Outcome<()> {
         eprintln!("{name}: {:.1} s", began.elapsed().as_secs_f64());
     }
     front::cost(&mut study, began.elapsed().as_secs_f64());
+    if !chosen.is_empty() {
+        // Also what does not hold any more, to be read beside its numbers.
+        println!("{}\n{}", front::beginning(&study.verdicts), study.page.draft());
+    }
     let text = format!("{}\n{}", front::beginning(&study.verdicts), study.page.finish()?);
     std::fs::create_dir_all("docs/study")?;
     for (name, figure) in &study.figures {
         std::fs::write(format!("docs/study/{name}.svg"), figure)?;
     }
     if !chosen.is_empty() {
-        println!("{text}");
         return Ok(());
     }
     std::fs::write("docs/STUDY.md", text)?;

@@ -1,7 +1,7 @@
 //! Maps over contact ratio and one other input, through sweeps: RMS, dynamic factor, regime and contact, the best designs marked.
 
 use crate::Study;
-use crate::ask::{Outcome, Swept};
+use crate::ask::{Axis, Outcome, Swept};
 use crate::heat;
 use crate::page::sig;
 use crate::svg::{Field, Scale, Sheet};
@@ -14,6 +14,8 @@ use std::fmt::Write;
 #[derive(Clone)]
 pub struct Upwards {
     pub pointer: &'static str,
+    /// Inputs that go with it.
+    pub also: &'static [&'static str],
     pub values: Vec<f64>,
     pub name: &'static str,
     pub logarithmic: bool,
@@ -40,7 +42,6 @@ pub struct Solved {
     lowest: Vec<Vec<f64>>,
     pub contact: Vec<Vec<String>>,
     pub regime: Vec<Vec<String>>,
-    pub force: Vec<Vec<f64>>,
     pub seconds: f64,
 }
 
@@ -53,7 +54,10 @@ impl Map {
     pub fn solve(self, study: &mut Study) -> Outcome<Solved> {
         let Swept { points, seconds } = study.bench.sweep(
             &self.document,
-            &[(self.upwards.pointer, &self.upwards.values), ("/design/face_width_mm", &self.widths_mm)],
+            &[
+                Axis { pointer: self.upwards.pointer, also: self.upwards.also, values: &self.upwards.values },
+                Axis { pointer: "/design/face_width_mm", also: &[], values: &self.widths_mm },
+            ],
         )?;
         if points.len() != self.widths_mm.len() * self.upwards.values.len() {
             return Err("a map has points missing".into());
@@ -75,7 +79,6 @@ impl Map {
             rms: table(&|point| larger(point, "mesh_circumferential_acceleration_rms_m_s2"))?,
             axial: table(&|point| larger(point, "pinion_axial_acceleration_rms_m_s2"))?,
             factor: table(&|point| Ok(point["dynamic_factor"].as_f64().unwrap_or(f64::NAN)))?,
-            force: table(&|point| Ok(point["impact_force_n"].as_f64().unwrap_or(0.0)))?,
             lowest: table(&|point| Ok(point["min_displacement_um"].as_f64().unwrap_or(f64::NAN)))?,
             contact: words("contact"),
             regime: words("regime"),
@@ -128,6 +131,21 @@ impl Solved {
     pub fn extremes(table: &[Vec<f64>]) -> (f64, f64) {
         let all = || table.iter().flatten().copied();
         (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max))
+    }
+
+    /// The column whose contact ratio is nearest.
+    pub fn nearest(&self, ratio: f64) -> usize {
+        let distance = |column: &usize| (self.ratios[*column] - ratio).abs();
+        (0..self.ratios.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
+    }
+
+    /// Difference between the greatest and the least dynamic factor of a column, the largest of all columns.
+    pub fn factor_swing(&self) -> f64 {
+        let swing = |column: &Vec<f64>| {
+            let (least, most) = column.iter().fold((f64::INFINITY, 0f64), |(a, b), v| (a.min(*v), b.max(*v)));
+            most - least
+        };
+        self.factor.iter().map(swing).fold(0.0, f64::max)
     }
 
     /// Points that the solver gave up.

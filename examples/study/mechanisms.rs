@@ -11,10 +11,10 @@ use crate::table3::rms;
 use crate::ways::WAYS;
 use serde_json::{Value, json};
 
-type Curve = Vec<(f64, f64)>;
+pub type Curve = Vec<(f64, f64)>;
 
 /// Where a curve is lowest, and whether that is at neither of its ends.
-fn lowest(curve: &Curve) -> ((f64, f64), bool) {
+pub fn lowest(curve: &Curve) -> ((f64, f64), bool) {
     let best = (0..curve.len()).min_by(|a, b| curve[*a].1.total_cmp(&curve[*b].1)).unwrap_or(0);
     (curve[best], best > 0 && best + 1 < curve.len())
 }
@@ -122,6 +122,7 @@ fn conclusions(study: &mut Study, switched: &[Switched]) {
         here: format!("by tooth height {}, by face width and helix none up to 4.1", sig(tallest, 3)),
         holds: "by tooth height, for another reason",
         why: "Undercut of the 17-tooth pinion lengthens the entry and raises the impact. Backlash changes nothing while contact is kept.",
+        ..Verdict::default()
     });
     study.page.claim(
         (3.35..3.45).contains(&tallest) && (constant - tallest).abs() < 0.05 && height.all[last].1 > 2.5 * low && height.quiet[last].1 < 0.1 * height.all[last].1,

@@ -39,6 +39,11 @@ impl Page {
         ));
     }
 
+    /// The text so far, whether its sentences hold or not.
+    pub fn draft(&self) -> &str {
+        &self.text
+    }
+
     /// The text.
     ///
     /// # Errors

@@ -83,12 +83,14 @@ fn agreement(study: &mut Study, ours: &[Impact]) {
         here: format!("{} to {} %, less at a high contact ratio", sig(ours[4].reduction, 2), sig(ours[0].reduction, 2)),
         holds: "yes",
         why: "The entering pair carries a few per cent of the load, and less of it the more pairs there are.",
+        ..Verdict::default()
     });
     study.verdicts.push(Verdict {
         source: "The impact falls with the contact ratio, 8.9 to 2.1 kN.",
         here: format!("rises with the tooth height ({} to {} kN up to 3.30), falls with face width and helix", sig(ours[0].buffered_kn, 2), sig(ours[2].buffered_kn, 2)),
         holds: "by overlap only",
         why: "Taller teeth meet nearer to the base circle, at a higher velocity. How far the printed forces fall is unexplained.",
+        ..Verdict::default()
     });
     let falls = ours.windows(2).all(|pair| pair[1].reduction < pair[0].reduction && pair[1].share < pair[0].share);
     let least = ours.iter().map(|own| own.reduction).fold(f64::INFINITY, f64::min);

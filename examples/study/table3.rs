@@ -1,7 +1,7 @@
 //! Table 3: vibration over the contact ratio.
 
 use crate::Study;
-use crate::ask::{Outcome, number};
+use crate::ask::{Axis, Outcome, number};
 use crate::documents::{load, with, without_impact};
 use crate::front::Verdict;
 use crate::maps::spaced;
@@ -64,12 +64,14 @@ pub fn write(study: &mut Study) -> Outcome<()> {
         ),
         holds: "in direction",
         why: "The level is that of the impact's pulse, whose length is not printed.",
+        ..Verdict::default()
     });
     study.verdicts.push(Verdict {
         source: "At 4.07 vibration rises again (34.4 m/s²), chaotic: the load cannot close the backlash.",
         here: format!("falls on, to {} m/s², period 1, contact kept", sig(ours[4].both[0], 3)),
         holds: "no",
         why: "Torque closes any gap; teeth part only when vibration exceeds the static deflection. The printed rise is unexplained.",
+        ..Verdict::default()
     });
     study.page.claim(
         kept && falls,
@@ -123,7 +125,10 @@ fn pulse_lengths(study: &mut Study) -> Outcome<Vec<Vec<(f64, f64)>>> {
         let impact = json!({"source": "given", "force_n": 1e3 * printed.buffered_kn, "duration_mesh_periods": 0.02, "start_mesh_periods": 0.0});
         let document = with(&document, &[("/model/impact", impact)]);
         let lengths: Vec<f64> = microseconds.iter().map(|us| us / period_us).collect();
-        let swept = study.bench.sweep(&document, &[("/model/impact/duration_mesh_periods", &lengths)])?;
+        let swept = study.bench.sweep(
+            &document,
+            &[Axis { pointer: "/model/impact/duration_mesh_periods", also: &[], values: &lengths }],
+        )?;
         let mut curve = Vec::new();
         for (us, point) in microseconds.iter().zip(&swept.points) {
             curve.push((*us, number(point, "/mesh_circumferential_acceleration_rms_m_s2/left")?));

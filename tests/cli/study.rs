@@ -1,4 +1,5 @@
-//! docs/STUDY.md says what the program answers: its Tables 2 and 3, in the digits that it prints.
+//! docs/STUDY.md says what the program answers: its Tables 2 and 3, by the source's model and with the contact in the equations, in the digits
+//! that it prints.
 
 use super::*;
 
@@ -14,6 +15,45 @@ fn printed(cell: &str) -> (f64, f64) {
     let text = cell.split(" (").next().unwrap_or_default().replace('−', "-");
     let decimals = text.split('.').nth(1).map_or(0, str::len) as i32;
     (text.parse().unwrap_or_else(|_| panic!("no number: {cell}")), 0.51 * 10f64.powi(-decimals))
+}
+
+/// The result of an example of the source's tables, its document changed.
+fn solve_changed(name: &str, change: impl FnOnce(&mut Value)) -> Value {
+    let text = std::fs::read_to_string(example(name)).expect("the example");
+    let mut document = serde_json::from_str(&text).expect("JSON");
+    change(&mut document);
+    let output = with_input(&["solve", "-"], document.to_string().as_bytes());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    json(&output.stdout)
+}
+
+#[test]
+fn the_page_of_the_study_says_what_contact_in_the_equations_answers() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/STUDY.md")).expect("the page");
+    let table = rows(&page, "table 3, contact");
+    assert_eq!(table.len(), 5);
+    // The ends and the middle: each is a contact analysis of its own.
+    for row in table.iter().step_by(2) {
+        let name = format!("table2_{}.json", row[0].replace('.', "_"));
+        let free = solve_changed(&name, |document| document["model"]["mesh_force"] = "contact".into());
+        let body = solve_changed(&name, |document| {
+            document["model"]["mesh_force"] = "contact".into();
+            let damping = document["design"]["supports"]["damping_ratio"].clone();
+            document["design"]["supports"] = serde_json::json!({"damping_ratio": damping});
+        });
+        let number = |result: &Value, pointer: &str| result.pointer(pointer).and_then(Value::as_f64).expect("a number");
+        for (result, cells) in [(&free, &row[3..6]), (&body, &row[6..9])] {
+            for (cell, pointer) in cells.iter().zip([
+                "/response/rms/mesh_circumferential_acceleration_m_s2/left",
+                "/response/rms/pinion_axial_acceleration_m_s2/left",
+                "/response/dynamic_factor",
+            ]) {
+                let ((stated, rounding), value) = (printed(cell), number(result, pointer));
+                assert!((value - stated).abs() <= rounding, "{name}: the page says {cell}, the program {value}");
+            }
+        }
+        assert_eq!(row[10], body["response"]["contact"].as_str().expect("a word"));
+    }
 }
 
 #[test]
