@@ -185,7 +185,8 @@ fn figure(study: &mut Study, ours: &[Models]) {
     let factor = Field { place: [490.0, 34.0, 350.0, 270.0], x, y: Scale::linear(1.0, 2.0) };
     level.axes(&mut sheet, "Mesh circumferential RMS", "contact ratio", "m/s²");
     factor.axes(&mut sheet, "Dynamic factor", "contact ratio", "");
-    let curves: [(&str, fn(&Models) -> &Answer, Style); 5] = [
+    type Curve = (&'static str, fn(&Models) -> &Answer, Style);
+    let curves: [Curve; 5] = [
         ("source's model", |own| &own.source, Style::both(BLUE)),
         ("without impact", |own| &own.without_impact, Style::both(GREY).thin()),
         ("contact, free halves", |own| &own.free_halves, Style::both(ORANGE)),

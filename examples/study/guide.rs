@@ -21,6 +21,8 @@ pub fn write(study: &mut Study) -> Outcome<()> {
 /// Columns and rows of maps whose every point has a contact analysis of its own.
 const COLUMNS: usize = 24;
 const ROWS: usize = 15;
+/// Total contact ratio of the example pair.
+const EXAMPLE_RATIO: f64 = 3.1424;
 
 /// The tips of both gears relieved by 15 µm.
 fn relieved(base: &Value) -> Value {
@@ -64,8 +66,8 @@ fn torque(study: &mut Study, base: &Value) -> Outcome<()> {
     let bare = show(study, map(["map_torque", "Torque"], base.clone(), COLUMNS, upwards.clone()))?;
     let quiet =
         show(study, map(["map_torque_relieved", "Torque, tips relieved by 15 µm"], relieved(base), COLUMNS, upwards))?;
-    let column = bare.nearest(3.14);
-    let last = ROWS as usize - 1;
+    let column = bare.nearest(EXAMPLE_RATIO);
+    let last = ROWS - 1;
     let part = |row: usize| quiet.rms[column][row] / bare.rms[column][row];
     let growth = (bare.rms[column][last] / bare.rms[column][0]).ln() / 400f64.ln();
     study.page.claim(
@@ -103,7 +105,7 @@ fn speed(study: &mut Study, base: &Value) -> Outcome<()> {
     }
     let top = bare.map.upwards.values.len() - 1;
     let fastest = bare.ratios[bare.ridge()[top]];
-    let [narrow, valley] = [bare.nearest(3.14), bare.nearest(0.5 * (least + most))];
+    let [narrow, valley] = [bare.nearest(EXAMPLE_RATIO), bare.nearest(0.5 * (least + most))];
     let part = |column: usize, rpm: f64| quiet.rms[column][row(rpm)] / bare.rms[column][row(rpm)];
     study.page.claim(
         least > whole - 0.1 && most < whole + 0.1 && (fastest - whole).abs() < 0.15 && part(narrow, 2000.0) < 0.8 && part(narrow, 7000.0) > 1.2 && part(valley, 7000.0) < 0.8,
@@ -139,7 +141,7 @@ fn relief(study: &mut Study, base: &Value) -> Outcome<()> {
         logarithmic: false,
     };
     let solved = show(study, map(["map_relief", "Tip relief of both gears"], document, COLUMNS, upwards))?;
-    let rows = ROWS as usize;
+    let rows = ROWS;
     let best =
         |column: usize| (0..rows).min_by(|a, b| solved.rms[column][*a].total_cmp(&solved.rms[column][*b])).unwrap_or(0);
     let last = solved.ratios.len() - 1;
@@ -173,9 +175,9 @@ fn stagger(study: &mut Study, base: &Value) -> Outcome<()> {
         logarithmic: false,
     };
     let solved = show(study, map(["map_stagger", "Stagger of the halves"], base.clone(), COLUMNS, upwards))?;
-    let column = solved.nearest(3.14);
+    let column = solved.nearest(EXAMPLE_RATIO);
     let [rms, axial] = [&solved.rms[column], &solved.axial[column]];
-    let half = ROWS as usize - 1;
+    let half = ROWS - 1;
     let worst = solved.axial.iter().flatten().fold(0f64, |a, b| a.max(*b));
     let plain = solved.axial.iter().map(|column| column[0]).fold(0f64, f64::max);
     study.page.claim(

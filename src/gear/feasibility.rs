@@ -18,7 +18,7 @@ pub(super) const CLEARANCE_WARNING: f64 = 0.1;
 const RIM_WARNING: f64 = 1.2;
 /// Depth, in normal modules, to which a tip corner may dip into the mate's nominal fillet before the design is refused:
 /// below it tolerances, tip edge breaks and play decide, and a warning is given.
-const FILLET_CUT_LIMIT: f64 = 0.02;
+pub(super) const FILLET_CUT_LIMIT: f64 = 0.02;
 /// Cut into the fillet, in normal modules, that is taken as none (rounding of the sampled path).
 const FILLET_CUT_NOTICE: f64 = 1e-6;
 /// Negative play along the base tangent that is not yet reported: below the resolution of gear inspection.
