@@ -14,6 +14,13 @@ pub fn response() -> Value {
             "normal_module_mm": 6.0, "pressure_angle_deg": 20.0, "pressure_angle_plane": "transverse",
             "helix_angle_deg": 24.43, "face_width_mm": 75.0,
             "pinion": {"teeth": 17, "bore_diameter_mm": 50.0}, "gear": {"teeth": 44, "bore_diameter_mm": 120.0},
+            // No stiff couplings: cheap.
+            "supports": {
+                "pinion_lateral_n_per_um": 600.0, "gear_lateral_n_per_um": 600.0, "gear_axial_n_per_um": 200.0,
+                "pinion_halves_axial_n_per_um": 300.0, "gear_halves_axial_n_per_um": 300.0,
+                "pinion_halves_lateral_n_per_um": 0.0, "gear_halves_lateral_n_per_um": 0.0,
+                "pinion_halves_torsional_nm_per_rad": 0.0, "gear_halves_torsional_nm_per_rad": 0.0,
+            },
         },
         "operation": {"pinion_speed_rpm": speed_rpm, "pinion_torque_nm": 800.0},
         "model": {
