@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::compliance::Compliance;
 use super::half::HalfContact;
 use super::position::ForceCurve;
+use super::refine::start_phases;
 use super::settings::{ContactError, Settings};
 use super::spline::SplineKnots;
 use crate::gear::{Half, Pair};
@@ -122,7 +123,7 @@ impl ForceTable {
         let mut solved_m = level_m.clone();
         solved_m[0] = 0.5 * level_m[1];
         let mut knots: Vec<(f64, ForceCurve)> = Vec::new();
-        let mut fresh = start(pair);
+        let mut fresh = start_phases(pair, COARSE, 4.0 * FINEST);
         let mut intervals: Vec<(f64, f64)> = Vec::new();
         let mut error: f64 = 0.0;
         loop {
@@ -252,18 +253,4 @@ fn levels(sampler: &Sampler<'_>, tolerance: f64) -> Result<Vec<f64>, ContactErro
             .collect();
     }
     Ok(level_m)
-}
-
-/// Equally spaced phases and those at which a line of contact begins, ends or reaches another edge of the field.
-fn start(pair: &Pair) -> Vec<f64> {
-    let mut phases: Vec<f64> = (0..COARSE).map(|i| i as f64 / COARSE as f64).collect();
-    for ratio in [pair.transverse_contact_ratio, pair.overlap_ratio, pair.total_contact_ratio()] {
-        let phase = ratio.rem_euclid(1.0);
-        let apart = |p: &f64| (p - phase).abs().min(1.0 - (p - phase).abs());
-        if phases.iter().map(apart).fold(1.0, f64::min) > 4.0 * FINEST {
-            phases.push(phase);
-        }
-    }
-    phases.sort_by(f64::total_cmp);
-    phases
 }

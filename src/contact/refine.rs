@@ -30,7 +30,7 @@ pub fn refine(
     mut solve: impl FnMut(f64, Option<&Loaded>) -> Result<Loaded, ContactError>,
 ) -> Result<Positions, ContactError> {
     let mut states: Vec<(f64, Loaded)> = Vec::with_capacity(64);
-    for phase in start(pair) {
+    for phase in start_phases(pair, COARSE, 8.0 * FINEST) {
         let state = solve(phase, states.last().map(|s| &s.1))?;
         states.push((phase, state));
     }
@@ -63,13 +63,14 @@ pub fn refine(
     Ok(Positions { states, error })
 }
 
-/// Equally spaced phases and those at which a line of contact begins, ends, or reaches another edge of the field.
-fn start(pair: &Pair) -> Vec<f64> {
-    let mut phases: Vec<f64> = (0..COARSE).map(|i| i as f64 / COARSE as f64).collect();
+/// `count` equally spaced phases, and those at which a line of contact begins, ends, or reaches another edge of the field where they are further than `least` from
+/// the others.
+pub fn start_phases(pair: &Pair, count: usize, least: f64) -> Vec<f64> {
+    let mut phases: Vec<f64> = (0..count).map(|i| i as f64 / count as f64).collect();
     for ratio in [pair.transverse_contact_ratio, pair.overlap_ratio, pair.total_contact_ratio()] {
         let phase = ratio.rem_euclid(1.0);
         let apart = |p: &f64| (p - phase).abs().min(1.0 - (p - phase).abs());
-        if phases.iter().map(apart).fold(1.0, f64::min) > 8.0 * FINEST {
+        if phases.iter().map(apart).fold(1.0, f64::min) > least {
             phases.push(phase);
         }
     }
