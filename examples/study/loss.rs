@@ -20,7 +20,7 @@ pub fn write(study: &mut Study) -> Outcome<()> {
         name: "pinion torque, N·m",
         logarithmic: true,
     };
-    let perfect = show(study, map(["map_torque", "Torque, perfect flanks"], base.clone(), 50, upwards.clone()))?;
+    let perfect = show(study, map(["map_torque_source", "Torque, perfect flanks"], base.clone(), 24, upwards.clone()))?;
     study.page.claim(
         perfect.separated() == 0,
         "**With perfect flanks contact is never lost**, from 10 to 1600 N·m at any contact ratio: deflection, transmission error and momentum of the impact all shrink with the torque. A light load by itself does not separate teeth; something that does not shrink with the load has to be there. (The impact *force* shrinks \
