@@ -134,9 +134,10 @@ impl ForceTable {
                 intervals = (0..knots.len()).map(|i| (knots[i].0, next(i))).collect();
             } else {
                 let table = ForceTable::of(&knots, &level_m, force_bt_n, 0.0);
+                let splines = Splines::new(&table);
                 let mut split: Vec<(f64, f64, f64)> = Vec::new();
                 for ((&(from, to), phase), curve) in intervals.iter().zip(fresh).zip(curves) {
-                    let distance = table.distance(&knots, phase, &curve);
+                    let distance = splines.distance(&knots, phase, &curve);
                     let narrow = 0.5 * (to - from) <= FINEST;
                     if distance > tolerance && !narrow {
                         split.push((distance, from, 0.5 * (from + to)));
@@ -198,21 +199,39 @@ impl ForceTable {
             error,
         }
     }
+}
 
-    /// Largest difference of the splines over the phase from a solved curve.
+/// The splines of a table over the phase, with their slopes.
+struct Splines<'a> {
+    table: &'a ForceTable,
+    knots: SplineKnots,
+    force_slopes: Vec<Vec<f64>>,
+    free_slopes: Vec<f64>,
+}
+
+impl<'a> Splines<'a> {
+    fn new(table: &'a ForceTable) -> Splines<'a> {
+        let knots = SplineKnots::new(table.phase.clone());
+        let force_slopes = table.force_n.iter().map(|force| knots.slopes(force)).collect();
+        let free_slopes = knots.slopes(&table.free_m);
+        Splines { table, knots, force_slopes, free_slopes }
+    }
+
+    /// Largest difference of the splines from a solved curve.
     fn distance(&self, knots: &[(f64, ForceCurve)], phase: f64, curve: &ForceCurve) -> f64 {
-        let spline = SplineKnots::new(self.phase.clone());
-        let at = |values: &[f64]| spline.value(values, &spline.slopes(values), phase);
+        let table = self.table;
         let mut worst = 0.0f64;
         let mean = |i: usize| knots.iter().map(|(_, c)| c.samples[i].0).sum::<f64>() / knots.len() as f64;
-        for i in 1..self.level_m.len() {
-            let difference = at(&self.force_n[i]) - curve.samples[i].0;
-            worst = worst.max(difference.abs() / scale(mean(i), self.working_force_n));
+        for i in 1..table.level_m.len() {
+            let force = self.knots.value(&table.force_n[i], &self.force_slopes[i], phase);
+            let difference = force - curve.samples[i].0;
+            worst = worst.max(difference.abs() / scale(mean(i), table.working_force_n));
         }
-        // A free position off by this moves the force by as much as the stiffness under the working load says.
-        let top = self.stiffness_n_per_m.len() - 1;
-        let stiffness = self.stiffness_n_per_m[top].iter().fold(0.0f64, |m, k| m.max(*k));
-        worst.max((at(&self.free_m) - curve.free_m).abs() * stiffness / self.working_force_n)
+        // A free position that is off moves the force by no more than the stiffness of the highest level says.
+        let top = table.stiffness_n_per_m.len() - 1;
+        let stiffness = table.stiffness_n_per_m[top].iter().fold(0.0f64, |m, k| m.max(*k));
+        let free_m = self.knots.value(&table.free_m, &self.free_slopes, phase);
+        worst.max((free_m - curve.free_m).abs() * stiffness / table.working_force_n)
     }
 }
 
