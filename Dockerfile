@@ -3,10 +3,11 @@ FROM rust:1.95-bookworm AS build
 WORKDIR /build
 COPY Cargo.toml Cargo.lock askama.toml build.rs ./
 COPY src src
+COPY crates crates
+COPY tools tools
 COPY migrations migrations
 COPY openapi openapi
 COPY examples examples
-COPY benches benches
 COPY tests tests
 RUN cargo build --release --locked --bin herringbone \
  && cp target/release/herringbone /herringbone

@@ -1,4 +1,4 @@
-"""Prints the factors kappa of src/contact/edge.rs: how much more than a half-space an elastic wedge gives near its edge.
+"""Prints the factors kappa of crates/physics/src/contact/edge.rs: how much more than a half-space an elastic wedge gives near its edge.
 
 Waves cos(ky) along the edge on a section of nine-node elements, graded towards the edge; less the half-space on the same mesh, and
 integrated over k. Needs numpy and scipy; seconds per angle.

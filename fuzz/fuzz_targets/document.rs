@@ -3,13 +3,13 @@
 
 #![no_main]
 
-use herringbone::{job, study};
+use herringbone_job::study;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    let Ok(document) = job::parse(bytes) else { return };
+    let Ok(document) = herringbone_job::parse(bytes) else { return };
     let written = serde_json::to_vec(&document).expect("a document holds numbers and texts");
-    let again = job::parse(&written).expect("a document written out is valid");
+    let again = herringbone_job::parse(&written).expect("a document written out is valid");
     assert!(document == again, "{document:?}\nreads back as\n{again:?}");
     let _ = study::check(&document);
 });

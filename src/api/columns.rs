@@ -1,6 +1,6 @@
 //! Columns of the rows of a sweep: what each is called and where in a row it stands.
 
-use crate::job::result::{PerHalf, SweepPoint};
+use herringbone_job::result::{PerHalf, SweepPoint};
 use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
 use utoipa::openapi::{ObjectBuilder, RefOr, Schema, Type};
 use utoipa::{PartialSchema, ToSchema};
@@ -117,7 +117,7 @@ impl Serialize for Values<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::result::Poincare;
+    use herringbone_job::result::Poincare;
     use serde_json::json;
 
     #[test]

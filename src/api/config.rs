@@ -16,7 +16,7 @@ pub(super) const MAX_PAGE: u32 = 200;
 pub(super) const DEFAULT_ROWS: u32 = 1000;
 pub(super) const MAX_ROWS: u32 = 10_000;
 /// Rows that a sweep can have: its points, up and down.
-pub(super) const MOST_ROWS: u64 = crate::job::MAX_SWEEP_POINTS as u64 * 2;
+pub(super) const MOST_ROWS: u64 = herringbone_job::MAX_SWEEP_POINTS as u64 * 2;
 /// Points of a downsampled series: default and bounds.
 pub(super) const DEFAULT_POINTS: u64 = 2000;
 pub(super) const MIN_POINTS: u64 = 4;

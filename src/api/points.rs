@@ -3,10 +3,10 @@
 use super::columns::{Cell, NUMBERS, WORDS};
 use super::config::MAX_ROWS;
 use super::csv::{Decimal, Field};
-use crate::job::result::SweepPoint;
 use crate::store::{JobId, PointRow, PointsOfResult, Store, StoreError};
 use axum::body::{Body, Bytes};
 use futures_util::stream::{self, Stream, StreamExt};
+use herringbone_job::result::SweepPoint;
 
 /// Up to `limit` rows of a job from position `from` on and before `to`, and the position of the next one, if there is one.
 pub async fn page(

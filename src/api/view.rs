@@ -2,12 +2,12 @@
 
 use super::config::RETRY_LIVE_S;
 use super::problem::Problem;
-use crate::job::document::Kind;
 use crate::store::{JobRecord, State};
 use axum::Json;
 use axum::http::header::{CACHE_CONTROL, ETAG, RETRY_AFTER};
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
+use herringbone_job::document::Kind;
 use serde::Serialize;
 use utoipa::ToSchema;
 

@@ -1,6 +1,6 @@
 //! Finished stages in a directory: one file per content hash, so that finite elements are solved once per gear.
 
-use herringbone::study::{Stage, StageStore};
+use herringbone_job::study::{Stage, StageStore};
 use std::path::PathBuf;
 
 /// A directory of stages. What cannot be read or written is solved again.

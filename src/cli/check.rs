@@ -17,7 +17,7 @@ pub fn run(arguments: Check) -> ExitCode {
         Ok(document) => document,
         Err(code) => return code,
     };
-    match herringbone::study::check(&document) {
+    match herringbone_job::study::check(&document) {
         Ok(report) => {
             let mut out = std::io::stdout().lock();
             let written = serde_json::to_writer_pretty(&mut out, &report).map_err(std::io::Error::from);

@@ -1,8 +1,8 @@
 //! What `solve` and `check` share: reading a document from a file or standard input, and failing in the service's form.
 
 use herringbone::api::{MAX_BODY_BYTES, Problem};
-use herringbone::job::document::JobDocument;
-use herringbone::job::{self, DocumentError};
+use herringbone_job::DocumentError;
+use herringbone_job::document::JobDocument;
 use std::io::Read;
 use std::path::Path;
 use std::process::ExitCode;
@@ -17,7 +17,7 @@ pub fn read_document(path: &Path) -> Result<JobDocument, ExitCode> {
         eprintln!("{}: {error}", path.display());
         ExitCode::from(2)
     })?;
-    job::parse(&bytes).map_err(invalid)
+    herringbone_job::parse(&bytes).map_err(invalid)
 }
 
 /// Prints why a document is invalid, as problem+json; the exit code for invalid input is 2.

@@ -5,8 +5,8 @@ use super::input::{invalid, read_document};
 use super::{problem, table};
 use clap::Args;
 use herringbone::api::{CsvField, Decimal, Problem};
-use herringbone::job::document::JobDocument;
-use herringbone::study::{self, Channel, NoStageStore, SolveError, Stage, StageStore, Surroundings};
+use herringbone_job::document::JobDocument;
+use herringbone_job::study::{self, Channel, NoStageStore, SolveError, Stage, StageStore, Surroundings};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -135,7 +135,7 @@ fn bar() -> ProgressBar {
     ProgressBar::new(1000).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-fn write_json(result: &herringbone::job::result::JobResult) -> std::io::Result<()> {
+fn write_json(result: &herringbone_job::result::JobResult) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     serde_json::to_writer_pretty(&mut out, result)?;
     writeln!(out)

@@ -1,6 +1,6 @@
 //! The headline numbers of a result, for people.
 
-use herringbone::job::result::JobResult;
+use herringbone_job::result::JobResult;
 use std::io::{Result, Write};
 
 /// Writes one line per number: name, value, unit.

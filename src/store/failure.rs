@@ -1,6 +1,6 @@
 //! Why a job failed, as it is kept.
 
-use crate::job::Violation;
+use herringbone_job::Violation;
 use serde::{Deserialize, Serialize};
 
 /// Why a job has no result. Becomes the `error` of the job in the HTTP interface.

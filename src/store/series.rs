@@ -2,7 +2,7 @@
 
 use super::connect::{Store, StoreError};
 use super::lifecycle::JobId;
-use crate::study::Channel;
+use herringbone_job::study::Channel;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{FromRow, Row, Sqlite, Transaction};
 

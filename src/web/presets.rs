@@ -131,8 +131,8 @@ mod tests {
         ids.sort();
         assert_eq!(ids, names);
         for entry in listed {
-            let document = crate::job::parse_value(&entry["document"]).unwrap();
-            crate::study::check(&document).unwrap();
+            let document = herringbone_job::parse_value(&entry["document"]).unwrap();
+            herringbone_job::study::check(&document).unwrap();
         }
     }
 }

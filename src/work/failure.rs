@@ -1,8 +1,8 @@
 //! What went wrong with a job, in the words it is kept in.
 
-use crate::job::DocumentError;
 use crate::store::Failure;
-use crate::study::SolveError;
+use herringbone_job::DocumentError;
+use herringbone_job::study::SolveError;
 
 /// Details of internal failures stay in the log.
 pub(super) fn public(failure: Failure) -> Failure {

@@ -1,7 +1,7 @@
 //! What is counted of jobs, and what every line of the log below a job carries.
 
-use crate::job::result::Numerics;
 use crate::store::JobRecord;
+use herringbone_job::result::Numerics;
 use tracing::Span;
 
 /// Around everything that is done for one run of a job. Of the highest level, so that whatever is logged carries it.

@@ -1,9 +1,9 @@
 //! The memory that one job may take.
 
 use super::config::WorkConfig;
-use crate::job::document::JobDocument;
-use crate::job::{DocumentError, Violation};
-use crate::study::demand;
+use herringbone_job::document::JobDocument;
+use herringbone_job::study::demand;
+use herringbone_job::{DocumentError, Violation};
 
 /// The bound, and what the estimate needs to know of the machine.
 #[derive(Debug, Clone, Copy)]

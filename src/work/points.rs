@@ -1,9 +1,9 @@
 //! The points of a running sweep: handed over by the pool's threads, written with the progress.
 
-use crate::job::not_finite;
-use crate::job::result::{NotFinite, SweepPoint};
 use crate::store::{LineEndRow, PointBatch, PointRow, PointsDigest, PointsOfResult};
-use crate::study::{KeptPoints, LineEnd, PointStore};
+use herringbone_job::not_finite;
+use herringbone_job::result::{NotFinite, SweepPoint};
+use herringbone_job::study::{KeptPoints, LineEnd, PointStore};
 use std::collections::HashSet;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -37,7 +37,7 @@ fn marked_as_reused(body: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::result::JobResult;
+    use herringbone_job::result::JobResult;
 
     #[test]
     fn only_the_mark_changes() {

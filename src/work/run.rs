@@ -9,13 +9,13 @@ use super::reuse::stored_completion;
 use super::solver::Solver;
 use super::stages::StoredStages;
 use super::stop::{Reason, Stop};
-use crate::job;
-use crate::job::document::JobDocument;
-use crate::job::result::JobResult;
 use crate::store::{
     Completion, Failure, JobRecord, PackedSeries, Pause, PointBatch, PointsOfResult, State, StoreError, WorkClass,
 };
-use crate::study::{Outcome, SolveError, Stage, Surroundings};
+use herringbone_job;
+use herringbone_job::document::JobDocument;
+use herringbone_job::result::JobResult;
+use herringbone_job::study::{Outcome, SolveError, Stage, Surroundings};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -57,7 +57,7 @@ impl Run<'_> {
     /// Runs the job on the pool and records what becomes of it. What the database refuses is kept and tried again until it is
     /// taken or the service closes; then the job is still running in the store, and is taken up after the restart.
     pub async fn to_its_end(&self, input: &str) {
-        let document = match job::parse(input.as_bytes()) {
+        let document = match herringbone_job::parse(input.as_bytes()) {
             Ok(document) => document,
             Err(error) => return self.fail(document_failure(error)).await,
         };

@@ -1,8 +1,8 @@
 //! What a job is given to: the study room, or a double in tests.
 
-use crate::job::DocumentError;
-use crate::job::document::JobDocument;
-use crate::study::{self, CheckReport, Outcome, SolveError, Surroundings};
+use herringbone_job::DocumentError;
+use herringbone_job::document::JobDocument;
+use herringbone_job::study::{self, CheckReport, Outcome, SolveError, Surroundings};
 
 /// Checks and solves documents. Called on plain threads; may take long and may panic.
 pub trait Solver: Send + Sync + 'static {

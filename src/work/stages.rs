@@ -1,7 +1,7 @@
 //! The study's store of finished stages, over the database. Called on the pool's threads, never on async ones.
 
 use crate::store::Store;
-use crate::study::{Stage, StageStore};
+use herringbone_job::study::{Stage, StageStore};
 use jiff::Timestamp;
 use tokio::runtime::Handle;
 

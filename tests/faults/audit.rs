@@ -1,6 +1,5 @@
 //! Whether a database holds what was promised: reads the file itself, beside the service's own code.
 
-use herringbone::job;
 use sha2::{Digest, Sha256};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteRow};
 use sqlx::{ConnectOptions, Connection, Row};
@@ -186,7 +185,7 @@ impl Audit<'_> {
                 .await
                 .expect("rows");
             self.findings.points += rows.len();
-            let document = job::parse(job.input.as_bytes()).expect("the stored document is valid");
+            let document = herringbone_job::parse(job.input.as_bytes()).expect("the stored document is valid");
             let wanted = document.sweep_points();
             if job.state != "succeeded" {
                 if rows.len() > wanted {

@@ -1,7 +1,6 @@
 //! A clock that is set back: jobs run all the same, in their order, and no duration is negative.
 
 use crate::documents;
-use herringbone::job;
 use herringbone::store::{JobId, JobRecord, Store, StoreConfig};
 use herringbone::work::{Jobs, StudySolver, SubmitRequest, WorkConfig};
 use jiff::Timestamp;
@@ -23,7 +22,7 @@ async fn jobs_run_in_their_order_when_the_clock_goes_backwards() {
     let jobs = Jobs::start(store, &config, Arc::new(StudySolver), Arc::new(clock)).await.expect("it starts");
     let mut ids: Vec<JobId> = Vec::new();
     for _ in 0..8 {
-        let document = job::parse(documents::response().to_string().as_bytes()).expect("a document");
+        let document = herringbone_job::parse(documents::response().to_string().as_bytes()).expect("a document");
         let request = SubmitRequest { document, idempotency_key: None, request_id: None };
         ids.push(jobs.submit(request).await.expect("accepted").job.id);
     }

@@ -1,6 +1,6 @@
 //! The token: read once at the start, compared in constant time, never shown.
 
-use crate::job::{EncodingError, without_mark};
+use herringbone_job::{EncodingError, without_mark};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::Read;

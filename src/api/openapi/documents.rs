@@ -1,7 +1,7 @@
 //! Schemas of the job document: one for each kind, sharing what they have in common.
 
-use crate::job::document::Kind;
-use crate::job::schema::job_document_schema_of;
+use herringbone_job::document::Kind;
+use herringbone_job::schema::job_document_schema_of;
 use serde_json::{Value, json};
 
 /// Blocks that documents of every kind have, and the names of their schemas.

@@ -1,9 +1,9 @@
 //! Problems out of the errors of the rooms below.
 
 use super::{Problem, ProblemCode};
-use crate::job::{DocumentError, Violation};
 use crate::store::{Failure, JobRecord};
-use crate::study::SolveError;
+use herringbone_job::study::SolveError;
+use herringbone_job::{DocumentError, Violation};
 
 impl From<DocumentError> for Problem {
     fn from(error: DocumentError) -> Self {

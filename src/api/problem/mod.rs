@@ -7,7 +7,7 @@ mod refusal;
 pub use codes::{CODES, CodeEntry, ProblemCode};
 pub use refusal::Refusal;
 
-use crate::job::Violation;
+use herringbone_job::Violation;
 use serde::Serialize;
 use utoipa::ToSchema;
 

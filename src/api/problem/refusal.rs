@@ -2,12 +2,12 @@
 
 use super::{Problem, ProblemCode};
 use crate::api::config::{RETRY_FULL_S, RETRY_LIVE_S};
-use crate::job::DocumentError;
 use crate::store::{StoreError, Unavailable};
 use crate::work::SubmitError;
 use axum::http::HeaderValue;
 use axum::http::header::RETRY_AFTER;
 use axum::response::{IntoResponse, Response};
+use herringbone_job::DocumentError;
 
 /// What a handler answers instead of its result. The body is written by the envelope, which knows the request's id.
 #[derive(Debug, Clone)]

@@ -2,11 +2,11 @@
 
 use crate::api::config::MAX_BODY_BYTES;
 use crate::api::problem::{ProblemCode, Refusal};
-use crate::job::{self, document::JobDocument};
 use axum::body::Bytes;
 use axum::extract::{FromRequest, Request};
 use axum::http::header::{CONTENT_ENCODING, CONTENT_TYPE};
 use axum::http::{HeaderMap, StatusCode};
+use herringbone_job::document::JobDocument;
 
 /// A parsed job document; whether the gear can exist is not checked yet.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ impl<S: Send + Sync> FromRequest<S> for DocumentBody {
             }
             _ => Refusal::new(ProblemCode::MalformedJson, rejection.body_text()),
         })?;
-        Ok(Self(job::parse(&bytes)?))
+        Ok(Self(herringbone_job::parse(&bytes)?))
     }
 }
 

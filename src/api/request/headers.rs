@@ -2,10 +2,10 @@
 
 use crate::api::config::{MAX_KEY_CHARS, MAX_WAIT_S};
 use crate::api::problem::{Problem, ProblemCode, Refusal};
-use crate::job::Violation;
 use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, HeaderName, header::IF_NONE_MATCH};
+use herringbone_job::Violation;
 use std::convert::Infallible;
 use std::time::Duration;
 

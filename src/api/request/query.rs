@@ -1,9 +1,9 @@
 //! Query parameters, read so that every violation is found at once and unknown ones are errors.
 
 use crate::api::problem::{Problem, ProblemCode, Refusal};
-use crate::job::Violation;
 use axum::extract::{FromRequestParts, Query};
 use axum::http::request::Parts;
+use herringbone_job::Violation;
 use std::str::FromStr;
 
 /// The parameters of a request. Take each known one, then [`Parameters::finish`].

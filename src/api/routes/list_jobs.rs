@@ -5,10 +5,10 @@ use crate::api::problem::{ProblemCode, Refusal};
 use crate::api::request::{Cursor, Parameters};
 use crate::api::state::AppState;
 use crate::api::view::Job;
-use crate::job::document::Kind;
 use crate::store::{JobFilter, State as JobState};
 use axum::Json;
 use axum::extract::State;
+use herringbone_job::document::Kind;
 use serde::Serialize;
 use utoipa::ToSchema;
 

@@ -1,10 +1,10 @@
 //! `GET /api/v1/kinds`
 
 use crate::api::config::MAX_BODY_BYTES;
-use crate::job::document::Kind;
-use crate::job::schema::job_document_schema_of;
-use crate::job::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS};
 use axum::Json;
+use herringbone_job::document::Kind;
+use herringbone_job::schema::job_document_schema_of;
+use herringbone_job::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use utoipa::ToSchema;

@@ -26,11 +26,11 @@ use super::config::RETRY_FOLLOW_S;
 use super::problem::{ProblemCode, Refusal};
 use super::request::{event_stream_only, json_only};
 use super::state::AppState;
-use crate::job::document::Kind;
 use crate::store::{JobId, JobRecord, State};
 use axum::Router;
 use axum::middleware::from_fn;
 use axum::routing::get;
+use herringbone_job::document::Kind;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 

@@ -3,9 +3,9 @@
 use crate::api::problem::Refusal;
 use crate::api::request::PointPath;
 use crate::api::state::AppState;
-use crate::job::parse;
 use axum::Json;
 use axum::extract::State;
+use herringbone_job::parse;
 use serde_json::Value;
 
 /// Read the document of one point of a sweep, to submit it as a job of its own.

@@ -5,11 +5,11 @@ use crate::api::problem::Refusal;
 use crate::api::request::{IfNoneMatch, JobPath, Parameters};
 use crate::api::state::AppState;
 use crate::api::view::not_modified;
-use crate::job::result::JobResult;
 use axum::body::Body;
 use axum::extract::State;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, ETAG};
 use axum::response::{IntoResponse, Response};
+use herringbone_job::result::JobResult;
 
 /// Read the result of a job: geometry, mesh, impact and response. It never changes.
 ///

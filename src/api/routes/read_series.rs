@@ -7,13 +7,13 @@ use crate::api::held::Held;
 use crate::api::problem::Refusal;
 use crate::api::request::{ChannelPath, Parameters, json_or_csv};
 use crate::api::state::AppState;
-use crate::job::Violation;
 use crate::store::PackedSeries;
 use axum::body::Body;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_TYPE, VARY};
 use axum::response::{IntoResponse, Response};
+use herringbone_job::Violation;
 use serde::Serialize;
 use utoipa::ToSchema;
 

@@ -3,10 +3,10 @@
 use crate::api::problem::Refusal;
 use crate::api::request::{DocumentBody, Parameters};
 use crate::api::state::AppState;
-use crate::job::drawing::Drawing;
-use crate::study::CheckReport;
 use axum::Json;
 use axum::extract::State;
+use herringbone_job::drawing::Drawing;
+use herringbone_job::study::CheckReport;
 use serde::Serialize;
 use utoipa::ToSchema;
 

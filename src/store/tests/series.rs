@@ -1,5 +1,5 @@
 use super::*;
-use crate::study::Channel;
+use herringbone_job::study::Channel;
 
 fn channel(values: Vec<f64>) -> Channel {
     Channel {

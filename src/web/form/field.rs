@@ -267,7 +267,7 @@ fn shown_unit(unit: &str) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::schema::field_descriptions;
+    use herringbone_job::schema::field_descriptions;
 
     #[test]
     fn labels_are_words_without_the_unit() {

@@ -6,8 +6,8 @@ mod symbols;
 
 pub use field::{Control, Field};
 
-use crate::job::schema::field_descriptions;
 use groups::LayoutPlan;
+use herringbone_job::schema::field_descriptions;
 use serde_json::Value;
 use std::sync::LazyLock;
 
@@ -240,7 +240,7 @@ mod tests {
 
     #[test]
     fn the_example_is_a_job_document_and_stands_in_the_form() {
-        crate::job::parse(EXAMPLE.as_bytes()).unwrap();
+        herringbone_job::parse(EXAMPLE.as_bytes()).unwrap();
         let fields = all_fields();
         let value = |pointer: &str| fields.iter().find(|field| field.pointer == pointer).unwrap().value.clone();
         assert_eq!(value("/design/helix_angle_deg"), "24.43");

@@ -36,7 +36,7 @@ pub fn symbol(pointer: &str) -> (&'static str, &'static str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::schema::field_descriptions;
+    use herringbone_job::schema::field_descriptions;
 
     #[test]
     fn symbols_belong_to_fields() {

@@ -1,12 +1,12 @@
 //! A solver that does what a document's name says.
 
 use super::Breakpoints;
-use herringbone::job::DocumentError;
-use herringbone::job::document::{JobDocument, Kind};
-use herringbone::job::result::{JobResult, Sweep, SweepPoint};
-use herringbone::study::{self, Channel, CheckReport, Outcome, SolveError, Stage, Surroundings};
-use herringbone::watch::Canceled;
 use herringbone::work::Solver;
+use herringbone_job::DocumentError;
+use herringbone_job::document::{JobDocument, Kind};
+use herringbone_job::result::{JobResult, Sweep, SweepPoint};
+use herringbone_job::study::{self, Channel, CheckReport, Outcome, SolveError, Stage, Surroundings};
+use herringbone_physics::watch::Canceled;
 
 /// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every calculation passes the
 /// breakpoint `solve`, and the one of its own name.

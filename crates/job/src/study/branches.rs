@@ -1,0 +1,190 @@
+//! Branches of a continuation: where they jump, and where up and down lead to different motions.
+
+use crate::document::Axis;
+use crate::result::{Hysteresis, Jump, SweepPoint};
+
+/// The direction of a branch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    Up,
+    Down,
+}
+
+impl Way {
+    pub fn word(self) -> &'static str {
+        match self {
+            Way::Up => "up",
+            Way::Down => "down",
+        }
+    }
+}
+
+/// Relative difference of two RMS values above which two motions are different ones.
+const DIFFERENT: f64 = 0.01;
+/// The same where regime or contact differ already: below it the words differ by what lies on their edge.
+const DIFFERENT_WORDS: f64 = 1e-3;
+/// Relative change between neighbours that can be a jump, and how much larger than the changes beside it a jump is.
+const JUMP: f64 = 0.1;
+const STANDS_OUT: f64 = 3.0;
+/// Differences within this many times the sum of both errors are none.
+const ERRORS: f64 = 3.0;
+/// Accelerations below this do not count as motion, m/s².
+const STILL_M_S2: f64 = 1e-9;
+
+/// Positions on an axis from its least value up, or from its greatest down.
+pub fn order(axis: &Axis, way: Way) -> Vec<usize> {
+    let values: Vec<f64> = (0..axis.len()).map(|index| axis.value(index)).collect();
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    if way == Way::Down {
+        order.reverse();
+    }
+    order
+}
+
+/// Where a branch jumps between neighbours; `line` in the order of the axis.
+pub fn jumps(axis: &Axis, way: Way, second_axis_value: Option<f64>, line: &[SweepPoint]) -> Vec<Jump> {
+    let order = order(axis, way);
+    let changes: Vec<Option<f64>> = order.windows(2).map(|two| change(&line[two[0]], &line[two[1]])).collect();
+    let mut found = Vec::new();
+    for (at, two) in order.windows(2).enumerate() {
+        let (before, after) = (&line[two[0]], &line[two[1]]);
+        let beside = |other: Option<usize>| other.and_then(|i| *changes.get(i)?).unwrap_or(0.0);
+        let usual = beside(at.checked_sub(1)).max(beside(Some(at + 1)));
+        let (Some(change), Some(rms_before), Some(rms_after)) = (changes[at], rms(before), rms(after)) else {
+            continue;
+        };
+        if change > JUMP.max(uncertainty(before, after)) && change > STANDS_OUT * usual {
+            found.push(Jump {
+                branch: way.word().to_owned(),
+                second_axis_value,
+                from: axis.value(two[0]),
+                to: axis.value(two[1]),
+                rms_before_m_s2: rms_before,
+                rms_after_m_s2: rms_after,
+            });
+        }
+    }
+    found
+}
+
+/// Where the branches of the same line differ; both in the order of the axis.
+pub fn hysteresis(
+    axis: &Axis,
+    second_axis_value: Option<f64>,
+    up: &[SweepPoint],
+    down: &[SweepPoint],
+) -> Vec<Hysteresis> {
+    let mut found: Vec<Hysteresis> = Vec::new();
+    let mut open = false;
+    for at in order(axis, Way::Up) {
+        let differ = differences(&up[at], &down[at]);
+        if differ.is_empty() {
+            open = false;
+            continue;
+        }
+        let value = axis.value(at);
+        if !open {
+            let largest_rms_ratio = 1.0;
+            found.push(Hysteresis { second_axis_value, from: value, to: value, differ: Vec::new(), largest_rms_ratio });
+        }
+        open = true;
+        if let Some(interval) = found.last_mut() {
+            interval.to = value;
+            let ratio = change(&up[at], &down[at]).map_or(1.0, f64::exp);
+            interval.largest_rms_ratio = interval.largest_rms_ratio.max(ratio);
+            for what in differ {
+                if !interval.differ.iter().any(|word| word == what) {
+                    interval.differ.push(what.to_owned());
+                }
+            }
+        }
+    }
+    found
+}
+
+fn differences(a: &SweepPoint, b: &SweepPoint) -> Vec<&'static str> {
+    let Some(change) = change(a, b) else { return Vec::new() };
+    let uncertain = uncertainty(a, b);
+    let mut differ = Vec::new();
+    if change > DIFFERENT.max(uncertain) {
+        differ.push("rms");
+    }
+    if change > DIFFERENT_WORDS.max(uncertain) {
+        if a.regime != b.regime {
+            differ.push("regime");
+        }
+        if a.contact != b.contact {
+            differ.push("contact");
+        }
+    }
+    differ
+}
+
+fn uncertainty(a: &SweepPoint, b: &SweepPoint) -> f64 {
+    ERRORS * (a.error_estimate.unwrap_or(0.0) + b.error_estimate.unwrap_or(0.0))
+}
+
+/// |ln| of the ratio of the mesh accelerations; None where one is not known.
+fn change(a: &SweepPoint, b: &SweepPoint) -> Option<f64> {
+    let (a, b) = (rms(a)?, rms(b)?);
+    Some(if a.max(b) < STILL_M_S2 { 0.0 } else { (a.max(STILL_M_S2) / b.max(STILL_M_S2)).ln().abs() })
+}
+
+/// RMS of the circumferential acceleration over both meshes.
+fn rms(row: &SweepPoint) -> Option<f64> {
+    let halves = row.mesh_circumferential_acceleration_rms_m_s2?;
+    Some((0.5 * (halves.left * halves.left + halves.right * halves.right)).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::AxisPoints;
+    use crate::result::PerHalf;
+
+    fn axis(values: &[f64]) -> Axis {
+        Axis { pointer: "/x".into(), also: Vec::new(), points: AxisPoints::Values { values: values.to_vec() } }
+    }
+
+    fn line(rms: &[f64]) -> Vec<SweepPoint> {
+        let solved = |rms: &f64| {
+            let halves = PerHalf { left: *rms, right: *rms };
+            let response = (*rms > 0.0).then_some(halves);
+            SweepPoint {
+                mesh_circumferential_acceleration_rms_m_s2: response,
+                error_estimate: Some(1e-6),
+                ..SweepPoint::default()
+            }
+        };
+        rms.iter().map(solved).collect()
+    }
+
+    #[test]
+    fn a_jump_stands_out_and_a_steep_slope_does_not() {
+        let axis = axis(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        let found = jumps(&axis, Way::Up, None, &line(&[10.0, 11.0, 12.0, 30.0, 29.0, 28.0]));
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].from, found[0].to, found[0].rms_after_m_s2), (3.0, 4.0, 30.0));
+        assert_eq!(jumps(&axis, Way::Up, None, &line(&[10.0, 13.0, 18.0, 26.0, 36.0, 48.0])), []);
+        // Downwards the same place is met from above; a point without a response is no jump.
+        let found = jumps(&axis, Way::Down, Some(7.0), &line(&[10.0, 11.0, 12.0, 30.0, 29.0, 28.0]));
+        assert_eq!((found[0].from, found[0].to, found[0].second_axis_value), (4.0, 3.0, Some(7.0)));
+        assert_eq!(jumps(&axis, Way::Up, None, &line(&[10.0, 11.0, 0.0, 30.0, 29.0, 28.0])), []);
+    }
+
+    #[test]
+    fn branches_differ_where_their_motions_do() {
+        let axis = axis(&[4.0, 3.0, 2.0, 1.0]);
+        let (up, down) = (line(&[5.0, 5.0, 2.0, 1.0]), line(&[5.0, 10.0, 4.0, 1.001]));
+        let found = hysteresis(&axis, None, &up, &down);
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].from, found[0].to, found[0].differ.as_slice()), (2.0, 3.0, ["rms".to_owned()].as_slice()));
+        assert!((found[0].largest_rms_ratio - 2.0).abs() < 1e-12);
+        // Means of a finite record scatter by their errors.
+        let mut noisy = up.clone();
+        noisy[1].mesh_circumferential_acceleration_rms_m_s2 = Some(PerHalf { left: 5.2, right: 5.2 });
+        noisy[1].error_estimate = Some(0.02);
+        assert_eq!(hysteresis(&axis, None, &up, &noisy), []);
+    }
+}

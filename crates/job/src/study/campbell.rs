@@ -1,0 +1,83 @@
+//! Campbell data of a sweep over the speed: at which speeds an order of the mesh frequency meets a natural frequency.
+
+use super::mesh::MeshMemo;
+use super::{SolveError, Surroundings, answer, point, row};
+use crate::document::{Axis, JobDocument};
+use crate::result::{Campbell, CampbellCrossing, NaturalMode};
+use serde_json::Value;
+
+/// The swept input that makes a Campbell diagram.
+const SPEED: &str = "/operation/pinion_speed_rpm";
+/// Highest mesh order whose line is drawn.
+const ORDERS: u32 = 10;
+
+/// One diagram for every value of the other axis (one where there is none); nothing when no axis is the speed. Values at which
+/// the stages before the response fail have none.
+///
+/// # Errors
+/// [`SolveError::Canceled`].
+pub fn run(
+    base: &Value,
+    sweep: &JobDocument,
+    surroundings: &Surroundings,
+    memo: &MeshMemo,
+) -> Result<Vec<Campbell>, SolveError> {
+    let Some(at) = sweep.axes.iter().position(|axis| axis.pointers().any(|pointer| pointer == SPEED)) else {
+        return Ok(Vec::new());
+    };
+    let speed = &sweep.axes[at];
+    let other = sweep.axes.get(1 - at);
+    let quiet = Surroundings { progress: &|_, _| {}, ..*surroundings };
+    let mut found = Vec::new();
+    for index in 0..other.map_or(1, Axis::len) {
+        let other_axis_value = other.map(|axis| axis.value(index));
+        let mut values = vec![speed.value(0)];
+        // In the order of the axes.
+        other_axis_value.into_iter().for_each(|value| values.insert(1 - at, value));
+        let modes = row::document(base, sweep, &values).and_then(|document| {
+            let staged = point::stage(&document, &quiet, memo)?;
+            let modes = staged.parameters().map(answer::natural_modes).transpose().map_err(super::vibration::failed)?;
+            Ok((modes, document.design.pinion.teeth))
+        });
+        match modes {
+            Ok((Some(modes), teeth)) => found.push(diagram(speed, other_axis_value, f64::from(teeth), modes)),
+            Ok((None, _)) => {}
+            Err(SolveError::Canceled(canceled)) => return Err(canceled.into()),
+            // The rows say why.
+            Err(_) => {}
+        }
+    }
+    Ok(found)
+}
+
+fn diagram(speed: &Axis, other_axis_value: Option<f64>, teeth: f64, natural_modes: Vec<NaturalMode>) -> Campbell {
+    let speeds = || (0..speed.len()).map(|index| speed.value(index));
+    let range = [speeds().fold(f64::INFINITY, f64::min), speeds().fold(f64::NEG_INFINITY, f64::max)];
+    let mut crossings = Vec::new();
+    for (mode, natural) in (0u32..).zip(&natural_modes) {
+        let mesh_strain_energy =
+            ["mesh_left", "mesh_right"].iter().filter_map(|group| natural.strain_energy.get(*group)).sum();
+        for mesh_order in 1..=ORDERS {
+            let pinion_speed_rpm = 60.0 * natural.frequency_hz / (f64::from(mesh_order) * teeth);
+            if natural.frequency_hz > 0.0 && (range[0]..=range[1]).contains(&pinion_speed_rpm) {
+                let frequency_hz = natural.frequency_hz;
+                crossings.push(CampbellCrossing {
+                    pinion_speed_rpm,
+                    frequency_hz,
+                    mesh_order,
+                    mode,
+                    mesh_strain_energy,
+                });
+            }
+        }
+    }
+    crossings.sort_by(|a, b| a.pinion_speed_rpm.total_cmp(&b.pinion_speed_rpm));
+    Campbell {
+        other_axis_value,
+        pinion_speed_rpm: range,
+        mesh_frequency_hz: range.map(|rpm| rpm * teeth / 60.0),
+        mesh_orders: (1..=ORDERS).collect(),
+        natural_modes,
+        crossings,
+    }
+}

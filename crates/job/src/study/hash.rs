@@ -1,0 +1,47 @@
+//! Content hashes: what a result, or a stage, depends on, and nothing else.
+
+use super::SOLVER_VERSION;
+use super::compliance::bare;
+use super::mesh::ContactCase;
+use crate::document::JobDocument;
+use herringbone_physics::fe::FlankKey;
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+/// Hash of everything that decides a document's result (name and label do not), with the solver's version.
+pub fn input_hash(document: &JobDocument) -> String {
+    let unnamed = JobDocument { name: None, label: None, ..document.clone() };
+    hash("result", &unnamed)
+}
+
+/// Hash of a contact analysis: the teeth with their errors, the torque and the choices of the model; not speed, supports,
+/// inertias or the analysis of the response.
+pub fn mesh_hash(case: &ContactCase) -> String {
+    hash("mesh", case)
+}
+
+/// Hash of the contact's force over approach and phase, on the flanks that carry the torque or on the `idle` ones: of the same things as [`mesh_hash`].
+pub fn force_hash(case: &ContactCase, idle: bool) -> String {
+    hash("mesh-force", &(case, idle))
+}
+
+/// Hash of the teeth's compliance: what [`mesh_hash`] depends on without load, modifications and misalignments.
+pub fn compliance_hash(case: &ContactCase) -> String {
+    hash("compliance", &(bare(case), &case.settings, case.fidelity, case.line_stiffness_n_per_m2, case.resolution))
+}
+
+/// Hash of the finite elements of one gear.
+pub fn flank_hash(key: &FlankKey) -> String {
+    hash("flank", key)
+}
+
+fn hash(stage: &str, value: &impl Serialize) -> String {
+    let mut hasher = Sha256::new();
+    hasher.update(stage);
+    hasher.update([0]);
+    hasher.update(SOLVER_VERSION);
+    hasher.update([0]);
+    // A document holds finite numbers and strings only, so writing it cannot fail.
+    hasher.update(serde_json::to_vec(value).unwrap_or_default());
+    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,187 @@
+//! The mesh force of the equations as the loaded contact gives it, from the contact analysis of both halves.
+
+use super::compliance;
+use super::equations::MotionPlane;
+use super::hash::force_hash;
+use super::mesh::{ContactCase, MeshMemo, contact_failed};
+use super::{SolveError, Stage, Surroundings};
+use crate::result::ContactForceTable;
+use herringbone_physics::contact::{ForceTable, SplineKnots, same_gaps};
+use herringbone_physics::dynamics::{ContactForce, FlankForce};
+use herringbone_physics::gear::{Half, Pair};
+use herringbone_physics::watch::Watch;
+use std::sync::Arc;
+
+/// The contact force of both halves, along s of the plane in use.
+#[derive(Debug, Clone)]
+pub struct MeshForces {
+    /// Left, right; the same where the halves are.
+    pub forces: [Arc<ContactForce>; 2],
+    pub summary: ContactForceTable,
+}
+
+/// Accuracy of the table of the flanks that carry no load, over that of the others: they are met only after the whole play.
+const IDLE_FLANKS: f64 = 10.0;
+/// The loosest accuracy of a table.
+const LOOSEST: f64 = 0.05;
+
+/// Tables of one half, or of both where they differ, of the flanks that carry the torque or of the others; from the job's memory, the store, or solved.
+fn tables(
+    case: &ContactCase,
+    pair: &Pair,
+    flanks: Flanks,
+    surroundings: &Surroundings,
+    memo: &MeshMemo,
+) -> Result<Arc<Vec<ForceTable>>, SolveError> {
+    let key = force_hash(case, flanks.are_idle);
+    if let Some(tables) = memo.forces.get(&key) {
+        return Ok(tables);
+    }
+    let stored =
+        surroundings.stages.load(&key).and_then(|bytes| serde_json::from_slice::<Vec<ForceTable>>(&bytes).ok());
+    let tables = match stored {
+        Some(tables) => tables,
+        None => {
+            let found = compliance::find(case, pair, surroundings, &memo.compliances)?;
+            let quiet = |_: f64| {};
+            let watch = Watch::new(&quiet, surroundings.canceled);
+            let force_n = case.half_force_n(pair).abs();
+            let mut settings = case.settings;
+            if flanks.are_idle {
+                settings.accuracy = (IDLE_FLANKS * settings.accuracy).min(LOOSEST);
+            }
+            let halves: &[Half] = if same_gaps(flanks.pair) { &[Half::Left] } else { &Half::BOTH };
+            let tables: Result<Vec<_>, _> = halves
+                .iter()
+                .map(|&half| ForceTable::new(flanks.pair, half, force_n, &found.compliance, &settings, watch))
+                .collect();
+            let tables = tables.map_err(contact_failed)?;
+            surroundings.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&tables).unwrap_or_default());
+            tables
+        }
+    };
+    let tables = Arc::new(tables);
+    memo.forces.put(key, tables.clone());
+    Ok(tables)
+}
+
+/// The flanks on one side of the teeth, as the drive flanks of a pair.
+#[derive(Clone, Copy)]
+struct Flanks<'a> {
+    pair: &'a Pair,
+    /// They do not carry the torque.
+    are_idle: bool,
+}
+
+/// The forces of both halves in the equations' coordinates.
+///
+/// # Errors
+/// [`SolveError`] where the contact cannot be solved.
+pub fn run(
+    case: &ContactCase,
+    pair: &Pair,
+    plane: &MotionPlane,
+    surroundings: &Surroundings,
+    memo: &MeshMemo,
+) -> Result<MeshForces, SolveError> {
+    let coast = pair.coast();
+    let driven = case.torque_nm < 0.0;
+    let (working, idle) = if driven { (&coast, pair) } else { (pair, &coast) };
+    let loaded = tables(case, pair, Flanks { pair: working, are_idle: false }, surroundings, memo)?;
+    let unloaded = if same_flanks(working, idle) {
+        loaded.clone()
+    } else {
+        tables(case, pair, Flanks { pair: idle, are_idle: true }, surroundings, memo)?
+    };
+    let of_half = |tables: &'_ Arc<Vec<ForceTable>>, half: usize| half.min(tables.len() - 1);
+    let force = |half: usize| {
+        let (loaded_table, unloaded_table) = (&loaded[of_half(&loaded, half)], &unloaded[of_half(&unloaded, half)]);
+        // Phases of the coast flanks fall as those of the equations grow.
+        let mut knots = loaded_table.phase.clone();
+        if driven {
+            knots = knots.into_iter().map(|phase| pair.coast_phase(phase)).collect();
+            knots.sort_by(f64::total_cmp);
+        }
+        let (of_driving, of_coast) =
+            if driven { (unloaded_table, loaded_table) } else { (loaded_table, unloaded_table) };
+        let driving = flank_force(of_driving, &knots, plane, |phase| (phase, 1.0));
+        let back = flank_force(of_coast, &knots, plane, |phase| (pair.coast_phase(phase), -1.0));
+        ContactForce::new(knots, [&driving, &back])
+            .map(Arc::new)
+            .map_err(|error| SolveError::failed(Stage::Mesh, "contact-failed", &error))
+    };
+    let left = force(0)?;
+    let right = if loaded.len() == 1 && unloaded.len() == 1 { left.clone() } else { force(1)? };
+    let most = |of: &dyn Fn(&ForceTable) -> f64| loaded.iter().map(of).fold(0.0f64, f64::max);
+    let top = |table: &ForceTable| {
+        let row = table.force_n.last();
+        row.into_iter().flatten().copied().fold(f64::INFINITY, f64::min)
+    };
+    let summary = ContactForceTable {
+        levels: most(&|table| (table.level_m.len() - 1) as f64) as u32,
+        phases: most(&|table| table.phase.len() as f64) as u32,
+        error_percent: 100.0 * most(&|table| table.error),
+        largest_force_n: loaded.iter().map(top).fold(f64::INFINITY, f64::min),
+    };
+    Ok(MeshForces { forces: [left, right], summary })
+}
+
+/// Whether both sides of the teeth meet the same gaps on their ways through the mesh (sampled on a grid finer than any modification needs).
+fn same_flanks(one: &Pair, other: &Pair) -> bool {
+    const GRID: usize = 16;
+    let (length_m, width_m) = (one.path_end_m - one.path_start_m, one.spec.face_width_m);
+    let gap = |pair: &Pair, half: Half, i: usize, j: usize| {
+        let entry_m = width_m * j as f64 / GRID as f64;
+        // entry_m is its own inverse.
+        pair.initial_gap_m(half, pair.path_start_m + length_m * i as f64 / GRID as f64, pair.entry_m(entry_m))
+    };
+    Half::BOTH.into_iter().all(|half| {
+        (0..=GRID).all(|i| {
+            (0..=GRID).all(|j| {
+                let (a, b) = (gap(one, half, i, j), gap(other, half, i, j));
+                (a - b).abs() <= 1e-12 * (1e-6 + a.abs())
+            })
+        })
+    })
+}
+
+/// A flank's force at `knots`, along s of the plane in use. `place` gives the phase of the table at a phase of the equations, and the sign with which it
+/// runs.
+fn flank_force(
+    table: &ForceTable,
+    knots: &[f64],
+    plane: &MotionPlane,
+    place: impl Fn(f64) -> (f64, f64),
+) -> FlankForce {
+    let spline = SplineKnots::new(table.phase.clone());
+    // F_n s and F_bt δ are the same work.
+    let force_factor = plane.stiffness_factor.sqrt();
+    let at = |values: &[f64]| -> Vec<[f64; 2]> {
+        let slopes = spline.slopes(values);
+        knots
+            .iter()
+            .map(|&knot| {
+                let (phase, sign) = place(knot);
+                let (value, slope) = spline.value_and_slope(values, &slopes, phase);
+                [value, sign * slope]
+            })
+            .collect()
+    };
+    let nodes = table
+        .force_n
+        .iter()
+        .zip(&table.stiffness_n_per_m)
+        .map(|(force, stiffness)| {
+            let (force, stiffness) = (at(force), at(stiffness));
+            let node = |(f, k): (&[f64; 2], &[f64; 2])| {
+                [f[0] * force_factor, k[0] * plane.stiffness_factor, f[1] * force_factor, k[1] * plane.stiffness_factor]
+            };
+            force.iter().zip(&stiffness).map(node).collect()
+        })
+        .collect();
+    FlankForce {
+        level_m: table.level_m.iter().map(|level| level / force_factor).collect(),
+        free_m: at(&table.free_m).into_iter().map(|free| free.map(|v| v / force_factor)).collect(),
+        nodes,
+    }
+}

@@ -1,0 +1,204 @@
+//! What a job needs: which stages run, what can be reused, in which order; and the only place where documents
+//! meet physics.
+
+mod accuracy;
+mod answer;
+mod axes;
+mod bounds;
+mod branches;
+mod campbell;
+mod check;
+mod compliance;
+mod demand;
+mod equations;
+mod hash;
+mod impact;
+mod mesh;
+mod mesh_force;
+mod point;
+mod points;
+mod prepare;
+mod row;
+mod supports;
+mod sweep;
+mod vibration;
+
+use crate::DocumentError;
+use crate::document::{JobDocument, Kind};
+use crate::result::{Geometry, JobResult};
+use herringbone_physics::gear::Warning;
+
+use herringbone_physics::watch::Canceled;
+use mesh::MeshMemo;
+use point::Wanted;
+use serde::{Deserialize, Serialize};
+
+pub use check::check;
+pub use demand::{Demand, demand};
+pub use hash::input_hash;
+pub use points::{KeptPoints, LineEnd, NoPointStore, PointStore};
+pub use vibration::is_channel;
+
+/// Version of the calculation: results and stages stored under another version are not reused.
+pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-6");
+
+/// Stages in the order they run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stage {
+    Geometry,
+    Mesh,
+    Impact,
+    Response,
+    Sweep,
+}
+
+impl Stage {
+    pub fn word(self) -> &'static str {
+        match self {
+            Stage::Geometry => "geometry",
+            Stage::Mesh => "mesh",
+            Stage::Impact => "impact",
+            Stage::Response => "response",
+            Stage::Sweep => "sweep",
+        }
+    }
+}
+
+/// Where finished stages are kept for reuse. Keys are content hashes that include [`SOLVER_VERSION`].
+pub trait StageStore: Sync {
+    fn load(&self, key: &str) -> Option<Vec<u8>>;
+    fn save(&self, key: &str, stage: Stage, bytes: &[u8]);
+}
+
+/// Keeps nothing.
+pub struct NoStageStore;
+
+impl StageStore for NoStageStore {
+    fn load(&self, _key: &str) -> Option<Vec<u8>> {
+        None
+    }
+
+    fn save(&self, _key: &str, _stage: Stage, _bytes: &[u8]) {}
+}
+
+/// What a solve is given from outside besides the document.
+pub struct Surroundings<'a> {
+    pub stages: &'a dyn StageStore,
+    /// Points of this sweep.
+    pub points: &'a dyn PointStore,
+    /// Receives (stage, fraction of the whole job done).
+    pub progress: &'a (dyn Fn(Stage, f64) + Sync),
+    pub canceled: &'a (dyn Fn() -> bool + Sync),
+    /// Milliseconds since an arbitrary start; the physics itself has no clock.
+    pub clock_ms: &'a (dyn Fn() -> f64 + Sync),
+}
+
+impl Surroundings<'static> {
+    /// Nothing is kept, nobody looks on, and no time passes.
+    pub fn none() -> Self {
+        Self {
+            stages: &NoStageStore,
+            points: &NoPointStore,
+            progress: &|_, _| {},
+            canceled: &|| false,
+            clock_ms: &|| 0.0,
+        }
+    }
+}
+
+/// A recorded, uniformly sampled channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    pub name: String,
+    pub quantity: String,
+    pub unit: String,
+    pub t0_s: f64,
+    pub dt_s: f64,
+    /// Exact root mean square over the recorded time; the mean removed, except of accelerations.
+    pub rms: f64,
+    pub values: Vec<f64>,
+}
+
+/// What a solved job leaves behind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    pub result: JobResult,
+    pub series: Vec<Channel>,
+}
+
+/// Why a valid job has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum SolveError {
+    #[error(transparent)]
+    Canceled(#[from] Canceled),
+    /// The design turned out infeasible (a document that was not checked first).
+    #[error(transparent)]
+    Document(#[from] DocumentError),
+    /// A stage failed: deterministic, so it is not tried again.
+    #[error("{stage:?}: {detail}")]
+    Failed {
+        stage: Stage,
+        /// Code of the problem: `not-converged`, `diverged`, `step-size-too-small`, …
+        code: String,
+        detail: String,
+        sim_time_s: Option<f64>,
+        step: Option<u64>,
+    },
+}
+
+/// Geometry and warnings of a document, in milliseconds and without solving anything.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+pub struct CheckReport {
+    pub geometry: Geometry,
+    /// Springs of the equations of motion; null for a job without a response.
+    pub supports: Option<crate::result::Supports>,
+    /// Memory that the calculation takes at most (an estimate).
+    pub memory_mib: f64,
+    #[cfg_attr(feature = "schema", schema(value_type = Vec<crate::result::WarningEntry>))]
+    pub warnings: Vec<Warning>,
+}
+
+impl SolveError {
+    fn failed(stage: Stage, code: &str, error: &dyn std::error::Error) -> Self {
+        SolveError::Failed { stage, code: code.to_owned(), detail: error.to_string(), sim_time_s: None, step: None }
+    }
+}
+
+/// Solves a job: the stages its kind asks for, or every point of a sweep.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
+    // All that can be refused is refused before anything is solved.
+    let report = check(document)?;
+    let memo = MeshMemo::default();
+    if document.kind != Kind::Sweep {
+        let point = point::solve(document, surroundings, &memo, &Wanted::WHOLE)?;
+        return Ok(Outcome { result: point.result, series: point.series });
+    }
+    let started_ms = (surroundings.clock_ms)();
+    let kept = surroundings.points.load();
+    let reused = if kept.rows.is_empty() { Vec::new() } else { vec!["points".to_owned()] };
+    let sweep = sweep::run(document, kept, surroundings, &memo)?;
+    let mut result = JobResult {
+        geometry: Some(report.geometry),
+        supports: report.supports,
+        accuracy: Some(accuracy::of_sweep(document, &sweep)),
+        sweep: Some(sweep),
+        warnings: report.warnings,
+        ..JobResult::default()
+    };
+    result.numerics.reused = reused;
+    result.numerics.solver_version = SOLVER_VERSION.to_owned();
+    result.numerics.wall_ms.response = (surroundings.clock_ms)() - started_ms;
+    Ok(Outcome { result, series: Vec::new() })
+}
+
+#[cfg(test)]
+mod contact_tests;
+#[cfg(test)]
+mod limits_tests;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,188 @@
+//! One operating point: the stages a document needs, in their order.
+
+use super::equations::{self, MotionPlane};
+use super::mesh::{self, MeshMemo};
+use super::prepare::{geometry, prepare};
+use super::{Channel, SolveError, Stage, Surroundings, accuracy, bounds, impact, vibration};
+use crate::document::{JobDocument, Kind, Recorded};
+use crate::result::{JobResult, Numerics, Poincare};
+use herringbone_physics::dynamics::{DynamicsError, Parameters};
+use herringbone_physics::response::Response;
+
+/// A solved point.
+pub struct Point {
+    pub result: JobResult,
+    pub series: Vec<Channel>,
+    /// State at the end (24 numbers in the source's order), to continue a neighbouring point from.
+    pub end_state: Option<Vec<f64>>,
+    /// What the row of a sweep carries beside its numbers.
+    pub poincare: Option<Poincare>,
+    pub bands: Option<Vec<f64>>,
+}
+
+/// How much of a point is wanted.
+pub struct Wanted<'a> {
+    /// A neighbour's end state to continue from.
+    pub start: Option<&'a [f64]>,
+    /// Everything a result has; a point of a sweep leaves out what its row does not hold.
+    pub whole: bool,
+    /// What the row of a sweep carries beside its numbers.
+    pub record: &'a [Recorded],
+}
+
+impl Wanted<'_> {
+    /// A job of its own.
+    pub const WHOLE: Self = Self { start: None, whole: true, record: &[] };
+
+    pub fn records(&self, what: Recorded) -> bool {
+        self.record.contains(&what)
+    }
+}
+
+/// A point with everything before its response: the equations of motion, where the document asks for a response.
+pub struct Staged<'a> {
+    result: JobResult,
+    parameters: Option<Parameters>,
+    clock: Lap<'a>,
+}
+
+impl Staged<'_> {
+    pub fn parameters(&self) -> Option<&Parameters> {
+        self.parameters.as_ref()
+    }
+}
+
+/// Solves one point.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn solve(
+    document: &JobDocument,
+    surroundings: &Surroundings,
+    memo: &MeshMemo,
+    wanted: &Wanted,
+) -> Result<Point, SolveError> {
+    let progress = |stage, fraction| (surroundings.progress)(stage, of_whole(document.kind, stage, fraction));
+    let surroundings = &Surroundings { progress: &progress, ..*surroundings };
+    let staged = stage(document, surroundings, memo)?;
+    respond(document, staged, surroundings, wanted)
+}
+
+/// Geometry, contact and impact of a point, and the equations of motion that follow.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn stage<'a>(
+    document: &JobDocument,
+    surroundings: &Surroundings<'a>,
+    memo: &MeshMemo,
+) -> Result<Staged<'a>, SolveError> {
+    let mut numerics = Numerics { solver_version: super::SOLVER_VERSION.to_owned(), ..Numerics::default() };
+    let mut clock = Lap::new(surroundings);
+    let prepared = prepare(document)?;
+    let mut warnings = prepared.warnings.clone();
+    numerics.wall_ms.geometry = clock.lap_ms();
+    (surroundings.progress)(Stage::Geometry, 1.0);
+
+    let plane = MotionPlane::new(document.model.plane, &prepared);
+    let (mesh, reused) = mesh::run(document, &prepared, &plane, surroundings, memo)?;
+    numerics.reused.extend(reused.into_iter().map(str::to_owned));
+    warnings.extend(bounds::of_mesh(document, &mesh.summary));
+    numerics.wall_ms.mesh = clock.lap_ms();
+
+    let impact = impact::run(document, &prepared, &plane, &mesh, &mut warnings);
+    numerics.wall_ms.impact = clock.lap_ms();
+    (surroundings.progress)(Stage::Impact, 1.0);
+
+    let parameters = (document.kind != Kind::Mesh).then(|| {
+        let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
+        let parameters = equations::parameters(document, &prepared, &plane, mesh.stiffness, impact.pulses, lead);
+        match &mesh.forces {
+            None => parameters,
+            Some(contact) => equations::with_contact_forces(parameters, &contact.forces),
+        }
+    });
+    let result = JobResult {
+        geometry: Some(geometry(&prepared)),
+        mesh: Some(mesh.summary),
+        impact: impact.summary,
+        supports: (document.kind != Kind::Mesh).then_some(prepared.supports),
+        warnings,
+        numerics,
+        ..JobResult::default()
+    };
+    Ok(Staged { result, parameters, clock })
+}
+
+/// The response of a staged point, where it has equations.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn respond(
+    document: &JobDocument,
+    staged: Staged,
+    surroundings: &Surroundings,
+    wanted: &Wanted,
+) -> Result<Point, SolveError> {
+    let solve = |parameters| vibration::solve(document, parameters, wanted, surroundings);
+    let response = staged.parameters().map(solve).transpose()?;
+    answered(document, staged, wanted, response)
+}
+
+/// A staged point with the response to its equations, where it has any.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn answered(
+    document: &JobDocument,
+    staged: Staged,
+    wanted: &Wanted,
+    response: Option<Result<Response, DynamicsError>>,
+) -> Result<Point, SolveError> {
+    let Staged { mut result, parameters, mut clock } = staged;
+    let (Some(parameters), Some(response)) = (parameters, response) else {
+        result.accuracy = Some(accuracy::of(document, &result));
+        return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });
+    };
+    let vibration = vibration::told(document, &parameters, wanted, response, &mut result.numerics)?;
+    result.response = Some(vibration.summary);
+    result.accuracy = Some(accuracy::of(document, &result));
+    result.warnings.extend(vibration.warnings);
+    result.numerics.wall_ms.response = clock.lap_ms();
+    Ok(Point {
+        result,
+        series: vibration.series,
+        end_state: vibration.end_state,
+        poincare: vibration.poincare,
+        bands: vibration.bands,
+    })
+}
+
+/// Fraction of the whole point at a fraction of one of its stages, by what the stages usually cost.
+fn of_whole(kind: Kind, stage: Stage, fraction: f64) -> f64 {
+    let mesh_ends = if kind == Kind::Mesh { 0.98 } else { 0.6 };
+    let (start, end) = match stage {
+        Stage::Geometry => (0.0, 0.01),
+        Stage::Mesh => (0.01, mesh_ends),
+        Stage::Impact => (mesh_ends, mesh_ends + 0.02),
+        Stage::Response | Stage::Sweep => (mesh_ends + 0.02, 1.0),
+    };
+    start + (end - start) * fraction.clamp(0.0, 1.0)
+}
+
+/// Time from lap to lap by the clock of the surroundings.
+struct Lap<'a> {
+    clock_ms: &'a (dyn Fn() -> f64 + Sync),
+    last_ms: f64,
+}
+
+impl<'a> Lap<'a> {
+    fn new(surroundings: &Surroundings<'a>) -> Self {
+        Self { clock_ms: surroundings.clock_ms, last_ms: (surroundings.clock_ms)() }
+    }
+
+    fn lap_ms(&mut self) -> f64 {
+        let now_ms = (self.clock_ms)();
+        now_ms - std::mem::replace(&mut self.last_ms, now_ms)
+    }
+}

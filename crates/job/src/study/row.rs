@@ -1,0 +1,158 @@
+//! One row of a sweep: the document of a point, and what is kept of its solution.
+
+use super::axes::set;
+use super::mesh::MeshMemo;
+use super::point::{self, Point, Wanted};
+use super::{SolveError, Surroundings, vibration};
+use crate::document::JobDocument;
+use crate::result::{PerHalf, SweepPoint};
+use crate::{DocumentError, parse_value};
+use herringbone_physics::dynamics::{DynamicsError, Parameters};
+use herringbone_physics::response::{self, Analysis, Response};
+use herringbone_physics::watch::Watch;
+use serde_json::Value;
+
+/// A row, and what its neighbours need of it.
+#[derive(Default)]
+pub struct Solved {
+    pub row: SweepPoint,
+    /// State to continue a neighbour from.
+    pub end_state: Option<Vec<f64>>,
+}
+
+/// The document of one point: `base` with the values of the axes put in.
+///
+/// # Errors
+/// [`SolveError::Document`] where the values do not go together.
+pub fn document(base: &Value, sweep: &JobDocument, values: &[f64]) -> Result<JobDocument, SolveError> {
+    let mut value = base.clone();
+    for (axis, number) in sweep.axes.iter().zip(values) {
+        axis.pointers().for_each(|pointer| set(&mut value, pointer, *number));
+    }
+    parse_value(&value).map_err(SolveError::from)
+}
+
+/// Solves one point. `start`: a neighbour's end state. A point that fails says so in its row.
+///
+/// # Errors
+/// [`SolveError::Canceled`].
+pub fn solve(
+    base: &Value,
+    sweep: &JobDocument,
+    values: Vec<f64>,
+    start: Option<&[f64]>,
+    surroundings: &Surroundings,
+    memo: &MeshMemo,
+) -> Result<Solved, SolveError> {
+    let quiet = Surroundings { progress: &|_, _| {}, ..*surroundings };
+    let wanted = Wanted { start, whole: false, record: &sweep.record };
+    let solved = document(base, sweep, &values).and_then(|document| point::solve(&document, &quiet, memo, &wanted));
+    match solved {
+        Ok(point) => Ok(of_point(values, point)),
+        Err(error) => failed(values, error),
+    }
+}
+
+/// Solves several points from their own starts, their motions side by side where they are integrated: as [`solve`] does each.
+///
+/// # Errors
+/// [`SolveError::Canceled`].
+pub fn solve_together(
+    base: &Value,
+    sweep: &JobDocument,
+    group: Vec<Vec<f64>>,
+    surroundings: &Surroundings,
+    memo: &MeshMemo,
+) -> Result<Vec<Solved>, SolveError> {
+    let quiet = Surroundings { progress: &|_, _| {}, ..*surroundings };
+    let wanted = Wanted { start: None, whole: false, record: &sweep.record };
+    let staged: Vec<_> = group
+        .iter()
+        .map(|values| {
+            let document = document(base, sweep, values)?;
+            let staged = point::stage(&document, &quiet, memo)?;
+            let analysis = vibration::analysis(&document, &wanted)?;
+            Ok::<_, SolveError>((document, staged, analysis))
+        })
+        .collect();
+    // Together: those that ask the same of their equations.
+    let mut asked: Vec<(&Analysis, Vec<usize>, Vec<Parameters>)> = Vec::new();
+    for (i, one) in staged.iter().enumerate() {
+        let Ok((_, staged, analysis)) = one else { continue };
+        let Some(parameters) = staged.parameters() else { continue };
+        match asked.iter_mut().find(|(other, ..)| *other == analysis) {
+            Some((_, places, points)) => {
+                places.push(i);
+                points.push(parameters.clone());
+            }
+            None => asked.push((analysis, vec![i], vec![parameters.clone()])),
+        }
+    }
+    let mut responses: Vec<Option<Result<Response, DynamicsError>>> = group.iter().map(|_| None).collect();
+    let watch = Watch::new(&|_| {}, surroundings.canceled);
+    for (analysis, places, points) in asked {
+        for (i, response) in places.into_iter().zip(response::solve_many(&points, analysis, &watch)?) {
+            responses[i] = Some(response);
+        }
+    }
+    let solved = group.into_iter().zip(staged).zip(responses).map(|((values, staged), response)| {
+        let point = staged.and_then(|(document, staged, _)| point::answered(&document, staged, &wanted, response));
+        match point {
+            Ok(point) => Ok(of_point(values, point)),
+            Err(error) => failed(values, error),
+        }
+    });
+    solved.collect()
+}
+
+/// What is kept of a solved point.
+pub fn of_point(values: Vec<f64>, point: Point) -> Solved {
+    let result = &point.result;
+    let response = result.response.as_ref();
+    let row = SweepPoint {
+        values,
+        mesh_circumferential_acceleration_rms_m_s2: response.map(|r| r.rms.mesh_circumferential_acceleration_m_s2),
+        pinion_axial_acceleration_rms_m_s2: response.map(|r| r.rms.pinion_axial_acceleration_m_s2),
+        dynamic_factor: response.and_then(|r| r.dynamic_factor),
+        regime: response.map(|r| r.regime.clone()),
+        contact: response.map(|r| r.contact.clone()),
+        min_displacement_um: response.map(|r| r.min_displacement_um),
+        stiffness_mean_n_per_um: result.mesh.as_ref().map(|mesh| mesh.stiffness_mean_n_per_um),
+        impact_force_n: result.impact.as_ref().map(|impact| impact.force_n),
+        total_contact_ratio: result.geometry.as_ref().map(|geometry| geometry.total_contact_ratio),
+        loaded_contact_ratio: result.mesh.as_ref().and_then(|mesh| mesh.loaded_contact_ratio),
+        error_estimate: response.map(|r| r.error_estimate),
+        tooth_force_max_n: response
+            .map(|r| PerHalf { left: r.tooth_force_n.left.max_n, right: r.tooth_force_n.right.max_n }),
+        error: None,
+        branch: None,
+        poincare: point.poincare,
+        acceleration_spectrum_m_s2: point.bands,
+    };
+    Solved { row, end_state: point.end_state }
+}
+
+/// The row of a point without a response.
+///
+/// # Errors
+/// [`SolveError::Canceled`], which is nobody's row.
+pub fn failed(values: Vec<f64>, error: SolveError) -> Result<Solved, SolveError> {
+    match error {
+        SolveError::Canceled(canceled) => Err(canceled.into()),
+        error => {
+            let row = SweepPoint { values, error: Some(reason(&error)), ..SweepPoint::default() };
+            Ok(Solved { row, ..Solved::default() })
+        }
+    }
+}
+
+fn reason(error: &SolveError) -> String {
+    match error {
+        SolveError::Document(DocumentError::Invalid(violations) | DocumentError::Unsupported(violations)) => violations
+            .iter()
+            .map(|violation| format!("{} {}", violation.pointer, violation.detail))
+            .collect::<Vec<_>>()
+            .join("; "),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,189 @@
+//! The response stage: the steady vibration of the pair and its statistics.
+
+use super::point::Wanted;
+use super::{Channel, SolveError, Stage, Surroundings, answer, bounds};
+use crate::document::{Integrator, JobDocument, Method, Recorded};
+use crate::result::{self, Numerics};
+use crate::{DocumentError, Violation};
+use herringbone_physics::dynamics::{self, DynamicsError, Parameters};
+use herringbone_physics::gear::Warning;
+use herringbone_physics::response::{self, Analysis, ChannelId, Regime};
+use herringbone_physics::watch::Watch;
+
+/// What the response stage leaves.
+pub struct Vibration {
+    pub summary: result::Response,
+    pub series: Vec<Channel>,
+    pub warnings: Vec<Warning>,
+    pub end_state: Option<Vec<f64>>,
+    /// What the row of a sweep carries beside its numbers.
+    pub poincare: Option<result::Poincare>,
+    pub bands: Option<Vec<f64>>,
+}
+
+/// Whether `asked` names the channel `name`: the velocities and accelerations of x may leave the x out (`a_left`).
+pub fn is_channel(asked: &str, name: &str) -> bool {
+    canonical(asked) == name
+}
+
+fn canonical(asked: &str) -> String {
+    match asked {
+        "v_left" | "v_right" | "a_left" | "a_right" => format!("{}_x{}", &asked[..1], &asked[1..]),
+        other => other.to_owned(),
+    }
+}
+
+/// The channels a document asks for: all where it does not say.
+///
+/// # Errors
+/// [`DocumentError::Invalid`] for names that are no channel.
+pub fn channels(document: &JobDocument) -> Result<Vec<ChannelId>, DocumentError> {
+    let Some(asked) = &document.analysis.channels else { return Ok(ChannelId::all()) };
+    let mut ids = Vec::with_capacity(asked.len());
+    let mut violations = Vec::new();
+    for (index, name) in asked.iter().enumerate() {
+        match ChannelId::parse(&canonical(name)) {
+            Some(id) if !ids.contains(&id) => ids.push(id),
+            Some(_) => {}
+            None => {
+                let known: Vec<_> = ChannelId::all().into_iter().map(ChannelId::name).collect();
+                let detail = format!("is no channel; permitted: {}", known.join(", "));
+                violations.push(Violation::new(format!("/analysis/channels/{index}"), "not-one-of", detail));
+            }
+        }
+    }
+    if violations.is_empty() { Ok(ids) } else { Err(DocumentError::Invalid(violations)) }
+}
+
+/// Most points of the motion at the starts of mesh periods in the row of a sweep.
+const POINCARE_POINTS: usize = 200;
+
+/// Solves the equations of motion of a point by themselves.
+///
+/// # Errors
+/// [`DocumentError::Invalid`] for names that are no channel.
+pub fn solve(
+    document: &JobDocument,
+    parameters: &Parameters,
+    wanted: &Wanted,
+    surroundings: &Surroundings,
+) -> Result<Result<response::Response, DynamicsError>, DocumentError> {
+    let analysis = analysis(document, wanted)?;
+    let progress = |fraction: f64| (surroundings.progress)(Stage::Response, fraction);
+    let watch = Watch::new(&progress, surroundings.canceled);
+    Ok(response::solve(parameters, &analysis, &watch))
+}
+
+/// What the stage leaves of a response.
+///
+/// # Errors
+/// [`SolveError`].
+pub fn told(
+    document: &JobDocument,
+    parameters: &Parameters,
+    wanted: &Wanted,
+    response: Result<response::Response, DynamicsError>,
+    numerics: &mut Numerics,
+) -> Result<Vibration, SolveError> {
+    let mut response = response.map_err(failed)?;
+    let summary = &response.summary;
+    numerics.steps = summary.numerics.steps;
+    numerics.rejected_steps = summary.numerics.rejected_steps;
+    numerics.force_evaluations = summary.numerics.force_evaluations;
+    numerics.degrees_of_freedom = summary.degrees_of_freedom;
+    let mut block = answer::block(document, parameters, &response);
+    if wanted.whole {
+        block.poincare = answer::poincare(&response, usize::MAX);
+        block.spectrum = answer::spectrum(&response, parameters.mesh_frequency_hz);
+        block.natural_modes = answer::natural_modes(parameters).map_err(failed)?;
+    }
+    let poincare = wanted.records(Recorded::Poincare).then(|| answer::poincare(&response, POINCARE_POINTS));
+    let bands = wanted.records(Recorded::Spectrum).then(|| answer::bands(&response, parameters.mesh_frequency_hz));
+    // Moved, not copied: a long record is most of what a job holds.
+    let channels = std::mem::take(&mut response.channels);
+    let channel = |channel: response::Channel| Channel {
+        rms: response.summary.rms.channels.get(&channel.name).copied().unwrap_or(0.0),
+        quantity: answer::word(&channel.quantity),
+        name: channel.name,
+        unit: channel.unit,
+        t0_s: channel.t0_s,
+        dt_s: channel.dt_s,
+        values: channel.values,
+    };
+    Ok(Vibration {
+        summary: block,
+        poincare,
+        bands: bands.flatten(),
+        series: if wanted.whole { channels.into_iter().map(channel).collect() } else { Vec::new() },
+        warnings: warnings(document, &response.summary),
+        // From a motion that grows for ever there is nothing to go on.
+        end_state: (response.summary.regime != Regime::Unstable).then(|| response.final_state.to_vec()),
+    })
+}
+
+/// What is asked of the equations of motion.
+///
+/// # Errors
+/// [`DocumentError::Invalid`] for names that are no channel.
+pub fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, DocumentError> {
+    let asked = &document.analysis;
+    let state = wanted.start.or(asked.initial_state.as_deref());
+    let mut channels = channels(document)?;
+    if wanted.records(Recorded::Spectrum) {
+        channels.extend(ChannelId::parse(answer::SPECTRUM_CHANNEL));
+    }
+    Ok(Analysis {
+        method: match asked.method {
+            Method::Integrate => response::Method::Integrate {
+                mesh_periods: u64::from(asked.mesh_periods),
+                record_mesh_periods: u64::from(asked.record_mesh_periods),
+            },
+            Method::Periodic => response::Method::Periodic,
+            Method::Auto => response::Method::Auto,
+        },
+        integrator: match asked.integrator {
+            Integrator::Taylor => dynamics::Integrator::Taylor,
+            Integrator::RungeKutta4 => dynamics::Integrator::RungeKutta,
+        },
+        accuracy: asked.accuracy,
+        samples_per_mesh_period: asked.samples_per_mesh_period as usize,
+        channels,
+        initial_state: state.and_then(|state| <[f64; 24]>::try_from(state).ok()),
+        energy_balance: wanted.whole,
+        ..Analysis::default()
+    })
+}
+
+/// Why the equations have no response.
+pub fn failed(error: DynamicsError) -> SolveError {
+    let (code, sim_time_s) = match &error {
+        DynamicsError::Canceled(canceled) => return (*canceled).into(),
+        DynamicsError::Diverged { time_s } => ("diverged", Some(*time_s)),
+        DynamicsError::StepSizeTooSmall { time_s, .. } => ("step-size-too-small", Some(*time_s)),
+        DynamicsError::TooManySteps { time_s, .. } => ("too-many-steps", Some(*time_s)),
+        _ => ("response-failed", None),
+    };
+    SolveError::Failed {
+        stage: Stage::Response,
+        code: code.to_owned(),
+        detail: error.to_string(),
+        sim_time_s,
+        step: None,
+    }
+}
+
+fn warnings(document: &JobDocument, summary: &response::Summary) -> Vec<Warning> {
+    let mut warnings = bounds::of_motion(document, summary);
+    // An accuracy of numbers that mean nothing is nothing to be told.
+    if summary.error_estimate > document.analysis.accuracy && summary.regime != Regime::Unstable {
+        let repeats = summary.period_mesh_periods.is_some();
+        let reason =
+            if repeats { "" } else { "; the motion does not repeat, so its means are those of a finite record" };
+        warnings.push(Warning {
+            code: "accuracy-not-reached".to_owned(),
+            pointer: "/analysis/accuracy".to_owned(),
+            detail: format!("the estimated relative error of the RMS values is {:.1e}{reason}", summary.error_estimate),
+        });
+    }
+    warnings
+}

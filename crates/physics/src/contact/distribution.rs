@@ -1,0 +1,238 @@
+//! Distribution of one force over points of possible contact: non-negative forces, no penetration.
+//!
+//! ```text
+//! P B Pᵀ f + K f + h(f) + g - d 1 >= 0,   f >= 0,   f ∘ (P B Pᵀ f + K f + h(f) + g - d 1) = 0,   1ᵀ f = F
+//! ```
+//!
+//! (Conry and Seireg 1973 with a local term h.) B is the smooth flexibility of the bodies between the stations of the contact lines, P
+//! interpolates it to the points, K couples the points of one line locally. Newton on the nonlinear local approach within an
+//! active set, all changes of the set at once and warm-started; when that cycles, a primal active-set method that never leaves
+//! f >= 0.
+
+use super::system::{LEAST_FORCE, Local, System, Workspace};
+
+/// A converged distribution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Distribution {
+    pub forces: Vec<f64>,
+    /// Approach d of the bodies.
+    pub approach: f64,
+    /// dF/dd at the solution, with the contact set as it is.
+    pub stiffness: f64,
+    pub iterations: u32,
+}
+
+/// The iteration did not converge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stalled {
+    pub iterations: u32,
+    /// Largest relative change of a force in the last iteration.
+    pub change: f64,
+}
+
+const QUICK_ITERATIONS: u32 = 30;
+/// Change of a force, as a part of the whole, after which Newton's iteration ends: its convergence is quadratic, what is left is of the
+/// order of the change's square.
+const TOLERANCE: f64 = 1e-6;
+
+/// What is prescribed of a distribution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Prescribed {
+    /// The sum of the forces.
+    Force(f64),
+    /// The approach of the bodies, which has to be larger than the least gap; `expected_force` is the size of the forces to
+    /// begin with and to measure changes by.
+    Approach { approach: f64, expected_force: f64 },
+}
+
+/// Distributes the force over the points. `start` holds forces of a neighbouring state, zeros and all.
+pub fn distribute<L: Local>(
+    system: &System<'_, L>,
+    prescribed: Prescribed,
+    start: &[f64],
+    work: &mut Workspace,
+) -> Result<Distribution, Stalled> {
+    let n = system.gaps.len();
+    let total = match prescribed {
+        Prescribed::Force(force) => force,
+        Prescribed::Approach { expected_force, .. } => expected_force,
+    };
+    let mut forces = vec![0.0; n];
+    let sum: f64 = start.iter().sum();
+    if sum > 0.0 {
+        forces.iter_mut().zip(start).for_each(|(f, s)| *f = s * total / sum);
+    } else {
+        forces.fill(total / n as f64);
+    }
+    work.entries.clear();
+    work.entries.resize(n, 0);
+    let mut member = forces.iter().map(|&f| f > 0.0).collect::<Vec<_>>();
+    // Approach and gaps count from the least gap: gaps far above the deflections would drown them in rounding.
+    let datum = system.gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    let above_datum = match prescribed {
+        Prescribed::Force(_) => None,
+        Prescribed::Approach { approach, .. } => Some(approach - datum),
+    };
+    let limit = QUICK_ITERATIONS + 40 + 6 * n as u32;
+    let mut change = f64::INFINITY;
+    for iteration in 1..=limit {
+        let careful = iteration > QUICK_ITERATIONS;
+        let Some((approach, stiffness)) = system.newton((total, above_datum), datum, &forces, &member, work) else {
+            return Err(Stalled { iterations: iteration, change });
+        };
+        let mut same = true;
+        change = 0.0;
+        let mut step = 1.0f64;
+        if careful {
+            for i in 0..n {
+                if member[i] && work.fresh[i] < 0.0 {
+                    step = step.min(forces[i] / (forces[i] - work.fresh[i]));
+                }
+            }
+        }
+        for i in 0..n {
+            if !member[i] {
+                continue;
+            }
+            let f = work.fresh[i];
+            let mut next = if step < 1.0 { forces[i] + step * (f - forces[i]) } else { f };
+            if next <= 1e-14 * total && f <= 0.0 {
+                next = 0.0;
+                member[i] = false;
+                same = false;
+            }
+            change = change.max((next - forces[i]).abs() / total);
+            forces[i] = next;
+        }
+        if member.iter().all(|&m| !m) {
+            // Everything let go at once: begin again from the point with the least gap.
+            let least = (0..n).min_by(|&a, &b| system.gaps[a].total_cmp(&system.gaps[b])).unwrap_or(0);
+            member[least] = true;
+            forces[least] = total;
+            continue;
+        }
+        if step < 1.0 || (careful && change > TOLERANCE) {
+            continue;
+        }
+        // Points outside that would penetrate come in.
+        let slack = 1e-10 * approach.abs().max(1e-30);
+        work.entering.clear();
+        system.station_shifts(&forces, work);
+        for (line, range) in system.lines.iter().enumerate() {
+            for j in range.clone() {
+                if member[j] {
+                    continue;
+                }
+                let opening = system.deflection(line, j, &forces, work) + (system.gaps[j] - datum) - approach;
+                // What the least force that is told from none already takes up.
+                let least = system.local.approach(j, LEAST_FORCE * total / n as f64).0;
+                if opening < -slack.max(least) {
+                    if !careful {
+                        member[j] = true;
+                        same = false;
+                        // The force that takes the penetration up locally: where to linearise, not a part of the balance.
+                        // One that has come in before and was let go again carries less than that.
+                        let less = 0.1f64.powi(i32::from(work.entries[j]));
+                        forces[j] = less * force_for(system.local, j, -opening, total / n as f64);
+                        work.entries[j] = work.entries[j].saturating_add(1);
+                    } else {
+                        work.entering.push((opening, j));
+                    }
+                }
+            }
+        }
+        // Carefully: those that penetrate about as deep as the deepest.
+        let deepest = work.entering.iter().fold(0.0f64, |deepest, e| deepest.min(e.0));
+        for &(opening, j) in &work.entering {
+            if opening <= 0.5 * deepest {
+                member[j] = true;
+                same = false;
+            }
+        }
+        let rounding = 16.0 * f64::EPSILON * stiffness * approach.abs() / total;
+        if same && change < TOLERANCE + rounding {
+            return Ok(Distribution { forces, approach: approach + datum, stiffness, iterations: iteration });
+        }
+    }
+    Err(Stalled { iterations: limit, change })
+}
+
+/// Force up to `most` under which point `i` approaches by `approach`, to a factor of two.
+fn force_for(local: &impl Local, i: usize, approach: f64, most: f64) -> f64 {
+    let mut force = most;
+    for _ in 0..30 {
+        if local.approach(i, force).0 <= approach {
+            break;
+        }
+        force *= 0.5;
+    }
+    force
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::influence::{STENCIL, Stencil};
+    use herringbone_oracle::Tolerance::Relative;
+    use herringbone_oracle::check;
+
+    /// A uniform foundation of compliance `per_force` at every point.
+    struct Winkler {
+        per_force: f64,
+    }
+
+    impl Local for Winkler {
+        fn approach(&self, _: usize, force: f64) -> (f64, f64) {
+            (self.per_force * force, self.per_force)
+        }
+    }
+
+    /// Uniform Winkler face, linear misalignment f_b over the width b, mean load w: K_Hβ = 1 + f_b c/(2w) while all of
+    /// the face carries, √(2 f_b c / w) beyond (closed form). The bulk carries nothing, or half of the foundation's compliance as a
+    /// diagonal bulk with a point at every station: both must give the closed form.
+    #[test]
+    fn misaligned_winkler_face_matches_the_closed_form() {
+        let (c, width, total) = (17.0, 100.0, 30000.0);
+        for (n, bulk_part, coupled) in [(400, 0.0, false), (400, 0.5, false), (400, 0.5, true)] {
+            for misalignment in [5.0f64, 20.0, 60.0, 120.0] {
+                let slice = width / n as f64;
+                let local = Winkler { per_force: (1.0 - bulk_part) / (c * slice) };
+                let mut bulk = vec![0.0; n * n];
+                (0..n).for_each(|i| bulk[i * n + i] = bulk_part / (c * slice));
+                let stencils: Vec<Stencil> = (0..n)
+                    .map(|i| {
+                        let first = i.min(n - STENCIL);
+                        Stencil { first, weights: std::array::from_fn(|k| f64::from(first + k == i)) }
+                    })
+                    .collect();
+                let gaps: Vec<f64> = (0..n).map(|i| misalignment * (i as f64 + 0.5) / n as f64).collect();
+                let lines = [0..n / 4, n / 4..n];
+                let coupling: Vec<Vec<f64>> =
+                    if coupled { lines.iter().map(|l| vec![0.0; l.len() * l.len()]).collect() } else { Vec::new() };
+                let system = System {
+                    gaps: &gaps,
+                    stencils: &stencils,
+                    stations: n,
+                    bulk: &bulk,
+                    lines: &lines,
+                    coupling: &coupling,
+                    local: &local,
+                };
+                let got = distribute(&system, Prescribed::Force(total), &[], &mut Workspace::default()).unwrap();
+                let mean = total / width;
+                // The largest load at the very edge, from the approach there.
+                let factor = got.approach * c / mean;
+                let exact = if misalignment * c <= 2.0 * mean {
+                    1.0 + misalignment * c / (2.0 * mean)
+                } else {
+                    (2.0 * misalignment * c / mean).sqrt()
+                };
+                let solver = if coupled { "lines" } else { "points" };
+                let quantity = format!("K_Hβ at a misalignment of {misalignment} µm, bulk part {bulk_part}, {solver}");
+                check("Contact: misaligned uniform face (Winkler)", &quantity, factor, exact, Relative(1e-3));
+                assert!((got.forces.iter().sum::<f64>() / total - 1.0).abs() < 1e-12);
+                assert!(got.forces.iter().all(|&f| f >= 0.0));
+            }
+        }
+    }
+}
