@@ -23,7 +23,7 @@
 #![allow(clippy::needless_range_loop)]
 
 mod contact_force;
-mod convoy;
+mod lane_batch;
 mod crossing;
 mod equations;
 mod error;
@@ -52,9 +52,9 @@ pub use model::Contact;
 pub use parameters::{
     Couplings, HalfParameters, ImpactActsOn, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m,
 };
-pub use trajectory::{Reached, advance, advance_many};
+pub use trajectory::{FinalState, advance, advance_many};
 
-pub(crate) use convoy::{Passenger, carry, carry_one};
+pub(crate) use lane_batch::{TrajectoryObserver, integrate_trajectories, integrate_trajectory};
 pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP};
 pub(crate) use excitation::MAX_ORDER;
 pub(crate) use free::FreeMotions;

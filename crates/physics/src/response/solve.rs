@@ -8,8 +8,8 @@ use super::recording::{Finished, Run};
 use super::report::{Asked, Verdict, report, solved_halves};
 use super::steady::{Found, Search, moved};
 use crate::dynamics::{
-    Deviation, DynamicsError, Integrator, Limits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, carry,
-    carry_one, difference, is_mirrored,
+    Deviation, DynamicsError, Integrator, Limits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, integrate_trajectories,
+    integrate_trajectory, difference, is_mirrored,
 };
 use crate::watch::{Canceled, Watch};
 use rayon::prelude::*;
@@ -30,7 +30,7 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
     match analysis.method {
         Method::Integrate { .. } => {
             let points = std::slice::from_ref(&point);
-            let alone = Together::Alone(analysis.integrator);
+            let alone = LaneUse::Sequential(analysis.integrator);
             let mut responses = if mirrored { integrate::<6>(points, alone) } else { integrate::<12>(points, alone) }?;
             responses.pop().unwrap_or(Err(DynamicsError::Canceled(Canceled)))
         }
@@ -108,10 +108,10 @@ fn solve_group(
         }
     }
     let [(halves, six), (whole, twelve)] = &sides;
-    for (i, response) in halves.iter().zip(integrate::<6>(six, Together::InLanes)?) {
+    for (i, response) in halves.iter().zip(integrate::<6>(six, LaneUse::Batched)?) {
         out[*i] = response;
     }
-    for (i, response) in whole.iter().zip(integrate::<12>(twelve, Together::InLanes)?) {
+    for (i, response) in whole.iter().zip(integrate::<12>(twelve, LaneUse::Batched)?) {
         out[*i] = response;
     }
     Ok(out)
@@ -311,7 +311,7 @@ impl Point<'_> {
     ) -> Result<Finished<'m, D>, DynamicsError> {
         let span = (start.period, start.period + periods);
         let mut run = Run::new(model, start, tolerance, span, recorder)?.with_energy(energy);
-        carry_one(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
+        integrate_trajectory(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
         run.finish()
     }
 
@@ -363,13 +363,13 @@ impl Point<'_> {
 
 /// How points are integrated: one after the other by any method, or side by side by Taylor series.
 #[derive(Clone, Copy)]
-enum Together {
-    Alone(Integrator),
-    InLanes,
+enum LaneUse {
+    Sequential(Integrator),
+    Batched,
 }
 
-impl Together {
-    fn carry<const D: usize>(
+impl LaneUse {
+    fn integrate<const D: usize>(
         self,
         runs: &mut [Run<'_, D>],
         tolerance: f64,
@@ -377,18 +377,18 @@ impl Together {
         watch: &Watch<'_>,
     ) -> Result<(), Canceled> {
         match self {
-            Together::Alone(integrator) => {
-                runs.iter_mut().try_for_each(|run| carry_one(run, integrator, max_steps, watch))
+            LaneUse::Sequential(integrator) => {
+                runs.iter_mut().try_for_each(|run| integrate_trajectory(run, integrator, max_steps, watch))
             }
-            Together::InLanes => carry(runs, tolerance, max_steps, watch),
+            LaneUse::Batched => integrate_trajectories(runs, tolerance, max_steps, watch),
         }
     }
 
     /// For the comparison that measures the error: by Taylor series always.
-    fn finely(self) -> Self {
+    fn for_comparison(self) -> Self {
         match self {
-            Together::Alone(_) => Together::Alone(Integrator::Taylor),
-            Together::InLanes => Together::InLanes,
+            LaneUse::Sequential(_) => LaneUse::Sequential(Integrator::Taylor),
+            LaneUse::Batched => LaneUse::Batched,
         }
     }
 }
@@ -397,7 +397,7 @@ impl Together {
 /// each.
 fn integrate<const D: usize>(
     points: &[Point<'_>],
-    together: Together,
+    lane_use: LaneUse,
 ) -> Result<Vec<Result<Response, DynamicsError>>, Canceled> {
     let Some(Point { analysis, watch, .. }) = points.first() else { return Ok(Vec::new()) };
     let Method::Integrate { mesh_periods, record_mesh_periods } = analysis.method else { return Ok(Vec::new()) };
@@ -436,7 +436,7 @@ fn integrate<const D: usize>(
             Err(error) => out[i] = Err(error),
         }
     }
-    together.carry(&mut runs, tolerance, analysis.max_steps, watch)?;
+    lane_use.integrate(&mut runs, tolerance, analysis.max_steps, watch)?;
 
     let mut compared = Vec::new();
     let mut waiting = Vec::new();
@@ -464,7 +464,7 @@ fn integrate<const D: usize>(
             }
         }
     }
-    together.finely().carry(&mut compared, tight, analysis.max_steps, watch)?;
+    lane_use.for_comparison().integrate(&mut compared, tight, analysis.max_steps, watch)?;
     for ((i, finished, mut verdict), finely) in waiting.into_iter().zip(compared) {
         let Ok(model) = &models[i] else { continue };
         out[i] = finely.finish().map(|fine| {
