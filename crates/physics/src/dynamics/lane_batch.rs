@@ -9,7 +9,7 @@ use super::lanes::{Lanes, Real};
 use super::model::{Contact, Model, State};
 use super::recurrence::TaylorWork;
 use super::segment::{Observer, Segment};
-use super::taylor::{Rattling, Stepped, Stretch, evaluate_rows, order_for, refused, step};
+use super::taylor::{ChatterGuard, Stepped, SmoothInterval, evaluate_rows, order_for, refused, step};
 use crate::simd::vectorised;
 use crate::watch::{Canceled, Watch};
 
@@ -153,7 +153,7 @@ struct LaneSlot {
     breakpoint: usize,
     steps: u64,
     evaluations: u64,
-    rattling: Rattling,
+    chatter: ChatterGuard,
 }
 
 /// The lanes.
@@ -163,7 +163,7 @@ struct LaneBatch<'m, const D: usize, const L: usize> {
     slots: [Option<LaneSlot>; L],
     equations: Equations<D, Lanes<L>>,
     excitations: LaneExcitations<'m, L>,
-    stretch: Stretch<Lanes<L>>,
+    interval: SmoothInterval<Lanes<L>>,
     contact: [Lanes<L>; 2],
     size: Lanes<L>,
     work: Box<TaylorWork<D, Lanes<L>>>,
@@ -183,7 +183,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
             slots: [None; L],
             equations: Equations::at_rest(),
             excitations: LaneExcitations::none(),
-            stretch: Stretch {
+            interval: SmoothInterval {
                 phase: zero,
                 end: zero,
                 inside: zero,
@@ -212,10 +212,10 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
             breakpoint: 0,
             steps: 0,
             evaluations: 0,
-            rattling: Rattling::default(),
+            chatter: ChatterGuard::default(),
         });
         self.size.set(lane, 0.0);
-        let s = &mut self.stretch;
+        let s = &mut self.interval;
         s.period_tau.set(lane, model.period_tau);
         s.tolerance.set(lane, observer.tolerance());
         s.switching.set(lane, if model.switches() { 1.0 } else { 0.0 });
@@ -232,20 +232,20 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         for j in 0..2 {
             self.contact[j].set(lane, f64::from(state.contact[j]));
         }
-        self.stretch.phase.set(lane, state.phase);
+        self.interval.phase.set(lane, state.phase);
     }
 
     /// The smooth stretch from `from` to the breakpoint of this index.
     fn set_smooth_interval(&mut self, lane: usize, model: &Model<D>, from: f64, breakpoint: usize) {
         let end = model.breakpoints[breakpoint];
-        self.stretch.end.set(lane, end);
-        self.stretch.inside.set(lane, 0.5 * (from + end));
+        self.interval.end.set(lane, end);
+        self.interval.inside.set(lane, 0.5 * (from + end));
     }
 
     fn state(&self, lane: usize, period: u64) -> State<D> {
         State {
             period,
-            phase: self.stretch.phase.get(lane),
+            phase: self.interval.phase.get(lane),
             x: self.end.0.map(|c| c.get(lane)),
             v: self.end.1.map(|c| c.get(lane)),
             contact: self.contact.map(|c| c.get(lane) as Contact),
@@ -254,12 +254,12 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
 
     /// One step of every lane.
     fn step(&mut self) -> Stepped<Lanes<L>> {
-        let Self { order, equations, excitations, stretch, contact, size, work, end, .. } = self;
+        let Self { order, equations, excitations, interval, contact, size, work, end, .. } = self;
         vectorised(
             #[inline(always)]
             || {
                 (work.rows[0], work.rows[1]) = *end;
-                let stepped = step(equations, &*excitations, *order, *stretch, *contact, size, work);
+                let stepped = step(equations, &*excitations, *order, *interval, *contact, size, work);
                 *end = evaluate_rows(&work.rows[..=stepped.degree], stepped.h);
                 stepped
             },
@@ -274,7 +274,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
             let observer = &mut observers[slot.observer];
             let model = observer.model();
             let (h, changed) = (stepped.h.get(lane), stepped.changed.get(lane));
-            let (from, end) = (self.stretch.phase.get(lane), self.stretch.end.get(lane));
+            let (from, end) = (self.interval.phase.get(lane), self.interval.end.get(lane));
             let to_end = stepped.to_end.get(lane) != 0.0;
             let phase = if to_end { end } else { (from + h / model.period_tau).min(end) };
             slot.steps += 1;
@@ -294,22 +294,22 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
             if observer.wants_segments() {
                 self.emit_segment(lane, &slot, model, h, stepped.degree, observer);
             }
-            self.stretch.phase.set(lane, phase);
+            self.interval.phase.set(lane, phase);
             if changed >= 0.0 {
                 self.contact[changed as usize].set(lane, stepped.contact.get(lane));
                 let mut state = self.state(lane, slot.period);
-                if slot.rattling.changed(model, &mut state, end) {
+                if slot.chatter.contact_changed(model, &mut state, end) {
                     self.set_state(lane, &state);
                 }
             }
-            if self.stretch.phase.get(lane) >= end {
+            if self.interval.phase.get(lane) >= end {
                 slot.breakpoint += 1;
                 if slot.breakpoint < model.breakpoints.len() {
                     self.set_smooth_interval(lane, model, end, slot.breakpoint);
                 } else {
                     slot.period += 1;
                     slot.breakpoint = 0;
-                    self.stretch.phase.set(lane, 0.0);
+                    self.interval.phase.set(lane, 0.0);
                     self.set_smooth_interval(lane, model, 0.0, 0);
                     let state = self.state(lane, slot.period);
                     let error = grown(&state).then(|| DynamicsError::Diverged {
@@ -350,7 +350,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         observer.segment(&Segment {
             model,
             period: slot.period,
-            phase: self.stretch.phase.get(lane),
+            phase: self.interval.phase.get(lane),
             h,
             degree,
             rows: &self.rows,
@@ -364,9 +364,9 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         self.slots[lane] = None;
         let rest = State { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [0; 2] };
         self.set_state(lane, &rest);
-        self.stretch.end.set(lane, 0.0);
-        self.stretch.inside.set(lane, 0.0);
-        self.stretch.switching.set(lane, 0.0);
+        self.interval.end.set(lane, 0.0);
+        self.interval.inside.set(lane, 0.0);
+        self.interval.switching.set(lane, 0.0);
         let numerics = Numerics { steps: slot.steps, rejected_steps: 0, force_evaluations: slot.evaluations };
         observer.finished(numerics, error);
     }
