@@ -12,7 +12,7 @@ use super::variation::{Both, Deviation, Variation};
 use crate::watch::Watch;
 
 /// Motions held by nothing move this little, in squared frequency relative to the largest (see `modal`).
-const FREE: f64 = 1e-12;
+const RIGID_BODY_EIGENVALUE: f64 = 1e-12;
 
 /// How far and how well the motions of a search may go.
 #[derive(Clone, Copy)]
@@ -29,7 +29,7 @@ pub(crate) struct Shooting<'m, const D: usize> {
     active: Vec<usize>,
     masses: [f64; D],
     /// Free motions, normalised to nᵀ M n = 1.
-    free: Vec<[f64; D]>,
+    rigid_body: Vec<[f64; D]>,
     limits: Limits<'m>,
 }
 
@@ -68,8 +68,8 @@ impl<'m, const D: usize> Shooting<'m, D> {
     ) -> Result<Self, DynamicsError> {
         let active: Vec<usize> = model.active().collect();
         let masses = model.masses_kg();
-        let free = free_motions(model, &active, &masses, mean_stiffness_n_per_m)?;
-        Ok(Self { model, active, masses, free, limits })
+        let rigid_body = rigid_body_modes(model, &active, &masses, mean_stiffness_n_per_m)?;
+        Ok(Self { model, active, masses, rigid_body, limits })
     }
 
     /// Goes through `periods` mesh periods of the motion of `motion_model` from `start` with the unit deviations of this model
@@ -101,13 +101,13 @@ impl<'m, const D: usize> Shooting<'m, D> {
     }
 
     /// Projector that takes the free motions out of (active displacements, active velocities).
-    fn held(&self) -> DMatrix<f64> {
+    fn rigid_body_projector(&self) -> DMatrix<f64> {
         let n = self.active.len();
         let mut q = DMatrix::identity(2 * n, 2 * n);
-        for free in &self.free {
+        for mode in &self.rigid_body {
             for (r, &cr) in self.active.iter().enumerate() {
                 for (c, &cc) in self.active.iter().enumerate() {
-                    let part = free[cr] * free[cc] * self.masses[cc];
+                    let part = mode[cr] * mode[cc] * self.masses[cc];
                     q[(r, c)] -= part;
                     q[(r + n, c + n)] -= part;
                 }
@@ -120,21 +120,21 @@ impl<'m, const D: usize> Shooting<'m, D> {
     /// the velocity with which they close.
     pub fn correction(&self, defect: &Deviation<D>, map: &DMatrix<f64>, periods: u64) -> Option<Deviation<D>> {
         let n = self.active.len();
-        let held = self.held();
+        let projector = self.rigid_body_projector();
         let r =
             DVector::from_fn(2 * n, |i, _| if i < n { defect.0[self.active[i]] } else { defect.1[self.active[i - n]] });
-        let system = DMatrix::identity(2 * n, 2 * n) - &held * map * &held;
-        let solution = &held * system.lu().solve(&(&held * r))?;
+        let system = DMatrix::identity(2 * n, 2 * n) - &projector * map * &projector;
+        let solution = &projector * system.lu().solve(&(&projector * r))?;
         let (mut x, mut v) = ([0.0; D], [0.0; D]);
         for (i, &c) in self.active.iter().enumerate() {
             x[c] = solution[i];
             v[c] = solution[i + n];
         }
         let time = periods as f64 * self.model.period_tau;
-        for free in &self.free {
-            let speed = -self.along(free, &defect.0) / time;
+        for mode in &self.rigid_body {
+            let speed = -self.along(mode, &defect.0) / time;
             for c in 0..D {
-                v[c] += speed * free[c];
+                v[c] += speed * mode[c];
             }
         }
         x.iter().chain(&v).all(|c| c.is_finite()).then_some((x, v))
@@ -144,26 +144,26 @@ impl<'m, const D: usize> Shooting<'m, D> {
     pub fn unbalanced_n(&self, defect: &Deviation<D>, periods: u64) -> f64 {
         let omega = self.model.omega_ref;
         let time = periods as f64 * self.model.period_tau;
-        self.free.iter().fold(0.0f64, |worst, free| {
-            let largest = free.iter().fold(0.0f64, |m, c| m.max(c.abs()));
-            worst.max((self.along(free, &defect.1) * omega * omega / time / largest).abs())
+        self.rigid_body.iter().fold(0.0f64, |worst, mode| {
+            let largest = mode.iter().fold(0.0f64, |m, c| m.max(c.abs()));
+            worst.max((self.along(mode, &defect.1) * omega * omega / time / largest).abs())
         })
     }
 
     /// Floquet multipliers, free motions left out, largest first.
     pub fn multipliers(&self, map: &DMatrix<f64>) -> Vec<Complex<f64>> {
-        let held = self.held();
-        let Some(schur) = Schur::try_new(&held * map * &held, f64::EPSILON, 10_000) else { return Vec::new() };
+        let projector = self.rigid_body_projector();
+        let Some(schur) = Schur::try_new(&projector * map * &projector, f64::EPSILON, 10_000) else { return Vec::new() };
         let mut all: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
         all.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
         // What was projected out is the zeros at the end.
-        all.truncate((all.len() - 2 * self.free.len()).max(1));
+        all.truncate((all.len() - 2 * self.rigid_body.len()).max(1));
         all
     }
 }
 
 /// Displacements along which no spring acts, from the eigenvectors of M^-½ K M^-½ in solver coordinates.
-pub(super) fn free_motions<const D: usize>(
+pub(super) fn rigid_body_modes<const D: usize>(
     model: &Model<D>,
     active: &[usize],
     masses: &[f64; D],
@@ -194,13 +194,13 @@ pub(super) fn free_motions<const D: usize>(
     })?;
     let largest = eigen.eigenvalues.amax();
     Ok((0..n)
-        .filter(|&i| eigen.eigenvalues[i] <= FREE * largest)
+        .filter(|&i| eigen.eigenvalues[i] <= RIGID_BODY_EIGENVALUE * largest)
         .map(|i| {
-            let mut free = [0.0; D];
+            let mut mode = [0.0; D];
             for (row, &r) in active.iter().enumerate() {
-                free[r] = eigen.eigenvectors[(row, i)] / masses[r].sqrt();
+                mode[r] = eigen.eigenvectors[(row, i)] / masses[r].sqrt();
             }
-            free
+            mode
         })
         .collect())
 }

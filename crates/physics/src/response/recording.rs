@@ -62,7 +62,7 @@ impl<'m, const D: usize> Run<'m, D> {
             from: start,
             recorder,
             energy: None,
-            recent: if recorded > KNOWN_TO_REPEAT { Section::held(model)? } else { Section::new() },
+            recent: if recorded > KNOWN_TO_REPEAT { Section::without_rigid_body(model)? } else { Section::new() },
             points: Vec::with_capacity(recorded.min(1 << 20) as usize),
             batch: (recorded / BATCHES).max(1),
             batches: Vec::new(),

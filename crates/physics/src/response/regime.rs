@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::dynamics::{
-    Both, Deviation, DynamicsError, FreeMotions, Model, Motion, PER_HALF, State, Unobserved, Variation, W, difference,
+    Both, Deviation, DynamicsError, RigidBodyModes, Model, Motion, PER_HALF, State, Unobserved, Variation, W, difference,
 };
 use crate::watch::Watch;
 
@@ -17,22 +17,22 @@ pub(super) const CHAOS_PER_MESH_PERIOD: f64 = 0.01;
 /// States at the starts of the last mesh periods.
 pub(super) struct Section<const D: usize> {
     states: VecDeque<State<D>>,
-    free: FreeMotions<D>,
+    rigid_body: RigidBodyModes<D>,
 }
 
 impl<const D: usize> Section<D> {
     /// States as they are: for motions of which it is not asked whether they repeat.
     pub fn new() -> Self {
-        Self { states: VecDeque::with_capacity(LONGEST_PERIOD + 1), free: FreeMotions::none() }
+        Self { states: VecDeque::with_capacity(LONGEST_PERIOD + 1), rigid_body: RigidBodyModes::none() }
     }
 
     /// States without their free motions, whose drift keeps no motion from repeating.
-    pub fn held(model: &Model<D>) -> Result<Self, DynamicsError> {
-        Ok(Self { free: FreeMotions::new(model)?, ..Self::new() })
+    pub fn without_rigid_body(model: &Model<D>) -> Result<Self, DynamicsError> {
+        Ok(Self { rigid_body: RigidBodyModes::new(model)?, ..Self::new() })
     }
 
     pub fn push(&mut self, mut state: State<D>) {
-        (state.x, state.v) = self.free.held(&(state.x, state.v));
+        (state.x, state.v) = self.rigid_body.project_out(&(state.x, state.v));
         if self.states.len() > LONGEST_PERIOD {
             self.states.pop_front();
         }
@@ -115,13 +115,13 @@ pub(super) fn lyapunov_seen<const D: usize>(
     mut seen: impl FnMut(f64, &State<D>),
 ) -> Result<f64, DynamicsError> {
     let start = every_way(variation_model);
-    let free = FreeMotions::new(variation_model)?;
-    let mut variation = Variation::new(variation_model, vec![free.held(&start)], 1e-9);
+    let rigid_body = RigidBodyModes::new(variation_model)?;
+    let mut variation = Variation::new(variation_model, vec![rigid_body.project_out(&start)], 1e-9);
     let (mut sum, mut counted) = (0.0, 0u64);
     for period in 0..periods {
         let before = largest(&variation.columns[0]);
         motion.advance_period(&mut Both(&mut Unobserved, &mut variation), watch, 0.0)?;
-        variation.columns[0] = free.held(&variation.columns[0]);
+        variation.columns[0] = rigid_body.project_out(&variation.columns[0]);
         let (x, v) = &mut variation.columns[0];
         let after = largest(&(*x, *v));
         if !(after > 0.0 && after.is_finite()) {
@@ -141,13 +141,13 @@ pub(super) fn lyapunov_seen<const D: usize>(
 pub(super) fn faded<const D: usize>(
     motion: &mut Motion<'_, D>,
     variation_model: &Model<D>,
-    free: &FreeMotions<D>,
+    rigid_body: &RigidBodyModes<D>,
     watch: &Watch<'_>,
 ) -> Result<f64, DynamicsError> {
-    let start = free.held(&every_way(variation_model));
+    let start = rigid_body.project_out(&every_way(variation_model));
     let mut variation = Variation::new(variation_model, vec![start], 1e-6);
     motion.advance_period(&mut Both(&mut Unobserved, &mut variation), watch, 0.0)?;
-    let left = largest(&free.held(&variation.columns[0])) / largest(&start);
+    let left = largest(&rigid_body.project_out(&variation.columns[0])) / largest(&start);
     // An infinite or undefined answer is no sign of fading.
     Ok(if left.is_nan() { f64::INFINITY } else { left })
 }

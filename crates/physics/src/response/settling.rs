@@ -113,7 +113,7 @@ impl Point<'_> {
         tolerance: f64,
     ) -> Result<Course, DynamicsError> {
         let mut motion = Motion::new(model, from, integrator, tolerance, self.analysis.max_steps);
-        let mut section = Section::held(model)?;
+        let mut section = Section::without_rigid_body(model)?;
         let mut growth = Vec::with_capacity(FOLLOWED_MESH_PERIODS as usize);
         let exponent = lyapunov_seen(&mut motion, model, FOLLOWED_MESH_PERIODS, self.watch, |ln, state| {
             growth.push(ln);

@@ -5,7 +5,7 @@ use nalgebra::{Complex, DMatrix};
 use super::budget::{Budget, exhausted, steps_per_period};
 use super::regime::{CHAOS_PER_MESH_PERIOD, Section, faded, largest, lyapunov};
 use crate::dynamics::{
-    Deviation, DynamicsError, FreeMotions, Integrator, Limits, Model, Motion, Numerics, PER_HALF, Shooting, State, U,
+    Deviation, DynamicsError, RigidBodyModes, Integrator, Limits, Model, Motion, Numerics, PER_HALF, Shooting, State, U,
     Unobserved, difference,
 };
 
@@ -152,9 +152,9 @@ impl<const D: usize> Search<'_, D> {
         budget: &mut Budget,
         numerics: &mut Numerics,
     ) -> Result<Option<Found<D>>, DynamicsError> {
-        let free = FreeMotions::new(self.model)?;
+        let rigid_body = RigidBodyModes::new(self.model)?;
         let mut motion = self.motion(start, budget);
-        let mut section = Section::held(self.model)?;
+        let mut section = Section::without_rigid_body(self.model)?;
         section.push(motion.state);
         let (mut last, mut before) = (motion.state, f64::INFINITY);
         let mut settled = false;
@@ -179,19 +179,19 @@ impl<const D: usize> Search<'_, D> {
         }
         let near = State { period: 0, ..last };
         // Everything else might still be held by some motion that this start did not wake.
-        let mut fades = |model: &Model<D>, free: &FreeMotions<D>| {
+        let mut fades = |model: &Model<D>, rigid_body: &RigidBodyModes<D>| {
             let mut motion = self.motion(near, budget);
-            let left = faded(&mut motion, model, free, self.limits.watch)?;
+            let left = faded(&mut motion, model, rigid_body, self.limits.watch)?;
             budget.spend(&motion.numerics, 1);
             *numerics += motion.numerics;
             Ok::<_, DynamicsError>(left < FADED)
         };
-        if !fades(self.model, &free)? {
+        if !fades(self.model, &rigid_body)? {
             return Ok(None);
         }
         if D == PER_HALF {
             let opposite = self.model.against_symmetry();
-            if !fades(&opposite, &FreeMotions::new(&opposite)?)? {
+            if !fades(&opposite, &RigidBodyModes::new(&opposite)?)? {
                 return Ok(None);
             }
         }
@@ -356,7 +356,7 @@ impl<const D: usize> Search<'_, D> {
         let all = budget.steps(0);
         let kept = all - all / 8 * 3;
         let mut motion = self.motion(start, budget);
-        let mut section = Section::held(self.model)?;
+        let mut section = Section::without_rigid_body(self.model)?;
         section.push(motion.state);
         let mut next_try = 8;
         let mut followed = 0;
@@ -447,11 +447,11 @@ impl<const D: usize> Search<'_, D> {
         size: f64,
         budget: &mut Budget,
     ) -> Result<Option<u64>, DynamicsError> {
-        let free = FreeMotions::new(self.model)?;
+        let rigid_body = RigidBodyModes::new(self.model)?;
         let mut motion = self.motion(found.start, budget);
         for period in 1..=n / 2 {
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.9)?;
-            let change = largest(&free.held(&difference(&motion.state, &found.start))) / size;
+            let change = largest(&rigid_body.project_out(&difference(&motion.state, &found.start))) / size;
             if n.is_multiple_of(period) && change < SAME_MOTION {
                 budget.spend(&motion.numerics, 0);
                 return Ok(Some(period));
@@ -470,7 +470,7 @@ impl<const D: usize> Search<'_, D> {
         budget: &mut Budget,
     ) -> Result<Option<Found<D>>, DynamicsError> {
         let deviations = 2 * self.model.active().count();
-        let free = FreeMotions::new(self.model)?;
+        let rigid_body = RigidBodyModes::new(self.model)?;
         let mut start = State { period: 0, ..near };
         let mut numerics = Numerics::default();
         let mut last = f64::INFINITY;
@@ -487,7 +487,7 @@ impl<const D: usize> Search<'_, D> {
             last = change;
             let Some(correction) = shooting.correction(&defect, &round.map, n) else { return Ok(None) };
             // A free motion may need any speed to close.
-            if largest(&free.held(&correction)) > 0.1 * size {
+            if largest(&rigid_body.project_out(&correction)) > 0.1 * size {
                 return Ok(None);
             }
             start = moved(self.model, start, &correction);

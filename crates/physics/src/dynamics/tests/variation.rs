@@ -87,7 +87,7 @@ fn the_slowest_multiplier_of_case_a() {
 fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
     let p = parameters(name);
     let model = Model::<12>::new(&p).unwrap();
-    let free = FreeMotions::new(&model).unwrap();
+    let rigid_body = RigidBodyModes::new(&model).unwrap();
     let start: [f64; 24] = reference().cases[name].initial_state.as_slice().try_into().unwrap();
     let on_orbit = State { period: 0, ..advance(&model, model.state_from(&start), 400) };
     let mut source = model.source_state(&on_orbit);
@@ -99,7 +99,7 @@ fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
     for period in 1..=70 {
         (a, b) = (advance(&model, a, 1), advance(&model, b, 1));
         let d = difference(&b, &a);
-        let held = free.held(&d);
+        let held = rigid_body.project_out(&d);
         // The free rotations are coordinates of their own, left out of `held` by their places.
         let rows = |d: &Deviation<12>, all: bool| {
             (0..12).filter(|c| all || c % PER_HALF != W).fold(0.0f64, |m, c| m.max(d.0[c].abs()).max(d.1[c].abs()))
