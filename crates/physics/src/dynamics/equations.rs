@@ -218,7 +218,7 @@ impl<const D: usize, R: Real> Equations<D, R> {
 
     /// Scaled accelerations of one half given its normal force on the teeth and the other force along the mesh, T_p/R_p − F_s (of an
     /// impact that acts on all motions: T_p/R_p, F_s being part of the normal force). Linear
-    /// and homogeneous, so it serves single Taylor coefficients and deviations too.
+    /// and homogeneous, so it serves single Taylor coefficients and perturbations too.
     #[inline(always)]
     pub(super) fn half_acceleration(&self, j: usize, x: &[R; D], v: &[R; D], force: R, along: R) -> [R; PER_HALF] {
         let h = &self.halves[j];

@@ -63,7 +63,7 @@ pub(crate) use model::{Model, State};
 pub(crate) use segment::{Observer, Segment, Unobserved};
 pub(crate) use shooting::{Limits, Shooting};
 pub(crate) use trajectory::is_mirrored;
-pub(crate) use variation::{Both, Deviation, Variation, difference};
+pub(crate) use variation::{ObserverPair, Perturbation, Variation, state_difference};
 
 #[cfg(test)]
 pub(crate) mod tests;

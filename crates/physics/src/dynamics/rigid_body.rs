@@ -1,14 +1,14 @@
 //! Motions that nothing holds, set apart from the rest: the free rotations, and the screw motion of a floating pinion.
 //!
 //! They neither decay nor grow nor act on anything: their momentum is conserved, so a motion that is not started with just
-//! the right share of it drifts at a constant speed for ever, and a deviation along them stays or grows in proportion to time. Whether
+//! the right share of it drifts at a constant speed for ever, and a perturbation along them stays or grows in proportion to time. Whether
 //! a motion repeats and whether its neighbours leave it is a question to what remains when they are taken out.
 
 use super::equations::{PER_HALF, U, YG, YP};
 use super::error::DynamicsError;
 use super::model::Model;
 use super::shooting::rigid_body_modes;
-use super::variation::Deviation;
+use super::variation::Perturbation;
 
 /// The free motions of a model, normalised to nᵀ M n = 1.
 #[derive(Debug, Clone)]
@@ -50,7 +50,7 @@ impl<const D: usize> RigidBodyModes<D> {
     }
 
     /// The same of displacements and velocities.
-    pub fn project_out(&self, d: &Deviation<D>) -> Deviation<D> {
+    pub fn project_out(&self, d: &Perturbation<D>) -> Perturbation<D> {
         (self.project_out_of(d.0), self.project_out_of(d.1))
     }
 }

@@ -8,7 +8,7 @@ use super::integrate::{Integrator, Motion, Numerics};
 use super::model::{Model, State};
 use super::recurrence::norm;
 use super::segment::{Observer, Segment};
-use super::variation::{Both, Deviation, Variation};
+use super::variation::{ObserverPair, Perturbation, Variation};
 use crate::watch::Watch;
 
 /// Motions held by nothing move this little, in squared frequency relative to the largest (see `modal`).
@@ -33,7 +33,7 @@ pub(crate) struct Shooting<'m, const D: usize> {
     limits: Limits<'m>,
 }
 
-/// A motion over whole periods, and the linear map of deviations over the same time.
+/// A motion over whole periods, and the linear map of perturbations over the same time.
 pub(crate) struct MapResult<const D: usize> {
     pub end: State<D>,
     /// Over (active displacements, active velocities).
@@ -72,15 +72,15 @@ impl<'m, const D: usize> Shooting<'m, D> {
         Ok(Self { model, active, masses, rigid_body, limits })
     }
 
-    /// Goes through `periods` mesh periods of the motion of `motion_model` from `start` with the unit deviations of this model
+    /// Goes through `periods` mesh periods of the motion of `motion_model` from `start` with the unit perturbations of this model
     /// (another one than the motion's to look against the symmetry).
     pub fn map(&self, motion_model: &Model<D>, start: State<D>, periods: u64) -> Result<MapResult<D>, DynamicsError> {
         let Limits { tolerance, max_steps, watch } = self.limits;
-        let mut variation = Variation::new(self.model, Variation::units(self.model), tolerance);
+        let mut variation = Variation::new(self.model, Variation::unit_perturbations(self.model), tolerance);
         let mut motion = Motion::new(motion_model, start, Integrator::Taylor, tolerance, max_steps);
         let mut extent = Extent { size: 0.0, separated: false, first: None };
         for _ in 0..periods {
-            motion.advance_period(&mut Both(&mut variation, &mut extent), watch, 0.0)?;
+            motion.advance_period(&mut ObserverPair(&mut variation, &mut extent), watch, 0.0)?;
             watch.checkpoint(0.0)?;
         }
         let n = self.active.len();
@@ -118,7 +118,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
 
     /// What to add to the start so that the motion closes after `periods` mesh periods, to first order. Free motions get
     /// the velocity with which they close.
-    pub fn correction(&self, defect: &Deviation<D>, map: &DMatrix<f64>, periods: u64) -> Option<Deviation<D>> {
+    pub fn correction(&self, defect: &Perturbation<D>, map: &DMatrix<f64>, periods: u64) -> Option<Perturbation<D>> {
         let n = self.active.len();
         let projector = self.rigid_body_projector();
         let r =
@@ -141,7 +141,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
     }
 
     /// Largest mean force along a free motion over a motion of `periods`, N.
-    pub fn unbalanced_n(&self, defect: &Deviation<D>, periods: u64) -> f64 {
+    pub fn unbalanced_n(&self, defect: &Perturbation<D>, periods: u64) -> f64 {
         let omega = self.model.omega_ref;
         let time = periods as f64 * self.model.period_tau;
         self.rigid_body.iter().fold(0.0f64, |worst, mode| {

@@ -8,8 +8,8 @@ use super::recording::{Finished, Run};
 use super::report::{Asked, Verdict, report, solved_halves};
 use super::steady::{Found, Search, moved};
 use crate::dynamics::{
-    Deviation, DynamicsError, Integrator, Limits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, integrate_trajectories,
-    integrate_trajectory, difference, is_mirrored,
+    Perturbation, DynamicsError, Integrator, Limits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, integrate_trajectories,
+    integrate_trajectory, state_difference, is_mirrored,
 };
 use crate::watch::{Canceled, Watch};
 use rayon::prelude::*;
@@ -154,7 +154,7 @@ impl Point<'_> {
         })
     }
 
-    /// Both halves and the start mirror each other.
+    /// ObserverPair halves and the start mirror each other.
     fn is_mirrored(&self, start: &[f64; 24]) -> bool {
         self.p.is_symmetric() && (self.analysis.initial_state.is_none() || is_mirrored(start))
     }
@@ -186,7 +186,7 @@ impl Point<'_> {
             model.seat_teeth(&mut state);
         }
         if off_symmetry {
-            let mut push: Deviation<D> = ([0.0; D], [0.0; D]);
+            let mut push: Perturbation<D> = ([0.0; D], [0.0; D]);
             for c in 0..PER_HALF - 1 {
                 push.0[c] = OFF_SYMMETRY * state.x[c];
             }
@@ -329,7 +329,7 @@ impl Point<'_> {
         let start = State { period: 0, ..found.start };
         let once = self.record(model, (start, tight), n, self.recorder_of_rms(model), None)?.record;
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tight))?;
-        let defect = difference(&once.last, &start);
+        let defect = state_difference(&once.last, &start);
         let Some(correction) = shooting.correction(&defect, map, n) else { return Ok(f64::INFINITY) };
         let better = self
             .record(model, (moved(model, start, &correction), tight), n, self.recorder_of_rms(model), None)?

@@ -3,10 +3,10 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::budget::{Budget, exhausted, steps_per_period};
-use super::regime::{CHAOS_PER_MESH_PERIOD, Section, faded, largest, lyapunov};
+use super::regime::{CHAOS_PER_MESH_PERIOD, Section, perturbation_decay, largest, lyapunov_exponent};
 use crate::dynamics::{
-    Deviation, DynamicsError, RigidBodyModes, Integrator, Limits, Model, Motion, Numerics, PER_HALF, Shooting, State, U,
-    Unobserved, difference,
+    Perturbation, DynamicsError, RigidBodyModes, Integrator, Limits, Model, Motion, Numerics, PER_HALF, Shooting, State, U,
+    Unobserved, state_difference,
 };
 
 /// Mesh periods after which a motion that has not come near to repeating is taken not to repeat.
@@ -25,14 +25,14 @@ const LYAPUNOV_MESH_PERIODS: u64 = 400;
 const LONG_RECORD_MESH_PERIODS: u64 = 2000;
 const LONG_RECORD_STEPS: u64 = 2_000_000;
 /// Steps of a mesh period beyond which the motion is first followed through a few periods in the hope that everything has died away
-/// then: the linear map takes as many deviations along as there are displacements and velocities.
+/// then: the linear map takes as many perturbations along as there are displacements and velocities.
 const MANY_STEPS_PER_PERIOD: f64 = 2000.0;
 /// How many periods, and by how much the change has to fall from one to the next.
 const SOON_MESH_PERIODS: u64 = 6;
 const SOON_FALL: f64 = 0.03;
 /// A change that no longer falls is rounding below this; what it means for the answer is measured later.
 const SOON_ROUNDING: f64 = 1e-5;
-/// What is left of a deviation after a mesh period when everything dies away within it.
+/// What is left of a perturbation after a mesh period when everything dies away within it.
 const FADED: f64 = 0.01;
 /// Multiplier from which a motion's start is corrected once more with a finer tolerance: an error of the map moves
 /// the start of a motion that hardly decays by 1/(1 - multiplier) times as much.
@@ -51,7 +51,7 @@ pub(super) struct Found<const D: usize> {
     pub multipliers: Vec<Complex<f64>>,
     /// Largest Lyapunov exponent per mesh period.
     pub lyapunov: Option<f64>,
-    /// The halves do not keep their mirror symmetry: deviations against it grow.
+    /// The halves do not keep their mirror symmetry: perturbations against it grow.
     pub leaves_symmetry: bool,
     pub tolerance: f64,
     pub numerics: Numerics,
@@ -115,7 +115,7 @@ impl<const D: usize> Search<'_, D> {
         }
         let masses = self.model.masses_kg();
         let square = self.model.omega_ref * self.model.omega_ref;
-        let mut push: Deviation<D> = ([0.0; D], [0.0; D]);
+        let mut push: Perturbation<D> = ([0.0; D], [0.0; D]);
         for j in 0..Model::<D>::HALVES {
             let u = j * PER_HALF + U;
             push.0[u] = SLIGHTLY * self.model.largest_push_n(j) / (masses[u] * square);
@@ -134,7 +134,7 @@ impl<const D: usize> Search<'_, D> {
     }
 
     /// Fails when the mean load has a part along a motion that nothing holds.
-    fn balanced(&self, shooting: &Shooting<'_, D>, defect: &Deviation<D>) -> Result<(), DynamicsError> {
+    fn balanced(&self, shooting: &Shooting<'_, D>, defect: &Perturbation<D>) -> Result<(), DynamicsError> {
         let unbalanced_n = shooting.unbalanced_n(defect, 1);
         let load = (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.largest_push_n(j)));
         // Rounding and truncation leave a little; a real imbalance is far above. What is not loaded cannot be unbalanced.
@@ -181,7 +181,7 @@ impl<const D: usize> Search<'_, D> {
         // Everything else might still be held by some motion that this start did not wake.
         let mut fades = |model: &Model<D>, rigid_body: &RigidBodyModes<D>| {
             let mut motion = self.motion(near, budget);
-            let left = faded(&mut motion, model, rigid_body, self.limits.watch)?;
+            let left = perturbation_decay(&mut motion, model, rigid_body, self.limits.watch)?;
             budget.spend(&motion.numerics, 1);
             *numerics += motion.numerics;
             Ok::<_, DynamicsError>(left < FADED)
@@ -196,7 +196,7 @@ impl<const D: usize> Search<'_, D> {
             }
         }
         let shooting = self.shooting(self.model, budget)?;
-        let defect = difference(&motion.state, &last);
+        let defect = state_difference(&motion.state, &last);
         self.balanced(&shooting, &defect)?;
         let n = 2 * self.model.active().count();
         let nothing_left = DMatrix::zeros(n, n);
@@ -221,7 +221,7 @@ impl<const D: usize> Search<'_, D> {
         budget: &mut Budget,
         numerics: &mut Numerics,
     ) -> Result<Option<Found<D>>, DynamicsError> {
-        let deviations = 2 * self.model.active().count();
+        let perturbations = 2 * self.model.active().count();
         let held = self.model.holding_contact();
         let mut first = start;
         for j in 0..Model::<D>::HALVES {
@@ -229,9 +229,9 @@ impl<const D: usize> Search<'_, D> {
         }
         let shooting = self.shooting(self.model, budget)?;
         let once = shooting.map(&held, first, 1)?;
-        budget.spend(&once.numerics, deviations);
+        budget.spend(&once.numerics, perturbations);
         *numerics += once.numerics;
-        let defect = difference(&once.end, &first);
+        let defect = state_difference(&once.end, &first);
         self.balanced(&shooting, &defect)?;
         let within = shooting.multipliers(&once.map);
         let modulus = within.first().map(|m| m.norm());
@@ -275,13 +275,13 @@ impl<const D: usize> Search<'_, D> {
         const ROUNDS: usize = 12;
         /// A map is kept while each step leaves less than this part of the defect.
         const CONVERGES: f64 = 0.2;
-        let deviations = 2 * self.model.active().count();
+        let perturbations = 2 * self.model.active().count();
         let shooting = self.shooting(self.model, budget)?;
         let mut at = State { period: 0, ..start };
         let mut round = shooting.map(self.model, at, 1)?;
-        budget.spend(&round.numerics, deviations);
+        budget.spend(&round.numerics, perturbations);
         *numerics += round.numerics;
-        let mut defect = difference(&round.end, &at);
+        let mut defect = state_difference(&round.end, &at);
         self.balanced(&shooting, &defect)?;
         let mut last = f64::INFINITY;
         let mut fresh_map = true;
@@ -294,9 +294,9 @@ impl<const D: usize> Search<'_, D> {
             }
             if closed || (!fresh_map && change > CONVERGES * last) {
                 round = shooting.map(self.model, at, 1)?;
-                budget.spend(&round.numerics, deviations);
+                budget.spend(&round.numerics, perturbations);
                 *numerics += round.numerics;
-                defect = difference(&round.end, &at);
+                defect = state_difference(&round.end, &at);
                 fresh_map = true;
                 if closed {
                     break;
@@ -309,7 +309,7 @@ impl<const D: usize> Search<'_, D> {
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
             budget.spend(&motion.numerics, 0);
             *numerics += motion.numerics;
-            defect = difference(&motion.state, &at);
+            defect = state_difference(&motion.state, &at);
             fresh_map = false;
         }
         let size = round.size.max(1e-9 * largest(&(at.x, [0.0; D])));
@@ -319,7 +319,7 @@ impl<const D: usize> Search<'_, D> {
         self.stable_orbit(&shooting, at, 1, round.map, budget, numerics)
     }
 
-    /// The orbit that closes from `at` after `n` mesh periods with its multipliers; None where a deviation grows.
+    /// The orbit that closes from `at` after `n` mesh periods with its multipliers; None where a perturbation grows.
     fn stable_orbit(
         &self,
         shooting: &Shooting<'_, D>,
@@ -404,7 +404,7 @@ impl<const D: usize> Search<'_, D> {
         }
         let mut exponent_of = |model: &Model<D>| {
             let mut across = self.motion(motion.state, budget);
-            let exponent = lyapunov(&mut across, model, periods, self.limits.watch)?;
+            let exponent = lyapunov_exponent(&mut across, model, periods, self.limits.watch)?;
             budget.spend(&across.numerics, 1);
             numerics += across.numerics;
             Ok::<_, DynamicsError>(exponent)
@@ -451,7 +451,7 @@ impl<const D: usize> Search<'_, D> {
         let mut motion = self.motion(found.start, budget);
         for period in 1..=n / 2 {
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.9)?;
-            let change = largest(&rigid_body.project_out(&difference(&motion.state, &found.start))) / size;
+            let change = largest(&rigid_body.project_out(&state_difference(&motion.state, &found.start))) / size;
             if n.is_multiple_of(period) && change < SAME_MOTION {
                 budget.spend(&motion.numerics, 0);
                 return Ok(Some(period));
@@ -469,7 +469,7 @@ impl<const D: usize> Search<'_, D> {
         size: f64,
         budget: &mut Budget,
     ) -> Result<Option<Found<D>>, DynamicsError> {
-        let deviations = 2 * self.model.active().count();
+        let perturbations = 2 * self.model.active().count();
         let rigid_body = RigidBodyModes::new(self.model)?;
         let mut start = State { period: 0, ..near };
         let mut numerics = Numerics::default();
@@ -477,9 +477,9 @@ impl<const D: usize> Search<'_, D> {
         for _ in 0..10 {
             let shooting = self.shooting(self.model, budget)?;
             let round = shooting.map(self.model, start, n)?;
-            budget.spend(&round.numerics, deviations);
+            budget.spend(&round.numerics, perturbations);
             numerics += round.numerics;
-            let defect = difference(&round.end, &start);
+            let defect = state_difference(&round.end, &start);
             let change = largest(&defect) / size;
             if change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last) {
                 return self.stable_orbit(&shooting, start, n, round.map, budget, &mut numerics);
@@ -515,12 +515,12 @@ impl<const D: usize> Search<'_, D> {
         }
         budget.spend(&motion.numerics, 0);
         *numerics += motion.numerics;
-        let correction = shooting.correction(&difference(&motion.state, &start), map, n);
+        let correction = shooting.correction(&state_difference(&motion.state, &start), map, n);
         let better = correction.map(|by| moved(self.model, start, &by));
         Ok(better.filter(|b| b.contact == start.contact).map_or(start, |b| State { period: start.period, ..b }))
     }
 
-    /// Largest modulus of the Floquet multipliers of deviations against the mirror symmetry over `n` periods (0 with twelve
+    /// Largest modulus of the Floquet multipliers of perturbations against the mirror symmetry over `n` periods (0 with twelve
     /// coordinates, whose own map has them all), and these among the multipliers `within` the symmetry.
     fn with_those_against_symmetry(
         &self,
@@ -544,8 +544,8 @@ impl<const D: usize> Search<'_, D> {
     }
 }
 
-/// A state with a deviation added, its contact found anew.
-pub(super) fn moved<const D: usize>(model: &Model<D>, mut state: State<D>, by: &Deviation<D>) -> State<D> {
+/// A state with a perturbation added, its contact found anew.
+pub(super) fn moved<const D: usize>(model: &Model<D>, mut state: State<D>, by: &Perturbation<D>) -> State<D> {
     for c in 0..D {
         state.x[c] += by.0[c];
         state.v[c] += by.1[c];

@@ -1,4 +1,4 @@
-//! Deviations: the linear map against differences of motions.
+//! Perturbations: the linear map against differences of motions.
 
 use super::reference::{parameters, reference};
 use crate::dynamics::*;
@@ -55,7 +55,7 @@ fn check_map<const D: usize>(p: &Parameters, name: &str) {
     }
     let gap = if p.damping_in_gap { "" } else { ", no damping in the gap" };
     let quantity = format!("map over two periods against differences, case {name}, {D} coordinates{gap}");
-    check_worst("Dynamics: deviations and multipliers", &quantity, errors, 1e-3);
+    check_worst("Dynamics: perturbations and multipliers", &quantity, errors, 1e-3);
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn the_slowest_multiplier_of_case_a() {
     let shooting = Shooting::new(&model, [9e8; 2], limits(&watch)).unwrap();
     let map = shooting.map(&model, start, 1).unwrap();
     let slowest = shooting.multipliers(&map.map)[0].norm();
-    let topic = "Dynamics: deviations and multipliers";
+    let topic = "Dynamics: perturbations and multipliers";
     check(topic, "slowest multiplier of case A, twelve coordinates", slowest, 0.891, Absolute(5e-4));
 }
 
@@ -98,10 +98,10 @@ fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
     let mut points: Vec<[f64; 3]> = Vec::new();
     for period in 1..=70 {
         (a, b) = (advance(&model, a, 1), advance(&model, b, 1));
-        let d = difference(&b, &a);
+        let d = state_difference(&b, &a);
         let held = rigid_body.project_out(&d);
         // The free rotations are coordinates of their own, left out of `held` by their places.
-        let rows = |d: &Deviation<12>, all: bool| {
+        let rows = |d: &Perturbation<12>, all: bool| {
             (0..12).filter(|c| all || c % PER_HALF != W).fold(0.0f64, |m, c| m.max(d.0[c].abs()).max(d.1[c].abs()))
         };
         if period >= 10 {
@@ -115,9 +115,9 @@ fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
 }
 
 /// How fast neighbours of case C come back to it. An independent program states -0.037 per mesh period for all twelve
-/// coordinates and -0.03 for deviations against the mirror symmetry. The multipliers of the period-2 orbit, and two motions that are
+/// coordinates and -0.03 for perturbations against the mirror symmetry. The multipliers of the period-2 orbit, and two motions that are
 /// simply followed side by side, agree with each other on a faster decay. A likely reason, not shown: free motions (rotation of each half, screw
-/// motion of the pinion), along which a deviation stays for ever, were part of the stated averages; with them in, the distance
+/// motion of the pinion), along which a perturbation stays for ever, were part of the stated averages; with them in, the distance
 /// of the same two motions falls more slowly here too.
 #[test]
 fn neighbours_of_case_c_approach_as_its_multipliers_say() {
@@ -127,7 +127,7 @@ fn neighbours_of_case_c_approach_as_its_multipliers_say() {
     let start = model.state_from(reference().cases["C"].initial_state.as_slice().try_into().unwrap());
     let start = State { period: 0, ..advance(&model, start, 400) };
     let opposite = model.against_symmetry();
-    let topic = "Dynamics: deviations and multipliers";
+    let topic = "Dynamics: perturbations and multipliers";
     let (e, small) = (1e-10, 1e-9);
     let symmetric = [e, 0.0, small, -e, 0.0, 0.0, e, 0.0, small, -e, 0.0, 0.0];
     let against = [e, e, small, -e, e, 0.0, -e, e, -small, e, e, 0.0];
