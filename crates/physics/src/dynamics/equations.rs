@@ -87,7 +87,7 @@ pub(crate) struct Equations<const D: usize, R> {
     pub(super) impact_along: R,
     pub(super) impact_normal: R,
     torsional: bool,
-    /// D = 6 only: the other half moves as the mirror image (1) or as its opposite (−1, for variations).
+    /// D = 6 only: the other half moves as the mirror image (1) or as its antisymmetric (−1, for variations).
     parity: f64,
 }
 
@@ -107,7 +107,7 @@ impl<const D: usize> Equations<D, f64> {
     }
 
     /// The equations that variations against the mirror symmetry obey (D = 6).
-    pub fn against_symmetry(&self) -> Self {
+    pub fn antisymmetric(&self) -> Self {
         Self { parity: -1.0, ..self.clone() }
     }
 

@@ -61,7 +61,7 @@ pub(crate) use rigid_body::RigidBodyModes;
 pub(crate) use integrate::Motion;
 pub(crate) use model::{Model, State};
 pub(crate) use segment::{Observer, Segment, Unobserved};
-pub(crate) use shooting::{Limits, Shooting};
+pub(crate) use shooting::{IntegrationLimits, Shooting};
 pub(crate) use trajectory::is_mirrored;
 pub(crate) use variation::{ObserverPair, Perturbation, Variation, state_difference};
 

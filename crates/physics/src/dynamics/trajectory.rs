@@ -161,7 +161,7 @@ impl<'m, const D: usize> TrajectoryObserver<'m, D> for FinalStateObserver<'m, D>
     }
 }
 
-/// z of one half the opposite of the other's, the rest equal, displacements and velocities.
+/// z of one half the antisymmetric of the other's, the rest equal, displacements and velocities.
 pub(crate) fn is_mirrored(state: &[f64; 24]) -> bool {
     [0, 12].iter().all(|&at| {
         (0..6).all(|c| {

@@ -1,6 +1,6 @@
 //! What a search for a steady motion may spend.
 
-use crate::dynamics::{DynamicsError, Limits, Model, Numerics, PER_HALF};
+use crate::dynamics::{DynamicsError, IntegrationLimits, Model, Numerics, PER_HALF};
 
 /// Work of a search in all its parts: transient, maps, exponents. One unit is one step of the six coordinates of one half, or
 /// of one perturbation carried along with them: 0.5 to 2 µs on a processor of 2020, so that a search ends within some 20 s and an
@@ -18,7 +18,7 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    pub fn new<const D: usize>(limits: &Limits<'_>) -> Self {
+    pub fn new<const D: usize>(limits: &IntegrationLimits<'_>) -> Self {
         let per_step = (D / PER_HALF) as u64;
         Self {
             left: SEARCH_UNITS.min(limits.max_steps.saturating_mul(per_step)),
@@ -37,9 +37,9 @@ impl Budget {
         steps <= self.steps(perturbations)
     }
 
-    /// Limits under which a motion that carries `perturbations` keeps within the budget.
-    pub fn limits<'a>(&self, of: &Limits<'a>, perturbations: usize) -> Limits<'a> {
-        Limits { max_steps: self.steps(perturbations), ..*of }
+    /// IntegrationLimits under which a motion that carries `perturbations` keeps within the budget.
+    pub fn limits<'a>(&self, of: &IntegrationLimits<'a>, perturbations: usize) -> IntegrationLimits<'a> {
+        IntegrationLimits { max_steps: self.steps(perturbations), ..*of }
     }
 
     /// Takes off what a motion that carried `perturbations` has spent.

@@ -208,7 +208,7 @@ fn exponents_of_the_chaotic_case() {
         for _ in 0..300 {
             motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
         }
-        let of = if against { model.against_symmetry() } else { model.clone() };
+        let of = if against { model.antisymmetric() } else { model.clone() };
         lyapunov_exponent(&mut motion, &of, periods, &Watch::none()).unwrap()
     }
     let topic = "Response: regime";

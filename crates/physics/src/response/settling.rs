@@ -12,7 +12,7 @@ use super::recording::Finished;
 use super::regime::{CHAOS_PER_MESH_PERIOD, Section, lyapunov_exponent_with};
 use super::report::{Verdict, report, solved_halves};
 use super::solve::{Point, REPEATS};
-use crate::dynamics::{DynamicsError, Integrator, Limits, Model, Motion, Numerics, Shooting, State};
+use crate::dynamics::{DynamicsError, Integrator, IntegrationLimits, Model, Motion, Numerics, Shooting, State};
 
 /// Mesh periods over which a Lyapunov exponent is averaged.
 const FOLLOWED_MESH_PERIODS: u64 = 300;
@@ -127,7 +127,7 @@ impl Point<'_> {
     /// that keeps contact, or is far beyond its backlash, is multiplied by.
     fn held_modulus<const D: usize>(&self, model: &Model<D>, near: &State<D>) -> Result<f64, DynamicsError> {
         const TOLERANCE: f64 = 1e-12;
-        let limits = Limits { tolerance: TOLERANCE, max_steps: self.analysis.max_steps, watch: self.watch };
+        let limits = IntegrationLimits { tolerance: TOLERANCE, max_steps: self.analysis.max_steps, watch: self.watch };
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), limits)?;
         let mut start = State { period: 0, phase: 0.0, ..*near };
         for j in 0..Model::<D>::HALVES {
@@ -137,8 +137,8 @@ impl Point<'_> {
                 true => model.contact_of(j, model.s(j, &start.x), 0.0),
             };
         }
-        let once = shooting.map(&model.holding_contact(), start, 1)?;
-        Ok(shooting.multipliers(&once.map).first().map_or(0.0, |m| m.norm()))
+        let period_map = shooting.period_map(&model.holding_contact(), start, 1)?;
+        Ok(shooting.multipliers(&period_map.monodromy).first().map_or(0.0, |m| m.norm()))
     }
 
     /// The answer where the motion from `start` grows without bound: its first mesh periods, told as such.

@@ -8,7 +8,7 @@ use super::recording::{Finished, Run};
 use super::report::{Asked, Verdict, report, solved_halves};
 use super::steady::{Found, Search, moved};
 use crate::dynamics::{
-    Perturbation, DynamicsError, Integrator, Limits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, integrate_trajectories,
+    Perturbation, DynamicsError, Integrator, IntegrationLimits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, integrate_trajectories,
     integrate_trajectory, state_difference, is_mirrored,
 };
 use crate::watch::{Canceled, Watch};
@@ -163,8 +163,8 @@ impl Point<'_> {
         Asked { p: self.p, analysis: self.analysis, modes: self.modes }
     }
 
-    fn limits(&self, tolerance: f64) -> Limits<'_> {
-        Limits { tolerance, max_steps: self.analysis.max_steps, watch: self.watch }
+    fn limits(&self, tolerance: f64) -> IntegrationLimits<'_> {
+        IntegrationLimits { tolerance, max_steps: self.analysis.max_steps, watch: self.watch }
     }
 
     pub(super) fn mean_stiffness_n_per_m(&self) -> [f64; 2] {
@@ -233,7 +233,7 @@ impl Point<'_> {
         let section = finished.record;
         numerics += section.numerics;
         let error_estimate = match &found.orbit {
-            Some((n, map)) => self.orbit_error(&model, &found, *n, map, &finished.recorder)?,
+            Some((n, monodromy)) => self.orbit_error(&model, &found, *n, monodromy, &finished.recorder)?,
             None => section.batch_error,
         };
         let verdict = Verdict {
@@ -322,7 +322,7 @@ impl Point<'_> {
         model: &Model<D>,
         found: &Found<D>,
         n: u64,
-        map: &nalgebra::DMatrix<f64>,
+        monodromy: &nalgebra::DMatrix<f64>,
         recorder: &Recorder<D>,
     ) -> Result<f64, DynamicsError> {
         let tight = (1e-3 * found.tolerance).max(1e-15);
@@ -330,7 +330,7 @@ impl Point<'_> {
         let once = self.record(model, (start, tight), n, self.recorder_of_rms(model), None)?.record;
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tight))?;
         let defect = state_difference(&once.last, &start);
-        let Some(correction) = shooting.correction(&defect, map, n) else { return Ok(f64::INFINITY) };
+        let Some(correction) = shooting.correction(&defect, monodromy, n) else { return Ok(f64::INFINITY) };
         let better = self
             .record(model, (moved(model, start, &correction), tight), n, self.recorder_of_rms(model), None)?
             .recorder;

@@ -5,7 +5,7 @@ use nalgebra::{Complex, DMatrix};
 use super::budget::{Budget, exhausted, steps_per_period};
 use super::regime::{CHAOS_PER_MESH_PERIOD, Section, perturbation_decay, largest, lyapunov_exponent};
 use crate::dynamics::{
-    Perturbation, DynamicsError, RigidBodyModes, Integrator, Limits, Model, Motion, Numerics, PER_HALF, Shooting, State, U,
+    Perturbation, DynamicsError, RigidBodyModes, Integrator, IntegrationLimits, Model, Motion, Numerics, PER_HALF, Shooting, State, U,
     Unobserved, state_difference,
 };
 
@@ -61,7 +61,7 @@ pub(super) struct Found<const D: usize> {
 pub(super) struct Search<'a, const D: usize> {
     pub model: &'a Model<D>,
     pub mean_stiffness_n_per_m: [f64; 2],
-    pub limits: Limits<'a>,
+    pub limits: IntegrationLimits<'a>,
     /// A motion that does not repeat is an error.
     pub must_repeat: bool,
     /// The motion that is reached from the start is wanted, even where another one keeps contact.
@@ -124,7 +124,7 @@ impl<const D: usize> Search<'_, D> {
     }
 
     fn motion(&self, start: State<D>, budget: &Budget) -> Motion<'_, D> {
-        let Limits { tolerance, .. } = self.limits;
+        let IntegrationLimits { tolerance, .. } = self.limits;
         Motion::new(self.model, start, Integrator::Taylor, tolerance, budget.steps(0))
     }
 
@@ -135,7 +135,7 @@ impl<const D: usize> Search<'_, D> {
 
     /// Fails when the mean load has a part along a motion that nothing holds.
     fn balanced(&self, shooting: &Shooting<'_, D>, defect: &Perturbation<D>) -> Result<(), DynamicsError> {
-        let unbalanced_n = shooting.unbalanced_n(defect, 1);
+        let unbalanced_n = shooting.unbalanced_force_n(defect, 1);
         let load = (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.largest_push_n(j)));
         // Rounding and truncation leave a little; a real imbalance is far above. What is not loaded cannot be unbalanced.
         if load > 0.0 && unbalanced_n > 1e-6 * load {
@@ -190,8 +190,8 @@ impl<const D: usize> Search<'_, D> {
             return Ok(None);
         }
         if D == PER_HALF {
-            let opposite = self.model.against_symmetry();
-            if !fades(&opposite, &RigidBodyModes::new(&opposite)?)? {
+            let antisymmetric = self.model.antisymmetric();
+            if !fades(&antisymmetric, &RigidBodyModes::new(&antisymmetric)?)? {
                 return Ok(None);
             }
         }
@@ -228,15 +228,15 @@ impl<const D: usize> Search<'_, D> {
             first.contact[j] = if self.model.halves[j].load < 0.0 { -1 } else { 1 };
         }
         let shooting = self.shooting(self.model, budget)?;
-        let once = shooting.map(&held, first, 1)?;
-        budget.spend(&once.numerics, perturbations);
-        *numerics += once.numerics;
-        let defect = state_difference(&once.end, &first);
+        let period_map = shooting.period_map(&held, first, 1)?;
+        budget.spend(&period_map.numerics, perturbations);
+        *numerics += period_map.numerics;
+        let defect = state_difference(&period_map.end, &first);
         self.balanced(&shooting, &defect)?;
-        let within = shooting.multipliers(&once.map);
+        let within = shooting.multipliers(&period_map.monodromy);
         let modulus = within.first().map(|m| m.norm());
         let Some(modulus) = modulus.filter(|m| *m < 1.0) else { return Ok(None) };
-        let Some(correction) = shooting.correction(&defect, &once.map, 1) else { return Ok(None) };
+        let Some(correction) = shooting.correction(&defect, &period_map.monodromy, 1) else { return Ok(None) };
         let orbit_start = moved(self.model, first, &correction);
         if orbit_start.contact != first.contact {
             return Ok(None);
@@ -248,16 +248,16 @@ impl<const D: usize> Search<'_, D> {
         if motion.contact_changed {
             return Ok(None);
         }
-        let start = self.polished(&shooting, (orbit_start, 1), &once.map, modulus, budget, numerics)?;
-        let (against, multipliers) = self.with_those_against_symmetry(within, start, 1, budget)?;
+        let start = self.polished(&shooting, (orbit_start, 1), &period_map.monodromy, modulus, budget, numerics)?;
+        let (antisymmetric_modulus, multipliers) = self.with_antisymmetric_multipliers(within, start, 1, budget)?;
         Ok(Some(Found {
             start,
             multipliers,
             record: 1,
-            orbit: Some((1, once.map)),
-            floquet: Some(modulus.max(against)),
+            orbit: Some((1, period_map.monodromy)),
+            floquet: Some(modulus.max(antisymmetric_modulus)),
             lyapunov: None,
-            leaves_symmetry: against > 1.0,
+            leaves_symmetry: antisymmetric_modulus > 1.0,
             tolerance: self.limits.tolerance,
             numerics: *numerics,
         }))
@@ -278,45 +278,45 @@ impl<const D: usize> Search<'_, D> {
         let perturbations = 2 * self.model.active().count();
         let shooting = self.shooting(self.model, budget)?;
         let mut at = State { period: 0, ..start };
-        let mut round = shooting.map(self.model, at, 1)?;
-        budget.spend(&round.numerics, perturbations);
-        *numerics += round.numerics;
-        let mut defect = state_difference(&round.end, &at);
+        let mut period_map = shooting.period_map(self.model, at, 1)?;
+        budget.spend(&period_map.numerics, perturbations);
+        *numerics += period_map.numerics;
+        let mut defect = state_difference(&period_map.end, &at);
         self.balanced(&shooting, &defect)?;
         let mut last = f64::INFINITY;
-        let mut fresh_map = true;
+        let mut monodromy_is_current = true;
         for _ in 0..ROUNDS {
-            let size = round.size.max(1e-9 * largest(&(at.x, [0.0; D])));
+            let size = period_map.size.max(1e-9 * largest(&(at.x, [0.0; D])));
             let change = largest(&defect) / size;
             let closed = change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last);
-            if closed && fresh_map {
+            if closed && monodromy_is_current {
                 break;
             }
-            if closed || (!fresh_map && change > CONVERGES * last) {
-                round = shooting.map(self.model, at, 1)?;
-                budget.spend(&round.numerics, perturbations);
-                *numerics += round.numerics;
-                defect = state_difference(&round.end, &at);
-                fresh_map = true;
+            if closed || (!monodromy_is_current && change > CONVERGES * last) {
+                period_map = shooting.period_map(self.model, at, 1)?;
+                budget.spend(&period_map.numerics, perturbations);
+                *numerics += period_map.numerics;
+                defect = state_difference(&period_map.end, &at);
+                monodromy_is_current = true;
                 if closed {
                     break;
                 }
             }
             last = change;
-            let Some(correction) = shooting.correction(&defect, &round.map, 1) else { return Ok(None) };
+            let Some(correction) = shooting.correction(&defect, &period_map.monodromy, 1) else { return Ok(None) };
             at = moved(self.model, at, &correction);
             let mut motion = self.motion(at, budget);
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
             budget.spend(&motion.numerics, 0);
             *numerics += motion.numerics;
             defect = state_difference(&motion.state, &at);
-            fresh_map = false;
+            monodromy_is_current = false;
         }
-        let size = round.size.max(1e-9 * largest(&(at.x, [0.0; D])));
-        if !fresh_map || round.separated || largest(&defect) / size > 1e-9f64.max(10.0 * self.limits.tolerance) {
+        let size = period_map.size.max(1e-9 * largest(&(at.x, [0.0; D])));
+        if !monodromy_is_current || period_map.separated || largest(&defect) / size > 1e-9f64.max(10.0 * self.limits.tolerance) {
             return Ok(None);
         }
-        self.stable_orbit(&shooting, at, 1, round.map, budget, numerics)
+        self.stable_orbit(&shooting, at, 1, period_map.monodromy, budget, numerics)
     }
 
     /// The orbit that closes from `at` after `n` mesh periods with its multipliers; None where a perturbation grows.
@@ -325,23 +325,23 @@ impl<const D: usize> Search<'_, D> {
         shooting: &Shooting<'_, D>,
         at: State<D>,
         n: u64,
-        map: DMatrix<f64>,
+        monodromy: DMatrix<f64>,
         budget: &mut Budget,
         numerics: &mut Numerics,
     ) -> Result<Option<Found<D>>, DynamicsError> {
-        let within = shooting.multipliers(&map);
+        let within = shooting.multipliers(&monodromy);
         let modulus = within.first().map(|m| m.norm());
         let Some(modulus) = modulus.filter(|m| *m < 1.0) else { return Ok(None) };
-        let start = self.polished(shooting, (at, n), &map, modulus, budget, numerics)?;
-        let (against, multipliers) = self.with_those_against_symmetry(within, start, n, budget)?;
+        let start = self.polished(shooting, (at, n), &monodromy, modulus, budget, numerics)?;
+        let (antisymmetric_modulus, multipliers) = self.with_antisymmetric_multipliers(within, start, n, budget)?;
         Ok(Some(Found {
             multipliers,
             start,
             record: n,
-            orbit: Some((n, map)),
-            floquet: Some(modulus.max(against).powf(1.0 / n as f64)),
+            orbit: Some((n, monodromy)),
+            floquet: Some(modulus.max(antisymmetric_modulus).powf(1.0 / n as f64)),
             lyapunov: None,
-            leaves_symmetry: against > 1.0,
+            leaves_symmetry: antisymmetric_modulus > 1.0,
             tolerance: self.limits.tolerance,
             numerics: *numerics,
         }))
@@ -410,7 +410,7 @@ impl<const D: usize> Search<'_, D> {
             Ok::<_, DynamicsError>(exponent)
         };
         let exponent = exponent_of(self.model)?;
-        let leaves_symmetry = D == PER_HALF && exponent_of(&self.model.against_symmetry())? > CHAOS_PER_MESH_PERIOD;
+        let leaves_symmetry = D == PER_HALF && exponent_of(&self.model.antisymmetric())? > CHAOS_PER_MESH_PERIOD;
         Ok(Found {
             start: motion.state,
             record: LONG_RECORD_MESH_PERIODS.min(LONG_RECORD_STEPS / steps.max(1)).max(LEAST_PATIENCE_MESH_PERIODS),
@@ -476,16 +476,16 @@ impl<const D: usize> Search<'_, D> {
         let mut last = f64::INFINITY;
         for _ in 0..10 {
             let shooting = self.shooting(self.model, budget)?;
-            let round = shooting.map(self.model, start, n)?;
-            budget.spend(&round.numerics, perturbations);
-            numerics += round.numerics;
-            let defect = state_difference(&round.end, &start);
+            let period_map = shooting.period_map(self.model, start, n)?;
+            budget.spend(&period_map.numerics, perturbations);
+            numerics += period_map.numerics;
+            let defect = state_difference(&period_map.end, &start);
             let change = largest(&defect) / size;
             if change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last) {
-                return self.stable_orbit(&shooting, start, n, round.map, budget, &mut numerics);
+                return self.stable_orbit(&shooting, start, n, period_map.monodromy, budget, &mut numerics);
             }
             last = change;
-            let Some(correction) = shooting.correction(&defect, &round.map, n) else { return Ok(None) };
+            let Some(correction) = shooting.correction(&defect, &period_map.monodromy, n) else { return Ok(None) };
             // A free motion may need any speed to close.
             if largest(&rigid_body.project_out(&correction)) > 0.1 * size {
                 return Ok(None);
@@ -500,7 +500,7 @@ impl<const D: usize> Search<'_, D> {
         &self,
         shooting: &Shooting<'_, D>,
         (start, n): (State<D>, u64),
-        map: &DMatrix<f64>,
+        monodromy: &DMatrix<f64>,
         modulus: f64,
         budget: &mut Budget,
         numerics: &mut Numerics,
@@ -515,14 +515,14 @@ impl<const D: usize> Search<'_, D> {
         }
         budget.spend(&motion.numerics, 0);
         *numerics += motion.numerics;
-        let correction = shooting.correction(&state_difference(&motion.state, &start), map, n);
+        let correction = shooting.correction(&state_difference(&motion.state, &start), monodromy, n);
         let better = correction.map(|by| moved(self.model, start, &by));
         Ok(better.filter(|b| b.contact == start.contact).map_or(start, |b| State { period: start.period, ..b }))
     }
 
     /// Largest modulus of the Floquet multipliers of perturbations against the mirror symmetry over `n` periods (0 with twelve
     /// coordinates, whose own map has them all), and these among the multipliers `within` the symmetry.
-    fn with_those_against_symmetry(
+    fn with_antisymmetric_multipliers(
         &self,
         mut within: Vec<Complex<f64>>,
         start: State<D>,
@@ -532,11 +532,11 @@ impl<const D: usize> Search<'_, D> {
         if D != PER_HALF {
             return Ok((0.0, within));
         }
-        let opposite = self.model.against_symmetry();
-        let shooting = self.shooting(&opposite, budget)?;
-        let round = shooting.map(self.model, start, n)?;
-        budget.spend(&round.numerics, 2 * opposite.active().count());
-        let against = shooting.multipliers(&round.map);
+        let antisymmetric = self.model.antisymmetric();
+        let shooting = self.shooting(&antisymmetric, budget)?;
+        let period_map = shooting.period_map(self.model, start, n)?;
+        budget.spend(&period_map.numerics, 2 * antisymmetric.active().count());
+        let against = shooting.multipliers(&period_map.monodromy);
         let largest = against.first().map_or(f64::INFINITY, |m| m.norm());
         within.extend(against);
         within.sort_by(|a, b| b.norm().total_cmp(&a.norm()));

@@ -6,8 +6,8 @@ use crate::watch::Watch;
 use herringbone_oracle::Tolerance::Absolute;
 use herringbone_oracle::{check, check_worst};
 
-fn limits<'a>(watch: &'a Watch<'static>) -> Limits<'a> {
-    Limits { tolerance: 1e-13, max_steps: u64::MAX, watch }
+fn limits<'a>(watch: &'a Watch<'static>) -> IntegrationLimits<'a> {
+    IntegrationLimits { tolerance: 1e-13, max_steps: u64::MAX, watch }
 }
 
 fn advance<const D: usize>(model: &Model<D>, mut state: State<D>, periods: u64) -> State<D> {
@@ -27,7 +27,7 @@ fn check_map<const D: usize>(p: &Parameters, name: &str) {
     let start = model.state_from(reference().cases[name].initial_state.as_slice().try_into().unwrap());
     let start = State { period: 0, ..advance(&model, start, 40) };
     let shooting = Shooting::new(&model, [9e8; 2], limits(&watch)).unwrap();
-    let map = shooting.map(&model, start, 2).unwrap();
+    let map = shooting.period_map(&model, start, 2).unwrap();
     let active: Vec<usize> = model.active().collect();
     let n = active.len();
     let mut errors = Vec::new();
@@ -43,14 +43,14 @@ fn check_map<const D: usize>(p: &Parameters, name: &str) {
             advance(&model, s, 2)
         };
         let (plus, minus) = (moved(1.0), moved(-1.0));
-        let scale = map.map.column(column).amax();
+        let scale = map.monodromy.column(column).amax();
         for row in 0..2 * n {
             let slope = if row < n {
                 plus.x[active[row]] - minus.x[active[row]]
             } else {
                 plus.v[active[row - n]] - minus.v[active[row - n]]
             } / (2.0 * step);
-            errors.push((slope - map.map[(row, column)]) / scale);
+            errors.push((slope - map.monodromy[(row, column)]) / scale);
         }
     }
     let gap = if p.damping_in_gap { "" } else { ", no damping in the gap" };
@@ -76,8 +76,8 @@ fn the_slowest_multiplier_of_case_a() {
     let model = Model::<12>::new(&parameters("A")).unwrap();
     let start = model.state_from(reference().cases["A"].initial_state.as_slice().try_into().unwrap());
     let shooting = Shooting::new(&model, [9e8; 2], limits(&watch)).unwrap();
-    let map = shooting.map(&model, start, 1).unwrap();
-    let slowest = shooting.multipliers(&map.map)[0].norm();
+    let map = shooting.period_map(&model, start, 1).unwrap();
+    let slowest = shooting.multipliers(&map.monodromy)[0].norm();
     let topic = "Dynamics: perturbations and multipliers";
     check(topic, "slowest multiplier of case A, twelve coordinates", slowest, 0.891, Absolute(5e-4));
 }
@@ -126,15 +126,15 @@ fn neighbours_of_case_c_approach_as_its_multipliers_say() {
     let model = Model::<6>::new(&p).unwrap();
     let start = model.state_from(reference().cases["C"].initial_state.as_slice().try_into().unwrap());
     let start = State { period: 0, ..advance(&model, start, 400) };
-    let opposite = model.against_symmetry();
+    let antisymmetric = model.antisymmetric();
     let topic = "Dynamics: perturbations and multipliers";
     let (e, small) = (1e-10, 1e-9);
     let symmetric = [e, 0.0, small, -e, 0.0, 0.0, e, 0.0, small, -e, 0.0, 0.0];
     let against = [e, e, small, -e, e, 0.0, -e, e, -small, e, e, 0.0];
-    for (what, of, push) in [("within", &model, symmetric), ("against", &opposite, against)] {
+    for (what, of, push) in [("within", &model, symmetric), ("against", &antisymmetric, against)] {
         let shooting = Shooting::new(of, [9e8; 2], limits(&watch)).unwrap();
-        let map = shooting.map(&model, start, 2).unwrap();
-        let exponent = shooting.multipliers(&map.map)[0].norm().ln() / 2.0;
+        let map = shooting.period_map(&model, start, 2).unwrap();
+        let exponent = shooting.multipliers(&map.monodromy)[0].norm().ln() / 2.0;
         let (held, all) = approach("C", push);
         println!("case C, {what}: multipliers {exponent:.5}, followed {held:.5}, free motions left in {all:.5}");
         let quantity = format!("case C, decay {what} the mirror symmetry per mesh period, two motions followed");
