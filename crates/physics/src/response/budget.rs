@@ -81,6 +81,6 @@ pub(super) fn steps_per_period<const D: usize>(model: &Model<D>) -> f64 {
 }
 
 /// The answer to a search whose budget is used up at `time_s`.
-pub(super) fn exhausted(steps: u64, time_s: f64) -> DynamicsError {
+pub(super) fn budget_exhausted(steps: u64, time_s: f64) -> DynamicsError {
     DynamicsError::TooManySteps { time_s, limit: steps }
 }

@@ -6,7 +6,7 @@ use super::energy::EnergyBalance;
 use super::recorder::Recorder;
 use super::recording::{Finished, Run};
 use super::report::{Asked, Verdict, report, solved_halves};
-use super::steady::{Found, Search, moved};
+use super::steady::{SteadyMotion, SteadyStateSearch, displaced};
 use crate::dynamics::{
     Perturbation, DynamicsError, Integrator, IntegrationLimits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, integrate_trajectories,
     integrate_trajectory, state_difference, is_mirrored,
@@ -174,7 +174,7 @@ impl Point<'_> {
     /// The steady state; None when six coordinates do not tell the whole story.
     fn steady<const D: usize>(&self, start: &[f64; 24], off_symmetry: bool) -> Result<Option<Response>, DynamicsError> {
         let model = Model::<D>::new(self.p)?;
-        let search = Search {
+        let search = SteadyStateSearch {
             model: &model,
             mean_stiffness_n_per_m: self.mean_stiffness_n_per_m(),
             limits: self.limits((1e-3 * self.analysis.accuracy).clamp(1e-14, 1e-6)),
@@ -190,7 +190,7 @@ impl Point<'_> {
             for c in 0..PER_HALF - 1 {
                 push.0[c] = OFF_SYMMETRY * state.x[c];
             }
-            state = moved(&model, state, &push);
+            state = displaced(&model, state, &push);
         }
         let bounded = |error: DynamicsError| {
             let diverged = matches!(error, DynamicsError::Diverged { .. }) && self.analysis.method == Method::Auto;
@@ -320,7 +320,7 @@ impl Point<'_> {
     fn orbit_error<const D: usize>(
         &self,
         model: &Model<D>,
-        found: &Found<D>,
+        found: &SteadyMotion<D>,
         n: u64,
         monodromy: &nalgebra::DMatrix<f64>,
         recorder: &Recorder<D>,
@@ -332,7 +332,7 @@ impl Point<'_> {
         let defect = state_difference(&once.last, &start);
         let Some(correction) = shooting.correction(&defect, monodromy, n) else { return Ok(f64::INFINITY) };
         let better = self
-            .record(model, (moved(model, start, &correction), tight), n, self.recorder_of_rms(model), None)?
+            .record(model, (displaced(model, start, &correction), tight), n, self.recorder_of_rms(model), None)?
             .recorder;
         Ok(SAFETY * rms_difference(recorder, &better, smallest(model)) + ROUNDING)
     }

@@ -156,14 +156,14 @@ fn perturbations_are_differences_of_motions() {
         let mut motion = Motion::new(&model, from, Integrator::Taylor, 1e-13, 1_000_000);
         motion.advance_period(&mut variation, &Watch::none(), 0.0).unwrap();
         for (c, column) in variation.columns.iter().take(5).enumerate() {
-            let moved = |by: f64| {
+            let displaced = |by: f64| {
                 let mut state = from;
                 state.x[c] += by;
                 state.contact[0] = model.contact_of(0, model.s(0, &state.x), 0.0);
                 go(state)
             };
             let step = 2e-10;
-            let (up, down) = (moved(step), moved(-step));
+            let (up, down) = (displaced(step), displaced(-step));
             let size = column.0.iter().fold(0.0f64, |m, v| m.max(v.abs()));
             let worst = (0..5)
                 .map(|r| ((up.x[r] - down.x[r]) / (2.0 * step) - column.0[r]) / size)

@@ -33,7 +33,7 @@ fn check_map<const D: usize>(p: &Parameters, name: &str) {
     let mut errors = Vec::new();
     for column in 0..2 * n {
         let step = 1e-11;
-        let moved = |sign: f64| {
+        let displaced = |sign: f64| {
             let mut s = start;
             if column < n {
                 s.x[active[column]] += sign * step;
@@ -42,7 +42,7 @@ fn check_map<const D: usize>(p: &Parameters, name: &str) {
             }
             advance(&model, s, 2)
         };
-        let (plus, minus) = (moved(1.0), moved(-1.0));
+        let (plus, minus) = (displaced(1.0), displaced(-1.0));
         let scale = map.monodromy.column(column).amax();
         for row in 0..2 * n {
             let slope = if row < n {
