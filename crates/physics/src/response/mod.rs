@@ -14,7 +14,7 @@ mod recording;
 mod regime;
 mod report;
 mod rest;
-mod settling;
+mod classification;
 mod solve;
 mod spectrum;
 mod statistics;

@@ -194,7 +194,7 @@ impl Point<'_> {
         }
         let bounded = |error: DynamicsError| {
             let diverged = matches!(error, DynamicsError::Diverged { .. }) && self.analysis.method == Method::Auto;
-            if diverged { self.unbounded(&model, state, error).map(Some) } else { Err(error) }
+            if diverged { self.unstable_response(&model, state, error).map(Some) } else { Err(error) }
         };
         let found = match search.run(state) {
             Ok(found) => found,
@@ -215,16 +215,16 @@ impl Point<'_> {
             Ok(finished) => finished,
             Err(error) => return bounded(error),
         };
-        let fate = match &found.orbit {
+        let classification = match &found.orbit {
             Some(_) => None,
             None => {
                 let by = (Integrator::Taylor, found.tolerance);
-                Some(self.fate(&model, &finished, by, found.lyapunov)?)
+                Some(self.classify(&model, &finished, by, found.lyapunov)?)
             }
         };
-        if let Some(fate) = &fate {
-            numerics += fate.numerics;
-            if fate.regime == Regime::Unstable {
+        if let Some(classification) = &classification {
+            numerics += classification.numerics;
+            if classification.regime == Regime::Unstable {
                 return bounded(DynamicsError::Diverged {
                     time_s: finished.from.period as f64 * self.p.mesh_period_s(),
                 });
@@ -237,10 +237,10 @@ impl Point<'_> {
             None => section.batch_error,
         };
         let verdict = Verdict {
-            regime: match (&found.orbit, fate) {
+            regime: match (&found.orbit, classification) {
                 (Some((1, _)), _) => Regime::Period1,
                 (Some(_), _) => Regime::PeriodN,
-                (None, fate) => fate.map_or(Regime::QuasiPeriodic, |fate| fate.regime),
+                (None, classification) => classification.map_or(Regime::QuasiPeriodic, |classification| classification.regime),
             },
             period: found.orbit.as_ref().map(|(n, _)| *n),
             floquet: found.floquet,
@@ -283,11 +283,11 @@ impl Point<'_> {
             numerics: record.numerics,
         };
         if period.is_none() {
-            let fate = self.fate(model, finished, (self.analysis.integrator, tolerance), None)?;
-            verdict.numerics += fate.numerics;
-            verdict.lyapunov = Some(fate.lyapunov);
-            verdict.regime = fate.regime;
-            if fate.regime == Regime::Chaotic {
+            let classification = self.classify(model, finished, (self.analysis.integrator, tolerance), None)?;
+            verdict.numerics += classification.numerics;
+            verdict.lyapunov = Some(classification.lyapunov);
+            verdict.regime = classification.regime;
+            if classification.regime == Regime::Chaotic {
                 verdict.error_estimate = record.batch_error;
             }
         }
@@ -452,7 +452,7 @@ fn integrate<const D: usize>(
         match next {
             Err(DynamicsError::Canceled(canceled)) => return Err(canceled),
             Err(error @ DynamicsError::Diverged { .. }) => {
-                out[i] = point.unbounded(model, model.state_from(&point.start()), error);
+                out[i] = point.unstable_response(model, model.state_from(&point.start()), error);
             }
             Err(error) => out[i] = Err(error),
             Ok((finished, verdict, None)) => {

@@ -17,20 +17,20 @@ use crate::dynamics::{DynamicsError, Integrator, IntegrationLimits, Model, Motio
 /// Mesh periods over which a Lyapunov exponent is averaged.
 const FOLLOWED_MESH_PERIODS: u64 = 300;
 /// A multiplier this close to one is one: of an undamped motion, computed.
-const SAME_MODULUS: f64 = 1e-7;
+const UNIT_MODULUS_TOLERANCE: f64 = 1e-7;
 /// A trend of the logarithm of a perturbation per mesh period below which it decays. Along a torus a perturbation swings about what it was; the
 /// trend of that over the mesh periods followed stays well below this.
 const DECAY_PER_MESH_PERIOD: f64 = 1e-3;
 /// A motion this many times as far as the backlash is wide is ruled by the stiffness of both flanks alone.
-const FAR: f64 = 100.0;
+const BACKLASH_MULTIPLE: f64 = 100.0;
 /// Parts of a record whose RMS values rise from each to the next, to at least twice in all, when it grows.
-const PARTS: usize = 6;
+const RECORD_PARTS: usize = 6;
 /// Of a motion that grows without bound so many mesh periods are recorded, or as many as it takes to grow this much.
-const UNBOUNDED_MESH_PERIODS: f64 = 40.0;
-const UNBOUNDED_GROWTH: f64 = 1e3;
+const UNSTABLE_MESH_PERIODS: f64 = 40.0;
+const UNSTABLE_GROWTH: f64 = 1e3;
 
 /// What became of a motion.
-pub(super) struct Fate {
+pub(super) struct Classification {
     pub regime: Regime,
     /// Largest Lyapunov exponent per mesh period; of a motion that grows without bound its growth rate.
     pub lyapunov: f64,
@@ -38,7 +38,7 @@ pub(super) struct Fate {
 }
 
 /// A motion followed on with a perturbation beside it.
-struct Course {
+struct ContinuedMotion {
     exponent: f64,
     /// The motion has come to repeat.
     repeats: bool,
@@ -52,34 +52,34 @@ impl Point<'_> {
     ///
     /// # Errors
     /// [`DynamicsError`] where the motion cannot be followed.
-    pub(super) fn fate<const D: usize>(
+    pub(super) fn classify<const D: usize>(
         &self,
         model: &Model<D>,
         finished: &Finished<'_, D>,
         (integrator, tolerance): (Integrator, f64),
         known: Option<f64>,
-    ) -> Result<Fate, DynamicsError> {
+    ) -> Result<Classification, DynamicsError> {
         let last = finished.record.last;
         // A motion on a torus may come near to itself again and again; one that settles does what it did not do before.
-        let came_near = finished.record.recent.settled_period(REPEATS).is_some();
-        let course = match known {
+        let nearly_repeated = finished.record.recent.settled_period(REPEATS).is_some();
+        let continued = match known {
             Some(exponent) if exponent > CHAOS_PER_MESH_PERIOD => {
-                Ok(Course { exponent, repeats: false, decays: false, numerics: Numerics::default() })
+                Ok(ContinuedMotion { exponent, repeats: false, decays: false, numerics: Numerics::default() })
             }
-            _ => self.follow(model, last, integrator, tolerance),
+            _ => self.continue_motion(model, last, integrator, tolerance),
         };
         // Under a contact force the equations are not linear in contact either.
-        let linear = !model.follows_contact() && kept_contact(&finished.recorder);
-        let modulus = if linear || course.is_err() || grows_far(model, finished) {
-            self.held_modulus(model, &last)?
+        let linear = !model.follows_contact() && contact_never_changes(&finished.recorder);
+        let modulus = if linear || continued.is_err() || grows_beyond_backlash(model, finished) {
+            self.fixed_contact_modulus(model, &last)?
         } else {
             0.0
         };
-        let grows = modulus > 1.0 + SAME_MODULUS;
-        let (course, diverged) = match course {
-            Ok(course) => (course, false),
+        let grows = modulus > 1.0 + UNIT_MODULUS_TOLERANCE;
+        let (continued, diverged) = match continued {
+            Ok(continued) => (continued, false),
             Err(DynamicsError::Diverged { .. }) if grows => {
-                (Course { exponent: modulus.ln(), repeats: false, decays: false, numerics: Numerics::default() }, true)
+                (ContinuedMotion { exponent: modulus.ln(), repeats: false, decays: false, numerics: Numerics::default() }, true)
             }
             Err(other) => return Err(other),
         };
@@ -87,31 +87,31 @@ impl Point<'_> {
             match grows {
                 true if !model.switches() => Regime::Unstable,
                 true => Regime::NotSettled,
-                false if modulus < 1.0 - SAME_MODULUS => Regime::NotSettled,
+                false if modulus < 1.0 - UNIT_MODULUS_TOLERANCE => Regime::NotSettled,
                 false => Regime::QuasiPeriodic,
             }
         } else if grows {
             Regime::Unstable
-        } else if course.exponent > CHAOS_PER_MESH_PERIOD {
+        } else if continued.exponent > CHAOS_PER_MESH_PERIOD {
             Regime::Chaotic
-        } else if course.decays || (course.repeats && !came_near) {
+        } else if continued.decays || (continued.repeats && !nearly_repeated) {
             Regime::NotSettled
         } else {
             Regime::QuasiPeriodic
         };
-        let exponent = known.unwrap_or(course.exponent);
+        let exponent = known.unwrap_or(continued.exponent);
         let lyapunov = if regime == Regime::Unstable { modulus.ln() } else { exponent };
-        Ok(Fate { regime, lyapunov, numerics: course.numerics })
+        Ok(Classification { regime, lyapunov, numerics: continued.numerics })
     }
 
     /// Follows a motion on from where its record ended.
-    fn follow<const D: usize>(
+    fn continue_motion<const D: usize>(
         &self,
         model: &Model<D>,
         from: State<D>,
         integrator: Integrator,
         tolerance: f64,
-    ) -> Result<Course, DynamicsError> {
+    ) -> Result<ContinuedMotion, DynamicsError> {
         let mut motion = Motion::new(model, from, integrator, tolerance, self.analysis.max_steps);
         let mut section = Section::without_rigid_body(model)?;
         let mut growth = Vec::with_capacity(FOLLOWED_MESH_PERIODS as usize);
@@ -120,12 +120,12 @@ impl Point<'_> {
             section.push(*state);
         })?;
         let decays = exponent == f64::NEG_INFINITY || decays(&growth[growth.len() / 10..]);
-        Ok(Course { exponent, repeats: section.settled_period(REPEATS).is_some(), decays, numerics: motion.numerics })
+        Ok(ContinuedMotion { exponent, repeats: section.settled_period(REPEATS).is_some(), decays, numerics: motion.numerics })
     }
 
     /// Largest modulus of the Floquet multipliers over one mesh period with contact held, free motions apart: what the vibration of a pair
     /// that keeps contact, or is far beyond its backlash, is multiplied by.
-    fn held_modulus<const D: usize>(&self, model: &Model<D>, near: &State<D>) -> Result<f64, DynamicsError> {
+    fn fixed_contact_modulus<const D: usize>(&self, model: &Model<D>, near: &State<D>) -> Result<f64, DynamicsError> {
         const TOLERANCE: f64 = 1e-12;
         let limits = IntegrationLimits { tolerance: TOLERANCE, max_steps: self.analysis.max_steps, watch: self.watch };
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), limits)?;
@@ -145,18 +145,18 @@ impl Point<'_> {
     ///
     /// # Errors
     /// `error` where the growth is none of the mesh's own; [`DynamicsError`] where not even a mesh period can be followed.
-    pub(super) fn unbounded<const D: usize>(
+    pub(super) fn unstable_response<const D: usize>(
         &self,
         model: &Model<D>,
         start: State<D>,
         error: DynamicsError,
     ) -> Result<Response, DynamicsError> {
         const TOLERANCE: f64 = 1e-9;
-        let modulus = self.held_modulus(model, &start)?;
-        if modulus.is_nan() || modulus <= 1.0 + SAME_MODULUS {
+        let modulus = self.fixed_contact_modulus(model, &start)?;
+        if modulus.is_nan() || modulus <= 1.0 + UNIT_MODULUS_TOLERANCE {
             return Err(error);
         }
-        let periods = (UNBOUNDED_GROWTH.ln() / modulus.ln()).clamp(1.0, UNBOUNDED_MESH_PERIODS) as u64;
+        let periods = (UNSTABLE_GROWTH.ln() / modulus.ln()).clamp(1.0, UNSTABLE_MESH_PERIODS) as u64;
         let start = State { period: 0, ..start };
         let recorder = self.recorder(model, periods);
         let finished = self.record(model, (start, TOLERANCE), periods, recorder, self.energy(model))?;
@@ -178,21 +178,21 @@ impl Point<'_> {
 }
 
 /// No half changed its contact over the record, and each touched.
-fn kept_contact<const D: usize>(recorder: &Recorder<D>) -> bool {
+fn contact_never_changes<const D: usize>(recorder: &Recorder<D>) -> bool {
     recorder.contact_shares().iter().all(|share| share[0] == 1.0 || share[2] == 1.0)
 }
 
 /// The record grows from each of its parts to the next, and is far beyond the backlash.
-fn grows_far<const D: usize>(model: &Model<D>, finished: &Finished<'_, D>) -> bool {
+fn grows_beyond_backlash<const D: usize>(model: &Model<D>, finished: &Finished<'_, D>) -> bool {
     let far = solved_halves::<D>().any(|half| {
         finished.recorder.gathered(ChannelId::s(half)).is_some_and(|s| {
             let s = s.finish();
-            s.max > FAR * model.b && s.min < -FAR * model.b
+            s.max > BACKLASH_MULTIPLE * model.b && s.min < -BACKLASH_MULTIPLE * model.b
         })
     });
     let squares = finished.record.mean_squares.iter().find(|(id, _)| *id == ChannelId::mesh_acceleration(0));
-    let Some((_, squares)) = squares.filter(|(_, squares)| far && squares.len() >= PARTS) else { return false };
-    let part = squares.len() / PARTS;
+    let Some((_, squares)) = squares.filter(|(_, squares)| far && squares.len() >= RECORD_PARTS) else { return false };
+    let part = squares.len() / RECORD_PARTS;
     let means: Vec<f64> = squares.chunks_exact(part).map(|part| part.iter().sum()).collect();
     means.windows(2).all(|two| two[1] > two[0]) && means[means.len() - 1] > 4.0 * means[0]
 }
@@ -367,7 +367,7 @@ mod tests {
 
     /// Case B stays chaotic, and an impact changes nothing of that.
     #[test]
-    fn chaos_stays_chaos() {
+    fn a_chaotic_motion_is_classified_as_chaotic() {
         let mut p = parameters("B");
         for pulse in [true, false] {
             if !pulse {
