@@ -44,9 +44,9 @@ impl Stiffness {
 
     /// Value at the phase `phase` (any real number), N/m.
     pub fn at(&self, phase: f64) -> f64 {
-        let course = StiffnessCourse::new(self, 0.0, 1.0);
+        let waveform = StiffnessWaveform::new(self, 0.0, 1.0);
         let phase = phase.rem_euclid(1.0);
-        course.value(phase, phase)
+        waveform.value(phase, phase)
     }
 
     pub(super) fn validate(&self) -> Result<(), DynamicsError> {
@@ -146,14 +146,14 @@ const PER_PARITY: usize = MAX_ORDER / 2 + 1;
 
 /// Truncated Fourier series with the tables that give its Taylor coefficients in scaled time.
 #[derive(Debug, Clone)]
-pub(crate) struct Series<R> {
+pub(crate) struct FourierSeries<R> {
     constant: R,
-    terms: Vec<Term<R>>,
+    terms: Vec<HarmonicTerm<R>>,
 }
 
 /// One harmonic a cos(iθ + φ).
 #[derive(Debug, Clone)]
-struct Term<R> {
+struct HarmonicTerm<R> {
     /// a cosφ and a sinφ.
     cos: R,
     sin: R,
@@ -163,7 +163,7 @@ struct Term<R> {
     odd: [R; PER_PARITY],
 }
 
-impl Series<f64> {
+impl FourierSeries<f64> {
     fn new(constant: f64, factor: f64, harmonics: &[Harmonic], shift: f64, period_tau: f64) -> Self {
         let term = |(i, h): (usize, &Harmonic)| {
             let order = (i + 1) as f64;
@@ -179,7 +179,7 @@ impl Series<f64> {
                 }
                 power *= TAU * order / (period_tau * (n + 1) as f64);
             }
-            Term { cos: factor * h.amplitude * cos, sin: factor * h.amplitude * sin, even, odd }
+            HarmonicTerm { cos: factor * h.amplitude * cos, sin: factor * h.amplitude * sin, even, odd }
         };
         Self { constant, terms: harmonics.iter().enumerate().map(term).collect() }
     }
@@ -192,16 +192,16 @@ impl Series<f64> {
     }
 }
 
-impl<R: Real> Series<R> {
+impl<R: Real> FourierSeries<R> {
     pub fn zero() -> Self {
         Self { constant: R::splat(0.0), terms: Vec::new() }
     }
 
     /// Puts one motion's series into a lane. Shorter series have zero terms.
-    pub fn put(&mut self, lane: usize, one: &Series<f64>) {
+    pub fn put(&mut self, lane: usize, one: &FourierSeries<f64>) {
         let zero = R::splat(0.0);
         while self.terms.len() < one.terms.len() {
-            self.terms.push(Term { cos: zero, sin: zero, even: [zero; PER_PARITY], odd: [zero; PER_PARITY] });
+            self.terms.push(HarmonicTerm { cos: zero, sin: zero, even: [zero; PER_PARITY], odd: [zero; PER_PARITY] });
         }
         self.constant.set(lane, one.constant);
         for (i, to) in self.terms.iter_mut().enumerate() {
@@ -262,7 +262,7 @@ pub(crate) type Coefficients = [f64; MAX_ORDER + 1];
 /// A stiffness made ready for the methods. Scaled time τ is time times a reference frequency; `period_tau` is one mesh
 /// period in it.
 #[derive(Debug, Clone)]
-pub(crate) struct StiffnessCourse {
+pub(crate) struct StiffnessWaveform {
     kind: StiffnessKind,
     shift: f64,
     period_tau: f64,
@@ -270,18 +270,18 @@ pub(crate) struct StiffnessCourse {
 
 #[derive(Debug, Clone)]
 enum StiffnessKind {
-    Fourier(Series<f64>),
+    Fourier(FourierSeries<f64>),
     Pieces(Vec<[f64; 4]>),
 }
 
-impl StiffnessCourse {
+impl StiffnessWaveform {
     pub fn new(stiffness: &Stiffness, shift: f64, period_tau: f64) -> Self {
         let kind = match stiffness {
             Stiffness::Constant { mean_n_per_m } => {
-                StiffnessKind::Fourier(Series::new(*mean_n_per_m, 0.0, &[], shift, period_tau))
+                StiffnessKind::Fourier(FourierSeries::new(*mean_n_per_m, 0.0, &[], shift, period_tau))
             }
             Stiffness::Fourier { mean_n_per_m, harmonics } => {
-                StiffnessKind::Fourier(Series::new(*mean_n_per_m, *mean_n_per_m, harmonics, shift, period_tau))
+                StiffnessKind::Fourier(FourierSeries::new(*mean_n_per_m, *mean_n_per_m, harmonics, shift, period_tau))
             }
             Stiffness::Samples { values_n_per_m } => StiffnessKind::Pieces(monotone_cubics(values_n_per_m)),
         };
@@ -324,7 +324,7 @@ impl StiffnessCourse {
     }
 
     /// The series, where the course is one (a constant is a series without terms).
-    pub fn series(&self) -> Option<&Series<f64>> {
+    pub fn series(&self) -> Option<&FourierSeries<f64>> {
         match &self.kind {
             StiffnessKind::Fourier(series) => Some(series),
             StiffnessKind::Pieces(_) => None,
@@ -349,27 +349,27 @@ impl StiffnessCourse {
 
 /// An impact made ready for the methods.
 #[derive(Debug, Clone)]
-pub(crate) enum ImpactCourse {
+pub(crate) enum ImpactWaveform {
     None,
     HalfSine { force_n: f64, duration: f64, start: f64, power: Coefficients },
-    Harmonics(Series<f64>),
+    Harmonics(FourierSeries<f64>),
 }
 
-impl ImpactCourse {
+impl ImpactWaveform {
     pub fn new(impact: Option<&Impact>, shift: f64, period_tau: f64) -> Self {
         match impact {
-            None => ImpactCourse::None,
-            Some(Impact::HalfSine { force_n, .. }) if *force_n == 0.0 => ImpactCourse::None,
+            None => ImpactWaveform::None,
+            Some(Impact::HalfSine { force_n, .. }) if *force_n == 0.0 => ImpactWaveform::None,
             Some(Impact::HalfSine { force_n, duration_mesh_periods: duration, start_mesh_periods }) => {
                 let mut power = [1.0; MAX_ORDER + 1];
                 for n in 1..=MAX_ORDER {
                     power[n] = power[n - 1] * PI / (duration * period_tau * n as f64);
                 }
                 let start = (start_mesh_periods + shift).rem_euclid(1.0);
-                ImpactCourse::HalfSine { force_n: *force_n, duration: *duration, start, power }
+                ImpactWaveform::HalfSine { force_n: *force_n, duration: *duration, start, power }
             }
             Some(Impact::Harmonics { harmonics }) => {
-                ImpactCourse::Harmonics(Series::new(0.0, 1.0, harmonics, shift, period_tau))
+                ImpactWaveform::Harmonics(FourierSeries::new(0.0, 1.0, harmonics, shift, period_tau))
             }
         }
     }
@@ -377,14 +377,14 @@ impl ImpactCourse {
     /// An upper estimate of the force's size, N.
     pub fn largest_n(&self) -> f64 {
         match self {
-            ImpactCourse::None => 0.0,
-            ImpactCourse::HalfSine { force_n, duration, .. } => force_n.abs() * duration.ceil(),
-            ImpactCourse::Harmonics(series) => series.terms.iter().map(|t| t.cos.hypot(t.sin)).sum(),
+            ImpactWaveform::None => 0.0,
+            ImpactWaveform::HalfSine { force_n, duration, .. } => force_n.abs() * duration.ceil(),
+            ImpactWaveform::Harmonics(series) => series.terms.iter().map(|t| t.cos.hypot(t.sin)).sum(),
         }
     }
 
     pub fn breakpoints(&self, out: &mut Vec<f64>) {
-        if let ImpactCourse::HalfSine { duration, start, .. } = self {
+        if let ImpactWaveform::HalfSine { duration, start, .. } = self {
             out.push(start.rem_euclid(1.0));
             out.push((start + duration).rem_euclid(1.0));
         }
@@ -408,18 +408,18 @@ impl ImpactCourse {
 
     pub fn value(&self, phase: f64, inside: f64) -> f64 {
         match self {
-            ImpactCourse::None => 0.0,
-            ImpactCourse::HalfSine { force_n, duration, start, .. } => {
+            ImpactWaveform::None => 0.0,
+            ImpactWaveform::HalfSine { force_n, duration, start, .. } => {
                 force_n * Self::sine(phase, inside, *duration, *start).0
             }
-            ImpactCourse::Harmonics(series) => series.value(phase),
+            ImpactWaveform::Harmonics(series) => series.value(phase),
         }
     }
 
     /// F sin and F cos of the pulses under way at `phase` (those that are under way at `inside`); None where the force is no pulse.
     #[inline(always)]
     pub fn pulse(&self, phase: f64, inside: f64) -> Option<(f64, f64)> {
-        let ImpactCourse::HalfSine { force_n, duration, start, .. } = self else { return None };
+        let ImpactWaveform::HalfSine { force_n, duration, start, .. } = self else { return None };
         let (sin, cos) = Self::sine(phase, inside, *duration, *start);
         Some((force_n * sin, force_n * cos))
     }
@@ -427,14 +427,14 @@ impl ImpactCourse {
     /// (π/(duration · period))^n / n! of a half sine.
     pub fn powers(&self) -> Option<&Coefficients> {
         match self {
-            ImpactCourse::HalfSine { power, .. } => Some(power),
+            ImpactWaveform::HalfSine { power, .. } => Some(power),
             _ => None,
         }
     }
 
-    pub fn series(&self) -> Option<&Series<f64>> {
+    pub fn series(&self) -> Option<&FourierSeries<f64>> {
         match self {
-            ImpactCourse::Harmonics(series) => Some(series),
+            ImpactWaveform::Harmonics(series) => Some(series),
             _ => None,
         }
     }

@@ -1,9 +1,9 @@
 //! Taylor coefficients of the excitations about a phase: of one motion, or of the motions in all lanes.
 
 use super::contact_force::Cells;
-use super::excitation::{Coefficients, ImpactCourse, MAX_ORDER, Series, StiffnessCourse};
+use super::excitation::{Coefficients, ImpactWaveform, MAX_ORDER, FourierSeries, StiffnessWaveform};
 use super::lanes::{Lanes, Real};
-use super::model::{Contact, ContactCourse, Excitation, Model};
+use super::model::{Contact, ContactForceWaveform, Excitation, Model};
 use super::recurrence::ContactSeries;
 use super::segment::Segment;
 
@@ -69,7 +69,7 @@ pub(crate) trait Excite<R> {
     fn excite(&self, phase: R, inside: R, contact: [R; 2], order: usize, terms: &mut ExcitationTerms<R>);
 }
 
-impl ContactCourse {
+impl ContactForceWaveform {
     /// Puts the cell that a half is in into a lane.
     #[inline(always)]
     fn put<R: Real>(&self, phase: f64, inside: f64, contact: Contact, lane: usize, cells: &mut Cells<R>) {
@@ -83,8 +83,8 @@ impl<const D: usize> Excite<f64> for Model<D> {
     fn excite(&self, phase: f64, inside: f64, contact: [f64; 2], order: usize, terms: &mut ExcitationTerms<f64>) {
         for (j, e) in self.excitations.iter().enumerate() {
             terms.cells[j].in_use = e.contact.is_some();
-            if let Some(course) = &e.contact {
-                course.put(phase, inside, contact[j] as Contact, 0, &mut terms.cells[j]);
+            if let Some(waveform) = &e.contact {
+                waveform.put(phase, inside, contact[j] as Contact, 0, &mut terms.cells[j]);
             } else {
                 let stiffness = &mut terms.stiffness[j];
                 if let Some(series) = e.stiffness.series() {
@@ -176,14 +176,14 @@ fn pulse<R: Real>(sin: R, cos: R, powers: &[R; MAX_ORDER + 1], order: usize, out
 /// The excitations of one half in all lanes.
 struct LaneExcitation<'m, const L: usize> {
     /// Stiffnesses that are Fourier series; zero in the other lanes.
-    stiffness: Series<Lanes<L>>,
+    stiffness: FourierSeries<Lanes<L>>,
     /// Stiffnesses that are cubics.
-    cubics: [Option<&'m StiffnessCourse>; L],
+    cubics: [Option<&'m StiffnessWaveform>; L],
     /// Contact forces: in all lanes in use, or in none.
-    contacts: [Option<&'m ContactCourse>; L],
-    pulses: [Option<&'m ImpactCourse>; L],
+    contacts: [Option<&'m ContactForceWaveform>; L],
+    pulses: [Option<&'m ImpactWaveform>; L],
     powers: [Lanes<L>; MAX_ORDER + 1],
-    impact: Series<Lanes<L>>,
+    impact: FourierSeries<Lanes<L>>,
 }
 
 /// The excitations of the motions in all lanes.
@@ -194,12 +194,12 @@ pub(crate) struct LaneExcitations<'m, const L: usize> {
 impl<'m, const L: usize> LaneExcitations<'m, L> {
     pub fn none() -> Self {
         let half = || LaneExcitation {
-            stiffness: Series::zero(),
+            stiffness: FourierSeries::zero(),
             cubics: [None; L],
             contacts: [None; L],
             pulses: [None; L],
             powers: [Lanes::splat(0.0); MAX_ORDER + 1],
-            impact: Series::zero(),
+            impact: FourierSeries::zero(),
         };
         Self { halves: [half(), half()] }
     }
@@ -211,12 +211,12 @@ impl<'m, const L: usize> LaneExcitations<'m, L> {
             let series = from.stiffness.series();
             to.cubics[lane] = series.is_none().then_some(&from.stiffness);
             to.contacts[lane] = from.contact.as_ref();
-            to.stiffness.put(lane, series.unwrap_or(&Series::zero()));
+            to.stiffness.put(lane, series.unwrap_or(&FourierSeries::zero()));
             to.pulses[lane] = from.impact.powers().map(|_| &from.impact);
             for (to, from) in to.powers.iter_mut().zip(from.impact.powers().unwrap_or(&NONE)) {
                 to.set(lane, *from);
             }
-            to.impact.put(lane, from.impact.series().unwrap_or(&Series::zero()));
+            to.impact.put(lane, from.impact.series().unwrap_or(&FourierSeries::zero()));
         }
     }
 }
@@ -236,9 +236,9 @@ impl<const L: usize> Excite<Lanes<L>> for LaneExcitations<'_, L> {
             terms.cells[j].in_use = e.contacts.iter().any(Option::is_some);
             if terms.cells[j].in_use {
                 for lane in 0..L {
-                    if let Some(course) = e.contacts[lane] {
+                    if let Some(waveform) = e.contacts[lane] {
                         let (phase, inside) = (phase.get(lane), inside.get(lane));
-                        course.put(phase, inside, contact[j].get(lane) as Contact, lane, &mut terms.cells[j]);
+                        waveform.put(phase, inside, contact[j].get(lane) as Contact, lane, &mut terms.cells[j]);
                     }
                 }
             } else {

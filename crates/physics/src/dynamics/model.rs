@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::contact_force::ContactForce;
 use super::equations::{Equations, PER_HALF, U, YG, YP, ZG, ZP};
 use super::error::DynamicsError;
-use super::excitation::{ImpactCourse, MAX_ORDER, Stiffness, StiffnessCourse};
+use super::excitation::{ImpactWaveform, MAX_ORDER, Stiffness, StiffnessWaveform};
 use super::parameters::{HalfParameters, Parameters};
 
 /// Which side of the backlash a half is on: positive driving flanks, 0 apart, negative back flanks. 1 and −1; where the mesh force is that of
@@ -29,14 +29,14 @@ pub(crate) struct State<const D: usize> {
 /// The two excitations of one half.
 #[derive(Debug, Clone)]
 pub(crate) struct Excitation {
-    pub stiffness: StiffnessCourse,
-    pub contact: Option<ContactCourse>,
-    pub impact: ImpactCourse,
+    pub stiffness: StiffnessWaveform,
+    pub contact: Option<ContactForceWaveform>,
+    pub impact: ImpactWaveform,
 }
 
 /// The loaded contact's force, coming a fraction of a mesh period later than tabulated.
 #[derive(Debug, Clone)]
-pub(crate) struct ContactCourse {
+pub(crate) struct ContactForceWaveform {
     pub force: Arc<ContactForce>,
     pub shift: f64,
     /// Half the backlash, and one mesh period in scaled time.
@@ -347,14 +347,14 @@ fn fastest(p: &Parameters, h: &HalfParameters, equivalent_mass: f64) -> f64 {
 
 fn excitation(h: &HalfParameters, b: f64, period_tau: f64) -> Excitation {
     let shift = h.phase_shift_mesh_periods.rem_euclid(1.0);
-    let contact = h.contact_force.as_ref().map(|force| ContactCourse { force: force.clone(), shift, b, period_tau });
+    let contact = h.contact_force.as_ref().map(|force| ContactForceWaveform { force: force.clone(), shift, b, period_tau });
     // Where the contact gives the force, the stiffness has no say and no knots.
     let stiffness = match &contact {
-        None => StiffnessCourse::new(&h.mesh_stiffness, shift, period_tau),
+        None => StiffnessWaveform::new(&h.mesh_stiffness, shift, period_tau),
         Some(_) => {
             let mean_n_per_m = h.mesh_stiffness.mean_n_per_m();
-            StiffnessCourse::new(&Stiffness::Constant { mean_n_per_m }, shift, period_tau)
+            StiffnessWaveform::new(&Stiffness::Constant { mean_n_per_m }, shift, period_tau)
         }
     };
-    Excitation { stiffness, contact, impact: ImpactCourse::new(h.impact.as_ref(), shift, period_tau) }
+    Excitation { stiffness, contact, impact: ImpactWaveform::new(h.impact.as_ref(), shift, period_tau) }
 }
