@@ -134,7 +134,7 @@ impl<const D: usize> Equations<D, f64> {
     }
 
     /// The same equations in every lane.
-    pub fn in_all_lanes<R: Real>(&self) -> Equations<D, R> {
+    pub fn broadcast<R: Real>(&self) -> Equations<D, R> {
         let mut out = Equations::at_rest();
         for lane in 0..R::LANES {
             out.put(lane, self);

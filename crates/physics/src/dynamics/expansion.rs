@@ -11,12 +11,12 @@ use super::segment::Segment;
 pub(crate) struct ExcitationTerms<R> {
     pub stiffness: [[R; MAX_ORDER + 1]; 2],
     /// The stiffness again, highest order first, so that a convolution is a product of two rows.
-    pub backwards: [[R; MAX_ORDER + 1]; 2],
+    pub reversed: [[R; MAX_ORDER + 1]; 2],
     /// Highest order of the stiffness that is not zero.
     pub degree: [usize; 2],
     pub impact: [[R; MAX_ORDER + 1]; 2],
     /// The impact is not zero.
-    pub pushed: [bool; 2],
+    pub impact_active: [bool; 2],
     /// Where the mesh force is that of the loaded contact: the cell of each half.
     pub cells: [Cells<R>; 2],
 }
@@ -26,25 +26,25 @@ impl<R: Real> ExcitationTerms<R> {
         let zero = [[R::splat(0.0); MAX_ORDER + 1]; 2];
         Self {
             stiffness: zero,
-            backwards: zero,
+            reversed: zero,
             degree: [0; 2],
             impact: zero,
-            pushed: [false; 2],
+            impact_active: [false; 2],
             cells: [Cells::none(); 2],
         }
     }
 
     /// Copies the terms of one motion into all lanes.
     #[inline(always)]
-    pub fn spread(&mut self, one: &ExcitationTerms<f64>, order: usize) {
+    pub fn broadcast(&mut self, one: &ExcitationTerms<f64>, order: usize) {
         for j in 0..2 {
             for n in 0..=order {
                 self.stiffness[j][n] = R::splat(one.stiffness[j][n]);
-                self.backwards[j][MAX_ORDER - n] = R::splat(one.backwards[j][MAX_ORDER - n]);
+                self.reversed[j][MAX_ORDER - n] = R::splat(one.reversed[j][MAX_ORDER - n]);
                 self.impact[j][n] = R::splat(one.impact[j][n]);
             }
         }
-        (self.degree, self.pushed) = (one.degree, one.pushed);
+        (self.degree, self.impact_active) = (one.degree, one.impact_active);
     }
 
     /// Sets the stiffness of a half from its Taylor coefficients.
@@ -52,21 +52,21 @@ impl<R: Real> ExcitationTerms<R> {
     pub fn set_stiffness(&mut self, j: usize, coefficients: &[R], order: usize) {
         self.stiffness[j][..coefficients.len()].copy_from_slice(coefficients);
         self.degree[j] = order;
-        self.mirror(j, order);
+        self.reverse_stiffness(j, order);
     }
 
     #[inline(always)]
-    fn mirror(&mut self, j: usize, order: usize) {
+    fn reverse_stiffness(&mut self, j: usize, order: usize) {
         for n in 0..=order {
-            self.backwards[j][MAX_ORDER - n] = self.stiffness[j][n];
+            self.reversed[j][MAX_ORDER - n] = self.stiffness[j][n];
         }
     }
 }
 
 /// Gives the excitations' Taylor coefficients in scaled time, orders 0 to `order`, about `phase`; `inside` is a phase in the
 /// interior of the smooth stretch that is meant, `contact` the sides and levels the halves are on.
-pub(crate) trait Excite<R> {
-    fn excite(&self, phase: R, inside: R, contact: [R; 2], order: usize, terms: &mut ExcitationTerms<R>);
+pub(crate) trait ExcitationExpansion<R> {
+    fn expand(&self, phase: R, inside: R, contact: [R; 2], order: usize, terms: &mut ExcitationTerms<R>);
 }
 
 impl ContactForceWaveform {
@@ -78,9 +78,9 @@ impl ContactForceWaveform {
     }
 }
 
-impl<const D: usize> Excite<f64> for Model<D> {
+impl<const D: usize> ExcitationExpansion<f64> for Model<D> {
     #[inline(always)]
-    fn excite(&self, phase: f64, inside: f64, contact: [f64; 2], order: usize, terms: &mut ExcitationTerms<f64>) {
+    fn expand(&self, phase: f64, inside: f64, contact: [f64; 2], order: usize, terms: &mut ExcitationTerms<f64>) {
         for (j, e) in self.excitations.iter().enumerate() {
             terms.cells[j].in_use = e.contact.is_some();
             if let Some(waveform) = &e.contact {
@@ -96,19 +96,19 @@ impl<const D: usize> Excite<f64> for Model<D> {
                     stiffness[4..=order].fill(0.0);
                     terms.degree[j] = 3;
                 }
-                terms.mirror(j, order);
+                terms.reverse_stiffness(j, order);
             }
-            terms.pushed[j] = false;
+            terms.impact_active[j] = false;
             if let Some((sin, cos)) = e.impact.pulse(phase, inside)
                 && let Some(powers) = e.impact.powers()
                 && (sin != 0.0 || cos != 0.0)
             {
                 pulse(sin, cos, powers, order, &mut terms.impact[j]);
-                terms.pushed[j] = true;
+                terms.impact_active[j] = true;
             }
             if let Some(series) = e.impact.series() {
                 series.fill(phase, order, &mut terms.impact[j]);
-                terms.pushed[j] = true;
+                terms.impact_active[j] = true;
             }
         }
     }
@@ -118,7 +118,7 @@ impl<const D: usize> Model<D> {
     /// The excitations that perturbations from a motion feel, about the scaled time `at` of one of its segments: where the mesh force is that of the
     /// loaded contact, its stiffness along the motion.
     #[inline(always)]
-    pub fn excite_variation(
+    pub fn expand_for_perturbations(
         &self,
         segment: &Segment<'_, D>,
         at: f64,
@@ -127,7 +127,7 @@ impl<const D: usize> Model<D> {
         terms: &mut ExcitationTerms<f64>,
     ) {
         let phase = segment.phase + at / self.period_tau;
-        self.excite(phase, inside, segment.contact.map(f64::from), order, terms);
+        self.expand(phase, inside, segment.contact.map(f64::from), order, terms);
         for j in 0..self.excitations.len() {
             if !terms.cells[j].in_use {
                 continue;
@@ -221,9 +221,9 @@ impl<'m, const L: usize> LaneExcitations<'m, L> {
     }
 }
 
-impl<const L: usize> Excite<Lanes<L>> for LaneExcitations<'_, L> {
+impl<const L: usize> ExcitationExpansion<Lanes<L>> for LaneExcitations<'_, L> {
     #[inline(always)]
-    fn excite(
+    fn expand(
         &self,
         phase: Lanes<L>,
         inside: Lanes<L>,
@@ -252,7 +252,7 @@ impl<const L: usize> Excite<Lanes<L>> for LaneExcitations<'_, L> {
                         }
                     }
                 }
-                terms.mirror(j, order);
+                terms.reverse_stiffness(j, order);
             }
             let (mut sin, mut cos) = (zero, zero);
             for lane in 0..L {
@@ -261,18 +261,18 @@ impl<const L: usize> Excite<Lanes<L>> for LaneExcitations<'_, L> {
                 sin.set(lane, s);
                 cos.set(lane, c);
             }
-            terms.pushed[j] = sin.any(|s| s != 0.0) || cos.any(|c| c != 0.0);
-            if terms.pushed[j] {
+            terms.impact_active[j] = sin.any(|s| s != 0.0) || cos.any(|c| c != 0.0);
+            if terms.impact_active[j] {
                 pulse(sin, cos, &e.powers, order, &mut terms.impact[j]);
             }
             if !e.impact.is_constant() {
                 let mut harmonics = [zero; MAX_ORDER + 1];
                 e.impact.fill(phase, order, &mut harmonics);
                 for n in 0..=order {
-                    let pulse = if terms.pushed[j] { terms.impact[j][n] } else { zero };
+                    let pulse = if terms.impact_active[j] { terms.impact[j][n] } else { zero };
                     terms.impact[j][n] = pulse + harmonics[n];
                 }
-                terms.pushed[j] = true;
+                terms.impact_active[j] = true;
             }
         }
     }

@@ -123,7 +123,7 @@ impl<'a, const D: usize> Motion<'a, D> {
             }
             from = end;
         }
-        if grown(&self.state) {
+        if has_diverged(&self.state) {
             return Err(DynamicsError::Diverged { time_s: self.time_s() });
         }
         self.state.period += 1;
@@ -137,7 +137,7 @@ impl<'a, const D: usize> Motion<'a, D> {
 }
 
 /// A state beyond all reason: free rotation may go on for ever, everything else is a few micrometres.
-pub(super) fn grown<const D: usize>(state: &State<D>) -> bool {
+pub(super) fn has_diverged<const D: usize>(state: &State<D>) -> bool {
     [&state.x, &state.v]
         .iter()
         .any(|row| row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > LARGEST_M)))

@@ -4,12 +4,12 @@ use super::equations::Equations;
 use super::error::DynamicsError;
 use super::excitation::MAX_ORDER;
 use super::expansion::LaneExcitations;
-use super::integrate::{Integrator, Motion, Numerics, grown};
+use super::integrate::{Integrator, Motion, Numerics, has_diverged};
 use super::lanes::{Lanes, Real};
 use super::model::{Contact, Model, State};
 use super::recurrence::TaylorWork;
 use super::segment::{Observer, Segment};
-use super::taylor::{ChatterGuard, Stepped, SmoothInterval, evaluate_rows, order_for, refused, step};
+use super::taylor::{ChatterGuard, StepOutcome, SmoothInterval, evaluate_rows, order_for, step, step_error};
 use crate::simd::vectorised;
 use crate::watch::{Canceled, Watch};
 
@@ -57,7 +57,7 @@ pub(crate) fn integrate_trajectories<'m, const D: usize, P: TrajectoryObserver<'
 ) -> Result<(), Canceled> {
     // Lanes share one law of the mesh force.
     let (by_contact, by_stiffness): (Vec<usize>, Vec<usize>) =
-        (0..observers.len()).partition(|&i| observers[i].model().follows_contact());
+        (0..observers.len()).partition(|&i| observers[i].model().uses_contact_force());
     for waiting in [by_stiffness, by_contact] {
         integrate_lanes(observers, &waiting, order_tolerance, max_steps, watch)?;
     }
@@ -218,7 +218,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         let s = &mut self.interval;
         s.period_tau.set(lane, model.period_tau);
         s.tolerance.set(lane, observer.tolerance());
-        s.switching.set(lane, if model.switches() { 1.0 } else { 0.0 });
+        s.switching.set(lane, if model.contact_can_change() { 1.0 } else { 0.0 });
         self.set_state(lane, &state);
         self.set_smooth_interval(lane, model, 0.0, 0);
     }
@@ -253,7 +253,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
     }
 
     /// One step of every lane.
-    fn step(&mut self) -> Stepped<Lanes<L>> {
+    fn step(&mut self) -> StepOutcome<Lanes<L>> {
         let Self { order, equations, excitations, interval, contact, size, work, end, .. } = self;
         vectorised(
             #[inline(always)]
@@ -267,7 +267,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
     }
 
     /// What the step means to each lane's slot; returns how many have finished.
-    fn finish_step<P: TrajectoryObserver<'m, D>>(&mut self, stepped: &Stepped<Lanes<L>>, observers: &mut [P]) -> usize {
+    fn finish_step<P: TrajectoryObserver<'m, D>>(&mut self, stepped: &StepOutcome<Lanes<L>>, observers: &mut [P]) -> usize {
         let mut finished = 0;
         for lane in 0..L {
             let Some(mut slot) = self.slots[lane] else { continue };
@@ -279,8 +279,8 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
             let phase = if to_end { end } else { (from + h / model.period_tau).min(end) };
             slot.steps += 1;
             slot.evaluations += (stepped.degree - 1) as u64;
-            let refused = refused(model, slot.period, from, h, phase > from || changed >= 0.0);
-            let error = refused.or_else(|| {
+            let step_error = step_error(model, slot.period, from, h, phase > from || changed >= 0.0);
+            let error = step_error.or_else(|| {
                 (slot.steps > self.max_steps).then(|| DynamicsError::TooManySteps {
                     time_s: (slot.period as f64 + from) * model.period_tau / model.omega_ref,
                     limit: self.max_steps,
@@ -312,7 +312,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
                     self.interval.phase.set(lane, 0.0);
                     self.set_smooth_interval(lane, model, 0.0, 0);
                     let state = self.state(lane, slot.period);
-                    let error = grown(&state).then(|| DynamicsError::Diverged {
+                    let error = has_diverged(&state).then(|| DynamicsError::Diverged {
                         time_s: slot.period as f64 * model.period_tau / model.omega_ref,
                     });
                     if error.is_some() || !observer.finish_period(&state) {

@@ -51,7 +51,7 @@ pub(crate) struct Model<const D: usize> {
     /// Of each half that is solved.
     pub excitations: Vec<Excitation>,
     /// Contact is taken to stay as it is: the linear system with periodic coefficients.
-    pub hold_contact: bool,
+    pub fixed_contact: bool,
     pub omega_ref: f64,
     /// One mesh period in scaled time.
     pub period_tau: f64,
@@ -109,7 +109,7 @@ impl<const D: usize> Model<D> {
         Ok(Self {
             equations: Equations::new(p, omega_ref),
             excitations,
-            hold_contact: false,
+            fixed_contact: false,
             omega_ref,
             period_tau,
             breakpoints,
@@ -119,8 +119,8 @@ impl<const D: usize> Model<D> {
     }
 
     /// The same equations with the contact held as it is.
-    pub fn holding_contact(&self) -> Self {
-        Self { hold_contact: true, ..self.clone() }
+    pub fn with_fixed_contact(&self) -> Self {
+        Self { fixed_contact: true, ..self.clone() }
     }
 
     /// The same with the equations that variations against the mirror symmetry obey (D = 6).
@@ -134,12 +134,12 @@ impl<const D: usize> Model<D> {
     }
 
     /// Contact can change.
-    pub fn switches(&self) -> bool {
-        self.follows_contact() || (self.b > 0.0 && !self.hold_contact)
+    pub fn contact_can_change(&self) -> bool {
+        self.uses_contact_force() || (self.b > 0.0 && !self.fixed_contact)
     }
 
     /// The mesh force is that of the loaded contact, on all halves.
-    pub fn follows_contact(&self) -> bool {
+    pub fn uses_contact_force(&self) -> bool {
         self.excitations.iter().any(|e| e.contact.is_some())
     }
 
@@ -158,13 +158,13 @@ impl<const D: usize> Model<D> {
     }
 
     /// The largest s of a half at which its driving flanks carry nothing at any phase, m.
-    pub fn touching_m(&self, j: usize) -> f64 {
+    pub fn first_contact_displacement_m(&self, j: usize) -> f64 {
         let contact = self.excitations[j].contact.as_ref();
         self.b + contact.map_or(0.0, |c| c.force.least_free_m(1))
     }
 
     /// Scaled rate at which the distance from mid-gap to where contact of a side (1 driving, −1 back) begins grows: 0 but for contact forces.
-    pub fn contact_begins_rate(&self, j: usize, side: Contact, phase: f64) -> f64 {
+    pub fn contact_onset_rate(&self, j: usize, side: Contact, phase: f64) -> f64 {
         let contact = self.excitations[j].contact.as_ref();
         contact.map_or(0.0, |c| c.force.free_rate_m(side, phase - c.shift) / self.period_tau)
     }
@@ -197,19 +197,19 @@ impl<const D: usize> Model<D> {
     }
 
     /// An upper estimate of the forces that load and impact put on the mesh of a half, N.
-    pub fn largest_push_n(&self, j: usize) -> f64 {
+    pub fn max_excitation_force_n(&self, j: usize) -> f64 {
         self.halves[j].load.abs() + self.excitations[j].impact.largest_n()
     }
 
     /// Scaled accelerations that a normal mesh force `force` of half `j` causes by itself.
-    pub fn push(&self, j: usize, force: f64) -> [f64; D] {
+    pub fn acceleration_of_mesh_force(&self, j: usize, force: f64) -> [f64; D] {
         let mut out = [0.0; D];
         out[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, &[0.0; D], &[0.0; D], force, 0.0));
         out
     }
 
     /// Scaled accelerations of the springs outside the mesh.
-    pub fn springs(&self, x: &[f64; D]) -> [f64; D] {
+    pub fn acceleration_of_springs(&self, x: &[f64; D]) -> [f64; D] {
         let mut out = [0.0; D];
         for j in 0..Self::HALVES {
             out[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, x, &[0.0; D], 0.0, 0.0));
@@ -220,7 +220,7 @@ impl<const D: usize> Model<D> {
     /// Coefficient `n` of the whole normal force on the teeth of a half, mesh force and impact F_s/cosβ, N: what turns the gears as the
     /// polynomials `rows` say, whatever law the mesh force has. Over a motion that repeats its mean is that of the load, T_p/(R_p cosβ),
     /// as far as no torsional spring carries torque from half to half; over both halves together always.
-    pub fn tooth_force_behind(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
+    pub fn tooth_force_coefficient(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
         let n1 = (n + 1) as f64;
         let free = self.half_acceleration(j, &rows[n], &rows[n + 1].map(|c| c * n1), 0.0, 0.0);
         let a = rows[n + 2][j * PER_HALF + U] * n1 * (n1 + 1.0);
@@ -246,7 +246,7 @@ impl<const D: usize> Model<D> {
 
     /// Coefficient `n` of the normal force (mesh force, and an impact that acts on all motions) that moves the gear along y as the
     /// polynomials `rows` say.
-    pub fn force_behind(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
+    pub fn mesh_force_coefficient(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
         let n1 = (n + 1) as f64;
         let free = self.half_acceleration(j, &rows[n], &rows[n + 1].map(|c| c * n1), 0.0, 0.0);
         let a = rows[n + 2][j * PER_HALF + YG] * n1 * (n1 + 1.0);
@@ -278,7 +278,7 @@ impl<const D: usize> Model<D> {
 
     /// Where the mesh force is that of the loaded contact: turns the teeth together until each half carries its load at the state's phase, halves
     /// that are coupled in torsion by the mean of what each needs.
-    pub fn seat_teeth(&self, state: &mut State<D>) {
+    pub fn close_contact(&self, state: &mut State<D>) {
         let mut turns = [0.0; 2];
         for (j, e) in self.excitations.iter().enumerate() {
             let Some(contact) = &e.contact else { return };

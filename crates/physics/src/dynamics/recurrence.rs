@@ -21,7 +21,7 @@ pub(crate) struct TaylorWork<const D: usize, R> {
 pub(super) struct ContactSeries<R> {
     /// e, and e again with the highest order first.
     e: [R; MAX_ORDER + 1],
-    backwards: [R; MAX_ORDER + 1],
+    reversed: [R; MAX_ORDER + 1],
     square: [R; MAX_ORDER + 1],
     cube: [R; MAX_ORDER + 1],
 }
@@ -29,7 +29,7 @@ pub(super) struct ContactSeries<R> {
 impl<R: Real> ContactSeries<R> {
     pub fn new() -> Self {
         let zero = [R::splat(0.0); MAX_ORDER + 1];
-        Self { e: zero, backwards: zero, square: zero, cube: zero }
+        Self { e: zero, reversed: zero, square: zero, cube: zero }
     }
 
     /// Adds coefficient `n` of s to the series, and returns coefficient `n` of Σ_a law[a] e^a.
@@ -63,8 +63,8 @@ impl<R: Real> ContactSeries<R> {
         if n < 4 {
             self.e[n] += cells.near[n];
         }
-        self.backwards[MAX_ORDER - n] = self.e[n];
-        let back = &self.backwards[MAX_ORDER - n..];
+        self.reversed[MAX_ORDER - n] = self.e[n];
+        let back = &self.reversed[MAX_ORDER - n..];
         self.square[n] = convolution(back, &self.e[..=n], 0);
         self.cube[n] = convolution(back, &self.square[..=n], 0);
     }
@@ -86,7 +86,7 @@ impl<const D: usize, R: Real> TaylorWork<D, R> {
 /// When a series need not be carried to its full order: a stretch of `remaining` scaled time is all that is wanted of it, and
 /// its last two terms there are below `tolerance` times the size of the motion.
 #[derive(Clone, Copy)]
-pub(crate) struct Enough<R> {
+pub(crate) struct EarlyTermination<R> {
     pub remaining: R,
     pub tolerance: R,
     /// Size of the recent motion.
@@ -99,7 +99,7 @@ const LOWEST_ORDER: usize = 6;
 const LONGEST_SHORT: f64 = 2.0;
 
 /// Taylor coefficients of the motion up to `order` in scaled time, from `rows[0]`, `rows[1]` (x and dx/dτ) and the
-/// excitation in `work`. `loads` 0 gives the variation about a motion with the same contacts, 1 the motion itself. With `enough`, lanes whose
+/// excitation in `work`. `loads` 0 gives the variation about a motion with the same contacts, 1 the motion itself. With `early_end`, lanes whose
 /// series are good enough stop early (their higher coefficients are 0). Returns which lanes have (1) and the highest order computed.
 #[inline(always)]
 pub(crate) fn taylor<const D: usize, R: Real>(
@@ -107,7 +107,7 @@ pub(crate) fn taylor<const D: usize, R: Real>(
     contact: [R; 2],
     order: usize,
     loads: R,
-    enough: Option<Enough<R>>,
+    early_end: Option<EarlyTermination<R>>,
     work: &mut TaylorWork<D, R>,
 ) -> (R, usize) {
     let TaylorWork { rows, s, force, excitation, contact: series } = work;
@@ -127,9 +127,9 @@ pub(crate) fn taylor<const D: usize, R: Real>(
         s[j][1] = equations.s(j, &rows[1]);
     }
     let short = |r: f64| r <= LONGEST_SHORT;
-    let enough = enough.filter(|e| e.remaining.any(short));
+    let early_end = early_end.filter(|e| e.remaining.any(short));
     let mut alive = one;
-    let mut power = enough.map_or(zero, |e| e.remaining);
+    let mut power = early_end.map_or(zero, |e| e.remaining);
     for n in 0..order - 1 {
         let n1 = (n + 1) as f64;
         let (known, next) = rows.split_at_mut(n + 2);
@@ -150,7 +150,7 @@ pub(crate) fn taylor<const D: usize, R: Real>(
             } else {
                 let degree = excitation.degree[j].min(n);
                 if any_closed[j] {
-                    let k = &excitation.backwards[j][MAX_ORDER - n..];
+                    let k = &excitation.reversed[j][MAX_ORDER - n..];
                     f += closed[j] * convolution(k, &s[j][..=n], n - degree);
                     if n <= excitation.degree[j] {
                         f -= excitation.stiffness[j][n] * seat[j];
@@ -160,7 +160,7 @@ pub(crate) fn taylor<const D: usize, R: Real>(
             force[j][n] = f;
             let mut along = zero;
             let mut normal = f;
-            if excitation.pushed[j] {
+            if excitation.impact_active[j] {
                 let push = loads * excitation.impact[j][n];
                 along -= equations.impact_along * push;
                 normal += equations.impact_normal * push;
@@ -177,7 +177,7 @@ pub(crate) fn taylor<const D: usize, R: Real>(
         for j in 0..halves {
             s[j][n + 2] = equations.s(j, next);
         }
-        if let Some(e) = &enough {
+        if let Some(e) = &early_end {
             let before = power;
             power = power * e.remaining;
             if n + 2 >= LOWEST_ORDER && n % 2 == 0 {

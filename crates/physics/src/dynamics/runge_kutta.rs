@@ -163,7 +163,7 @@ impl<const D: usize> RungeKutta<D> {
         }
         for j in 0..Model::<D>::HALVES {
             for n in 0..=3 {
-                self.force[j][n] = model.force_behind(j, n, r);
+                self.force[j][n] = model.mesh_force_coefficient(j, n, r);
             }
         }
     }

@@ -174,9 +174,9 @@ pub(super) fn rigid_body_modes<const D: usize>(
     for (column, &c) in active.iter().enumerate() {
         let mut unit = [0.0; D];
         unit[c] = 1.0;
-        let mut a = model.springs(&unit);
+        let mut a = model.acceleration_of_springs(&unit);
         for j in 0..Model::<D>::HALVES {
-            let push = model.push(j, mean_stiffness_n_per_m[j] * model.s(j, &unit));
+            let push = model.acceleration_of_mesh_force(j, mean_stiffness_n_per_m[j] * model.s(j, &unit));
             for i in j * PER_HALF..(j + 1) * PER_HALF {
                 a[i] += push[i];
             }

@@ -10,11 +10,11 @@ use super::crossing::first_crossing;
 use super::equations::{Equations, PER_HALF};
 use super::error::DynamicsError;
 use super::excitation::MAX_ORDER;
-use super::expansion::Excite;
+use super::expansion::ExcitationExpansion;
 use super::integrate::Numerics;
 use super::lanes::{Real, rough_root};
 use super::model::{Contact, Model, State};
-use super::recurrence::{Enough, TaylorWork, larger, norm, taylor};
+use super::recurrence::{EarlyTermination, TaylorWork, larger, norm, taylor};
 use super::segment::{Observer, Segment};
 use crate::simd::vectorised;
 
@@ -50,7 +50,7 @@ pub(super) struct SmoothInterval<R> {
 
 /// What a step came to.
 #[derive(Clone, Copy)]
-pub(super) struct Stepped<R> {
+pub(super) struct StepOutcome<R> {
     /// Length in scaled time. NaN where the motion has diverged; not positive where no step is possible.
     pub h: R,
     /// 1 where the step ends the stretch.
@@ -67,20 +67,20 @@ pub(super) struct Stepped<R> {
 #[inline(always)]
 pub(super) fn step<const D: usize, R: Real>(
     equations: &Equations<D, R>,
-    excitations: &impl Excite<R>,
+    excitations: &impl ExcitationExpansion<R>,
     order: usize,
     interval: SmoothInterval<R>,
     contact: [R; 2],
     size: &mut R,
     work: &mut TaylorWork<D, R>,
-) -> Stepped<R> {
+) -> StepOutcome<R> {
     let SmoothInterval { phase, end, inside, period_tau, tolerance, fixed, switching } = interval;
-    excitations.excite(phase, inside, contact, order, &mut work.excitation);
+    excitations.expand(phase, inside, contact, order, &mut work.excitation);
     let remaining = (end - phase) * period_tau;
     *size = *size * R::splat(0.98);
-    let enough = Enough { remaining, tolerance, size: *size };
+    let early_end = EarlyTermination { remaining, tolerance, size: *size };
     let free = !fixed.any(f64::is_finite);
-    let (short, degree) = taylor(equations, contact, order, R::splat(1.0), free.then_some(enough), work);
+    let (short, degree) = taylor(equations, contact, order, R::splat(1.0), free.then_some(early_end), work);
     let moving = larger(norm(&work.rows[1]), norm(&work.rows[2]));
     *size = larger(moving, *size);
     // Below the rounding of the positions no tolerance can be met.
@@ -116,7 +116,7 @@ pub(super) fn step<const D: usize, R: Real>(
             }
         }
     }
-    Stepped { h, to_end, changed, contact: to, degree }
+    StepOutcome { h, to_end, changed, contact: to, degree }
 }
 
 /// The first change of contact of a half within `h`: when (infinite: none), and to what.
@@ -235,7 +235,7 @@ impl ChatterGuard {
 
 /// Why a step of length `h` cannot be taken, if it cannot. `advances`: it changes the phase or the contact.
 #[inline(always)]
-pub(super) fn refused<const D: usize>(
+pub(super) fn step_error<const D: usize>(
     model: &Model<D>,
     period: u64,
     phase: f64,
@@ -297,7 +297,7 @@ impl<const D: usize> Taylor<D> {
             period_tau: model.period_tau,
             tolerance: self.tolerance,
             fixed: self.fixed,
-            switching: if model.switches() { 1.0 } else { 0.0 },
+            switching: if model.contact_can_change() { 1.0 } else { 0.0 },
         };
         let contact = state.contact.map(f64::from);
         let Self { order, work, size, .. } = self;
@@ -310,7 +310,7 @@ impl<const D: usize> Taylor<D> {
         let h = stepped.h;
         let phase = if stepped.to_end != 0.0 { end } else { (state.phase + h / model.period_tau).min(end) };
         let advances = phase > state.phase || stepped.changed >= 0.0;
-        if let Some(error) = refused(model, state.period, state.phase, h, advances) {
+        if let Some(error) = step_error(model, state.period, state.phase, h, advances) {
             return Err(error);
         }
         observer.segment(&Segment {

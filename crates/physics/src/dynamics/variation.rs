@@ -47,7 +47,7 @@ impl<'m, const D: usize> Variation<'m, D> {
         let workspace = Workspace {
             one: TaylorWork::new(),
             several: TaylorWork::new(),
-            equations: model.in_all_lanes(),
+            equations: model.broadcast(),
             terms: ExcitationTerms::new(),
         };
         Self { model, columns, tolerance, last_contact: None, workspace: Some(Box::new(workspace)) }
@@ -76,10 +76,10 @@ impl<'m, const D: usize> Variation<'m, D> {
             }
             let damper = (h.cm - h.cm_in_gap) * speed;
             let change = f64::from(i8::from(is != 0) - i8::from(was != 0)) * damper;
-            let push = self.model.push(j, change);
+            let push = self.model.acceleration_of_mesh_force(j, change);
             // How fast s passes the place where contact begins, which may move itself.
             let side = if is != 0 { is.signum() } else { was.signum() };
-            let passing = speed - f64::from(side) * self.model.contact_begins_rate(j, side, segment.phase);
+            let passing = speed - f64::from(side) * self.model.contact_onset_rate(j, side, segment.phase);
             if passing == 0.0 {
                 continue;
             }
@@ -114,8 +114,8 @@ impl<'m, const D: usize> Variation<'m, D> {
         let contact = segment.contact.map(|c| R::splat(f64::from(c.signum())));
         let mut at = 0.0;
         loop {
-            self.model.excite_variation(segment, at, inside, order, terms);
-            work.excitation.spread(terms, order);
+            self.model.expand_for_perturbations(segment, at, inside, order, terms);
+            work.excitation.broadcast(terms, order);
             (work.rows[0], work.rows[1]) = (x, v);
             taylor(equations, contact, order, R::splat(0.0), None, work);
             let left = segment.h - at;

@@ -226,7 +226,7 @@ impl<const D: usize> Probe<D> {
             Probe::ToothForce { half } => {
                 let degree = segment.degree - 2;
                 for n in 0..=degree {
-                    out[n] = segment.model.tooth_force_behind(*half, n, segment.rows);
+                    out[n] = segment.model.tooth_force_coefficient(*half, n, segment.rows);
                 }
                 degree
             }

@@ -69,7 +69,7 @@ impl Point<'_> {
             _ => self.continue_motion(model, last, integrator, tolerance),
         };
         // Under a contact force the equations are not linear in contact either.
-        let linear = !model.follows_contact() && contact_never_changes(&finished.recorder);
+        let linear = !model.uses_contact_force() && contact_never_changes(&finished.recorder);
         let modulus = if linear || continued.is_err() || grows_beyond_backlash(model, finished) {
             self.fixed_contact_modulus(model, &last)?
         } else {
@@ -85,7 +85,7 @@ impl Point<'_> {
         };
         let regime = if linear && !diverged {
             match grows {
-                true if !model.switches() => Regime::Unstable,
+                true if !model.contact_can_change() => Regime::Unstable,
                 true => Regime::NotSettled,
                 false if modulus < 1.0 - UNIT_MODULUS_TOLERANCE => Regime::NotSettled,
                 false => Regime::QuasiPeriodic,
@@ -131,13 +131,13 @@ impl Point<'_> {
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), limits)?;
         let mut start = State { period: 0, phase: 0.0, ..*near };
         for j in 0..Model::<D>::HALVES {
-            start.contact[j] = match model.follows_contact() {
+            start.contact[j] = match model.uses_contact_force() {
                 false if model.halves[j].load < 0.0 => -1,
                 false => 1,
                 true => model.contact_of(j, model.s(j, &start.x), 0.0),
             };
         }
-        let period_map = shooting.period_map(&model.holding_contact(), start, 1)?;
+        let period_map = shooting.period_map(&model.with_fixed_contact(), start, 1)?;
         Ok(shooting.multipliers(&period_map.monodromy).first().map_or(0.0, |m| m.norm()))
     }
 
@@ -361,7 +361,7 @@ mod tests {
         };
         let ((early, _), (late, rate)) = (at(60), at(100));
         assert!(((late - early) / 40.0 / rate.unwrap() - 1.0).abs() < 1e-2, "{early} {late} {rate:?}");
-        // Enough damping holds it.
+        // EarlyEnd damping holds it.
         assert_eq!(summary(&resonant(10.0, 0.0), Method::Auto, None).regime, Regime::Period1);
     }
 

@@ -61,8 +61,8 @@ impl<const D: usize> Section<D> {
             return None;
         }
         // Within ten times the best or far below the limit counts as repeating.
-        let enough = (10.0 * best).max(1e-3 * limit).min(limit);
-        (1..=LONGEST_PERIOD).find_map(|n| self.change(n).filter(|c| *c <= enough).map(|c| (n, c)))
+        let accepted = (10.0 * best).max(1e-3 * limit).min(limit);
+        (1..=LONGEST_PERIOD).find_map(|n| self.change(n).filter(|c| *c <= accepted).map(|c| (n, c)))
     }
 
     /// The period of a motion that is followed without being made exact: the shortest over which the state changes by no

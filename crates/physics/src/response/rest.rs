@@ -44,9 +44,9 @@ impl Point<'_> {
         let side = if model.b == 0.0 { 1 } else { 0 };
         let mut start = State { period: from, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [side; 2] };
         if touching {
-            (0..Model::<D>::HALVES).for_each(|j| start.x[j * PER_HALF + U] = model.touching_m(j) / model.cos);
+            (0..Model::<D>::HALVES).for_each(|j| start.x[j * PER_HALF + U] = model.first_contact_displacement_m(j) / model.cos);
         }
-        let held = model.holding_contact();
+        let held = model.with_fixed_contact();
         let span = (from, from + periods);
         let mut run = Run::new(&held, start, 1e-6, span, self.recorder(&held, periods))?;
         integrate_trajectory(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;

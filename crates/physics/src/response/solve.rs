@@ -183,7 +183,7 @@ impl Point<'_> {
         };
         let mut state = model.state_from(start);
         if self.analysis.initial_state.is_none() {
-            model.seat_teeth(&mut state);
+            model.close_contact(&mut state);
         }
         if off_symmetry {
             let mut push: Perturbation<D> = ([0.0; D], [0.0; D]);
@@ -423,7 +423,7 @@ fn integrate<const D: usize>(
             let recorder = point.recorder(model, end - record_from);
             let mut start = model.state_from(&point.start());
             if point.analysis.initial_state.is_none() {
-                model.seat_teeth(&mut start);
+                model.close_contact(&mut start);
             }
             let run = Run::new(model, start, tolerance, (record_from, end), recorder)?;
             Ok(run.keeping(compared_from).with_energy(point.energy(model)))
@@ -489,7 +489,7 @@ const ROUNDING: f64 = 1e-13;
 /// An acceleration that is nothing but rounding: 1e-12 of what the load would give the free mesh, m/s².
 fn smallest<const D: usize>(model: &Model<D>) -> f64 {
     let square = model.omega_ref * model.omega_ref;
-    (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(model.largest_push_n(j) * model.halves[j].inv_me * square))
+    (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(model.max_excitation_force_n(j) * model.halves[j].inv_me * square))
         * 1e-12
 }
 

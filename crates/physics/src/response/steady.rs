@@ -81,7 +81,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             return Ok(found);
         }
         // Also says whether there is a steady state at all.
-        let keeps_contact = if self.model.follows_contact() {
+        let keeps_contact = if self.model.uses_contact_force() {
             self.orbit_near_static_deflection(start, &mut budget, &mut numerics)?
         } else {
             self.orbit_in_contact(start, &mut budget, &mut numerics)?
@@ -118,7 +118,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         let mut perturbation: Perturbation<D> = ([0.0; D], [0.0; D]);
         for j in 0..Model::<D>::HALVES {
             let u = j * PER_HALF + U;
-            perturbation.0[u] = RELATIVE_SIZE * self.model.largest_push_n(j) / (masses[u] * square);
+            perturbation.0[u] = RELATIVE_SIZE * self.model.max_excitation_force_n(j) / (masses[u] * square);
         }
         displaced(self.model, start, &perturbation)
     }
@@ -136,7 +136,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
     /// Fails when the mean load has a part along a motion that nothing holds.
     fn check_load_balance(&self, shooting: &Shooting<'_, D>, defect: &Perturbation<D>) -> Result<(), DynamicsError> {
         let unbalanced_n = shooting.unbalanced_force_n(defect, 1);
-        let load = (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.largest_push_n(j)));
+        let load = (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.max_excitation_force_n(j)));
         // Rounding and truncation leave a little; a real imbalance is far above. What is not loaded cannot be unbalanced.
         if load > 0.0 && unbalanced_n > 1e-6 * load {
             return Err(DynamicsError::Unbalanced { force_n: unbalanced_n });
@@ -222,7 +222,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         numerics: &mut Numerics,
     ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
         let perturbations = 2 * self.model.active().count();
-        let held = self.model.holding_contact();
+        let held = self.model.with_fixed_contact();
         let mut first = start;
         for j in 0..Model::<D>::HALVES {
             first.contact[j] = if self.model.halves[j].load < 0.0 { -1 } else { 1 };

@@ -259,7 +259,7 @@ mod tests {
         let shooting = Shooting::new(&model, [9e8; 2], limits).unwrap();
         let mut start = model.state_from(&[0.0; 24]);
         start.contact = [1; 2];
-        let round = shooting.period_map(&model.holding_contact(), start, 1).unwrap();
+        let round = shooting.period_map(&model.with_fixed_contact(), start, 1).unwrap();
         let mut rates: Vec<f64> = shooting.multipliers(&round.monodromy).iter().map(|m| -m.norm().ln()).collect();
         let mut expected: Vec<f64> = modes(&p)
             .iter()
