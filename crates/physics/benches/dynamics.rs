@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use herringbone_physics::dynamics::{Integrator, NaturalModes, Parameters, advance, advance_many};
-use herringbone_physics::response::{Analysis, Method, solve, solve_many};
+use herringbone_physics::response::{Analysis, SolutionMethod, solve, solve_many};
 use herringbone_physics::watch::Watch;
 
 #[path = "dynamics_cases.rs"]
@@ -66,7 +66,7 @@ fn points(c: &mut Criterion) {
         c.bench_function(&format!("{name}: steady state of one point"), |b| {
             b.iter(|| solve(black_box(&p), &auto, &Watch::none()).map(|r| r.summary.error_estimate))
         });
-        let recorded = Method::Integrate { mesh_periods: PERIODS, record_mesh_periods: PERIODS };
+        let recorded = SolutionMethod::Integrate { mesh_periods: PERIODS, record_mesh_periods: PERIODS };
         let recorded = Analysis { method: recorded, ..auto.clone() };
         c.bench_function(&format!("{name}: 100 mesh periods recorded, with their error"), |b| {
             b.iter(|| solve(black_box(&p), &recorded, &Watch::none()).map(|r| r.summary.error_estimate))
@@ -81,7 +81,7 @@ fn sweeps(c: &mut Criterion) {
     let auto = Analysis { energy_balance: false, ..Analysis::default() };
     let linear = speeds(&cases::case("A"), 1000);
     group.bench_function("A: steady states", |b| b.iter(|| solve_many(black_box(&linear), &auto, &Watch::none())));
-    let method = Method::Integrate { mesh_periods: 300, record_mesh_periods: 100 };
+    let method = SolutionMethod::Integrate { mesh_periods: 300, record_mesh_periods: 100 };
     let integrate = Analysis { method, ..auto };
     let separating = speeds(&cases::case("C"), 1000);
     group.bench_function("C: 300 mesh periods each, 100 recorded", |b| {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use herringbone_physics::dynamics::{
-    Couplings, HalfParameters, Harmonic, Impact, ImpactActsOn, Parameters, Spring, Stiffness, mesh_damping_n_s_per_m,
+    Couplings, HalfParameters, Harmonic, ImpactExcitation, ImpactActsOn, Parameters, Spring, Stiffness, mesh_damping_n_s_per_m,
 };
 use serde::Deserialize;
 
@@ -135,7 +135,7 @@ impl Case {
                 harmonics: c.amplitudes.iter().zip(&m.phases_rad).map(harmonic).collect(),
             },
             mesh_damping_n_s_per_m: self.mesh_damping_n_s_per_m(),
-            impact: Some(Impact::HalfSine {
+            impact: Some(ImpactExcitation::HalfSine {
                 force_n: m.impact_force_n,
                 duration_mesh_periods: m.impact_duration_mesh_periods,
                 start_mesh_periods: 0.0,

@@ -14,10 +14,10 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use herringbone_physics::dynamics::{
-    ContactForce, Couplings, DynamicsError, FlankForce, HalfParameters, Harmonic, Impact, ImpactActsOn, Integrator,
+    ContactForce, Couplings, DynamicsError, FlankForce, HalfParameters, Harmonic, ImpactExcitation, ImpactActsOn, Integrator,
     Parameters, Spring, Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m,
 };
-use herringbone_physics::response::{Analysis, Method, Response, solve};
+use herringbone_physics::response::{Analysis, SolutionMethod, Response, solve};
 use herringbone_physics::watch::Watch;
 
 /// Splitmix64: a fixed sequence, so that a failure can be repeated.
@@ -133,7 +133,7 @@ fn case(r: &mut Random, of: &Ranges) -> Case {
         _ => ("Fourier", fourier),
     };
     let static_n = if torque == 0.0 { log(r, of.torque_nm) } else { torque.abs() } / pinion_radius_m;
-    let impact = (!r.chance(0.1)).then(|| Impact::HalfSine {
+    let impact = (!r.chance(0.1)).then(|| ImpactExcitation::HalfSine {
         force_n: static_n * log(r, of.impact_ratio) * if r.chance(0.1) { -1.0 } else { 1.0 },
         duration_mesh_periods: log(r, of.pulse_mesh_periods),
         start_mesh_periods: r.unit(),
@@ -289,7 +289,7 @@ fn not_finite(r: &Response) -> bool {
 fn independent(p: &Parameters, r: &Response) -> Option<f64> {
     let periods = r.summary.period_mesh_periods?;
     let analysis = Analysis {
-        method: Method::Integrate { mesh_periods: periods, record_mesh_periods: periods },
+        method: SolutionMethod::Integrate { mesh_periods: periods, record_mesh_periods: periods },
         accuracy: 1e-7,
         initial_state: Some(r.final_state),
         samples_per_mesh_period: 0,
@@ -309,7 +309,7 @@ fn independent(p: &Parameters, r: &Response) -> Option<f64> {
     // What the forces could give the mesh: an acceleration far below is nothing but rounding.
     let possible = p.halves.iter().enumerate().fold(0.0f64, |m, (j, h)| {
         let impact_n = match h.impact {
-            Some(Impact::HalfSine { force_n, .. }) => force_n.abs(),
+            Some(ImpactExcitation::HalfSine { force_n, .. }) => force_n.abs(),
             _ => 0.0,
         };
         m.max((h.pinion_torque_nm.abs() / p.pinion_radius_m + impact_n) / p.equivalent_mass_kg(j))
@@ -375,7 +375,7 @@ fn main() {
         let mut remarks = Vec::new();
         match &result {
             Ok(r) => {
-                table.most_steps = table.most_steps.max(r.summary.numerics.steps);
+                table.most_steps = table.most_steps.max(r.summary.counts.steps);
                 if not_finite(r) {
                     table.bad += 1;
                     remarks.push(format!("NOT FINITE: {:?}", r.summary));

@@ -14,8 +14,8 @@ fn tooth_force(force: response::ToothForce) -> result::ToothForce {
     result::ToothForce { static_n: force.static_n, max_n: force.max_n, min_n: force.min_n }
 }
 
-fn interval(halves: Halves<response::Interval>) -> result::IntervalPerHalf {
-    let of = |interval: response::Interval| result::Interval { low: interval.low, high: interval.high };
+fn interval(halves: Halves<response::ConfidenceInterval>) -> result::IntervalPerHalf {
+    let of = |interval: response::ConfidenceInterval| result::Interval { low: interval.low, high: interval.high };
     result::IntervalPerHalf { left: of(halves.left), right: of(halves.right) }
 }
 
@@ -60,7 +60,7 @@ pub fn natural_modes(parameters: &Parameters) -> Result<Vec<result::NaturalMode>
         shape: mode.shape.to_vec(),
         modal_mass_kg: mode.modal_mass_kg,
         damping_ratio: mode.damping_ratio,
-        strain_energy: mode.strain_energy.iter().map(|(group, share)| (group.word().to_owned(), *share)).collect(),
+        strain_energy: mode.strain_energy.iter().map(|(group, share)| (group.as_str().to_owned(), *share)).collect(),
         kinetic_energy: mode.kinetic_energy.iter().map(|(kind, share)| ((*kind).to_owned(), *share)).collect(),
     });
     Ok(modes.collect())

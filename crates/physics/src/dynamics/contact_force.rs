@@ -6,7 +6,7 @@
 
 use super::error::DynamicsError;
 use super::lanes::Real;
-use super::model::Contact;
+use super::model::ContactSide;
 
 /// Force of one flank over phase and displacement, at the knots of a [`ContactForce`].
 #[derive(Debug, Clone, PartialEq)]
@@ -24,13 +24,13 @@ pub struct FlankForce {
 pub struct ContactForce {
     /// Ascending in [0, 1).
     knots: Vec<f64>,
-    driving: Flank,
-    back: Flank,
+    driving: FlankSurface,
+    back: FlankSurface,
 }
 
 /// One flank, ready for evaluation.
 #[derive(Debug, Clone, PartialEq)]
-struct Flank {
+struct FlankSurface {
     level_m: Vec<f64>,
     /// Interval by interval: cubic in the place within the interval.
     free: Vec<[f64; 4]>,
@@ -74,7 +74,7 @@ impl ContactForce {
                 return Err(wrong(0.0, "must not fall with the displacement"));
             }
         }
-        let [driving, back] = [driving, back].map(|flank| Flank::new(&knots, flank));
+        let [driving, back] = [driving, back].map(|flank| FlankSurface::new(&knots, flank));
         Ok(Self { knots, driving, back })
     }
 
@@ -82,7 +82,7 @@ impl ContactForce {
         &self.knots
     }
 
-    fn flank(&self, contact: Contact) -> &Flank {
+    fn flank(&self, contact: ContactSide) -> &FlankSurface {
         if contact < 0 { &self.back } else { &self.driving }
     }
 
@@ -99,13 +99,13 @@ impl ContactForce {
     }
 
     /// Displacement beyond the backlash at which the first point of a flank (1 driving, −1 back) touches, m.
-    pub fn free_m(&self, side: Contact, phase: f64) -> f64 {
+    pub fn free_m(&self, side: ContactSide, phase: f64) -> f64 {
         let (i, u, _) = self.interval(phase, phase);
         cubic(&self.flank(side).free[i], u)
     }
 
     /// A displacement below all of it over the mesh period, by no more than a hundredth of its range, m.
-    pub fn least_free_m(&self, side: Contact) -> f64 {
+    pub fn least_free_m(&self, side: ContactSide) -> f64 {
         const PLACES: u32 = 16;
         const MARGIN: f64 = 0.01;
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -119,14 +119,14 @@ impl ContactForce {
     }
 
     /// Its slope per mesh period.
-    pub(super) fn free_rate_m(&self, side: Contact, phase: f64) -> f64 {
+    pub(super) fn free_rate_m(&self, side: ContactSide, phase: f64) -> f64 {
         let (i, u, width) = self.interval(phase, phase);
         let c = &self.flank(side).free[i];
         (c[1] + u * (2.0 * c[2] + u * 3.0 * c[3])) / width
     }
 
     /// Force and stiffness on a flank at the displacement `e` beyond its free one.
-    fn at(&self, side: Contact, e: f64, phase: f64, inside: f64) -> (f64, f64) {
+    fn at(&self, side: ContactSide, e: f64, phase: f64, inside: f64) -> (f64, f64) {
         if e <= 0.0 {
             return (0.0, 0.0);
         }
@@ -152,7 +152,7 @@ impl ContactForce {
 
     /// The displacement along s at which the mesh carries `force` (of either sign) at a phase, m.
     pub fn displacement_under(&self, force: f64, b: f64, phase: f64) -> f64 {
-        let side: Contact = if force < 0.0 { -1 } else { 1 };
+        let side: ContactSide = if force < 0.0 { -1 } else { 1 };
         let flank = self.flank(side);
         let load = force.abs();
         let top = flank.level_m[flank.level_m.len() - 1];
@@ -182,23 +182,23 @@ impl ContactForce {
     }
 
     /// The side and level of a displacement: 0 apart, ±(1 + level) on a flank.
-    pub fn contact_of(&self, s: f64, b: f64, phase: f64) -> Contact {
+    pub fn contact_of(&self, s: f64, b: f64, phase: f64) -> ContactSide {
         let driving = s - b - self.free_m(1, phase);
         if driving > 0.0 {
-            return 1 + self.driving.level(driving) as Contact;
+            return 1 + self.driving.level(driving) as ContactSide;
         }
         let back = -s - b - self.free_m(-1, phase);
         if back > 0.0 { -1 - self.back.level(back) as Contact } else { 0 }
     }
 
     /// Largest stiffness of a flank (1 driving, −1 back) at any knot and level, N/m.
-    pub fn largest_stiffness_n_per_m(&self, side: Contact) -> f64 {
+    pub fn largest_stiffness_n_per_m(&self, side: ContactSide) -> f64 {
         self.flank(side).cells.iter().flatten().fold(0.0f64, |m, c| m.max(c[1][0]))
     }
 
     /// What the Taylor method needs of the cell a motion is in: polynomials in scaled time about `phase`.
     #[inline(always)]
-    pub(super) fn cell(&self, contact: Contact, b: f64, phase: f64, inside: f64, period_tau: f64) -> Cell {
+    pub(super) fn cell(&self, contact: ContactSide, b: f64, phase: f64, inside: f64, period_tau: f64) -> ForceCell {
         let (i, u, width) = self.interval(phase, inside);
         let rate = 1.0 / (width * period_tau);
         let shifted = |c: &[f64; 4]| shifted(c, u, rate);
@@ -206,7 +206,7 @@ impl ContactForce {
             let (mut near, mut far) = (shifted(&self.driving.free[i]), shifted(&self.back.free[i]));
             near[0] += b;
             far[0] += b;
-            return Cell { side: -1.0, near, far, law: [[0.0; 4]; 4] };
+            return ForceCell { side: -1.0, near, far, law: [[0.0; 4]; 4] };
         }
         let flank = self.flank(contact);
         let level = (usize::from(contact.unsigned_abs()) - 1).min(flank.level_m.len() - 1);
@@ -215,12 +215,12 @@ impl ContactForce {
         near[0] -= b + flank.level_m[level];
         far[0] += b + flank.level_m.get(level + 1).copied().unwrap_or(BEYOND_M);
         let side = if contact < 0 { -1.0 } else { 1.0 };
-        Cell { side, near, far, law: flank.cells[level][i].map(|row| shifted(&row)) }
+        ForceCell { side, near, far, law: flank.cells[level][i].map(|row| shifted(&row)) }
     }
 
     /// The contact beyond the end of a cell through its near end (false) or its far one.
     #[inline(always)]
-    pub(super) fn next(contact: Contact, far: bool) -> Contact {
+    pub(super) fn next(contact: ContactSide, far: bool) -> ContactSide {
         match (contact, far) {
             (0, false) => 1,
             (0, true) => -1,
@@ -236,7 +236,7 @@ const BEYOND_M: f64 = 1e300;
 /// The cell of one half that a motion is in, polynomials in scaled time: the force is side Σ_a law[a](τ) e^a with e = side s + near(τ); the cell is left
 /// where side s + near(τ) or −side s + far(τ) falls below zero.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Cell {
+pub(crate) struct ForceCell {
     pub side: f64,
     pub near: [f64; 4],
     pub far: [f64; 4],
@@ -245,7 +245,7 @@ pub(crate) struct Cell {
 
 /// The cells of both halves in all lanes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Cells<R> {
+pub(crate) struct ForceCells<R> {
     /// The mesh force of a half comes from its cell.
     pub in_use: bool,
     pub side: R,
@@ -254,7 +254,7 @@ pub(crate) struct Cells<R> {
     pub law: [[R; 4]; 4],
 }
 
-impl<R: Real> Cells<R> {
+impl<R: Real> ForceCells<R> {
     pub fn none() -> Self {
         let zero = R::splat(0.0);
         Self { in_use: false, side: zero, near: [zero; 4], far: [zero; 4], law: [[zero; 4]; 4] }
@@ -295,7 +295,7 @@ fn hermite(v0: f64, v1: f64, m0: f64, m1: f64) -> [f64; 4] {
     [v0, m0, 3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise]
 }
 
-impl Flank {
+impl FlankSurface {
     fn new(knots: &[f64], flank: &FlankForce) -> Self {
         let n = knots.len();
         let width = |i: usize| if i + 1 < n { knots[i + 1] - knots[i] } else { knots[0] + 1.0 - knots[i] };

@@ -22,18 +22,18 @@ pub(crate) const W: usize = 5;
 
 /// Spring and damper in scaled time, already divided by the mass they act on.
 #[derive(Debug, Clone, Copy, Default)]
-struct Rate<R> {
+struct ScaledSpring<R> {
     k: R,
     c: R,
 }
 
-impl Rate<f64> {
+impl ScaledSpring<f64> {
     fn new(spring: Spring, mass: f64, omega: f64) -> Self {
         Self { k: spring.stiffness / (mass * omega * omega), c: spring.damping / (mass * omega) }
     }
 }
 
-impl<R: Real> Rate<R> {
+impl<R: Real> ScaledSpring<R> {
     #[inline(always)]
     fn of(self, x: R, v: R) -> R {
         self.k * x + self.c * v
@@ -48,17 +48,17 @@ pub(crate) struct HalfEquations<R> {
     inv_mp: R,
     pub(super) inv_mg: R,
     pub inv_me: R,
-    yp: Rate<R>,
-    zp: Rate<R>,
-    yg: Rate<R>,
-    zg: Rate<R>,
-    yp_other: Rate<R>,
-    zp_other: Rate<R>,
-    yg_other: Rate<R>,
-    zg_other: Rate<R>,
+    yp: ScaledSpring<R>,
+    zp: ScaledSpring<R>,
+    yg: ScaledSpring<R>,
+    zg: ScaledSpring<R>,
+    yp_other: ScaledSpring<R>,
+    zp_other: ScaledSpring<R>,
+    yg_other: ScaledSpring<R>,
+    zg_other: ScaledSpring<R>,
     /// Torsional couplings act on R_p θ_p and R_g θ_g as forces (per length).
-    torsion_p: Rate<R>,
-    torsion_g: Rate<R>,
+    torsion_p: ScaledSpring<R>,
+    torsion_g: ScaledSpring<R>,
     /// Reduced inertias I_p/R_p², I_g/R_g², and their parts of the sum of both.
     pub reduced_p: R,
     pub reduced_g: R,
@@ -161,7 +161,7 @@ impl<const D: usize, R: Real> Equations<D, R> {
 
     /// Puts one motion's equations into a lane. All lanes have the same parity.
     pub fn put(&mut self, lane: usize, one: &Equations<D, f64>) {
-        fn rate<R: Real>(to: &mut Rate<R>, lane: usize, from: &Rate<f64>) {
+        fn rate<R: Real>(to: &mut ScaledSpring<R>, lane: usize, from: &ScaledSpring<f64>) {
             to.k.set(lane, from.k);
             to.c.set(lane, from.c);
         }
@@ -275,9 +275,9 @@ fn half(p: &Parameters, j: usize, omega: f64) -> HalfEquations<f64> {
     let square = omega * omega;
     let reduced_p = h.pinion_inertia_kg_m2 / (p.pinion_radius_m * p.pinion_radius_m);
     let reduced_g = h.gear_inertia_kg_m2 / (p.gear_radius_m * p.gear_radius_m);
-    let on_pinion = |s| Rate::new(s, h.pinion_mass_kg, omega);
-    let on_gear = |s| Rate::new(s, h.gear_mass_kg, omega);
-    let per_arc = |s: Spring, r: f64| Rate { k: s.stiffness / (r * r), c: s.damping * omega / (r * r) };
+    let on_pinion = |s| ScaledSpring::new(s, h.pinion_mass_kg, omega);
+    let on_gear = |s| ScaledSpring::new(s, h.gear_mass_kg, omega);
+    let per_arc = |s: Spring, r: f64| ScaledSpring { k: s.stiffness / (r * r), c: s.damping * omega / (r * r) };
     let cm = h.mesh_damping_n_s_per_m * omega;
     HalfEquations {
         sin: if j == 0 { p.helix_angle_rad.sin() } else { -p.helix_angle_rad.sin() },

@@ -76,7 +76,7 @@ impl Stiffness {
 /// Periodic force F_s along the mesh of one half in the transverse plane, N.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Impact {
+pub enum ImpactExcitation {
     /// F_s(φ) = force · sin(π (φ − start) / duration) while 0 ≤ φ − start < duration, once per mesh period. Pulses longer than
     /// a mesh period overlap and add up.
     HalfSine { force_n: f64, duration_mesh_periods: f64, start_mesh_periods: f64 },
@@ -87,20 +87,20 @@ pub enum Impact {
 /// The longest half sine, in mesh periods: beyond it the pulses of a dozen tooth pairs would overlap.
 const LONGEST_PULSE_MESH_PERIODS: f64 = 16.0;
 
-impl Impact {
+impl ImpactExcitation {
     /// Mean over one mesh period, N.
     pub fn mean_n(&self) -> f64 {
         match self {
-            Impact::HalfSine { force_n, duration_mesh_periods, .. } => force_n * duration_mesh_periods * 2.0 / PI,
-            Impact::Harmonics { .. } => 0.0,
+            ImpactExcitation::HalfSine { force_n, duration_mesh_periods, .. } => force_n * duration_mesh_periods * 2.0 / PI,
+            ImpactExcitation::Harmonics { .. } => 0.0,
         }
     }
 
     /// Whether there is no force at any phase.
     pub fn is_zero(&self) -> bool {
         match self {
-            Impact::HalfSine { force_n, .. } => *force_n == 0.0,
-            Impact::Harmonics { harmonics } => harmonics.iter().all(|h| h.amplitude == 0.0),
+            ImpactExcitation::HalfSine { force_n, .. } => *force_n == 0.0,
+            ImpactExcitation::Harmonics { harmonics } => harmonics.iter().all(|h| h.amplitude == 0.0),
         }
     }
 
@@ -109,7 +109,7 @@ impl Impact {
             if ok { Ok(()) } else { Err(DynamicsError::InvalidParameter { name: "impact", value, reason }) }
         };
         match self {
-            Impact::HalfSine { force_n, duration_mesh_periods: d, start_mesh_periods } => {
+            ImpactExcitation::HalfSine { force_n, duration_mesh_periods: d, start_mesh_periods } => {
                 check(force_n.is_finite(), *force_n, "the force must be finite")?;
                 check(start_mesh_periods.is_finite(), *start_mesh_periods, "the start must be finite")?;
                 check(
@@ -118,7 +118,7 @@ impl Impact {
                     "the duration must be 1e-9 to 16 mesh periods",
                 )
             }
-            Impact::Harmonics { harmonics } => harmonics.iter().try_for_each(|h| {
+            ImpactExcitation::Harmonics { harmonics } => harmonics.iter().try_for_each(|h| {
                 check(h.amplitude.is_finite() && h.phase_rad.is_finite(), h.amplitude, "harmonics must be finite")
             }),
         }
@@ -356,11 +356,11 @@ pub(crate) enum ImpactWaveform {
 }
 
 impl ImpactWaveform {
-    pub fn new(impact: Option<&Impact>, shift: f64, period_tau: f64) -> Self {
+    pub fn new(impact: Option<&ImpactExcitation>, shift: f64, period_tau: f64) -> Self {
         match impact {
             None => ImpactWaveform::None,
-            Some(Impact::HalfSine { force_n, .. }) if *force_n == 0.0 => ImpactWaveform::None,
-            Some(Impact::HalfSine { force_n, duration_mesh_periods: duration, start_mesh_periods }) => {
+            Some(ImpactExcitation::HalfSine { force_n, .. }) if *force_n == 0.0 => ImpactWaveform::None,
+            Some(ImpactExcitation::HalfSine { force_n, duration_mesh_periods: duration, start_mesh_periods }) => {
                 let mut power = [1.0; MAX_ORDER + 1];
                 for n in 1..=MAX_ORDER {
                     power[n] = power[n - 1] * PI / (duration * period_tau * n as f64);
@@ -368,7 +368,7 @@ impl ImpactWaveform {
                 let start = (start_mesh_periods + shift).rem_euclid(1.0);
                 ImpactWaveform::HalfSine { force_n: *force_n, duration: *duration, start, power }
             }
-            Some(Impact::Harmonics { harmonics }) => {
+            Some(ImpactExcitation::Harmonics { harmonics }) => {
                 ImpactWaveform::Harmonics(FourierSeries::new(0.0, 1.0, harmonics, shift, period_tau))
             }
         }

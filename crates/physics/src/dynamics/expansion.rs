@@ -1,9 +1,9 @@
 //! Taylor coefficients of the excitations about a phase: of one motion, or of the motions in all lanes.
 
-use super::contact_force::Cells;
+use super::contact_force::ForceCells;
 use super::excitation::{Coefficients, ImpactWaveform, MAX_ORDER, FourierSeries, StiffnessWaveform};
 use super::lanes::{Lanes, Real};
-use super::model::{Contact, ContactForceWaveform, Excitation, Model};
+use super::model::{ContactSide, ContactForceWaveform, Excitation, DynamicModel};
 use super::recurrence::ContactSeries;
 use super::segment::Segment;
 
@@ -18,7 +18,7 @@ pub(crate) struct ExcitationTerms<R> {
     /// The impact is not zero.
     pub impact_active: [bool; 2],
     /// Where the mesh force is that of the loaded contact: the cell of each half.
-    pub cells: [Cells<R>; 2],
+    pub cells: [ForceCells<R>; 2],
 }
 
 impl<R: Real> ExcitationTerms<R> {
@@ -30,7 +30,7 @@ impl<R: Real> ExcitationTerms<R> {
             degree: [0; 2],
             impact: zero,
             impact_active: [false; 2],
-            cells: [Cells::none(); 2],
+            cells: [ForceCells::none(); 2],
         }
     }
 
@@ -72,19 +72,19 @@ pub(crate) trait ExcitationExpansion<R> {
 impl ContactForceWaveform {
     /// Puts the cell that a half is in into a lane.
     #[inline(always)]
-    fn put<R: Real>(&self, phase: f64, inside: f64, contact: Contact, lane: usize, cells: &mut Cells<R>) {
+    fn put<R: Real>(&self, phase: f64, inside: f64, contact: ContactSide, lane: usize, cells: &mut ForceCells<R>) {
         let Self { force, shift, b, period_tau } = self;
         cells.set(lane, &force.cell(contact, *b, phase - shift, inside - shift, *period_tau));
     }
 }
 
-impl<const D: usize> ExcitationExpansion<f64> for Model<D> {
+impl<const D: usize> ExcitationExpansion<f64> for DynamicModel<D> {
     #[inline(always)]
     fn expand(&self, phase: f64, inside: f64, contact: [f64; 2], order: usize, terms: &mut ExcitationTerms<f64>) {
         for (j, e) in self.excitations.iter().enumerate() {
             terms.cells[j].in_use = e.contact.is_some();
             if let Some(waveform) = &e.contact {
-                waveform.put(phase, inside, contact[j] as Contact, 0, &mut terms.cells[j]);
+                waveform.put(phase, inside, contact[j] as ContactSide, 0, &mut terms.cells[j]);
             } else {
                 let stiffness = &mut terms.stiffness[j];
                 if let Some(series) = e.stiffness.series() {
@@ -114,7 +114,7 @@ impl<const D: usize> ExcitationExpansion<f64> for Model<D> {
     }
 }
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> DynamicModel<D> {
     /// The excitations that perturbations from a motion feel, about the scaled time `at` of one of its segments: where the mesh force is that of the
     /// loaded contact, its stiffness along the motion.
     #[inline(always)]
@@ -238,7 +238,7 @@ impl<const L: usize> ExcitationExpansion<Lanes<L>> for LaneExcitations<'_, L> {
                 for lane in 0..L {
                     if let Some(waveform) = e.contacts[lane] {
                         let (phase, inside) = (phase.get(lane), inside.get(lane));
-                        waveform.put(phase, inside, contact[j].get(lane) as Contact, lane, &mut terms.cells[j]);
+                        waveform.put(phase, inside, contact[j].get(lane) as ContactSide, lane, &mut terms.cells[j]);
                     }
                 }
             } else {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::equations::{PER_HALF, W};
 use super::error::DynamicsError;
-use super::model::{Model, State};
+use super::model::{DynamicModel, MotionState};
 use super::runge_kutta::RungeKutta;
 use super::segment::Observer;
 use super::taylor::{Taylor, order_for};
@@ -23,14 +23,14 @@ pub enum Integrator {
 
 /// What a solution took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Numerics {
+pub struct StepCounts {
     pub steps: u64,
     pub rejected_steps: u64,
     /// Evaluations of the mesh forces; for the Taylor method, of their derivatives of each order.
     pub force_evaluations: u64,
 }
 
-impl std::ops::AddAssign for Numerics {
+impl std::ops::AddAssign for StepCounts {
     fn add_assign(&mut self, other: Self) {
         self.steps += other.steps;
         self.rejected_steps += other.rejected_steps;
@@ -51,9 +51,9 @@ enum Stepper<const D: usize> {
 
 /// A motion under way.
 pub(crate) struct Motion<'a, const D: usize> {
-    pub model: &'a Model<D>,
-    pub state: State<D>,
-    pub numerics: Numerics,
+    pub model: &'a DynamicModel<D>,
+    pub state: MotionState<D>,
+    pub counts: StepCounts,
     /// A tooth has changed the side of its backlash since the start.
     pub contact_changed: bool,
     stepper: Stepper<D>,
@@ -63,7 +63,7 @@ pub(crate) struct Motion<'a, const D: usize> {
 
 impl<'a, const D: usize> Motion<'a, D> {
     /// `tolerance`: local error of a step relative to the size of the motion; `max_steps`: budget over the life of the motion.
-    pub fn new(model: &'a Model<D>, state: State<D>, integrator: Integrator, tolerance: f64, max_steps: u64) -> Self {
+    pub fn new(model: &'a DynamicModel<D>, state: MotionState<D>, integrator: Integrator, tolerance: f64, max_steps: u64) -> Self {
         let stepper = match integrator {
             Integrator::Taylor => Stepper::Taylor(Taylor::new(tolerance, order_for(tolerance), None)),
             Integrator::RungeKutta => Stepper::RungeKutta(RungeKutta::new(tolerance, None)),
@@ -71,7 +71,7 @@ impl<'a, const D: usize> Motion<'a, D> {
         Self {
             model,
             state,
-            numerics: Numerics::default(),
+            counts: StepCounts::default(),
             contact_changed: false,
             stepper,
             max_steps,
@@ -105,10 +105,10 @@ impl<'a, const D: usize> Motion<'a, D> {
                 let contact = self.state.contact;
                 match &mut self.stepper {
                     Stepper::Taylor(t) => {
-                        t.step(self.model, &mut self.state, end, inside, &mut self.numerics, observer)?
+                        t.step(self.model, &mut self.state, end, inside, &mut self.counts, observer)?
                     }
                     Stepper::RungeKutta(r) => {
-                        r.step(self.model, &mut self.state, end, inside, &mut self.numerics, observer)?
+                        r.step(self.model, &mut self.state, end, inside, &mut self.counts, observer)?
                     }
                 }
                 self.contact_changed |= contact != self.state.contact;
@@ -116,7 +116,7 @@ impl<'a, const D: usize> Motion<'a, D> {
                 if self.since_checkpoint >= STEPS_PER_CHECKPOINT {
                     self.since_checkpoint = 0;
                     watch.checkpoint(fraction)?;
-                    if self.numerics.steps + self.numerics.rejected_steps > self.max_steps {
+                    if self.counts.steps + self.counts.rejected_steps > self.max_steps {
                         return Err(DynamicsError::TooManySteps { time_s: self.time_s(), limit: self.max_steps });
                     }
                 }
@@ -137,7 +137,7 @@ impl<'a, const D: usize> Motion<'a, D> {
 }
 
 /// A state beyond all reason: free rotation may go on for ever, everything else is a few micrometres.
-pub(super) fn has_diverged<const D: usize>(state: &State<D>) -> bool {
+pub(super) fn has_diverged<const D: usize>(state: &MotionState<D>) -> bool {
     [&state.x, &state.v]
         .iter()
         .any(|row| row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > LARGEST_M)))

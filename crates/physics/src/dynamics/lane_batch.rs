@@ -4,9 +4,9 @@ use super::equations::Equations;
 use super::error::DynamicsError;
 use super::excitation::MAX_ORDER;
 use super::expansion::LaneExcitations;
-use super::integrate::{Integrator, Motion, Numerics, has_diverged};
+use super::integrate::{Integrator, Motion, StepCounts, has_diverged};
 use super::lanes::{Lanes, Real};
-use super::model::{Contact, Model, State};
+use super::model::{ContactSide, DynamicModel, MotionState};
 use super::recurrence::TaylorWork;
 use super::segment::{Observer, Segment};
 use super::taylor::{ChatterGuard, StepOutcome, SmoothInterval, evaluate_rows, order_for, step, step_error};
@@ -18,10 +18,10 @@ pub(crate) const BATCH_LANES: usize = 8;
 
 /// One motion of a batch: where it starts, what looks at it, and when it has got where it was to go.
 pub(crate) trait TrajectoryObserver<'m, const D: usize> {
-    fn model(&self) -> &'m Model<D>;
+    fn model(&self) -> &'m DynamicModel<D>;
 
     /// State at the start of a mesh period.
-    fn start(&self) -> State<D>;
+    fn start(&self) -> MotionState<D>;
 
     /// Local error of a step relative to the size of the motion.
     fn tolerance(&self) -> f64;
@@ -35,10 +35,10 @@ pub(crate) trait TrajectoryObserver<'m, const D: usize> {
     fn segment(&mut self, segment: &Segment<'_, D>);
 
     /// A mesh period has ended in `state`. Returns whether the motion goes on.
-    fn finish_period(&mut self, state: &State<D>) -> bool;
+    fn finish_period(&mut self, state: &MotionState<D>) -> bool;
 
     /// The motion has ended, by itself or with an error.
-    fn finished(&mut self, numerics: Numerics, error: Option<DynamicsError>);
+    fn finished(&mut self, counts: StepCounts, error: Option<DynamicsError>);
 }
 
 /// Steps between two looks at the watch.
@@ -129,7 +129,7 @@ pub(crate) fn integrate_trajectory<'m, const D: usize, P: TrajectoryObserver<'m,
     if error == Some(DynamicsError::Canceled(Canceled)) {
         return Err(Canceled);
     }
-    observer.finished(motion.numerics, error);
+    observer.finished(motion.counts, error);
     Ok(())
 }
 
@@ -224,7 +224,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
     }
 
     /// Puts a state into a lane.
-    fn set_state(&mut self, lane: usize, state: &State<D>) {
+    fn set_state(&mut self, lane: usize, state: &MotionState<D>) {
         for c in 0..D {
             self.end.0[c].set(lane, state.x[c]);
             self.end.1[c].set(lane, state.v[c]);
@@ -236,19 +236,19 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
     }
 
     /// The smooth stretch from `from` to the breakpoint of this index.
-    fn set_smooth_interval(&mut self, lane: usize, model: &Model<D>, from: f64, breakpoint: usize) {
+    fn set_smooth_interval(&mut self, lane: usize, model: &DynamicModel<D>, from: f64, breakpoint: usize) {
         let end = model.breakpoints[breakpoint];
         self.interval.end.set(lane, end);
         self.interval.inside.set(lane, 0.5 * (from + end));
     }
 
-    fn state(&self, lane: usize, period: u64) -> State<D> {
-        State {
+    fn state(&self, lane: usize, period: u64) -> MotionState<D> {
+        MotionState {
             period,
             phase: self.interval.phase.get(lane),
             x: self.end.0.map(|c| c.get(lane)),
             v: self.end.1.map(|c| c.get(lane)),
-            contact: self.contact.map(|c| c.get(lane) as Contact),
+            contact: self.contact.map(|c| c.get(lane) as ContactSide),
         }
     }
 
@@ -332,7 +332,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         &mut self,
         lane: usize,
         slot: &LaneSlot,
-        model: &Model<D>,
+        model: &DynamicModel<D>,
         h: f64,
         degree: usize,
         observer: &mut impl TrajectoryObserver<'m, D>,
@@ -342,7 +342,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
                 self.rows[n][c] = self.work.rows[n][c].get(lane);
             }
         }
-        for j in 0..Model::<D>::HALVES {
+        for j in 0..DynamicModel::<D>::HALVES {
             for n in 0..=degree {
                 self.force[j][n] = self.work.force[j][n].get(lane);
             }
@@ -355,19 +355,19 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
             degree,
             rows: &self.rows,
             force: &self.force,
-            contact: self.contact.map(|c| c.get(lane) as Contact),
+            contact: self.contact.map(|c| c.get(lane) as ContactSide),
         });
     }
 
     /// Empties a lane: what is left in it stands still.
     fn unload_lane(&mut self, lane: usize, slot: &LaneSlot, observer: &mut impl TrajectoryObserver<'m, D>, error: Option<DynamicsError>) {
         self.slots[lane] = None;
-        let rest = State { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [0; 2] };
+        let rest = MotionState { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [0; 2] };
         self.set_state(lane, &rest);
         self.interval.end.set(lane, 0.0);
         self.interval.inside.set(lane, 0.0);
         self.interval.switching.set(lane, 0.0);
-        let numerics = Numerics { steps: slot.steps, rejected_steps: 0, force_evaluations: slot.evaluations };
-        observer.finished(numerics, error);
+        let counts = StepCounts { steps: slot.steps, rejected_steps: 0, force_evaluations: slot.evaluations };
+        observer.finished(counts, error);
     }
 }

@@ -45,10 +45,10 @@ mod variation;
 
 pub use contact_force::{ContactForce, FlankForce};
 pub use error::DynamicsError;
-pub use excitation::{Harmonic, Impact, Stiffness};
-pub use integrate::{Integrator, Numerics};
+pub use excitation::{Harmonic, ImpactExcitation, Stiffness};
+pub use integrate::{Integrator, StepCounts};
 pub use modal::NaturalModes;
-pub use model::Contact;
+pub use model::ContactSide;
 pub use parameters::{
     Couplings, HalfParameters, ImpactActsOn, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m,
 };
@@ -59,7 +59,7 @@ pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP};
 pub(crate) use excitation::MAX_ORDER;
 pub(crate) use rigid_body::RigidBodyModes;
 pub(crate) use integrate::Motion;
-pub(crate) use model::{Model, State};
+pub(crate) use model::{DynamicModel, MotionState};
 pub(crate) use segment::{Observer, Segment, Unobserved};
 pub(crate) use shooting::{IntegrationLimits, Shooting};
 pub(crate) use trajectory::is_mirrored;

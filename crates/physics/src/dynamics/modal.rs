@@ -1,12 +1,12 @@
 //! Natural frequencies and static deflection with the mean mesh stiffness, in the source's twelve displacements.
 
-mod members;
+mod springs;
 mod mode;
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
-use members::{members, mesh_direction};
+use springs::{spring_elements, mesh_direction};
 
 use super::error::DynamicsError;
 use super::parameters::Parameters;
@@ -27,7 +27,7 @@ pub struct NaturalModes {
 const RIGID: f64 = 1e-12;
 
 /// Values over the source's twelve displacements.
-type Row = [f64; 12];
+type SourceVector = [f64; 12];
 
 impl NaturalModes {
     /// Solves K φ = ω² M φ by the eigenvalues of M^-½ K M^-½.
@@ -48,7 +48,7 @@ impl NaturalModes {
         let squares: Vec<f64> =
             order.iter().map(|&i| eigen.eigenvalues[i]).map(|l| if l > RIGID * largest { l } else { 0.0 }).collect();
         let frequencies_hz = squares.iter().map(|l| l.sqrt() / std::f64::consts::TAU).collect();
-        let vectors: Vec<Row> = order.iter().map(|&i| std::array::from_fn(|c| eigen.eigenvectors[(c, i)])).collect();
+        let vectors: Vec<SourceVector> = order.iter().map(|&i| std::array::from_fn(|c| eigen.eigenvectors[(c, i)])).collect();
         let wanted = preferred(p).map(|row| std::array::from_fn(|c| row[c] / root[c]));
         let mut shapes = Vec::with_capacity(12);
         let mut from = 0;
@@ -100,7 +100,7 @@ fn torques(p: &Parameters) -> DVector<f64> {
 
 /// The directions that modes of one frequency are turned to, in this order: free rotation of both halves alike and against each
 /// other, then every displacement alike (as mirror images) and against each other.
-fn preferred(p: &Parameters) -> [Row; 14] {
+fn preferred(p: &Parameters) -> [SourceVector; 14] {
     let rotation = |c: usize| match c {
         2 => 1.0 / p.pinion_radius_m,
         5 => 1.0 / p.gear_radius_m,
@@ -120,14 +120,14 @@ fn mirrored(c: usize) -> f64 {
 
 /// An orthonormal basis of the space of the orthonormal `vectors` that depends on that space alone: the directions of `wanted` in
 /// turn, as far as they lie in it and are new.
-fn canonical(vectors: &[Row], wanted: &[Row]) -> Vec<Row> {
+fn canonical(vectors: &[SourceVector], wanted: &[SourceVector]) -> Vec<SourceVector> {
     // As the directions span everything, one of those left always has a twelfth of its square in what is left of the space.
     const NEW: f64 = 1e-2;
     if vectors.len() == 1 {
         return vectors.to_vec();
     }
-    let dot = |a: &Row, b: &Row| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut basis: Vec<Row> = Vec::with_capacity(vectors.len());
+    let dot = |a: &SourceVector, b: &Row| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut basis: Vec<SourceVector> = Vec::with_capacity(vectors.len());
     for least in [NEW, 1e-9] {
         for direction in wanted {
             if basis.len() == vectors.len() {
@@ -156,7 +156,7 @@ fn canonical(vectors: &[Row], wanted: &[Row]) -> Vec<Row> {
 }
 
 /// The shape with its largest displacement (of rotations: the arc at the radius) positive; of equal ones the first counts.
-fn upright(p: &Parameters, shape: Row) -> Row {
+fn upright(p: &Parameters, shape: SourceVector) -> SourceVector {
     const EQUAL: f64 = 1.0 - 1e-6;
     let arcs = arcs(p, &shape);
     let largest = arcs.iter().fold(0.0f64, |m, a| m.max(a.abs()));
@@ -165,7 +165,7 @@ fn upright(p: &Parameters, shape: Row) -> Row {
 }
 
 /// The displacements with rotations as arcs at the radii of the plane in use.
-fn arcs(p: &Parameters, shape: &Row) -> Row {
+fn arcs(p: &Parameters, shape: &SourceVector) -> SourceVector {
     std::array::from_fn(|c| match c % 6 {
         2 => shape[c] * p.pinion_radius_m,
         5 => shape[c] * p.gear_radius_m,
@@ -187,9 +187,9 @@ fn masses(p: &Parameters) -> [f64; 12] {
 
 fn stiffness_matrix(p: &Parameters) -> DMatrix<f64> {
     let mut k = DMatrix::zeros(12, 12);
-    for member in members(p) {
-        let row = DVector::from_row_slice(&member.row);
-        k += &row * row.transpose() * member.spring.stiffness;
+    for element in spring_elements(p) {
+        let row = DVector::from_row_slice(&element.row);
+        k += &row * row.transpose() * element.spring.stiffness;
     }
     k
 }

@@ -11,11 +11,11 @@ use super::parameters::{HalfParameters, Parameters};
 
 /// Which side of the backlash a half is on: positive driving flanks, 0 apart, negative back flanks. 1 and −1; where the mesh force is that of
 /// the loaded contact, 1 + the level of displacement with the side's sign.
-pub type Contact = i8;
+pub type ContactSide = i8;
 
 /// State in solver coordinates at a mesh phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct State<const D: usize> {
+pub(crate) struct MotionState<const D: usize> {
     /// Whole mesh periods since the start.
     pub period: u64,
     /// Phase within the mesh period, 0 … 1.
@@ -23,7 +23,7 @@ pub(crate) struct State<const D: usize> {
     pub x: [f64; D],
     /// dx/dτ.
     pub v: [f64; D],
-    pub contact: [Contact; 2],
+    pub contact: [ContactSide; 2],
 }
 
 /// The two excitations of one half.
@@ -46,7 +46,7 @@ pub(crate) struct ContactForceWaveform {
 
 /// The equations of one half (D = 6, mirror symmetric) or both (D = 12) with their excitations.
 #[derive(Debug, Clone)]
-pub(crate) struct Model<const D: usize> {
+pub(crate) struct DynamicModel<const D: usize> {
     equations: Equations<D, f64>,
     /// Of each half that is solved.
     pub excitations: Vec<Excitation>,
@@ -62,7 +62,7 @@ pub(crate) struct Model<const D: usize> {
     pub radius_g: f64,
 }
 
-impl<const D: usize> Deref for Model<D> {
+impl<const D: usize> Deref for DynamicModel<D> {
     type Target = Equations<D, f64>;
 
     fn deref(&self) -> &Equations<D, f64> {
@@ -73,7 +73,7 @@ impl<const D: usize> Deref for Model<D> {
 /// Breakpoints closer than this are one, in mesh periods.
 const SAME_PHASE: f64 = 1e-12;
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> DynamicModel<D> {
     pub const HALVES: usize = D / PER_HALF;
 
     pub fn new(p: &Parameters) -> Result<Self, DynamicsError> {
@@ -144,7 +144,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// The side of the backlash the s of a half is on. Without backlash the mesh law of a stiffness is linear: always driving.
-    pub fn contact_of(&self, j: usize, s: f64, phase: f64) -> Contact {
+    pub fn contact_of(&self, j: usize, s: f64, phase: f64) -> ContactSide {
         if let Some(contact) = &self.excitations[j].contact {
             return contact.force.contact_of(s, self.b, phase - contact.shift);
         }
@@ -164,7 +164,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// Scaled rate at which the distance from mid-gap to where contact of a side (1 driving, −1 back) begins grows: 0 but for contact forces.
-    pub fn contact_onset_rate(&self, j: usize, side: Contact, phase: f64) -> f64 {
+    pub fn contact_onset_rate(&self, j: usize, side: ContactSide, phase: f64) -> f64 {
         let contact = self.excitations[j].contact.as_ref();
         contact.map_or(0.0, |c| c.force.free_rate_m(side, phase - c.shift) / self.period_tau)
     }
@@ -254,8 +254,8 @@ impl<const D: usize> Model<D> {
     }
 
     /// State from the source's 12 displacements and 12 velocities.
-    pub fn state_from(&self, source: &[f64; 24]) -> State<D> {
-        let mut state = State { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [1; 2] };
+    pub fn state_from(&self, source: &[f64; 24]) -> MotionState<D> {
+        let mut state = MotionState { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [1; 2] };
         for j in 0..Self::HALVES {
             let h = &self.halves[j];
             let sum = h.reduced_p + h.reduced_g;
@@ -278,7 +278,7 @@ impl<const D: usize> Model<D> {
 
     /// Where the mesh force is that of the loaded contact: turns the teeth together until each half carries its load at the state's phase, halves
     /// that are coupled in torsion by the mean of what each needs.
-    pub fn close_contact(&self, state: &mut State<D>) {
+    pub fn close_contact(&self, state: &mut MotionState<D>) {
         let mut turns = [0.0; 2];
         for (j, e) in self.excitations.iter().enumerate() {
             let Some(contact) = &e.contact else { return };
@@ -296,7 +296,7 @@ impl<const D: usize> Model<D> {
     }
 
     /// The source's 12 displacements and 12 velocities of a state.
-    pub fn source_state(&self, state: &State<D>) -> [f64; 24] {
+    pub fn source_state(&self, state: &MotionState<D>) -> [f64; 24] {
         let mut out = [0.0; 24];
         out[..12].copy_from_slice(&self.source_displacements(&state.x));
         out[12..].copy_from_slice(&self.source_displacements(&state.v).map(|v| v * self.omega_ref));

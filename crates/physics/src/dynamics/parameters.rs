@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::contact_force::ContactForce;
 use super::error::DynamicsError;
-use super::excitation::{Impact, Stiffness};
+use super::excitation::{ImpactExcitation, Stiffness};
 
 /// A linear spring with a viscous damper beside it. Zero for both: not there. N/m and N s/m, or N m/rad and N m s/rad for
 /// torsional ones.
@@ -48,7 +48,7 @@ pub struct HalfParameters {
     /// c_m along s, N s/m; see [`mesh_damping_n_s_per_m`].
     pub mesh_damping_n_s_per_m: f64,
     /// F_s, along the mesh in the transverse plane; what it moves is said by [`Parameters::impact_acts_on`].
-    pub impact: Option<Impact>,
+    pub impact: Option<ImpactExcitation>,
     /// The excitations of this half come this fraction of a mesh period later than written (half stagger).
     pub phase_shift_mesh_periods: f64,
 }
@@ -138,7 +138,7 @@ impl Parameters {
         if self.impact_acts_on == ImpactActsOn::All {
             return;
         }
-        let mean = |h: &HalfParameters| h.impact.as_ref().map_or(0.0, Impact::mean_n);
+        let mean = |h: &HalfParameters| h.impact.as_ref().map_or(0.0, ImpactExcitation::mean_n);
         let total = self.halves[0].pinion_torque_nm + self.halves[1].pinion_torque_nm;
         let moved = 0.5 * self.pinion_radius_m * (mean(&self.halves[0]) - mean(&self.halves[1]));
         self.halves[0].pinion_torque_nm = 0.5 * total + moved;
@@ -171,7 +171,7 @@ impl Parameters {
             spring("pinion axial support", h.pinion_axial)?;
             spring("gear axial support", h.gear_axial)?;
             h.mesh_stiffness.validate()?;
-            h.impact.as_ref().map_or(Ok(()), Impact::validate)?;
+            h.impact.as_ref().map_or(Ok(()), ImpactExcitation::validate)?;
         }
         let c = &self.couplings;
         spring("pinion axial coupling", c.pinion_axial)?;

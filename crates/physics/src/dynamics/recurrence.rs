@@ -1,6 +1,6 @@
 //! The recurrence that gives the Taylor coefficients of the motion between two events.
 
-use super::contact_force::Cells;
+use super::contact_force::ForceCells;
 use super::equations::{Equations, PER_HALF, W};
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
@@ -34,7 +34,7 @@ impl<R: Real> ContactSeries<R> {
 
     /// Adds coefficient `n` of s to the series, and returns coefficient `n` of Σ_a law[a] e^a.
     #[inline(always)]
-    fn force(&mut self, cells: &Cells<R>, n: usize, s: R) -> R {
+    fn force(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
         self.push(cells, n, s);
         let mut sum = R::splat(0.0);
         for m in 0..=n.min(3) {
@@ -46,7 +46,7 @@ impl<R: Real> ContactSeries<R> {
 
     /// The same of the stiffness, Σ_a a law[a] e^(a-1).
     #[inline(always)]
-    pub fn stiffness(&mut self, cells: &Cells<R>, n: usize, s: R) -> R {
+    pub fn stiffness(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
         self.push(cells, n, s);
         let (two, three) = (R::splat(2.0), R::splat(3.0));
         let mut sum = R::splat(0.0);
@@ -58,7 +58,7 @@ impl<R: Real> ContactSeries<R> {
     }
 
     #[inline(always)]
-    fn push(&mut self, cells: &Cells<R>, n: usize, s: R) {
+    fn push(&mut self, cells: &ForceCells<R>, n: usize, s: R) {
         self.e[n] = cells.side * s;
         if n < 4 {
             self.e[n] += cells.near[n];

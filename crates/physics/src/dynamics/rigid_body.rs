@@ -6,7 +6,7 @@
 
 use super::equations::{PER_HALF, U, YG, YP};
 use super::error::DynamicsError;
-use super::model::Model;
+use super::model::DynamicModel;
 use super::shooting::rigid_body_modes;
 use super::variation::Perturbation;
 
@@ -23,7 +23,7 @@ impl<const D: usize> RigidBodyModes<D> {
     ///
     /// # Errors
     /// [`DynamicsError::InvalidParameter`] when the stiffness matrix has no eigenvalues that can be computed.
-    pub fn new(model: &Model<D>) -> Result<Self, DynamicsError> {
+    pub fn new(model: &DynamicModel<D>) -> Result<Self, DynamicsError> {
         let active: Vec<usize> = model.active().collect();
         let masses = model.masses_kg();
         let mesh = |j: usize| {

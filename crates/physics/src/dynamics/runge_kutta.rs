@@ -6,8 +6,8 @@
 use super::equations::{PER_HALF, W};
 use super::error::DynamicsError;
 use super::excitation::{Coefficients, MAX_ORDER};
-use super::integrate::Numerics;
-use super::model::{Model, State};
+use super::integrate::StepCounts;
+use super::model::{DynamicModel, MotionState};
 use super::segment::{Observer, Segment};
 
 const C: [f64; 6] = [0.0, 1.0 / 4.0, 3.0 / 8.0, 12.0 / 13.0, 1.0, 1.0 / 2.0];
@@ -47,11 +47,11 @@ impl<const D: usize> RungeKutta<D> {
 
     pub fn step(
         &mut self,
-        model: &Model<D>,
-        state: &mut State<D>,
+        model: &DynamicModel<D>,
+        state: &mut MotionState<D>,
         end: f64,
         inside: f64,
-        numerics: &mut Numerics,
+        counts: &mut StepCounts,
         observer: &mut impl Observer<D>,
     ) -> Result<(), DynamicsError> {
         let time_s = (state.period as f64 + state.phase) * model.period_tau / model.omega_ref;
@@ -77,7 +77,7 @@ impl<const D: usize> RungeKutta<D> {
                 }
                 k[i] = (v, model.acceleration(state.phase + C[i] * phase_step, inside, &x, &v));
             }
-            numerics.force_evaluations += 5;
+            counts.force_evaluations += 5;
             let (mut x, mut v) = (state.x, state.v);
             let mut error = 0.0f64;
             let mut moving = 0.0f64;
@@ -107,7 +107,7 @@ impl<const D: usize> RungeKutta<D> {
                 // After a last, shortened step the next one need not be short.
                 self.next = if to_end && factor >= 1.0 { (h * factor).max(self.next.min(4.0 * h)) } else { h * factor };
                 if error > allowed {
-                    numerics.rejected_steps += 1;
+                    counts.rejected_steps += 1;
                     if h < 1e-13 * model.period_tau {
                         return Err(DynamicsError::StepSizeTooSmall { time_s, step_s: h / model.omega_ref });
                     }
@@ -115,12 +115,12 @@ impl<const D: usize> RungeKutta<D> {
                 }
             }
             self.size = 0.999 * size;
-            numerics.steps += 1;
+            counts.steps += 1;
             let phase = if to_end { end } else { state.phase + phase_step };
             let a = model.acceleration(phase, inside, &x, &v);
-            numerics.force_evaluations += 1;
+            counts.force_evaluations += 1;
             self.quintic(model, (&state.x, &state.v, &k[0].1), (&x, &v, &a), h);
-            for j in 0..Model::<D>::HALVES {
+            for j in 0..DynamicModel::<D>::HALVES {
                 let impact = model.impact_in_normal(j, state.phase, phase_step, inside);
                 for (n, part) in impact.into_iter().enumerate() {
                     self.force[j][n] -= part / h.powi(n as i32);
@@ -137,7 +137,7 @@ impl<const D: usize> RungeKutta<D> {
                 contact: state.contact,
             });
             (state.phase, state.x, state.v) = (phase, x, v);
-            for j in 0..Model::<D>::HALVES {
+            for j in 0..DynamicModel::<D>::HALVES {
                 state.contact[j] = model.contact_of(j, model.s(j, &state.x), state.phase);
             }
             return Ok(());
@@ -146,7 +146,7 @@ impl<const D: usize> RungeKutta<D> {
 
     /// Dense output: the quintic with the positions, velocities and accelerations of both ends (Hermite). The mesh
     /// force is the one that moves the gear as the quintic says.
-    fn quintic(&mut self, model: &Model<D>, start: Ends<'_, D>, end: Ends<'_, D>, h: f64) {
+    fn quintic(&mut self, model: &DynamicModel<D>, start: Ends<'_, D>, end: Ends<'_, D>, h: f64) {
         let r = &mut self.rows;
         for c in 0..D {
             let (x0, v0, a0) = (start.0[c], start.1[c] * h, start.2[c] * h * h);
@@ -161,7 +161,7 @@ impl<const D: usize> RungeKutta<D> {
             r[4][c] = (-15.0 * dx + 7.0 * dv - da) / h.powi(4);
             r[5][c] = (6.0 * dx - 3.0 * dv + 0.5 * da) / h.powi(5);
         }
-        for j in 0..Model::<D>::HALVES {
+        for j in 0..DynamicModel::<D>::HALVES {
             for n in 0..=3 {
                 self.force[j][n] = model.mesh_force_coefficient(j, n, r);
             }

@@ -1,12 +1,12 @@
 //! One step of a solution as polynomials: what observers of a motion see.
 
 use super::excitation::{Coefficients, MAX_ORDER};
-use super::model::{Contact, Model};
+use super::model::{ContactSide, DynamicModel};
 use super::taylor::evaluate_rows;
 
 /// The motion over one step: coordinates as polynomials in scaled time since the step's start.
 pub(crate) struct Segment<'a, const D: usize> {
-    pub model: &'a Model<D>,
+    pub model: &'a DynamicModel<D>,
     /// Whole mesh periods since the start, and the phase at which the segment begins.
     pub period: u64,
     pub phase: f64,
@@ -17,7 +17,7 @@ pub(crate) struct Segment<'a, const D: usize> {
     pub rows: &'a [[f64; D]; MAX_ORDER + 1],
     /// Normal mesh force of each half, N, powers 0 to `degree` − 2.
     pub force: &'a [Coefficients; 2],
-    pub contact: [Contact; 2],
+    pub contact: [ContactSide; 2],
 }
 
 impl<const D: usize> Segment<'_, D> {

@@ -4,8 +4,8 @@ use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
 
 use super::equations::PER_HALF;
 use super::error::DynamicsError;
-use super::integrate::{Integrator, Motion, Numerics};
-use super::model::{Model, State};
+use super::integrate::{Integrator, Motion, StepCounts};
+use super::model::{DynamicModel, MotionState};
 use super::recurrence::norm;
 use super::segment::{Observer, Segment};
 use super::variation::{ObserverPair, Perturbation, Variation};
@@ -25,7 +25,7 @@ pub(crate) struct IntegrationLimits<'a> {
 
 /// The period map of a model with its free motions (no spring holds them) set apart.
 pub(crate) struct Shooting<'m, const D: usize> {
-    model: &'m Model<D>,
+    model: &'m DynamicModel<D>,
     active: Vec<usize>,
     masses: [f64; D],
     /// Free motions, normalised to nᵀ M n = 1.
@@ -35,14 +35,14 @@ pub(crate) struct Shooting<'m, const D: usize> {
 
 /// A motion over whole periods, and the linear map of perturbations over the same time.
 pub(crate) struct PeriodMap<const D: usize> {
-    pub end: State<D>,
+    pub end: MotionState<D>,
     /// Over (active displacements, active velocities).
     pub monodromy: DMatrix<f64>,
     /// Largest scaled velocity at the start of a step.
     pub size: f64,
     /// A half has left its flank.
     pub separated: bool,
-    pub numerics: Numerics,
+    pub counts: StepCounts,
 }
 
 /// Watches how large a motion is and whether it keeps to its flanks.
@@ -55,14 +55,14 @@ struct AmplitudeMonitor {
 impl<const D: usize> Observer<D> for AmplitudeMonitor {
     fn segment(&mut self, segment: &Segment<'_, D>) {
         let sides = segment.contact.map(i8::signum);
-        self.separated |= *self.first.get_or_insert(sides) != sides || sides[..Model::<D>::HALVES].contains(&0);
+        self.separated |= *self.first.get_or_insert(sides) != sides || sides[..DynamicModel::<D>::HALVES].contains(&0);
         self.size = self.size.max(norm(&segment.rows[1]));
     }
 }
 
 impl<'m, const D: usize> Shooting<'m, D> {
     pub fn new(
-        model: &'m Model<D>,
+        model: &'m DynamicModel<D>,
         mean_stiffness_n_per_m: [f64; 2],
         limits: IntegrationLimits<'m>,
     ) -> Result<Self, DynamicsError> {
@@ -74,7 +74,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
 
     /// Goes through `periods` mesh periods of the motion of `motion_model` from `start` with the unit perturbations of this model
     /// (another one than the motion's to look against the symmetry).
-    pub fn period_map(&self, motion_model: &Model<D>, start: State<D>, periods: u64) -> Result<PeriodMap<D>, DynamicsError> {
+    pub fn period_map(&self, motion_model: &DynamicModel<D>, start: MotionState<D>, periods: u64) -> Result<PeriodMap<D>, DynamicsError> {
         let IntegrationLimits { tolerance, max_steps, watch } = self.limits;
         let mut variation = Variation::new(self.model, Variation::unit_perturbations(self.model), tolerance);
         let mut motion = Motion::new(motion_model, start, Integrator::Taylor, tolerance, max_steps);
@@ -92,7 +92,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
             return Err(DynamicsError::Diverged { time_s: motion.time_s() });
         }
         let AmplitudeMonitor { size, separated, .. } = amplitude;
-        Ok(PeriodMap { end: motion.state, monodromy, size, separated, numerics: motion.numerics })
+        Ok(PeriodMap { end: motion.state, monodromy, size, separated, counts: motion.counts })
     }
 
     /// Along a free motion: nᵀ M q.
@@ -164,7 +164,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
 
 /// Displacements along which no spring acts, from the eigenvectors of M^-½ K M^-½ in solver coordinates.
 pub(super) fn rigid_body_modes<const D: usize>(
-    model: &Model<D>,
+    model: &DynamicModel<D>,
     active: &[usize],
     masses: &[f64; D],
     mean_stiffness_n_per_m: [f64; 2],
@@ -175,7 +175,7 @@ pub(super) fn rigid_body_modes<const D: usize>(
         let mut unit = [0.0; D];
         unit[c] = 1.0;
         let mut a = model.acceleration_of_springs(&unit);
-        for j in 0..Model::<D>::HALVES {
+        for j in 0..DynamicModel::<D>::HALVES {
             let push = model.acceleration_of_mesh_force(j, mean_stiffness_n_per_m[j] * model.s(j, &unit));
             for i in j * PER_HALF..(j + 1) * PER_HALF {
                 a[i] += push[i];

@@ -5,15 +5,15 @@
 //! accuracy allows. Changes of contact are zeros of the polynomial s(τ) ∓ b and are located to rounding. Step length after Jorba
 //! and Zou (Experimental Mathematics 14 (2005) 99), from the last two coefficients.
 
-use super::contact_force::{Cells, ContactForce};
+use super::contact_force::{ForceCells, ContactForce};
 use super::crossing::first_crossing;
 use super::equations::{Equations, PER_HALF};
 use super::error::DynamicsError;
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationExpansion;
-use super::integrate::Numerics;
+use super::integrate::StepCounts;
 use super::lanes::{Real, rough_root};
-use super::model::{Contact, Model, State};
+use super::model::{ContactSide, DynamicModel, MotionState};
 use super::recurrence::{EarlyTermination, TaylorWork, larger, norm, taylor};
 use super::segment::{Observer, Segment};
 use crate::simd::vectorised;
@@ -145,7 +145,7 @@ fn next_contact<R: Real>(s: &[R], b: R, contact: R, h: R, switching: R) -> (R, R
 
 /// The first change of the cell of a half's contact force within `h`: when (infinite: none), and to what.
 #[inline(always)]
-fn next_cell<R: Real>(s: &[R], cells: &Cells<R>, contact: R, h: R, switching: R) -> (R, R) {
+fn next_cell<R: Real>(s: &[R], cells: &ForceCells<R>, contact: R, h: R, switching: R) -> (R, R) {
     let mut g = [R::splat(0.0); MAX_ORDER + 1];
     let g = &mut g[..s.len()];
     let mut leaves = |side: R, ends: &[R; 4], h: R| {
@@ -159,7 +159,7 @@ fn next_cell<R: Real>(s: &[R], cells: &Cells<R>, contact: R, h: R, switching: R)
     };
     let near = leaves(cells.side, &cells.near, h);
     let far = leaves(-cells.side, &cells.far, near.zip(h, f64::min));
-    let to = R::from_fn(|l| f64::from(ContactForce::next(contact.get(l) as Contact, far.get(l) < f64::INFINITY)));
+    let to = R::from_fn(|l| f64::from(ContactForce::next(contact.get(l) as ContactSide, far.get(l) < f64::INFINITY)));
     (near.zip(far, f64::min), to)
 }
 
@@ -210,7 +210,7 @@ pub(super) struct ChatterGuard {
 impl ChatterGuard {
     /// To be told of each change. ChatterGuard faster than can be followed goes on by a short free step and takes the contact it
     /// finds; returns whether it did.
-    pub fn contact_changed<const D: usize>(&mut self, model: &Model<D>, state: &mut State<D>, end: f64) -> bool {
+    pub fn contact_changed<const D: usize>(&mut self, model: &DynamicModel<D>, state: &mut MotionState<D>, end: f64) -> bool {
         if self.period != state.period {
             *self = Self { period: state.period, changes: 0 };
         }
@@ -226,7 +226,7 @@ impl ChatterGuard {
             state.x[c] += h * state.v[c];
         }
         state.phase += step;
-        for j in 0..Model::<D>::HALVES {
+        for j in 0..DynamicModel::<D>::HALVES {
             state.contact[j] = model.contact_of(j, model.s(j, &state.x), state.phase);
         }
         true
@@ -236,7 +236,7 @@ impl ChatterGuard {
 /// Why a step of length `h` cannot be taken, if it cannot. `advances`: it changes the phase or the contact.
 #[inline(always)]
 pub(super) fn step_error<const D: usize>(
-    model: &Model<D>,
+    model: &DynamicModel<D>,
     period: u64,
     phase: f64,
     h: f64,
@@ -281,11 +281,11 @@ impl<const D: usize> Taylor<D> {
     /// Advances by one step, at most to the phase `end`; `inside` is a phase in the smooth stretch.
     pub fn step(
         &mut self,
-        model: &Model<D>,
-        state: &mut State<D>,
+        model: &DynamicModel<D>,
+        state: &mut MotionState<D>,
         end: f64,
         inside: f64,
-        numerics: &mut Numerics,
+        counts: &mut StepCounts,
         observer: &mut impl Observer<D>,
     ) -> Result<(), DynamicsError> {
         self.work.rows[0] = state.x;
@@ -305,8 +305,8 @@ impl<const D: usize> Taylor<D> {
             #[inline(always)]
             || step(model, model, *order, interval, contact, size, work),
         );
-        numerics.steps += 1;
-        numerics.force_evaluations += (stepped.degree - 1) as u64;
+        counts.steps += 1;
+        counts.force_evaluations += (stepped.degree - 1) as u64;
         let h = stepped.h;
         let phase = if stepped.to_end != 0.0 { end } else { (state.phase + h / model.period_tau).min(end) };
         let advances = phase > state.phase || stepped.changed >= 0.0;
@@ -326,7 +326,7 @@ impl<const D: usize> Taylor<D> {
         (state.x, state.v) = evaluate_rows(&self.work.rows[..=stepped.degree], h);
         state.phase = phase;
         if stepped.changed >= 0.0 {
-            state.contact[stepped.changed as usize] = stepped.contact as Contact;
+            state.contact[stepped.changed as usize] = stepped.contact as ContactSide;
             self.chatter.contact_changed(model, state, end);
         }
         Ok(())

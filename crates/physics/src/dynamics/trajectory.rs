@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::lane_batch::{TrajectoryObserver, integrate_trajectories, integrate_trajectory};
 use super::error::DynamicsError;
-use super::integrate::{Integrator, Numerics};
-use super::model::{Model, State};
+use super::integrate::{Integrator, StepCounts};
+use super::model::{DynamicModel, MotionState};
 use super::parameters::Parameters;
 use super::segment::Segment;
 use crate::watch::{Canceled, Watch};
@@ -15,7 +15,7 @@ use crate::watch::{Canceled, Watch};
 pub struct FinalState {
     /// 12 displacements in the source's order (m, rad), then 12 velocities (m/s, rad/s).
     pub state: [f64; 24],
-    pub numerics: Numerics,
+    pub counts: StepCounts,
 }
 
 /// Follows the motion from `start` (12 displacements, then 12 velocities, in the source's order, SI) through `mesh_periods`. `tolerance`:
@@ -38,7 +38,7 @@ pub fn advance(
         (integrator, tolerance): (Integrator, f64),
         watch: &Watch<'_>,
     ) -> Result<FinalState, DynamicsError> {
-        let model = Model::<D>::new(p)?;
+        let model = DynamicModel::<D>::new(p)?;
         let mut observer = FinalStateObserver::new(&model, start, mesh_periods, tolerance);
         if mesh_periods > 0 {
             integrate_trajectory(&mut observer, integrator, u64::MAX, watch)?;
@@ -64,7 +64,7 @@ pub fn advance_many(
     tolerance: f64,
     watch: &Watch<'_>,
 ) -> Result<Vec<Result<FinalState, DynamicsError>>, Canceled> {
-    let asked: Vec<_> = points.iter().zip(starts).collect();
+    let input: Vec<_> = points.iter().zip(starts).collect();
     let groups: Result<Vec<_>, Canceled> = asked
         .par_chunks(POINTS_PER_GROUP)
         .map(|group| {
@@ -84,16 +84,16 @@ const POINTS_PER_GROUP: usize = 32;
 
 /// A motion that only wants to get there.
 struct FinalStateObserver<'m, const D: usize> {
-    model: &'m Model<D>,
-    state: State<D>,
+    model: &'m DynamicModel<D>,
+    state: MotionState<D>,
     mesh_periods: u64,
     tolerance: f64,
     outcome: Result<FinalState, DynamicsError>,
 }
 
 impl<'m, const D: usize> FinalStateObserver<'m, D> {
-    fn new(model: &'m Model<D>, start: &[f64; 24], mesh_periods: u64, tolerance: f64) -> Self {
-        let reached = Ok(FinalState { state: *start, numerics: Numerics::default() });
+    fn new(model: &'m DynamicModel<D>, start: &[f64; 24], mesh_periods: u64, tolerance: f64) -> Self {
+        let reached = Ok(FinalState { state: *start, counts: StepCounts::default() });
         Self { model, state: model.state_from(start), mesh_periods, tolerance, reached }
     }
 }
@@ -106,7 +106,7 @@ fn advance_group<const D: usize>(
     watch: &Watch<'_>,
     out: &mut [Result<FinalState, DynamicsError>],
 ) -> Result<(), Canceled> {
-    let models: Vec<_> = indices.iter().map(|&i| Model::<D>::new(points[i].0)).collect();
+    let models: Vec<_> = indices.iter().map(|&i| DynamicModel::<D>::new(points[i].0)).collect();
     let mut observers = Vec::with_capacity(indices.len());
     let mut places = Vec::with_capacity(indices.len());
     for (&index, model) in indices.iter().zip(&models) {
@@ -128,11 +128,11 @@ fn advance_group<const D: usize>(
 }
 
 impl<'m, const D: usize> TrajectoryObserver<'m, D> for FinalStateObserver<'m, D> {
-    fn model(&self) -> &'m Model<D> {
+    fn model(&self) -> &'m DynamicModel<D> {
         self.model
     }
 
-    fn start(&self) -> State<D> {
+    fn start(&self) -> MotionState<D> {
         self.state
     }
 
@@ -150,13 +150,13 @@ impl<'m, const D: usize> TrajectoryObserver<'m, D> for FinalStateObserver<'m, D>
 
     fn segment(&mut self, _: &Segment<'_, D>) {}
 
-    fn finish_period(&mut self, state: &State<D>) -> bool {
+    fn finish_period(&mut self, state: &MotionState<D>) -> bool {
         self.state = *state;
         state.period < self.mesh_periods
     }
 
-    fn finished(&mut self, numerics: Numerics, error: Option<DynamicsError>) {
-        let reached = FinalState { state: self.model.source_state(&self.state), numerics };
+    fn finished(&mut self, counts: StepCounts, error: Option<DynamicsError>) {
+        let reached = FinalState { state: self.model.source_state(&self.state), counts };
         self.outcome = error.map_or(Ok(reached), Err);
     }
 }

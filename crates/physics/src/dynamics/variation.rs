@@ -4,7 +4,7 @@ use super::equations::Equations;
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
 use super::lanes::{Lanes, Real};
-use super::model::{Contact, Model, State};
+use super::model::{ContactSide, DynamicModel, MotionState};
 use super::recurrence::{TaylorWork, taylor};
 use super::segment::{Observer, Segment};
 use super::taylor::{evaluate_rows, step_reach};
@@ -26,10 +26,10 @@ pub(crate) type Perturbation<const D: usize> = ([f64; D], [f64; D]);
 /// With damping in the gap the mesh force is continuous in the state, so perturbations pass a change of contact unchanged; without,
 /// the force jumps by c_m ds/dt and the perturbation of the velocity by (a₊ − a₋) δs/(ds/dt).
 pub(crate) struct Variation<'m, const D: usize> {
-    model: &'m Model<D>,
+    model: &'m DynamicModel<D>,
     pub columns: Vec<Perturbation<D>>,
     tolerance: f64,
-    last_contact: Option<[Contact; 2]>,
+    last_contact: Option<[ContactSide; 2]>,
     /// Taken out while in use.
     workspace: Option<Box<Workspace<D>>>,
 }
@@ -43,7 +43,7 @@ struct Workspace<const D: usize> {
 }
 
 impl<'m, const D: usize> Variation<'m, D> {
-    pub fn new(model: &'m Model<D>, columns: Vec<Perturbation<D>>, tolerance: f64) -> Self {
+    pub fn new(model: &'m DynamicModel<D>, columns: Vec<Perturbation<D>>, tolerance: f64) -> Self {
         let workspace = Workspace {
             one: TaylorWork::new(),
             several: TaylorWork::new(),
@@ -54,7 +54,7 @@ impl<'m, const D: usize> Variation<'m, D> {
     }
 
     /// One unit perturbation per active displacement, then one per active velocity.
-    pub fn unit_perturbations(model: &Model<D>) -> Vec<Perturbation<D>> {
+    pub fn unit_perturbations(model: &DynamicModel<D>) -> Vec<Perturbation<D>> {
         let unit = |c: usize| {
             let mut row = [0.0; D];
             row[c] = 1.0;
@@ -65,8 +65,8 @@ impl<'m, const D: usize> Variation<'m, D> {
         places.chain(speeds).collect()
     }
 
-    fn apply_saltation(&mut self, segment: &Segment<'_, D>, before: [Contact; 2]) {
-        for j in 0..Model::<D>::HALVES {
+    fn apply_saltation(&mut self, segment: &Segment<'_, D>, before: [ContactSide; 2]) {
+        for j in 0..DynamicModel::<D>::HALVES {
             let (was, is) = (before[j], segment.contact[j]);
             let speed = self.model.s(j, &segment.rows[1]);
             let h = &self.model.halves[j];
@@ -176,6 +176,6 @@ impl<const D: usize, A: Observer<D>, B: Observer<D>> Observer<D> for ObserverPai
 }
 
 /// Perturbation of one state from another.
-pub(crate) fn state_difference<const D: usize>(a: &State<D>, b: &State<D>) -> Perturbation<D> {
+pub(crate) fn state_difference<const D: usize>(a: &MotionState<D>, b: &MotionState<D>) -> Perturbation<D> {
     (std::array::from_fn(|c| a.x[c] - b.x[c]), std::array::from_fn(|c| a.v[c] - b.v[c]))
 }

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::channel::{Channel, ChannelId};
-use super::confidence::Interval;
+use super::confidence::ConfidenceInterval;
 use super::statistics::Statistics;
-use crate::dynamics::{Integrator, Numerics};
+use crate::dynamics::{Integrator, StepCounts};
 
 /// How the steady state is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Method {
+pub enum SolutionMethod {
     /// The periodic solution without loss of contact if there is a stable one, else integration until the motion repeats (made
     /// exact by Newton's method on the period map), else a long record of a motion that does not repeat.
     #[default]
@@ -26,7 +26,7 @@ pub enum Method {
 /// What is asked of a response.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Analysis {
-    pub method: Method,
+    pub method: SolutionMethod,
     /// For `Integrate`; the other methods use Taylor series.
     pub integrator: Integrator,
     /// Relative error of the RMS values, 1e-13 … 0.1.
@@ -48,7 +48,7 @@ pub struct Analysis {
 impl Default for Analysis {
     fn default() -> Self {
         Self {
-            method: Method::Auto,
+            method: SolutionMethod::Auto,
             integrator: Integrator::Taylor,
             accuracy: 1e-6,
             samples_per_mesh_period: 256,
@@ -126,8 +126,8 @@ pub struct Rms {
 /// Intervals of the two accelerations' RMS values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RmsIntervals {
-    pub mesh_circumferential_acceleration_m_s2: Halves<Interval>,
-    pub pinion_axial_acceleration_m_s2: Halves<Interval>,
+    pub mesh_circumferential_acceleration_m_s2: Halves<ConfidenceInterval>,
+    pub pinion_axial_acceleration_m_s2: Halves<ConfidenceInterval>,
 }
 
 /// A Floquet multiplier: what a small perturbation of its kind is multiplied by over one period of the motion.
@@ -180,7 +180,7 @@ pub struct Summary {
     /// 6 when the halves mirror each other, else 12.
     pub degrees_of_freedom: u32,
     pub damping_in_gap: bool,
-    pub numerics: Numerics,
+    pub counts: StepCounts,
 }
 
 /// A motion at the start of a mesh period: the left half's mesh displacement and velocity.

@@ -1,6 +1,6 @@
 //! What a search for a steady motion may spend.
 
-use crate::dynamics::{DynamicsError, IntegrationLimits, Model, Numerics, PER_HALF};
+use crate::dynamics::{DynamicsError, IntegrationLimits, DynamicModel, StepCounts, PER_HALF};
 
 /// Work of a search in all its parts: transient, maps, exponents. One unit is one step of the six coordinates of one half, or
 /// of one perturbation carried along with them: 0.5 to 2 µs on a processor of 2020, so that a search ends within some 20 s and an
@@ -43,15 +43,15 @@ impl Budget {
     }
 
     /// Takes off what a motion that carried `perturbations` has spent.
-    pub fn spend(&mut self, numerics: &Numerics, perturbations: usize) {
-        let steps = numerics.steps + numerics.rejected_steps;
+    pub fn spend(&mut self, counts: &StepCounts, perturbations: usize) {
+        let steps = counts.steps + counts.rejected_steps;
         self.left = self.left.saturating_sub(steps * self.per_step * (1 + perturbations as u64));
     }
 }
 
 /// A rough upper estimate of the steps of a mesh period: what the fastest vibration and the fastest decay ask of a series of finite
 /// reach, and the edges of the excitations. Good enough to choose a way by.
-pub(super) fn steps_per_period<const D: usize>(model: &Model<D>) -> f64 {
+pub(super) fn steps_per_period<const D: usize>(model: &DynamicModel<D>) -> f64 {
     /// Scaled time (of the fastest rate) that a step of the usual order covers.
     const REACH: f64 = 3.0;
     let masses = model.masses_kg();
@@ -63,7 +63,7 @@ pub(super) fn steps_per_period<const D: usize>(model: &Model<D>) -> f64 {
         let mut x = [0.0; D];
         let mut at = rest;
         if pressed > 0.0 {
-            for j in 0..Model::<D>::HALVES {
+            for j in 0..DynamicModel::<D>::HALVES {
                 x[j * PER_HALF + crate::dynamics::U] = 2.0 * model.b / model.cos + f64::MIN_POSITIVE;
             }
             at = model.acceleration(0.5, 0.5, &x, &[0.0; D]);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::{MAX_ORDER, Model, PER_HALF, Segment, U, W, YG, YP, ZG, ZP};
+use crate::dynamics::{MAX_ORDER, DynamicModel, PER_HALF, Segment, U, W, YG, YP, ZG, ZP};
 
 /// What a channel is a course of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -158,7 +158,7 @@ impl ChannelId {
     }
 
     /// How the channel follows from the solver's coordinates.
-    pub(super) fn probe<const D: usize>(self, model: &Model<D>) -> Probe<D> {
+    pub(super) fn evaluator<const D: usize>(self, model: &DynamicModel<D>) -> ChannelEvaluator<D> {
         let half = usize::from(self.half);
         // With one half solved, the other is its mirror image.
         let (j, mirrored) = if D > PER_HALF { (half, 1.0) } else { (0, if half == 0 { 1.0 } else { -1.0 }) };
@@ -178,31 +178,31 @@ impl ChannelId {
             Source::Zg => row[i + ZG] = mirrored,
             Source::ThetaP => (row[i + U], row[i + W]) = (h.reduced_g / sum / model.radius_p, 1.0 / model.radius_p),
             Source::ThetaG => (row[i + U], row[i + W]) = (-h.reduced_p / sum / model.radius_g, 1.0 / model.radius_g),
-            Source::NormalForce => return Probe::Force { half: j, factor: 1.0 },
-            Source::TangentialForce => return Probe::Force { half: j, factor: model.cos },
-            Source::AxialForce => return Probe::Force { half: j, factor: mirrored * h.sin },
-            Source::ToothForce => return Probe::ToothForce { half: j },
+            Source::NormalForce => return ChannelEvaluator::Force { half: j, factor: 1.0 },
+            Source::TangentialForce => return ChannelEvaluator::Force { half: j, factor: model.cos },
+            Source::AxialForce => return ChannelEvaluator::Force { half: j, factor: mirrored * h.sin },
+            Source::ToothForce => return ChannelEvaluator::ToothForce { half: j },
         }
         let factor = model.omega_ref.powi(i32::from(self.derivative));
         let places: Vec<usize> = (0..D).filter(|&c| row[c] != 0.0).collect();
-        Probe::Linear { row: row.map(|c| c * factor), places, derivative: usize::from(self.derivative) }
+        ChannelEvaluator::Linear { row: row.map(|c| c * factor), places, derivative: usize::from(self.derivative) }
     }
 }
 
 /// How a channel is read off a segment.
 #[derive(Debug, Clone)]
-pub(super) enum Probe<const D: usize> {
+pub(super) enum ChannelEvaluator<const D: usize> {
     Linear { row: [f64; D], places: Vec<usize>, derivative: usize },
     Force { half: usize, factor: f64 },
     ToothForce { half: usize },
 }
 
-impl<const D: usize> Probe<D> {
+impl<const D: usize> ChannelEvaluator<D> {
     /// The channel's polynomial in scaled time since the segment's start; returns its degree.
     #[inline(always)]
     pub fn polynomial(&self, segment: &Segment<'_, D>, out: &mut [f64; MAX_ORDER + 1]) -> usize {
         match self {
-            Probe::Linear { row, places, derivative } => {
+            ChannelEvaluator::Linear { row, places, derivative } => {
                 let degree = segment.degree - derivative;
                 for n in 0..=degree {
                     let from = &segment.rows[n + derivative];
@@ -216,14 +216,14 @@ impl<const D: usize> Probe<D> {
                 }
                 degree
             }
-            Probe::Force { half, factor } => {
+            ChannelEvaluator::Force { half, factor } => {
                 let degree = segment.degree - 2;
                 for n in 0..=degree {
                     out[n] = factor * segment.force[*half][n];
                 }
                 degree
             }
-            Probe::ToothForce { half } => {
+            ChannelEvaluator::ToothForce { half } => {
                 let degree = segment.degree - 2;
                 for n in 0..=degree {
                     out[n] = segment.model.tooth_force_coefficient(*half, n, segment.rows);

@@ -7,12 +7,12 @@
 
 use super::analysis::{Regime, Response};
 use super::channel::ChannelId;
-use super::recorder::Recorder;
-use super::recording::Finished;
-use super::regime::{CHAOS_PER_MESH_PERIOD, Section, lyapunov_exponent_with};
-use super::report::{Verdict, report, solved_halves};
-use super::solve::{Point, REPEATS};
-use crate::dynamics::{DynamicsError, Integrator, IntegrationLimits, Model, Motion, Numerics, Shooting, State};
+use super::recorder::ChannelRecorder;
+use super::recording::FinishedRun;
+use super::regime::{CHAOS_PER_MESH_PERIOD, PoincareSection, lyapunov_exponent_with};
+use super::report::{MotionAssessment, report, solved_halves};
+use super::solve::{OperatingPoint, REPEATS};
+use crate::dynamics::{DynamicsError, Integrator, IntegrationLimits, DynamicModel, Motion, StepCounts, Shooting, MotionState};
 
 /// Mesh periods over which a Lyapunov exponent is averaged.
 const FOLLOWED_MESH_PERIODS: u64 = 300;
@@ -34,7 +34,7 @@ pub(super) struct Classification {
     pub regime: Regime,
     /// Largest Lyapunov exponent per mesh period; of a motion that grows without bound its growth rate.
     pub lyapunov: f64,
-    pub numerics: Numerics,
+    pub counts: StepCounts,
 }
 
 /// A motion followed on with a perturbation beside it.
@@ -44,18 +44,18 @@ struct ContinuedMotion {
     repeats: bool,
     /// The perturbation decays.
     decays: bool,
-    numerics: Numerics,
+    counts: StepCounts,
 }
 
-impl Point<'_> {
+impl OperatingPoint<'_> {
     /// What a motion is whose record did not repeat. `known`: its largest Lyapunov exponent, where that was found already.
     ///
     /// # Errors
     /// [`DynamicsError`] where the motion cannot be followed.
     pub(super) fn classify<const D: usize>(
         &self,
-        model: &Model<D>,
-        finished: &Finished<'_, D>,
+        model: &DynamicModel<D>,
+        finished: &FinishedRun<'_, D>,
         (integrator, tolerance): (Integrator, f64),
         known: Option<f64>,
     ) -> Result<Classification, DynamicsError> {
@@ -64,7 +64,7 @@ impl Point<'_> {
         let nearly_repeated = finished.record.recent.settled_period(REPEATS).is_some();
         let continued = match known {
             Some(exponent) if exponent > CHAOS_PER_MESH_PERIOD => {
-                Ok(ContinuedMotion { exponent, repeats: false, decays: false, numerics: Numerics::default() })
+                Ok(ContinuedMotion { exponent, repeats: false, decays: false, counts: StepCounts::default() })
             }
             _ => self.continue_motion(model, last, integrator, tolerance),
         };
@@ -79,7 +79,7 @@ impl Point<'_> {
         let (continued, diverged) = match continued {
             Ok(continued) => (continued, false),
             Err(DynamicsError::Diverged { .. }) if grows => {
-                (ContinuedMotion { exponent: modulus.ln(), repeats: false, decays: false, numerics: Numerics::default() }, true)
+                (ContinuedMotion { exponent: modulus.ln(), repeats: false, decays: false, counts: StepCounts::default() }, true)
             }
             Err(other) => return Err(other),
         };
@@ -101,36 +101,36 @@ impl Point<'_> {
         };
         let exponent = known.unwrap_or(continued.exponent);
         let lyapunov = if regime == Regime::Unstable { modulus.ln() } else { exponent };
-        Ok(Classification { regime, lyapunov, numerics: continued.numerics })
+        Ok(Classification { regime, lyapunov, counts: continued.counts })
     }
 
     /// Follows a motion on from where its record ended.
     fn continue_motion<const D: usize>(
         &self,
-        model: &Model<D>,
-        from: State<D>,
+        model: &DynamicModel<D>,
+        from: MotionState<D>,
         integrator: Integrator,
         tolerance: f64,
     ) -> Result<ContinuedMotion, DynamicsError> {
         let mut motion = Motion::new(model, from, integrator, tolerance, self.analysis.max_steps);
-        let mut section = Section::without_rigid_body(model)?;
+        let mut section = PoincareSection::without_rigid_body(model)?;
         let mut growth = Vec::with_capacity(FOLLOWED_MESH_PERIODS as usize);
         let exponent = lyapunov_exponent_with(&mut motion, model, FOLLOWED_MESH_PERIODS, self.watch, |ln, state| {
             growth.push(ln);
             section.push(*state);
         })?;
         let decays = exponent == f64::NEG_INFINITY || decays(&growth[growth.len() / 10..]);
-        Ok(ContinuedMotion { exponent, repeats: section.settled_period(REPEATS).is_some(), decays, numerics: motion.numerics })
+        Ok(ContinuedMotion { exponent, repeats: section.settled_period(REPEATS).is_some(), decays, counts: motion.counts })
     }
 
     /// Largest modulus of the Floquet multipliers over one mesh period with contact held, free motions apart: what the vibration of a pair
     /// that keeps contact, or is far beyond its backlash, is multiplied by.
-    fn fixed_contact_modulus<const D: usize>(&self, model: &Model<D>, near: &State<D>) -> Result<f64, DynamicsError> {
+    fn fixed_contact_modulus<const D: usize>(&self, model: &DynamicModel<D>, near: &MotionState<D>) -> Result<f64, DynamicsError> {
         const TOLERANCE: f64 = 1e-12;
         let limits = IntegrationLimits { tolerance: TOLERANCE, max_steps: self.analysis.max_steps, watch: self.watch };
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), limits)?;
-        let mut start = State { period: 0, phase: 0.0, ..*near };
-        for j in 0..Model::<D>::HALVES {
+        let mut start = MotionState { period: 0, phase: 0.0, ..*near };
+        for j in 0..DynamicModel::<D>::HALVES {
             start.contact[j] = match model.uses_contact_force() {
                 false if model.halves[j].load < 0.0 => -1,
                 false => 1,
@@ -147,8 +147,8 @@ impl Point<'_> {
     /// `error` where the growth is none of the mesh's own; [`DynamicsError`] where not even a mesh period can be followed.
     pub(super) fn unstable_response<const D: usize>(
         &self,
-        model: &Model<D>,
-        start: State<D>,
+        model: &DynamicModel<D>,
+        start: MotionState<D>,
         error: DynamicsError,
     ) -> Result<Response, DynamicsError> {
         const TOLERANCE: f64 = 1e-9;
@@ -157,10 +157,10 @@ impl Point<'_> {
             return Err(error);
         }
         let periods = (UNSTABLE_GROWTH.ln() / modulus.ln()).clamp(1.0, UNSTABLE_MESH_PERIODS) as u64;
-        let start = State { period: 0, ..start };
+        let start = MotionState { period: 0, ..start };
         let recorder = self.recorder(model, periods);
         let finished = self.record(model, (start, TOLERANCE), periods, recorder, self.energy(model))?;
-        let verdict = Verdict {
+        let assessment = MotionAssessment {
             regime: Regime::Unstable,
             period: None,
             floquet: Some(modulus),
@@ -171,21 +171,21 @@ impl Point<'_> {
             error_estimate: 1.0,
             energy_residual: finished.energy.and_then(|e| e.residual()),
             t0_s: 0.0,
-            numerics: finished.record.numerics,
+            counts: finished.record.counts,
         };
-        Ok(report(&self.asked(), model, finished.recorder, finished.record, verdict))
+        Ok(assemble_response(&self.report_input(), model, finished.recorder, finished.record, assessment))
     }
 }
 
 /// No half changed its contact over the record, and each touched.
-fn contact_never_changes<const D: usize>(recorder: &Recorder<D>) -> bool {
+fn contact_never_changes<const D: usize>(recorder: &ChannelRecorder<D>) -> bool {
     recorder.contact_shares().iter().all(|share| share[0] == 1.0 || share[2] == 1.0)
 }
 
 /// The record grows from each of its parts to the next, and is far beyond the backlash.
-fn grows_beyond_backlash<const D: usize>(model: &Model<D>, finished: &Finished<'_, D>) -> bool {
+fn grows_beyond_backlash<const D: usize>(model: &DynamicModel<D>, finished: &FinishedRun<'_, D>) -> bool {
     let far = solved_halves::<D>().any(|half| {
-        finished.recorder.gathered(ChannelId::s(half)).is_some_and(|s| {
+        finished.recorder.accumulator(ChannelId::s(half)).is_some_and(|s| {
             let s = s.finish();
             s.max > BACKLASH_MULTIPLE * model.b && s.min < -BACKLASH_MULTIPLE * model.b
         })
@@ -224,11 +224,11 @@ fn trend(growth: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::dynamics::tests::reference::{parameters, reference};
-    use crate::dynamics::{Impact, NaturalModes, Parameters, Stiffness};
-    use crate::response::{Analysis, Method, Summary, solve};
+    use crate::dynamics::{ImpactExcitation, NaturalModes, Parameters, Stiffness};
+    use crate::response::{Analysis, SolutionMethod, Summary, solve};
     use crate::watch::Watch;
 
-    fn summary(p: &Parameters, method: Method, initial_state: Option<[f64; 24]>) -> Summary {
+    fn summary(p: &Parameters, method: SolutionMethod, initial_state: Option<[f64; 24]>) -> Summary {
         let analysis = Analysis { method, initial_state, samples_per_mesh_period: 0, ..Analysis::default() };
         solve(p, &analysis, &Watch::none()).unwrap().summary
     }
@@ -267,7 +267,7 @@ mod tests {
                 p.half_backlash_m = if case == "A" { 0.0 } else { p.half_backlash_m };
                 let s = summary(
                     &p,
-                    Method::Integrate { mesh_periods: periods, record_mesh_periods: record },
+                    SolutionMethod::Integrate { mesh_periods: periods, record_mesh_periods: record },
                     initial_state,
                 );
                 println!(
@@ -284,7 +284,7 @@ mod tests {
                 assert_eq!(s.rms_interval_95, None);
                 if s.regime == Regime::NotSettled && factor >= 0.1 {
                     let long =
-                        summary(&p, Method::Integrate { mesh_periods: 4000, record_mesh_periods: 40 }, initial_state);
+                        summary(&p, SolutionMethod::Integrate { mesh_periods: 4000, record_mesh_periods: 40 }, initial_state);
                     assert!(
                         matches!(long.regime, Regime::Period1 | Regime::PeriodN),
                         "{case}, {factor}: {:?}",
@@ -306,7 +306,7 @@ mod tests {
             }
             let s = summary(
                 &p,
-                Method::Integrate { mesh_periods: periods, record_mesh_periods: periods },
+                SolutionMethod::Integrate { mesh_periods: periods, record_mesh_periods: periods },
                 Some(start("A")),
             );
             assert_eq!(s.regime, Regime::QuasiPeriodic, "{case}, {periods}: {:?}", s.lyapunov_per_mesh_period);
@@ -330,10 +330,10 @@ mod tests {
         for (factor, half_backlash_m) in [(0.0, 0.0), (0.02, 0.0), (0.1, 0.0), (0.0, 1e-6), (0.1, 1e-6)] {
             let p = resonant(factor, half_backlash_m);
             let methods = [
-                Method::Auto,
-                Method::Integrate { mesh_periods: 60, record_mesh_periods: 40 },
-                Method::Integrate { mesh_periods: 300, record_mesh_periods: 100 },
-                Method::Integrate { mesh_periods: 3000, record_mesh_periods: 100 },
+                SolutionMethod::Auto,
+                SolutionMethod::Integrate { mesh_periods: 60, record_mesh_periods: 40 },
+                SolutionMethod::Integrate { mesh_periods: 300, record_mesh_periods: 100 },
+                SolutionMethod::Integrate { mesh_periods: 3000, record_mesh_periods: 100 },
             ];
             for method in methods {
                 let s = summary(&p, method, None);
@@ -356,13 +356,13 @@ mod tests {
         // The rate is the motion's: from one part of a record to another.
         let p = resonant(0.02, 0.0);
         let at = |periods: u64| {
-            let s = summary(&p, Method::Integrate { mesh_periods: periods, record_mesh_periods: 1 }, None);
+            let s = summary(&p, SolutionMethod::Integrate { mesh_periods: periods, record_mesh_periods: 1 }, None);
             (s.rms.mesh_circumferential_acceleration_m_s2.left.ln(), s.lyapunov_per_mesh_period)
         };
         let ((early, _), (late, rate)) = (at(60), at(100));
         assert!(((late - early) / 40.0 / rate.unwrap() - 1.0).abs() < 1e-2, "{early} {late} {rate:?}");
         // EarlyEnd damping holds it.
-        assert_eq!(summary(&resonant(10.0, 0.0), Method::Auto, None).regime, Regime::Period1);
+        assert_eq!(summary(&resonant(10.0, 0.0), SolutionMethod::Auto, None).regime, Regime::Period1);
     }
 
     /// Case B stays chaotic, and an impact changes nothing of that.
@@ -371,9 +371,9 @@ mod tests {
         let mut p = parameters("B");
         for pulse in [true, false] {
             if !pulse {
-                p.halves.iter_mut().for_each(|h| h.impact = None::<Impact>);
+                p.halves.iter_mut().for_each(|h| h.impact = None::<ImpactExcitation>);
             }
-            let s = summary(&p, Method::Integrate { mesh_periods: 300, record_mesh_periods: 200 }, Some(start("B")));
+            let s = summary(&p, SolutionMethod::Integrate { mesh_periods: 300, record_mesh_periods: 200 }, Some(start("B")));
             println!("pulse {pulse}: {:?}, {:?}", s.regime, s.lyapunov_per_mesh_period);
             assert!(!pulse || s.regime == Regime::Chaotic);
             assert_ne!(s.regime, Regime::Unstable);

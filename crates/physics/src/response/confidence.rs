@@ -8,13 +8,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::channel::ChannelId;
-use super::recorder::Recorder;
+use super::recorder::ChannelRecorder;
 use super::report::solved_halves;
-use super::statistics::Gathered;
+use super::statistics::MomentAccumulator;
 
 /// Gathers the mean squares of the accelerations of every response, mesh period by mesh period.
 pub(super) struct MeanSquares {
-    tracks: Vec<(ChannelId, Gathered, Vec<f64>)>,
+    tracks: Vec<(ChannelId, MomentAccumulator, Vec<f64>)>,
 }
 
 impl MeanSquares {
@@ -22,13 +22,13 @@ impl MeanSquares {
         let ids = solved_halves::<D>()
             .flat_map(|half| [ChannelId::mesh_acceleration(half), ChannelId::pinion_axial_acceleration(half)]);
         let room = periods.min(1 << 16) as usize;
-        Self { tracks: ids.map(|id| (id, Gathered::new(true), Vec::with_capacity(room))).collect() }
+        Self { tracks: ids.map(|id| (id, MomentAccumulator::new(true), Vec::with_capacity(room))).collect() }
     }
 
     /// To be called at the end of every mesh period.
-    pub fn push<const D: usize>(&mut self, recorder: &Recorder<D>) {
+    pub fn push<const D: usize>(&mut self, recorder: &ChannelRecorder<D>) {
         for (id, snapshot, squares) in &mut self.tracks {
-            if let Some(now) = recorder.gathered(*id) {
+            if let Some(now) = recorder.accumulator(*id) {
                 squares.push(now.square_since(snapshot));
                 *snapshot = *now;
             }
@@ -42,7 +42,7 @@ impl MeanSquares {
 
 /// An interval that holds the true value with a stated probability.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Interval {
+pub struct ConfidenceInterval {
     pub low: f64,
     pub high: f64,
 }
@@ -63,7 +63,7 @@ const STUDENT_975: [f64; MOST_BATCHES - FEWEST_BATCHES + 1] = [
 
 /// The interval that holds the RMS with a probability of 95 %, from the mean squares of the record's mesh periods. None when the record is
 /// too short against its own correlation to say.
-pub(super) fn rms_interval_95(mean_squares: &[f64]) -> Option<Interval> {
+pub(super) fn rms_interval_95(mean_squares: &[f64]) -> Option<ConfidenceInterval> {
     let n = mean_squares.len();
     let correlation = correlation_time(mean_squares);
     let length = n.div_ceil(MOST_BATCHES).max((CORRELATIONS_PER_BATCH * correlation).ceil() as usize);
@@ -79,7 +79,7 @@ pub(super) fn rms_interval_95(mean_squares: &[f64]) -> Option<Interval> {
     // The mean is that of the whole record, the part behind the last batch included.
     let error = (scatter * length as f64 / n as f64).sqrt();
     let reach = STUDENT_975[batches.min(MOST_BATCHES) - FEWEST_BATCHES] * error;
-    let interval = Interval { low: (mean - reach).max(0.0).sqrt(), high: (mean + reach).sqrt() };
+    let interval = ConfidenceInterval { low: (mean - reach).max(0.0).sqrt(), high: (mean + reach).sqrt() };
     interval.high.is_finite().then_some(interval)
 }
 
@@ -109,8 +109,8 @@ fn correlation_time(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::dynamics::tests::reference::{parameters, reference};
-    use crate::dynamics::{Integrator, Model, Motion, Unobserved};
-    use crate::response::{Analysis, Method, Regime, solve};
+    use crate::dynamics::{Integrator, DynamicModel, Motion, Unobserved};
+    use crate::response::{Analysis, SolutionMethod, Regime, solve};
     use crate::watch::Watch;
     use rayon::prelude::*;
 
@@ -126,7 +126,7 @@ mod tests {
 
     /// Mean squares of x_left'' of 20 chaotic records from different starts, 3000 mesh periods each.
     fn records() -> Vec<Vec<f64>> {
-        let model = Model::<12>::new(&parameters("B")).unwrap();
+        let model = DynamicModel::<12>::new(&parameters("B")).unwrap();
         (0..20)
             .into_par_iter()
             .map(|number| {
@@ -136,7 +136,7 @@ mod tests {
                     motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
                 }
                 let ids = [(ChannelId::mesh_acceleration(0), false), (ChannelId::pinion_axial_acceleration(0), false)];
-                let mut recorder = Recorder::<12>::new(&model, &ids, &[], 0, 0);
+                let mut recorder = ChannelRecorder::<12>::new(&model, &ids, &[], 0, 0);
                 let mut squares = MeanSquares::new::<12>(3000);
                 for _ in 0..3000 {
                     motion.advance_period(&mut recorder, &Watch::none(), 0.0).unwrap();
@@ -157,7 +157,7 @@ mod tests {
         let truth = mean(&mut records.iter().flatten().copied()).sqrt();
         for (length, least) in [(3000, 0.85), (1000, 0.9), (300, 0.9), (100, 0.9)] {
             let pieces: Vec<&[f64]> = records.iter().flat_map(|r| r.chunks_exact(length)).collect();
-            let intervals: Vec<Interval> = pieces.iter().filter_map(|piece| rms_interval_95(piece)).collect();
+            let intervals: Vec<ConfidenceInterval> = pieces.iter().filter_map(|piece| rms_interval_95(piece)).collect();
             let held = intervals.iter().filter(|i| i.low <= truth && truth <= i.high).count();
             let width = mean(&mut intervals.iter().map(|i| 0.5 * (i.high - i.low) / truth));
             let rate = held as f64 / intervals.len() as f64;
@@ -176,7 +176,7 @@ mod tests {
     fn responses_from_twenty_starts_hold_the_reference() {
         let held = (0..20).into_par_iter().filter(|&number| {
             let analysis = Analysis {
-                method: Method::Integrate { mesh_periods: 800, record_mesh_periods: 600 },
+                method: SolutionMethod::Integrate { mesh_periods: 800, record_mesh_periods: 600 },
                 initial_state: Some(start(number)),
                 ..Analysis::default()
             };

@@ -1,7 +1,7 @@
 //! The work–energy theorem over a record: a check of the solution that knows nothing of the method that made it.
 
 use super::quadrature::GAUSS;
-use crate::dynamics::{Model, Observer, PER_HALF, Segment, W};
+use crate::dynamics::{DynamicModel, Observer, PER_HALF, Segment, W};
 
 /// Of longer records the first mesh periods are balanced, which says as much at a bounded cost.
 const MOST_MESH_PERIODS: u64 = 200;
@@ -13,7 +13,7 @@ const STILL: f64 = 1e-9;
 /// dampers, mesh, impacts, torques) at the displacements and velocities of the solution, by quadrature on every segment. The free
 /// rotation of each half (w) is left out, as it is from every measure of the motion's size.
 pub(super) struct EnergyBalance<'m, const D: usize> {
-    model: &'m Model<D>,
+    model: &'m DynamicModel<D>,
     masses: [f64; D],
     /// Over ω_ref², J s².
     first: Option<f64>,
@@ -28,7 +28,7 @@ pub(super) struct EnergyBalance<'m, const D: usize> {
 }
 
 impl<'m, const D: usize> EnergyBalance<'m, D> {
-    pub fn new(model: &'m Model<D>) -> Self {
+    pub fn new(model: &'m DynamicModel<D>) -> Self {
         let mut masses = model.masses_kg();
         (0..D).filter(|c| c % PER_HALF == W).for_each(|c| masses[c] = 0.0);
         Self {
@@ -107,7 +107,7 @@ mod tests {
     const TOPIC: &str = "Response: energy balance";
 
     /// Residual over `periods` of the motion of `motion` from the case's start, by the forces of `judge`.
-    fn residual<'m, const D: usize>(judge: &'m Model<D>, mut motion: Motion<'m, D>, periods: u64) -> f64 {
+    fn residual<'m, const D: usize>(judge: &'m DynamicModel<D>, mut motion: Motion<'m, D>, periods: u64) -> f64 {
         let mut balance = EnergyBalance::new(judge);
         for _ in 0..periods {
             motion.advance_period(&mut balance, &Watch::none(), 0.0).unwrap();
@@ -115,7 +115,7 @@ mod tests {
         balance.residual().unwrap()
     }
 
-    fn motion<'m, const D: usize>(model: &'m Model<D>, case: &str, tolerance: f64) -> Motion<'m, D> {
+    fn motion<'m, const D: usize>(model: &'m DynamicModel<D>, case: &str, tolerance: f64) -> Motion<'m, D> {
         let start: [f64; 24] = reference().cases[case].initial_state.as_slice().try_into().unwrap();
         Motion::new(model, model.state_from(&start), Integrator::Taylor, tolerance, u64::MAX)
     }
@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn the_taylor_method_balances_to_its_tolerance() {
         for case in ["A", "B", "C"] {
-            let model = Model::<12>::new(&parameters(case)).unwrap();
+            let model = DynamicModel::<12>::new(&parameters(case)).unwrap();
             for (tolerance, limit) in [(1e-6, 1e-6), (1e-9, 1e-9), (1e-13, 2e-13)] {
                 let found = residual(&model, motion(&model, case, tolerance), 40);
                 check_worst(TOPIC, &format!("case {case}, 40 periods, Taylor at {tolerance:.0e}"), [found], limit);
@@ -143,7 +143,7 @@ mod tests {
     fn a_coarse_method_is_seen_with_its_order() {
         let mut p: Parameters = parameters("A");
         p.halves.iter_mut().for_each(|h| h.impact = None);
-        let model = Model::<6>::new(&p).unwrap();
+        let model = DynamicModel::<6>::new(&p).unwrap();
         let found = [32.0, 64.0, 128.0, 256.0].map(|parts| {
             let step = model.period_tau / parts;
             residual(&model, motion(&model, "A", 1e-9).with_fixed_runge_kutta(step), 20)
@@ -158,11 +158,11 @@ mod tests {
     #[test]
     fn a_wrong_force_is_caught() {
         for case in ["A", "B", "C"] {
-            let right = Model::<6>::new(&parameters(case)).unwrap();
+            let right = DynamicModel::<6>::new(&parameters(case)).unwrap();
             let wrong = |change: fn(&mut Parameters)| {
                 let mut p = parameters(case);
                 change(&mut p);
-                let judge = Model::<6>::new(&p).unwrap();
+                let judge = DynamicModel::<6>::new(&p).unwrap();
                 assert_eq!(judge.omega_ref, right.omega_ref, "the same scale of time");
                 residual(&judge, motion(&right, case, 1e-11), 40)
             };
@@ -190,7 +190,7 @@ mod tests {
             h.impact = None;
             h.mesh_stiffness = Stiffness::Constant { mean_n_per_m: 9e8 };
         }
-        let model = Model::<6>::new(&p).unwrap();
+        let model = DynamicModel::<6>::new(&p).unwrap();
         let mut balance = EnergyBalance::new(&model);
         motion(&model, "A", 1e-9).advance_period(&mut balance, &Watch::none(), 0.0).unwrap();
         assert_eq!(balance.residual(), None);

@@ -21,11 +21,11 @@ mod statistics;
 mod steady;
 
 pub use analysis::{
-    Analysis, ContactState, Halves, Method, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals, Summary,
+    Analysis, ContactState, Halves, SolutionMethod, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals, Summary,
     ToothForce,
 };
 pub use channel::{Channel, ChannelId, Quantity};
-pub use confidence::Interval;
+pub use confidence::ConfidenceInterval;
 pub use solve::{solve, solve_many};
 pub use spectrum::Spectrum;
 pub use statistics::Statistics;

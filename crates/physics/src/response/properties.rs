@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::regime::lyapunov_exponent;
 use super::*;
 use crate::dynamics::tests::reference::{parameters, reference};
-use crate::dynamics::{DynamicsError, Integrator, Model, Motion, Parameters, Spring, Stiffness, Unobserved};
+use crate::dynamics::{DynamicsError, Integrator, DynamicModel, Motion, Parameters, Spring, Stiffness, Unobserved};
 use crate::watch::Watch;
 use herringbone_oracle::Tolerance::Absolute;
 use herringbone_oracle::{check, check_worst};
@@ -62,7 +62,7 @@ fn doubled_stiffness_and_load_double_the_accelerations() {
             if let Stiffness::Fourier { mean_n_per_m, .. } = &mut h.mesh_stiffness {
                 *mean_n_per_m *= 2.0;
             }
-            if let Some(crate::dynamics::Impact::HalfSine { force_n, .. }) = &mut h.impact {
+            if let Some(crate::dynamics::ImpactExcitation::HalfSine { force_n, .. }) = &mut h.impact {
                 *force_n *= 2.0;
             }
         }
@@ -83,7 +83,7 @@ fn reversed_torque_mirrors_the_motion() {
         let mut q = p.clone();
         for h in &mut q.halves {
             h.pinion_torque_nm = -h.pinion_torque_nm;
-            if let Some(crate::dynamics::Impact::HalfSine { force_n, .. }) = &mut h.impact {
+            if let Some(crate::dynamics::ImpactExcitation::HalfSine { force_n, .. }) = &mut h.impact {
                 *force_n = -*force_n;
             }
         }
@@ -161,7 +161,7 @@ fn a_drifting_pinion_repeats() {
         assert!(r.summary.period_mesh_periods.is_some(), "{name} {stagger}: {:?}", r.summary);
         assert!(r.summary.error_estimate <= 1e-9, "{name} {stagger}: {}", r.summary.error_estimate);
         // From rest the same motion drifts: followed, it is on_period to repeat too.
-        let method = Method::Integrate { mesh_periods: 1200, record_mesh_periods: 120 };
+        let method = SolutionMethod::Integrate { mesh_periods: 1200, record_mesh_periods: 120 };
         let analysis = Analysis { method, accuracy: 1e-9, samples_per_mesh_period: 0, ..Analysis::default() };
         let followed = solve(&p, &analysis, &Watch::none()).unwrap();
         assert_eq!(followed.summary.period_mesh_periods, r.summary.period_mesh_periods, "{name} {stagger}");
@@ -181,7 +181,7 @@ fn slow_speeds_end_soon() {
     let r = auto(&p, 1e-6);
     assert_eq!((r.summary.regime, r.summary.floquet_modulus), (Regime::Period1, None));
     let analysis = Analysis {
-        method: Method::Integrate { mesh_periods: 3, record_mesh_periods: 1 },
+        method: SolutionMethod::Integrate { mesh_periods: 3, record_mesh_periods: 1 },
         accuracy: 1e-9,
         samples_per_mesh_period: 0,
         ..Analysis::default()
@@ -199,7 +199,7 @@ fn slow_speeds_end_soon() {
 #[test]
 fn exponents_of_the_chaotic_case() {
     fn run<const D: usize>(against: bool, periods: u64) -> f64 {
-        let model = Model::<D>::new(&parameters("B")).unwrap();
+        let model = DynamicModel::<D>::new(&parameters("B")).unwrap();
         let mut start: [f64; 24] = reference().cases["B"].initial_state.as_slice().try_into().unwrap();
         if D == 12 {
             start[0] += 5e-7;
@@ -255,7 +255,7 @@ fn estimates_hold_off_the_reference_cases() {
     for (what, p, initial_state) in variants() {
         let run = |p: &Parameters, integrator, accuracy| {
             let analysis = Analysis {
-                method: Method::Integrate { mesh_periods: 60, record_mesh_periods: 20 },
+                method: SolutionMethod::Integrate { mesh_periods: 60, record_mesh_periods: 20 },
                 integrator,
                 accuracy,
                 initial_state,

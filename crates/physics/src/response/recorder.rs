@@ -1,22 +1,22 @@
 //! Gathers what is asked of a motion while it runs: statistics, series, contact.
 
-use super::channel::{ChannelId, Probe};
-use super::statistics::{Gathered, horner};
-use crate::dynamics::{MAX_ORDER, Model, Observer, PER_HALF, Segment};
+use super::channel::{ChannelId, ChannelEvaluator};
+use super::statistics::{MomentAccumulator, horner};
+use crate::dynamics::{MAX_ORDER, DynamicModel, Observer, PER_HALF, Segment};
 use crate::simd::vectorised;
 
 /// What to record of one channel.
-struct Track<const D: usize> {
+struct ChannelTrack<const D: usize> {
     id: ChannelId,
-    probe: Probe<D>,
-    gathered: Gathered,
+    evaluator: ChannelEvaluator<D>,
+    accumulator: MomentAccumulator,
     extremes: bool,
     samples: Option<Vec<f64>>,
 }
 
 /// The observer of the recorded periods.
-pub(super) struct Recorder<const D: usize> {
-    tracks: Vec<Track<D>>,
+pub(super) struct ChannelRecorder<const D: usize> {
+    tracks: Vec<ChannelTrack<D>>,
     samples_per_mesh_period: usize,
     /// The mesh period of the last segment, and the index of the next sample within it.
     period: u64,
@@ -26,10 +26,10 @@ pub(super) struct Recorder<const D: usize> {
     contact: [[f64; 3]; 2],
 }
 
-impl<const D: usize> Recorder<D> {
+impl<const D: usize> ChannelRecorder<D> {
     /// Statistics of `statistics` (with extremes where the flag says so); samples of `series`, for `periods` mesh periods.
     pub fn new(
-        model: &Model<D>,
+        model: &DynamicModel<D>,
         statistics: &[(ChannelId, bool)],
         series: &[ChannelId],
         samples_per_mesh_period: usize,
@@ -37,7 +37,7 @@ impl<const D: usize> Recorder<D> {
     ) -> Self {
         // Long records grow as they go.
         let capacity = samples_per_mesh_period.saturating_mul(periods as usize).min(1 << 20);
-        let mut tracks: Vec<Track<D>> = Vec::new();
+        let mut tracks: Vec<ChannelTrack<D>> = Vec::new();
         let mut add = |id: ChannelId, extremes: bool, sampled: bool| {
             let samples = sampled.then(|| Vec::with_capacity(capacity));
             match tracks.iter_mut().find(|t| t.id == id) {
@@ -45,10 +45,10 @@ impl<const D: usize> Recorder<D> {
                     track.extremes |= extremes;
                     track.samples = track.samples.take().or(samples);
                 }
-                None => tracks.push(Track {
+                None => tracks.push(ChannelTrack {
                     id,
-                    probe: id.probe(model),
-                    gathered: Gathered::new(id.is_acceleration()),
+                    evaluator: id.evaluator(model),
+                    accumulator: MomentAccumulator::new(id.is_acceleration()),
                     extremes,
                     samples,
                 }),
@@ -70,12 +70,12 @@ impl<const D: usize> Recorder<D> {
         }
     }
 
-    pub fn gathered(&self, id: ChannelId) -> Option<&Gathered> {
-        self.tracks.iter().find(|t| t.id == id).map(|t| &t.gathered)
+    pub fn accumulator(&self, id: ChannelId) -> Option<&MomentAccumulator> {
+        self.tracks.iter().find(|t| t.id == id).map(|t| &t.accumulator)
     }
 
-    pub fn all(&self) -> impl Iterator<Item = (ChannelId, &Gathered, bool)> {
-        self.tracks.iter().map(|t| (t.id, &t.gathered, t.extremes))
+    pub fn all(&self) -> impl Iterator<Item = (ChannelId, &MomentAccumulator, bool)> {
+        self.tracks.iter().map(|t| (t.id, &t.accumulator, t.extremes))
     }
 
     pub fn take_samples(&mut self) -> Vec<(ChannelId, Vec<f64>)> {
@@ -92,9 +92,9 @@ impl<const D: usize> Recorder<D> {
     }
 }
 
-impl<const D: usize> Observer<D> for Recorder<D> {
+impl<const D: usize> Observer<D> for ChannelRecorder<D> {
     fn segment(&mut self, segment: &Segment<'_, D>) {
-        for j in 0..Model::<D>::HALVES {
+        for j in 0..DynamicModel::<D>::HALVES {
             self.contact[j][(1 - segment.contact[j].signum()) as usize] += segment.h;
         }
         let mut polynomial = [0.0; MAX_ORDER + 1];
@@ -117,8 +117,8 @@ impl<const D: usize> Observer<D> for Recorder<D> {
             let degree = vectorised(
                 #[inline(always)]
                 || {
-                    let degree = track.probe.polynomial(segment, &mut polynomial);
-                    track.gathered.add(&polynomial[..=degree], segment.h, track.extremes);
+                    let degree = track.evaluator.polynomial(segment, &mut polynomial);
+                    track.accumulator.add(&polynomial[..=degree], segment.h, track.extremes);
                     degree
                 },
             );

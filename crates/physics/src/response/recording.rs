@@ -4,50 +4,50 @@ use super::analysis::PoincarePoint;
 use super::channel::ChannelId;
 use super::confidence::MeanSquares;
 use super::energy::EnergyBalance;
-use super::recorder::Recorder;
-use super::regime::Section;
-use super::report::Record;
-use super::statistics::Gathered;
-use crate::dynamics::{DynamicsError, Model, Numerics, Observer, TrajectoryObserver, Segment, State, U, YG, YP};
+use super::recorder::ChannelRecorder;
+use super::regime::PoincareSection;
+use super::report::RecordedMotion;
+use super::statistics::MomentAccumulator;
+use crate::dynamics::{DynamicsError, DynamicModel, StepCounts, Observer, TrajectoryObserver, Segment, MotionState, U, YG, YP};
 
 /// Parts of a record whose scatter gives its standard error.
 const BATCHES: u64 = 10;
-/// Up to this many recorded mesh periods it is known that the motion repeats, and not asked.
+/// Up to this many recorded mesh periods it is known that the motion repeats, and not input.
 const KNOWN_TO_REPEAT: u64 = 8;
 
 /// The run, and what has been gathered of it. Mesh periods are counted as the start's are.
-pub(super) struct Run<'m, const D: usize> {
-    model: &'m Model<D>,
-    state: State<D>,
+pub(super) struct RecordedRun<'m, const D: usize> {
+    model: &'m DynamicModel<D>,
+    state: MotionState<D>,
     tolerance: f64,
     first: u64,
     record_from: u64,
     end: u64,
     /// The state at the start of this mesh period is kept.
     keep_at: u64,
-    pub kept: State<D>,
+    pub kept: MotionState<D>,
     /// The state from which the record starts.
-    pub from: State<D>,
-    pub recorder: Recorder<D>,
+    pub from: MotionState<D>,
+    pub recorder: ChannelRecorder<D>,
     pub energy: Option<EnergyBalance<'m, D>>,
-    recent: Section<D>,
+    recent: PoincareSection<D>,
     points: Vec<PoincarePoint>,
     batch: u64,
     batches: Vec<f64>,
-    snapshot: Gathered,
+    snapshot: MomentAccumulator,
     squares: MeanSquares,
-    numerics: Numerics,
+    counts: StepCounts,
     error: Option<DynamicsError>,
 }
 
-impl<'m, const D: usize> Run<'m, D> {
+impl<'m, const D: usize> RecordedRun<'m, D> {
     /// From `start` to the mesh period `end`, recorded from `record_from` on.
     pub fn new(
-        model: &'m Model<D>,
-        start: State<D>,
+        model: &'m DynamicModel<D>,
+        start: MotionState<D>,
         tolerance: f64,
         (record_from, end): (u64, u64),
-        recorder: Recorder<D>,
+        recorder: ChannelRecorder<D>,
     ) -> Result<Self, DynamicsError> {
         let recorded = end - record_from;
         let mut run = Self {
@@ -62,13 +62,13 @@ impl<'m, const D: usize> Run<'m, D> {
             from: start,
             recorder,
             energy: None,
-            recent: if recorded > KNOWN_TO_REPEAT { Section::without_rigid_body(model)? } else { Section::new() },
+            recent: if recorded > KNOWN_TO_REPEAT { PoincareSection::without_rigid_body(model)? } else { PoincareSection::new() },
             points: Vec::with_capacity(recorded.min(1 << 20) as usize),
             batch: (recorded / BATCHES).max(1),
             batches: Vec::new(),
-            snapshot: Gathered::new(false),
+            snapshot: MomentAccumulator::new(false),
             squares: MeanSquares::new::<D>(recorded),
-            numerics: Numerics::default(),
+            counts: StepCounts::default(),
             error: None,
         };
         run.period_begins();
@@ -100,39 +100,39 @@ impl<'m, const D: usize> Run<'m, D> {
     }
 
     /// What was recorded; fails where the run did.
-    pub fn finish(self) -> Result<Finished<'m, D>, DynamicsError> {
+    pub fn finish(self) -> Result<FinishedRun<'m, D>, DynamicsError> {
         if let Some(error) = self.error {
             return Err(error);
         }
         let mut recent = self.recent;
         recent.push(self.state);
-        let record = Record {
+        let record = RecordedMotion {
             recent,
             points: self.points,
             last: self.state,
-            numerics: self.numerics,
+            counts: self.counts,
             batch_error: standard_error(&self.batches),
             mean_squares: self.squares.finish(),
         };
-        Ok(Finished { record, recorder: self.recorder, energy: self.energy, kept: self.kept, from: self.from })
+        Ok(FinishedRun { record, recorder: self.recorder, energy: self.energy, kept: self.kept, from: self.from })
     }
 }
 
 /// What a run leaves.
-pub(super) struct Finished<'m, const D: usize> {
-    pub record: Record<D>,
-    pub recorder: Recorder<D>,
+pub(super) struct FinishedRun<'m, const D: usize> {
+    pub record: RecordedMotion<D>,
+    pub recorder: ChannelRecorder<D>,
     pub energy: Option<EnergyBalance<'m, D>>,
-    pub kept: State<D>,
-    pub from: State<D>,
+    pub kept: MotionState<D>,
+    pub from: MotionState<D>,
 }
 
-impl<'m, const D: usize> TrajectoryObserver<'m, D> for Run<'m, D> {
-    fn model(&self) -> &'m Model<D> {
+impl<'m, const D: usize> TrajectoryObserver<'m, D> for RecordedRun<'m, D> {
+    fn model(&self) -> &'m DynamicModel<D> {
         self.model
     }
 
-    fn start(&self) -> State<D> {
+    fn start(&self) -> MotionState<D> {
         self.state
     }
 
@@ -153,13 +153,13 @@ impl<'m, const D: usize> TrajectoryObserver<'m, D> for Run<'m, D> {
         self.energy.segment(segment);
     }
 
-    fn finish_period(&mut self, state: &State<D>) -> bool {
+    fn finish_period(&mut self, state: &MotionState<D>) -> bool {
         let recorded = self.wants_segments();
         self.state = *state;
         if recorded {
             self.squares.push(&self.recorder);
             if (state.period - self.record_from).is_multiple_of(self.batch)
-                && let Some(now) = self.recorder.gathered(ChannelId::mesh_acceleration(0))
+                && let Some(now) = self.recorder.accumulator(ChannelId::mesh_acceleration(0))
             {
                 self.batches.push(now.variance_since(&self.snapshot));
                 self.snapshot = *now;
@@ -172,12 +172,12 @@ impl<'m, const D: usize> TrajectoryObserver<'m, D> for Run<'m, D> {
         goes_on
     }
 
-    fn finished(&mut self, numerics: Numerics, error: Option<DynamicsError>) {
-        (self.numerics, self.error) = (numerics, error);
+    fn finished(&mut self, counts: StepCounts, error: Option<DynamicsError>) {
+        (self.counts, self.error) = (counts, error);
     }
 }
 
-fn poincare<const D: usize>(model: &Model<D>, state: &State<D>) -> PoincarePoint {
+fn poincare<const D: usize>(model: &DynamicModel<D>, state: &MotionState<D>) -> PoincarePoint {
     let x = |row: &[f64; D]| row[YP] - row[YG] + row[U];
     PoincarePoint { x_left_m: x(&state.x), v_x_left_m_s: x(&state.v) * model.omega_ref }
 }

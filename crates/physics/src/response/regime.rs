@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::dynamics::{
-    ObserverPair, Perturbation, DynamicsError, RigidBodyModes, Model, Motion, PER_HALF, State, Unobserved, Variation, W, state_difference,
+    ObserverPair, Perturbation, DynamicsError, RigidBodyModes, DynamicModel, Motion, PER_HALF, MotionState, Unobserved, Variation, W, state_difference,
 };
 use crate::watch::Watch;
 
@@ -15,23 +15,23 @@ pub(super) const LONGEST_PERIOD: usize = 32;
 pub(super) const CHAOS_PER_MESH_PERIOD: f64 = 0.01;
 
 /// States at the starts of the last mesh periods.
-pub(super) struct Section<const D: usize> {
-    states: VecDeque<State<D>>,
+pub(super) struct PoincareSection<const D: usize> {
+    states: VecDeque<MotionState<D>>,
     rigid_body: RigidBodyModes<D>,
 }
 
-impl<const D: usize> Section<D> {
+impl<const D: usize> PoincareSection<D> {
     /// States as they are: for motions of which it is not asked whether they repeat.
     pub fn new() -> Self {
         Self { states: VecDeque::with_capacity(LONGEST_PERIOD + 1), rigid_body: RigidBodyModes::none() }
     }
 
     /// States without their free motions, whose drift keeps no motion from repeating.
-    pub fn without_rigid_body(model: &Model<D>) -> Result<Self, DynamicsError> {
+    pub fn without_rigid_body(model: &DynamicModel<D>) -> Result<Self, DynamicsError> {
         Ok(Self { rigid_body: RigidBodyModes::new(model)?, ..Self::new() })
     }
 
-    pub fn push(&mut self, mut state: State<D>) {
+    pub fn push(&mut self, mut state: MotionState<D>) {
         (state.x, state.v) = self.rigid_body.project_out(&(state.x, state.v));
         if self.states.len() > LONGEST_PERIOD {
             self.states.pop_front();
@@ -99,7 +99,7 @@ pub(super) fn largest<const D: usize>(d: &Perturbation<D>) -> f64 {
 /// ln(t)/t from whatever the motion's own is.
 pub(super) fn lyapunov_exponent<const D: usize>(
     motion: &mut Motion<'_, D>,
-    variation_model: &Model<D>,
+    variation_model: &DynamicModel<D>,
     periods: u64,
     watch: &Watch<'_>,
 ) -> Result<f64, DynamicsError> {
@@ -109,10 +109,10 @@ pub(super) fn lyapunov_exponent<const D: usize>(
 /// The same; `on_period` is told the logarithm of the perturbation's growth over each mesh period and the state at its end.
 pub(super) fn lyapunov_exponent_with<const D: usize>(
     motion: &mut Motion<'_, D>,
-    variation_model: &Model<D>,
+    variation_model: &DynamicModel<D>,
     periods: u64,
     watch: &Watch<'_>,
-    mut on_period: impl FnMut(f64, &State<D>),
+    mut on_period: impl FnMut(f64, &MotionState<D>),
 ) -> Result<f64, DynamicsError> {
     let start = generic_perturbation(variation_model);
     let rigid_body = RigidBodyModes::new(variation_model)?;
@@ -140,7 +140,7 @@ pub(super) fn lyapunov_exponent_with<const D: usize>(
 /// What is left of a perturbation after one mesh period of the motion, free motions apart: its largest component over what it was.
 pub(super) fn perturbation_decay<const D: usize>(
     motion: &mut Motion<'_, D>,
-    variation_model: &Model<D>,
+    variation_model: &DynamicModel<D>,
     rigid_body: &RigidBodyModes<D>,
     watch: &Watch<'_>,
 ) -> Result<f64, DynamicsError> {
@@ -153,7 +153,7 @@ pub(super) fn perturbation_decay<const D: usize>(
 }
 
 /// A perturbation that prefers no direction and leaves none out.
-fn generic_perturbation<const D: usize>(model: &Model<D>) -> Perturbation<D> {
+fn generic_perturbation<const D: usize>(model: &DynamicModel<D>) -> Perturbation<D> {
     let mut start = ([0.0; D], [0.0; D]);
     for (i, c) in model.active().enumerate() {
         start.0[c] = 1.0 / (i + 1) as f64;

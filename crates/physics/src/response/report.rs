@@ -7,19 +7,19 @@ use super::analysis::{
 };
 use super::channel::{Channel, ChannelId};
 use super::confidence::rms_interval_95;
-use super::recorder::Recorder;
-use super::regime::Section;
-use crate::dynamics::{Model, NaturalModes, Numerics, PER_HALF, Parameters, State};
+use super::recorder::ChannelRecorder;
+use super::regime::PoincareSection;
+use crate::dynamics::{DynamicModel, NaturalModes, StepCounts, PER_HALF, Parameters, MotionState};
 
 /// The question.
-pub(super) struct Asked<'a> {
+pub(super) struct ReportInput<'a> {
     pub p: &'a Parameters,
     pub analysis: &'a Analysis,
     pub modes: &'a NaturalModes,
 }
 
 /// What is known of the motion beside what the recorder gathered.
-pub(super) struct Verdict {
+pub(super) struct MotionAssessment {
     pub regime: Regime,
     pub period: Option<u64>,
     pub floquet: Option<f64>,
@@ -31,32 +31,32 @@ pub(super) struct Verdict {
     pub energy_residual: Option<f64>,
     /// Time of the first recorded value.
     pub t0_s: f64,
-    pub numerics: Numerics,
+    pub counts: StepCounts,
 }
 
 /// What `record` leaves beside the recorder's own.
-pub(super) struct Record<const D: usize> {
-    pub recent: Section<D>,
+pub(super) struct RecordedMotion<const D: usize> {
+    pub recent: PoincareSection<D>,
     pub points: Vec<PoincarePoint>,
-    pub last: State<D>,
-    pub numerics: Numerics,
+    pub last: MotionState<D>,
+    pub counts: StepCounts,
     pub batch_error: f64,
     /// Mean squares of the accelerations of every response, mesh period by mesh period.
     pub mean_squares: Vec<(ChannelId, Vec<f64>)>,
 }
 
 /// Puts a response together from what was gathered.
-pub(super) fn report<const D: usize>(
-    asked: &Asked<'_>,
-    model: &Model<D>,
-    mut recorder: Recorder<D>,
-    record: Record<D>,
-    verdict: Verdict,
+pub(super) fn assemble_response<const D: usize>(
+    input: &ReportInput<'_>,
+    model: &DynamicModel<D>,
+    mut recorder: ChannelRecorder<D>,
+    record: RecordedMotion<D>,
+    assessment: MotionAssessment,
 ) -> Response {
     let recorded = record.points.len() as u64;
     let last = record.last;
     let right = if D > PER_HALF { 1 } else { 0 };
-    let rms_of = |id: ChannelId| recorder.gathered(id).map_or(0.0, |g| g.mean_and_square().1.sqrt());
+    let rms_of = |id: ChannelId| recorder.accumulator(id).map_or(0.0, |g| g.mean_and_square().1.sqrt());
     let both = |id: fn(u8) -> ChannelId| Halves { left: rms_of(id(0)), right: rms_of(id(right)) };
     let mesh = both(ChannelId::mesh_acceleration);
     let axial = both(ChannelId::pinion_axial_acceleration);
@@ -69,17 +69,17 @@ pub(super) fn report<const D: usize>(
         .analysis
         .channels
         .iter()
-        .filter_map(|id| recorder.gathered(*id).map(|g| (id.name(), g.finish())))
+        .filter_map(|id| recorder.accumulator(*id).map(|g| (id.name(), g.finish())))
         .collect();
     let mut min_displacement_m = f64::INFINITY;
     for half in solved_halves::<D>() {
-        if let Some(s) = recorder.gathered(ChannelId::s(half)) {
+        if let Some(s) = recorder.accumulator(ChannelId::s(half)) {
             min_displacement_m = min_displacement_m.min(s.finish().min);
         }
     }
     let tooth_force = |half: u8| {
         let static_n = model.halves[usize::from(half)].load / model.cos;
-        let (max_n, min_n) = recorder.gathered(ChannelId::tooth_force(half)).map_or((static_n, static_n), |f| {
+        let (max_n, min_n) = recorder.accumulator(ChannelId::tooth_force(half)).map_or((static_n, static_n), |f| {
             let f = f.finish();
             (f.max, f.min)
         });
@@ -87,7 +87,7 @@ pub(super) fn report<const D: usize>(
     };
     let tooth_force = Halves { left: tooth_force(0), right: tooth_force(right) };
     let shares = recorder.contact_shares();
-    let dt_s = asked.p.mesh_period_s() / asked.analysis.samples_per_mesh_period.max(1) as f64;
+    let dt_s = input.p.mesh_period_s() / input.analysis.samples_per_mesh_period.max(1) as f64;
     let mut samples = recorder.take_samples();
     let series = asked
         .analysis
@@ -97,7 +97,7 @@ pub(super) fn report<const D: usize>(
             let at = samples.iter().position(|(other, _)| other == id)?;
             let (id, values) = samples.swap_remove(at);
             let quantity = id.quantity();
-            Some(Channel { name: id.name(), quantity, unit: quantity.unit().into(), t0_s: verdict.t0_s, dt_s, values })
+            Some(Channel { name: id.name(), quantity, unit: quantity.unit().into(), t0_s: assessment.t0_s, dt_s, values })
         })
         .collect();
     let final_state = model.source_state(&last);
@@ -117,27 +117,27 @@ pub(super) fn report<const D: usize>(
         statistics,
         dynamic_factor: dynamic_factor(&tooth_force),
         tooth_force,
-        regime: verdict.regime,
-        period_mesh_periods: verdict.period,
+        regime: assessment.regime,
+        period_mesh_periods: assessment.period,
         contact: contact_state(&shares),
         contact_share: Halves { left: 1.0 - shares[0][1], right: 1.0 - shares[1][1] },
         min_displacement_m,
-        natural_frequencies_hz: asked.modes.frequencies_hz.clone(),
-        error_estimate: verdict.error_estimate,
-        method: verdict.method.into(),
-        floquet_modulus: verdict.floquet,
-        floquet_multipliers: verdict.multipliers,
-        lyapunov_per_mesh_period: verdict.lyapunov,
-        rms_interval_95: if matches!(verdict.regime, Regime::QuasiPeriodic | Regime::Chaotic) {
+        natural_frequencies_hz: input.modes.frequencies_hz.clone(),
+        error_estimate: assessment.error_estimate,
+        method: assessment.method.into(),
+        floquet_modulus: assessment.floquet,
+        floquet_multipliers: assessment.multipliers,
+        lyapunov_per_mesh_period: assessment.lyapunov,
+        rms_interval_95: if matches!(assessment.regime, Regime::QuasiPeriodic | Regime::Chaotic) {
             rms_interval_95()
         } else {
             None
         },
-        energy_balance_residual: verdict.energy_residual,
+        energy_balance_residual: assessment.energy_residual,
         recorded_mesh_periods: recorded,
         degrees_of_freedom: D as u32,
-        damping_in_gap: asked.p.damping_in_gap,
-        numerics: verdict.numerics,
+        damping_in_gap: input.p.damping_in_gap,
+        counts: assessment.counts,
     };
     Response { summary, channels: series, poincare: record.points, final_state }
 }
@@ -170,8 +170,8 @@ fn contact_state(shares: &[[f64; 3]; 2]) -> ContactState {
 mod tests {
     use super::*;
     use crate::dynamics::tests::reference::parameters;
-    use crate::dynamics::{Impact, ImpactActsOn, Integrator, Spring};
-    use crate::response::{Method, solve};
+    use crate::dynamics::{ImpactExcitation, ImpactActsOn, Integrator, Spring};
+    use crate::response::{SolutionMethod, solve};
     use crate::watch::Watch;
     use herringbone_oracle::Tolerance::Relative;
     use herringbone_oracle::{check, check_worst};
@@ -220,7 +220,7 @@ mod tests {
             p.impact_acts_on = if i % 3 == 0 { ImpactActsOn::All } else { ImpactActsOn::Torsion };
             for h in &mut p.halves {
                 h.pinion_torque_nm *= 0.5 + spread(1);
-                h.impact = (i % 5 != 0).then(|| Impact::HalfSine {
+                h.impact = (i % 5 != 0).then(|| ImpactExcitation::HalfSine {
                     force_n: 200.0 * 300f64.powf(spread(2)),
                     duration_mesh_periods: 0.02 * 60f64.powf(spread(3)),
                     start_mesh_periods: spread(4) - 0.5,
@@ -271,7 +271,7 @@ mod tests {
         for (i, p) in various().into_iter().enumerate().filter(|(i, _)| i % 4 == 0 || i % 6 == 1) {
             for (integrator, limit) in [(Integrator::Taylor, 1e-7), (Integrator::RungeKutta, 1e-5)] {
                 let analysis = Analysis {
-                    method: Method::Integrate { mesh_periods: 12, record_mesh_periods: 3 },
+                    method: SolutionMethod::Integrate { mesh_periods: 12, record_mesh_periods: 3 },
                     integrator,
                     accuracy: 1e-7,
                     channels: names.map(|name| ChannelId::parse(name).unwrap()).to_vec(),
@@ -280,7 +280,7 @@ mod tests {
                 };
                 let r = solve(&p, &analysis, &Watch::none()).unwrap();
                 let pulse = |phase: f64| match &p.halves[0].impact {
-                    Some(Impact::HalfSine { force_n, duration_mesh_periods: d, start_mesh_periods }) => {
+                    Some(ImpactExcitation::HalfSine { force_n, duration_mesh_periods: d, start_mesh_periods }) => {
                         let age = (phase - start_mesh_periods).rem_euclid(1.0);
                         (0..2)
                             .map(|k| age + f64::from(k))
@@ -311,11 +311,11 @@ mod tests {
         for (force_n, duration_mesh_periods) in [(3000.0, 0.08), (9000.0, 0.3)] {
             let mut p = parameters("A");
             for h in &mut p.halves {
-                h.impact = Some(Impact::HalfSine { force_n, duration_mesh_periods, start_mesh_periods: 0.1 });
+                h.impact = Some(ImpactExcitation::HalfSine { force_n, duration_mesh_periods, start_mesh_periods: 0.1 });
             }
             let mean = |p: &Parameters, integrator| {
                 let analysis = Analysis {
-                    method: Method::Integrate { mesh_periods: 600, record_mesh_periods: 20 },
+                    method: SolutionMethod::Integrate { mesh_periods: 600, record_mesh_periods: 20 },
                     integrator,
                     channels: vec![ChannelId::parse("z_g_left").unwrap()],
                     samples_per_mesh_period: 0,

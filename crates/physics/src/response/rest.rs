@@ -1,18 +1,18 @@
 //! A pair that nothing moves: no load, no impact, and a start at rest. Its answer is exact, where a search would ask rounding.
 
-use super::analysis::{ContactState, Halves, Method, Regime, Response};
-use super::recording::Run;
-use super::report::{Verdict, report};
-use super::solve::Point;
-use crate::dynamics::{DynamicsError, Impact, Integrator, Model, Numerics, PER_HALF, Spring, State, U, integrate_trajectory};
+use super::analysis::{ContactState, Halves, SolutionMethod, Regime, Response};
+use super::recording::RecordedRun;
+use super::report::{MotionAssessment, report};
+use super::solve::OperatingPoint;
+use crate::dynamics::{DynamicsError, ImpactExcitation, Integrator, DynamicModel, StepCounts, PER_HALF, Spring, MotionState, U, integrate_trajectory};
 
-impl Point<'_> {
+impl OperatingPoint<'_> {
     /// Whether the pair stays where it starts: without load and impact, set out at rest in the middle of its backlash (all zero) or, where
     /// no start is given, with the driving flanks just touching, which is where ever smaller loads leave it.
     pub(super) fn rests(&self) -> bool {
         let [left, right] = &self.p.halves;
         let unloaded =
-            [left, right].iter().all(|h| h.pinion_torque_nm == 0.0 && h.impact.as_ref().is_none_or(Impact::is_zero));
+            [left, right].iter().all(|h| h.pinion_torque_nm == 0.0 && h.impact.as_ref().is_none_or(ImpactExcitation::is_zero));
         // A torsional spring between unlike halves would be strained where both touch.
         let c = &self.p.couplings;
         let uncoupled = c.pinion_torsion == Spring::default() && c.gear_torsion == Spring::default();
@@ -30,28 +30,28 @@ impl Point<'_> {
     }
 
     fn resting<const D: usize>(&self) -> Result<Response, DynamicsError> {
-        let model = Model::<D>::new(self.p)?;
+        let model = DynamicModel::<D>::new(self.p)?;
         let touching = self.analysis.initial_state.is_none() || model.b == 0.0;
         let (method, from, periods) = match self.analysis.method {
-            Method::Integrate { mesh_periods, record_mesh_periods } => {
+            SolutionMethod::Integrate { mesh_periods, record_mesh_periods } => {
                 let end = mesh_periods.max(1);
                 let periods = record_mesh_periods.clamp(1, end);
                 ("integrate", end - periods, periods)
             }
-            Method::Auto | Method::Periodic => ("periodic", 0, 1),
+            SolutionMethod::Auto | SolutionMethod::Periodic => ("periodic", 0, 1),
         };
         // Touching without force: the contact is held open, so that rounding closes nothing.
         let side = if model.b == 0.0 { 1 } else { 0 };
-        let mut start = State { period: from, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [side; 2] };
+        let mut start = MotionState { period: from, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [side; 2] };
         if touching {
-            (0..Model::<D>::HALVES).for_each(|j| start.x[j * PER_HALF + U] = model.first_contact_displacement_m(j) / model.cos);
+            (0..DynamicModel::<D>::HALVES).for_each(|j| start.x[j * PER_HALF + U] = model.first_contact_displacement_m(j) / model.cos);
         }
         let held = model.with_fixed_contact();
         let span = (from, from + periods);
-        let mut run = Run::new(&held, start, 1e-6, span, self.recorder(&held, periods))?;
+        let mut run = RecordedRun::new(&held, start, 1e-6, span, self.recorder(&held, periods))?;
         integrate_trajectory(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
         let finished = run.finish()?;
-        let verdict = Verdict {
+        let assessment = MotionAssessment {
             regime: Regime::Period1,
             period: Some(1),
             floquet: None,
@@ -61,9 +61,9 @@ impl Point<'_> {
             error_estimate: 0.0,
             energy_residual: None,
             t0_s: from as f64 * self.p.mesh_period_s(),
-            numerics: Numerics::default(),
+            counts: StepCounts::default(),
         };
-        let mut response = report(&self.asked(), &held, finished.recorder, finished.record, verdict);
+        let mut response = assemble_response(&self.report_input(), &held, finished.recorder, finished.record, assessment);
         if touching {
             response.summary.contact = ContactState::Continuous;
             response.summary.contact_share = Halves { left: 1.0, right: 1.0 };
@@ -75,22 +75,22 @@ impl Point<'_> {
 #[cfg(test)]
 mod tests {
     use crate::dynamics::tests::reference::parameters;
-    use crate::dynamics::{Impact, Stiffness};
-    use crate::response::{Analysis, ContactState, Method, Regime, solve, solve_many};
+    use crate::dynamics::{ImpactExcitation, Stiffness};
+    use crate::response::{Analysis, ContactState, SolutionMethod, Regime, solve, solve_many};
     use crate::watch::Watch;
 
     /// Without load and impact: exactly at rest, whatever the stiffness, the play and the method.
     #[test]
     fn an_unloaded_pair_without_impact_rests() {
-        let integrate = Method::Integrate { mesh_periods: 30, record_mesh_periods: 10 };
+        let integrate = SolutionMethod::Integrate { mesh_periods: 30, record_mesh_periods: 10 };
         for (case, half_backlash_m) in [("A", 0.0), ("A", 2e-5), ("B", 1e-6), ("C", 3.7e-5)] {
-            for method in [Method::Auto, Method::Periodic, integrate] {
+            for method in [SolutionMethod::Auto, SolutionMethod::Periodic, integrate] {
                 for (pulse, initial_state) in [(None, None), (Some(0.0), None), (None, Some([0.0; 24]))] {
                     let mut p = parameters(case);
                     p.half_backlash_m = half_backlash_m;
                     for h in &mut p.halves {
                         h.pinion_torque_nm = 0.0;
-                        h.impact = pulse.map(|force_n| Impact::HalfSine {
+                        h.impact = pulse.map(|force_n| ImpactExcitation::HalfSine {
                             force_n,
                             duration_mesh_periods: 0.1,
                             start_mesh_periods: 0.0,

@@ -1,14 +1,14 @@
 //! One operating point: from parameters to a response.
 
-use super::analysis::{Analysis, Method, Multiplier, Regime, Response};
+use super::analysis::{Analysis, SolutionMethod, Multiplier, Regime, Response};
 use super::channel::ChannelId;
 use super::energy::EnergyBalance;
-use super::recorder::Recorder;
-use super::recording::{Finished, Run};
-use super::report::{Asked, Verdict, report, solved_halves};
+use super::recorder::ChannelRecorder;
+use super::recording::{FinishedRun, RecordedRun};
+use super::report::{ReportInput, MotionAssessment, report, solved_halves};
 use super::steady::{SteadyMotion, SteadyStateSearch, displaced};
 use crate::dynamics::{
-    Perturbation, DynamicsError, Integrator, IntegrationLimits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, integrate_trajectories,
+    Perturbation, DynamicsError, Integrator, IntegrationLimits, DynamicModel, NaturalModes, PER_HALF, Parameters, Shooting, MotionState, integrate_trajectories,
     integrate_trajectory, state_difference, is_mirrored,
 };
 use crate::watch::{Canceled, Watch};
@@ -21,20 +21,20 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// [`DynamicsError`].
 pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<Response, DynamicsError> {
     let modes = modes(p, analysis)?;
-    let point = Point { p, analysis, modes: &modes, watch };
+    let point = OperatingPoint { p, analysis, modes: &modes, watch };
     if point.rests() {
         return point.at_rest();
     }
     let start = point.start();
     let mirrored = point.is_mirrored(&start);
     match analysis.method {
-        Method::Integrate { .. } => {
+        SolutionMethod::Integrate { .. } => {
             let points = std::slice::from_ref(&point);
             let alone = LaneUse::Sequential(analysis.integrator);
             let mut responses = if mirrored { integrate::<6>(points, alone) } else { integrate::<12>(points, alone) }?;
             responses.pop().unwrap_or(Err(DynamicsError::Canceled(Canceled)))
         }
-        Method::Auto | Method::Periodic => {
+        SolutionMethod::Auto | SolutionMethod::Periodic => {
             if mirrored && let Some(response) = point.steady::<6>(&start, false)? {
                 return Ok(response);
             }
@@ -80,7 +80,7 @@ fn solve_group(
     // Their own progress would run back and forth.
     let canceled = || watch.checkpoint_quietly().is_err();
     let watch = &Watch::new(&|_| {}, &canceled);
-    let lanes = matches!(analysis.method, Method::Integrate { .. }) && analysis.integrator == Integrator::Taylor;
+    let lanes = matches!(analysis.method, SolutionMethod::Integrate { .. }) && analysis.integrator == Integrator::Taylor;
     if !lanes {
         let solved = group.iter().map(|p| match solve(p, analysis, watch) {
             Err(DynamicsError::Canceled(canceled)) => Err(canceled),
@@ -91,11 +91,11 @@ fn solve_group(
     let modes: Vec<_> = group.iter().map(|p| modes(p, analysis)).collect();
     let mut out = vec![Err(DynamicsError::Canceled(Canceled)); group.len()];
     // Points in six coordinates, and in twelve, with their places.
-    let mut sides: [(Vec<usize>, Vec<Point<'_>>); 2] = Default::default();
+    let mut sides: [(Vec<usize>, Vec<OperatingPoint<'_>>); 2] = Default::default();
     for (i, (p, modes)) in group.iter().zip(&modes).enumerate() {
         match modes {
             Ok(modes) => {
-                let point = Point { p, analysis, modes, watch };
+                let point = OperatingPoint { p, analysis, modes, watch };
                 if point.rests() {
                     out[i] = point.at_rest();
                     continue;
@@ -134,7 +134,7 @@ fn modes(p: &Parameters, analysis: &Analysis) -> Result<NaturalModes, DynamicsEr
 }
 
 /// One operating point and what is asked of it.
-pub(super) struct Point<'a> {
+pub(super) struct OperatingPoint<'a> {
     pub p: &'a Parameters,
     pub analysis: &'a Analysis,
     pub modes: &'a NaturalModes,
@@ -144,8 +144,8 @@ pub(super) struct Point<'a> {
 /// Relative size of the push that takes a motion off the mirror symmetry: as far as manufacture keeps halves alike.
 const OFF_SYMMETRY: f64 = 1e-3;
 
-impl Point<'_> {
-    /// Where it starts: as asked, or at rest under the mean load.
+impl OperatingPoint<'_> {
+    /// Where it starts: as input, or at rest under the mean load.
     fn start(&self) -> [f64; 24] {
         self.analysis.initial_state.unwrap_or_else(|| {
             let mut at_rest = [0.0; 24];
@@ -159,8 +159,8 @@ impl Point<'_> {
         self.p.is_symmetric() && (self.analysis.initial_state.is_none() || is_mirrored(start))
     }
 
-    pub(super) fn asked(&self) -> Asked<'_> {
-        Asked { p: self.p, analysis: self.analysis, modes: self.modes }
+    pub(super) fn asked(&self) -> ReportInput<'_> {
+        ReportInput { p: self.p, analysis: self.analysis, modes: self.modes }
     }
 
     fn limits(&self, tolerance: f64) -> IntegrationLimits<'_> {
@@ -173,12 +173,12 @@ impl Point<'_> {
 
     /// The steady state; None when six coordinates do not tell the whole story.
     fn steady<const D: usize>(&self, start: &[f64; 24], off_symmetry: bool) -> Result<Option<Response>, DynamicsError> {
-        let model = Model::<D>::new(self.p)?;
+        let model = DynamicModel::<D>::new(self.p)?;
         let search = SteadyStateSearch {
             model: &model,
             mean_stiffness_n_per_m: self.mean_stiffness_n_per_m(),
             limits: self.limits((1e-3 * self.analysis.accuracy).clamp(1e-14, 1e-6)),
-            must_repeat: self.analysis.method == Method::Periodic,
+            must_repeat: self.analysis.method == SolutionMethod::Periodic,
             from_start: self.analysis.initial_state.is_some(),
         };
         let mut state = model.state_from(start);
@@ -193,7 +193,7 @@ impl Point<'_> {
             state = displaced(&model, state, &push);
         }
         let bounded = |error: DynamicsError| {
-            let diverged = matches!(error, DynamicsError::Diverged { .. }) && self.analysis.method == Method::Auto;
+            let diverged = matches!(error, DynamicsError::Diverged { .. }) && self.analysis.method == SolutionMethod::Auto;
             if diverged { self.unstable_response(&model, state, error).map(Some) } else { Err(error) }
         };
         let found = match search.run(state) {
@@ -203,7 +203,7 @@ impl Point<'_> {
         if found.leaves_symmetry {
             return Ok(None);
         }
-        let mut numerics = found.numerics;
+        let mut counts = found.counts;
         let recorded = self.record(
             &model,
             (found.start, found.tolerance),
@@ -223,7 +223,7 @@ impl Point<'_> {
             }
         };
         if let Some(classification) = &classification {
-            numerics += classification.numerics;
+            counts += classification.counts;
             if classification.regime == Regime::Unstable {
                 return bounded(DynamicsError::Diverged {
                     time_s: finished.from.period as f64 * self.p.mesh_period_s(),
@@ -231,12 +231,12 @@ impl Point<'_> {
             }
         }
         let section = finished.record;
-        numerics += section.numerics;
+        counts += section.counts;
         let error_estimate = match &found.orbit {
             Some((n, monodromy)) => self.orbit_error(&model, &found, *n, monodromy, &finished.recorder)?,
             None => section.batch_error,
         };
-        let verdict = Verdict {
+        let assessment = MotionAssessment {
             regime: match (&found.orbit, classification) {
                 (Some((1, _)), _) => Regime::Period1,
                 (Some(_), _) => Regime::PeriodN,
@@ -252,21 +252,21 @@ impl Point<'_> {
             error_estimate,
             energy_residual: finished.energy.and_then(|e| e.residual()),
             t0_s: if found.orbit.is_some() { 0.0 } else { found.start.period as f64 * self.p.mesh_period_s() },
-            numerics,
+            counts,
         };
-        Ok(Some(report(&self.asked(), &model, finished.recorder, section, verdict)))
+        Ok(Some(assemble_response(&self.report_input(), &model, finished.recorder, section, assessment)))
     }
 
     /// What is known of an integrated record by itself; `compared` says whether its error is found by comparison.
-    fn verdict<const D: usize>(
+    fn assess<const D: usize>(
         &self,
-        model: &Model<D>,
-        finished: &Finished<'_, D>,
+        model: &DynamicModel<D>,
+        finished: &FinishedRun<'_, D>,
         tolerance: f64,
-    ) -> Result<(Verdict, bool), DynamicsError> {
+    ) -> Result<(MotionAssessment, bool), DynamicsError> {
         let record = &finished.record;
         let period = record.recent.settled_period(REPEATS);
-        let mut verdict = Verdict {
+        let mut assessment = MotionAssessment {
             regime: match period {
                 Some(1) => Regime::Period1,
                 Some(_) => Regime::PeriodN,
@@ -280,37 +280,37 @@ impl Point<'_> {
             error_estimate: 0.0,
             energy_residual: finished.energy.as_ref().and_then(|e| e.residual()),
             t0_s: finished.from.period as f64 * self.p.mesh_period_s(),
-            numerics: record.numerics,
+            counts: record.counts,
         };
         if period.is_none() {
             let classification = self.classify(model, finished, (self.analysis.integrator, tolerance), None)?;
-            verdict.numerics += classification.numerics;
-            verdict.lyapunov = Some(classification.lyapunov);
-            verdict.regime = classification.regime;
+            assessment.counts += classification.counts;
+            assessment.lyapunov = Some(classification.lyapunov);
+            assessment.regime = classification.regime;
             if classification.regime == Regime::Chaotic {
-                verdict.error_estimate = record.batch_error;
+                assessment.error_estimate = record.batch_error;
             }
         }
-        let compared = verdict.regime != Regime::Chaotic;
-        Ok((verdict, compared))
+        let compared = assessment.regime != Regime::Chaotic;
+        Ok((assessment, compared))
     }
 
     /// The energy balance, where it is asked for.
-    pub(super) fn energy<'m, const D: usize>(&self, model: &'m Model<D>) -> Option<EnergyBalance<'m, D>> {
+    pub(super) fn energy<'m, const D: usize>(&self, model: &'m DynamicModel<D>) -> Option<EnergyBalance<'m, D>> {
         self.analysis.energy_balance.then(|| EnergyBalance::new(model))
     }
 
     /// Records `periods` mesh periods of the motion from `start`.
     pub(super) fn record<'m, const D: usize>(
         &self,
-        model: &'m Model<D>,
-        (start, tolerance): (State<D>, f64),
+        model: &'m DynamicModel<D>,
+        (start, tolerance): (MotionState<D>, f64),
         periods: u64,
-        recorder: Recorder<D>,
+        recorder: ChannelRecorder<D>,
         energy: Option<EnergyBalance<'m, D>>,
-    ) -> Result<Finished<'m, D>, DynamicsError> {
+    ) -> Result<FinishedRun<'m, D>, DynamicsError> {
         let span = (start.period, start.period + periods);
-        let mut run = Run::new(model, start, tolerance, span, recorder)?.with_energy(energy);
+        let mut run = RecordedRun::new(model, start, tolerance, span, recorder)?.with_energy(energy);
         integrate_trajectory(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
         run.finish()
     }
@@ -319,14 +319,14 @@ impl Point<'_> {
     /// what it then fails to close, and the values compared.
     fn orbit_error<const D: usize>(
         &self,
-        model: &Model<D>,
+        model: &DynamicModel<D>,
         found: &SteadyMotion<D>,
         n: u64,
         monodromy: &nalgebra::DMatrix<f64>,
-        recorder: &Recorder<D>,
+        recorder: &ChannelRecorder<D>,
     ) -> Result<f64, DynamicsError> {
         let tight = (1e-3 * found.tolerance).max(1e-15);
-        let start = State { period: 0, ..found.start };
+        let start = MotionState { period: 0, ..found.start };
         let once = self.record(model, (start, tight), n, self.recorder_of_rms(model), None)?.record;
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tight))?;
         let defect = state_difference(&once.last, &start);
@@ -338,7 +338,7 @@ impl Point<'_> {
     }
 
     /// Channels every response needs, and those asked for.
-    pub(super) fn recorder<const D: usize>(&self, model: &Model<D>, periods: u64) -> Recorder<D> {
+    pub(super) fn recorder<const D: usize>(&self, model: &DynamicModel<D>, periods: u64) -> ChannelRecorder<D> {
         let mut statistics = Vec::new();
         for half in solved_halves::<D>() {
             statistics.push((ChannelId::mesh_acceleration(half), false));
@@ -347,17 +347,17 @@ impl Point<'_> {
             statistics.push((ChannelId::normal_force(half), false));
             statistics.push((ChannelId::tooth_force(half), true));
         }
-        Recorder::new(model, &statistics, &self.analysis.channels, self.analysis.samples_per_mesh_period, periods)
+        ChannelRecorder::new(model, &statistics, &self.analysis.channels, self.analysis.samples_per_mesh_period, periods)
     }
 
     /// The accelerations alone.
-    fn recorder_of_rms<const D: usize>(&self, model: &Model<D>) -> Recorder<D> {
+    fn recorder_of_rms<const D: usize>(&self, model: &DynamicModel<D>) -> ChannelRecorder<D> {
         let mut statistics = Vec::new();
         for half in solved_halves::<D>() {
             statistics.push((ChannelId::mesh_acceleration(half), false));
             statistics.push((ChannelId::pinion_axial_acceleration(half), false));
         }
-        Recorder::new(model, &statistics, &[], 0, 0)
+        ChannelRecorder::new(model, &statistics, &[], 0, 0)
     }
 }
 
@@ -371,7 +371,7 @@ enum LaneUse {
 impl LaneUse {
     fn integrate<const D: usize>(
         self,
-        runs: &mut [Run<'_, D>],
+        runs: &mut [RecordedRun<'_, D>],
         tolerance: f64,
         max_steps: u64,
         watch: &Watch<'_>,
@@ -396,11 +396,11 @@ impl LaneUse {
 /// Integrates points that ask the same, and measures their errors by comparison with more accurate runs over the end of
 /// each.
 fn integrate<const D: usize>(
-    points: &[Point<'_>],
+    points: &[OperatingPoint<'_>],
     lane_use: LaneUse,
 ) -> Result<Vec<Result<Response, DynamicsError>>, Canceled> {
-    let Some(Point { analysis, watch, .. }) = points.first() else { return Ok(Vec::new()) };
-    let Method::Integrate { mesh_periods, record_mesh_periods } = analysis.method else { return Ok(Vec::new()) };
+    let Some(OperatingPoint { analysis, watch, .. }) = points.first() else { return Ok(Vec::new()) };
+    let SolutionMethod::Integrate { mesh_periods, record_mesh_periods } = analysis.method else { return Ok(Vec::new()) };
     let end = mesh_periods.max(1);
     let record_from = end - record_mesh_periods.clamp(1, end);
     // Measured on the reference cases: RMS error over tolerance is up to 10 for Taylor series, up to 300 for Runge–Kutta.
@@ -413,7 +413,7 @@ fn integrate<const D: usize>(
     // Where the comparison sets out: far enough before the record for its own start to fade.
     let compared_from = record_from.saturating_sub(COMPARED_LEAD_MESH_PERIODS);
 
-    let models: Vec<_> = points.iter().map(|point| Model::<D>::new(point.p)).collect();
+    let models: Vec<_> = points.iter().map(|point| DynamicModel::<D>::new(point.p)).collect();
     let mut runs = Vec::with_capacity(points.len());
     let mut out: Vec<Result<Response, DynamicsError>> = Vec::with_capacity(points.len());
     let mut places = Vec::with_capacity(points.len());
@@ -425,7 +425,7 @@ fn integrate<const D: usize>(
             if point.analysis.initial_state.is_none() {
                 model.close_contact(&mut start);
             }
-            let run = Run::new(model, start, tolerance, (record_from, end), recorder)?;
+            let run = RecordedRun::new(model, start, tolerance, (record_from, end), recorder)?;
             Ok(run.keeping(compared_from).with_energy(point.energy(model)))
         });
         match run {
@@ -444,10 +444,10 @@ fn integrate<const D: usize>(
         let Ok(model) = &models[i] else { continue };
         let point = &points[i];
         let next = run.finish().and_then(|finished| {
-            let (verdict, compare) = point.verdict(model, &finished, tolerance)?;
+            let (assessment, compare) = point.assess(model, &finished, tolerance)?;
             let finely = compare
-                .then(|| Run::new(model, finished.kept, tight, (record_from, end), point.recorder_of_rms(model)));
-            Ok((finished, verdict, finely.transpose()?))
+                .then(|| RecordedRun::new(model, finished.kept, tight, (record_from, end), point.recorder_of_rms(model)));
+            Ok((finished, assessment, finely.transpose()?))
         });
         match next {
             Err(DynamicsError::Canceled(canceled)) => return Err(canceled),
@@ -455,23 +455,23 @@ fn integrate<const D: usize>(
                 out[i] = point.unstable_response(model, model.state_from(&point.start()), error);
             }
             Err(error) => out[i] = Err(error),
-            Ok((finished, verdict, None)) => {
-                out[i] = Ok(report(&point.asked(), model, finished.recorder, finished.record, verdict));
+            Ok((finished, assessment, None)) => {
+                out[i] = Ok(assemble_response(&point.report_input(), model, finished.recorder, finished.record, assessment));
             }
-            Ok((finished, verdict, Some(finely))) => {
+            Ok((finished, assessment, Some(finely))) => {
                 compared.push(finely);
-                waiting.push((i, finished, verdict));
+                waiting.push((i, finished, assessment));
             }
         }
     }
     lane_use.for_comparison().integrate(&mut compared, tight, analysis.max_steps, watch)?;
-    for ((i, finished, mut verdict), finely) in waiting.into_iter().zip(compared) {
+    for ((i, finished, mut assessment), finely) in waiting.into_iter().zip(compared) {
         let Ok(model) = &models[i] else { continue };
         out[i] = finely.finish().map(|fine| {
             let difference = rms_difference(&finished.recorder, &fine.recorder, smallest(model));
-            verdict.error_estimate = SAFETY * difference + ROUNDING;
-            verdict.numerics += fine.record.numerics;
-            report(&points[i].asked(), model, finished.recorder, finished.record, verdict)
+            assessment.error_estimate = SAFETY * difference + ROUNDING;
+            assessment.counts += fine.record.counts;
+            assemble_response(&points[i].report_input(), model, finished.recorder, finished.record, assessment)
         });
     }
     Ok(out)
@@ -487,16 +487,16 @@ const COMPARED_LEAD_MESH_PERIODS: u64 = 50;
 const ROUNDING: f64 = 1e-13;
 
 /// An acceleration that is nothing but rounding: 1e-12 of what the load would give the free mesh, m/s².
-fn smallest<const D: usize>(model: &Model<D>) -> f64 {
+fn smallest<const D: usize>(model: &DynamicModel<D>) -> f64 {
     let square = model.omega_ref * model.omega_ref;
-    (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(model.max_excitation_force_n(j) * model.halves[j].inv_me * square))
+    (0..DynamicModel::<D>::HALVES).fold(0.0f64, |m, j| m.max(model.max_excitation_force_n(j) * model.halves[j].inv_me * square))
         * 1e-12
 }
 
 /// Largest relative difference of the RMS accelerations of two records; below `floor` they count as equal.
-fn rms_difference<const D: usize>(a: &Recorder<D>, b: &Recorder<D>, floor: f64) -> f64 {
+fn rms_difference<const D: usize>(a: &ChannelRecorder<D>, b: &ChannelRecorder<D>, floor: f64) -> f64 {
     b.all().fold(0.0f64, |worst, (id, gb, _)| {
-        let Some(ga) = a.gathered(id) else { return worst };
+        let Some(ga) = a.accumulator(id) else { return worst };
         let (ra, rb) = (ga.mean_and_square().1.sqrt(), gb.mean_and_square().1.sqrt());
         if rb > floor { worst.max((ra - rb).abs() / rb) } else { worst }
     })

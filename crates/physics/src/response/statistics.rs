@@ -24,7 +24,7 @@ static POWERS: LazyLock<[[f64; NODES]; MAX_ORDER + 1]> =
 
 /// Integrals and extremes of one channel, gathered segment by segment.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Gathered {
+pub(super) struct MomentAccumulator {
     /// Taken off before squaring, so that a large mean costs no digits.
     offset: Option<f64>,
     first: f64,
@@ -35,7 +35,7 @@ pub(super) struct Gathered {
     keeps_mean: bool,
 }
 
-impl Gathered {
+impl MomentAccumulator {
     /// `keeps_mean`: whether the mean counts in the mean square.
     pub fn new(keeps_mean: bool) -> Self {
         Self {
@@ -135,14 +135,14 @@ impl Gathered {
     }
 
     /// Variance of what came after the snapshot `earlier`.
-    pub fn variance_since(&self, earlier: &Gathered) -> f64 {
+    pub fn variance_since(&self, earlier: &MomentAccumulator) -> f64 {
         let (first, second) = (self.first - earlier.first, self.second - earlier.second);
         let length = self.length - earlier.length;
         (second / length - (first / length).powi(2)).max(0.0)
     }
 
     /// Mean square, the mean included, of what came after the snapshot `earlier`.
-    pub fn square_since(&self, earlier: &Gathered) -> f64 {
+    pub fn square_since(&self, earlier: &MomentAccumulator) -> f64 {
         let (first, second) = (self.first - earlier.first, self.second - earlier.second);
         let length = self.length - earlier.length;
         let offset = self.offset.unwrap_or(0.0);
@@ -177,13 +177,13 @@ mod tests {
     #[test]
     fn means_and_extremes_of_a_parabola() {
         // 5 + t - t² over [0, 1], in two pieces: mean 5 + 1/6, variance 1/180, maximum 5.25 inside.
-        let mut g = Gathered::new(false);
+        let mut g = MomentAccumulator::new(false);
         g.add(&[5.0, 1.0, -1.0], 0.25, true);
         g.add(&[5.1875, 0.5, -1.0], 0.75, true);
         let s = g.finish();
         assert!((s.mean - (5.0 + 1.0 / 6.0)).abs() < 1e-15);
         assert!((s.rms * s.rms - 1.0 / 180.0).abs() < 1e-16);
-        let mut kept = Gathered::new(true);
+        let mut kept = MomentAccumulator::new(true);
         kept.add(&[5.0, 1.0, -1.0], 1.0, false);
         assert!((kept.finish().rms.powi(2) - (31.0_f64 / 6.0).powi(2) - 1.0 / 180.0).abs() < 1e-13);
         assert!((s.max - 5.25).abs() < 1e-15 && (s.min - 5.0).abs() < 1e-15, "{s:?}");

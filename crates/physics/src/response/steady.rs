@@ -3,9 +3,9 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::budget::{Budget, budget_exhausted, steps_per_period};
-use super::regime::{CHAOS_PER_MESH_PERIOD, Section, perturbation_decay, largest, lyapunov_exponent};
+use super::regime::{CHAOS_PER_MESH_PERIOD, PoincareSection, perturbation_decay, largest, lyapunov_exponent};
 use crate::dynamics::{
-    Perturbation, DynamicsError, RigidBodyModes, Integrator, IntegrationLimits, Model, Motion, Numerics, PER_HALF, Shooting, State, U,
+    Perturbation, DynamicsError, RigidBodyModes, Integrator, IntegrationLimits, DynamicModel, Motion, StepCounts, PER_HALF, Shooting, MotionState, U,
     Unobserved, state_difference,
 };
 
@@ -40,7 +40,7 @@ const SLOW_DECAY: f64 = 0.95;
 
 /// A motion ready to be recorded.
 pub(super) struct SteadyMotion<const D: usize> {
-    pub start: State<D>,
+    pub start: MotionState<D>,
     /// Mesh periods to record.
     pub record: u64,
     /// The period in mesh periods and the linear map over it; None when the motion does not repeat.
@@ -54,12 +54,12 @@ pub(super) struct SteadyMotion<const D: usize> {
     /// The halves do not keep their mirror symmetry: perturbations against it grow.
     pub leaves_symmetry: bool,
     pub tolerance: f64,
-    pub numerics: Numerics,
+    pub counts: StepCounts,
 }
 
 /// What the search needs to know.
 pub(super) struct SteadyStateSearch<'a, const D: usize> {
-    pub model: &'a Model<D>,
+    pub model: &'a DynamicModel<D>,
     pub mean_stiffness_n_per_m: [f64; 2],
     pub limits: IntegrationLimits<'a>,
     /// A motion that does not repeat is an error.
@@ -70,30 +70,30 @@ pub(super) struct SteadyStateSearch<'a, const D: usize> {
 
 impl<const D: usize> SteadyStateSearch<'_, D> {
     /// The steady state reached from `start`, or the periodic one without loss of contact when it exists and is stable.
-    pub fn run(&self, start: State<D>) -> Result<SteadyMotion<D>, DynamicsError> {
+    pub fn run(&self, start: MotionState<D>) -> Result<SteadyMotion<D>, DynamicsError> {
         let mut budget = Budget::new::<D>(&self.limits);
         self.check_static_deflection(&start)?;
         let start = self.perturb_from_rest(start);
-        let mut numerics = Numerics::default();
+        let mut counts = StepCounts::default();
         if steps_per_period(self.model) > MANY_STEPS_PER_PERIOD
-            && let Some(found) = self.settle_by_integration(start, &mut budget, &mut numerics)?
+            && let Some(found) = self.settle_by_integration(start, &mut budget, &mut counts)?
         {
             return Ok(found);
         }
         // Also says whether there is a steady state at all.
         let keeps_contact = if self.model.uses_contact_force() {
-            self.orbit_near_static_deflection(start, &mut budget, &mut numerics)?
+            self.orbit_near_static_deflection(start, &mut budget, &mut counts)?
         } else {
-            self.orbit_in_contact(start, &mut budget, &mut numerics)?
+            self.orbit_in_contact(start, &mut budget, &mut counts)?
         };
         if let Some(found) = keeps_contact.filter(|_| !self.from_start) {
             return Ok(found);
         }
-        self.motion_by_integration(start, &mut budget, numerics)
+        self.motion_by_integration(start, &mut budget, counts)
     }
 
     /// Fails where the load would press the pair further than any motion may go.
-    fn check_static_deflection(&self, start: &State<D>) -> Result<(), DynamicsError> {
+    fn check_static_deflection(&self, start: &MotionState<D>) -> Result<(), DynamicsError> {
         const FURTHEST_M: f64 = 1e3;
         let furthest = largest(&(start.x, [0.0; D]));
         if furthest > FURTHEST_M {
@@ -108,7 +108,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
 
     /// A pair without load rests at zero: there is no size of its motion to measure a step by, when a pulse comes. It sets out from a
     /// millionth of the deflection that the pulse could give instead; where it sets out from is forgotten.
-    fn perturb_from_rest(&self, start: State<D>) -> State<D> {
+    fn perturb_from_rest(&self, start: MotionState<D>) -> MotionState<D> {
         const RELATIVE_SIZE: f64 = 1e-6;
         if start.x.iter().chain(&start.v).any(|c| *c != 0.0) {
             return start;
@@ -116,27 +116,27 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         let masses = self.model.masses_kg();
         let square = self.model.omega_ref * self.model.omega_ref;
         let mut perturbation: Perturbation<D> = ([0.0; D], [0.0; D]);
-        for j in 0..Model::<D>::HALVES {
+        for j in 0..DynamicModel::<D>::HALVES {
             let u = j * PER_HALF + U;
             perturbation.0[u] = RELATIVE_SIZE * self.model.max_excitation_force_n(j) / (masses[u] * square);
         }
         displaced(self.model, start, &perturbation)
     }
 
-    fn motion(&self, start: State<D>, budget: &Budget) -> Motion<'_, D> {
+    fn motion(&self, start: MotionState<D>, budget: &Budget) -> Motion<'_, D> {
         let IntegrationLimits { tolerance, .. } = self.limits;
         Motion::new(self.model, start, Integrator::Taylor, tolerance, budget.steps(0))
     }
 
     /// The period map under what is left of the budget.
-    fn shooting<'s>(&'s self, model: &'s Model<D>, budget: &Budget) -> Result<Shooting<'s, D>, DynamicsError> {
+    fn shooting<'s>(&'s self, model: &'s DynamicModel<D>, budget: &Budget) -> Result<Shooting<'s, D>, DynamicsError> {
         Shooting::new(model, self.mean_stiffness_n_per_m, budget.limits(&self.limits, 2 * model.active().count()))
     }
 
     /// Fails when the mean load has a part along a motion that nothing holds.
     fn check_load_balance(&self, shooting: &Shooting<'_, D>, defect: &Perturbation<D>) -> Result<(), DynamicsError> {
         let unbalanced_n = shooting.unbalanced_force_n(defect, 1);
-        let load = (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.max_excitation_force_n(j)));
+        let load = (0..DynamicModel::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.max_excitation_force_n(j)));
         // Rounding and truncation leave a little; a real imbalance is far above. What is not loaded cannot be unbalanced.
         if load > 0.0 && unbalanced_n > 1e-6 * load {
             return Err(DynamicsError::Unbalanced { force_n: unbalanced_n });
@@ -148,13 +148,13 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
     /// few steps where the map would take very many. None when the transient does not die so fast.
     fn settle_by_integration(
         &self,
-        start: State<D>,
+        start: MotionState<D>,
         budget: &mut Budget,
-        numerics: &mut Numerics,
+        counts: &mut StepCounts,
     ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
         let rigid_body = RigidBodyModes::new(self.model)?;
         let mut motion = self.motion(start, budget);
-        let mut section = Section::without_rigid_body(self.model)?;
+        let mut section = PoincareSection::without_rigid_body(self.model)?;
         section.push(motion.state);
         let (mut last, mut before) = (motion.state, f64::INFINITY);
         let mut settled = false;
@@ -171,19 +171,19 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             }
             before = change;
         }
-        budget.spend(&motion.numerics, 0);
-        *numerics += motion.numerics;
-        let steps = motion.numerics.steps / (motion.state.period - start.period).max(1);
+        budget.spend(&motion.counts, 0);
+        *counts += motion.counts;
+        let steps = motion.counts.steps / (motion.state.period - start.period).max(1);
         if !settled || !budget.affords(steps, 1) {
             return Ok(None);
         }
-        let near = State { period: 0, ..last };
+        let near = MotionState { period: 0, ..last };
         // Everything else might still be held by some motion that this start did not wake.
-        let mut decays = |model: &Model<D>, rigid_body: &RigidBodyModes<D>| {
+        let mut decays = |model: &DynamicModel<D>, rigid_body: &RigidBodyModes<D>| {
             let mut motion = self.motion(near, budget);
             let left = perturbation_decay(&mut motion, model, rigid_body, self.limits.watch)?;
-            budget.spend(&motion.numerics, 1);
-            *numerics += motion.numerics;
+            budget.spend(&motion.counts, 1);
+            *counts += motion.counts;
             Ok::<_, DynamicsError>(left < DECAYED)
         };
         if !decays(self.model, &rigid_body)? {
@@ -210,27 +210,27 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             lyapunov: None,
             leaves_symmetry: false,
             tolerance: self.limits.tolerance,
-            numerics: *numerics,
+            counts: *counts,
         }))
     }
 
     /// With contact held the equations are linear: one period from any start gives the periodic solution.
     fn orbit_in_contact(
         &self,
-        start: State<D>,
+        start: MotionState<D>,
         budget: &mut Budget,
-        numerics: &mut Numerics,
+        counts: &mut StepCounts,
     ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
         let perturbations = 2 * self.model.active().count();
         let held = self.model.with_fixed_contact();
         let mut first = start;
-        for j in 0..Model::<D>::HALVES {
+        for j in 0..DynamicModel::<D>::HALVES {
             first.contact[j] = if self.model.halves[j].load < 0.0 { -1 } else { 1 };
         }
         let shooting = self.shooting(self.model, budget)?;
         let period_map = shooting.period_map(&held, first, 1)?;
-        budget.spend(&period_map.numerics, perturbations);
-        *numerics += period_map.numerics;
+        budget.spend(&period_map.counts, perturbations);
+        *counts += period_map.counts;
         let defect = state_difference(&period_map.end, &first);
         self.check_load_balance(&shooting, &defect)?;
         let within = shooting.multipliers(&period_map.monodromy);
@@ -243,12 +243,12 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         }
         let mut motion = self.motion(orbit_start, budget);
         motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
-        budget.spend(&motion.numerics, 0);
-        *numerics += motion.numerics;
+        budget.spend(&motion.counts, 0);
+        *counts += motion.counts;
         if motion.contact_changed {
             return Ok(None);
         }
-        let start = self.refine_orbit(&shooting, (orbit_start, 1), &period_map.monodromy, modulus, budget, numerics)?;
+        let start = self.refine_orbit(&shooting, (orbit_start, 1), &period_map.monodromy, modulus, budget, counts)?;
         let (antisymmetric_modulus, multipliers) = self.with_antisymmetric_multipliers(within, start, 1, budget)?;
         Ok(Some(SteadyMotion {
             start,
@@ -259,7 +259,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             lyapunov: None,
             leaves_symmetry: antisymmetric_modulus > 1.0,
             tolerance: self.limits.tolerance,
-            numerics: *numerics,
+            counts: *counts,
         }))
     }
 
@@ -268,19 +268,19 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
     /// steps converge (chord method), and taken anew at the motion found. None when that separates, is unstable or is not found.
     fn orbit_near_static_deflection(
         &self,
-        start: State<D>,
+        start: MotionState<D>,
         budget: &mut Budget,
-        numerics: &mut Numerics,
+        counts: &mut StepCounts,
     ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
         const MAX_ITERATIONS: usize = 12;
         /// A map is kept while each step leaves less than this part of the defect.
         const CHORD_REDUCTION: f64 = 0.2;
         let perturbations = 2 * self.model.active().count();
         let shooting = self.shooting(self.model, budget)?;
-        let mut at = State { period: 0, ..start };
+        let mut at = MotionState { period: 0, ..start };
         let mut period_map = shooting.period_map(self.model, at, 1)?;
-        budget.spend(&period_map.numerics, perturbations);
-        *numerics += period_map.numerics;
+        budget.spend(&period_map.counts, perturbations);
+        *counts += period_map.counts;
         let mut defect = state_difference(&period_map.end, &at);
         self.check_load_balance(&shooting, &defect)?;
         let mut last = f64::INFINITY;
@@ -294,8 +294,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             }
             if converged || (!monodromy_is_current && change > CHORD_REDUCTION * last) {
                 period_map = shooting.period_map(self.model, at, 1)?;
-                budget.spend(&period_map.numerics, perturbations);
-                *numerics += period_map.numerics;
+                budget.spend(&period_map.counts, perturbations);
+                *counts += period_map.counts;
                 defect = state_difference(&period_map.end, &at);
                 monodromy_is_current = true;
                 if converged {
@@ -307,8 +307,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             at = displaced(self.model, at, &correction);
             let mut motion = self.motion(at, budget);
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
-            budget.spend(&motion.numerics, 0);
-            *numerics += motion.numerics;
+            budget.spend(&motion.counts, 0);
+            *counts += motion.counts;
             defect = state_difference(&motion.state, &at);
             monodromy_is_current = false;
         }
@@ -316,23 +316,23 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         if !monodromy_is_current || period_map.separated || largest(&defect) / size > 1e-9f64.max(10.0 * self.limits.tolerance) {
             return Ok(None);
         }
-        self.stable_orbit(&shooting, at, 1, period_map.monodromy, budget, numerics)
+        self.stable_orbit(&shooting, at, 1, period_map.monodromy, budget, counts)
     }
 
     /// The orbit that closes from `at` after `n` mesh periods with its multipliers; None where a perturbation grows.
     fn stable_orbit(
         &self,
         shooting: &Shooting<'_, D>,
-        at: State<D>,
+        at: MotionState<D>,
         n: u64,
         monodromy: DMatrix<f64>,
         budget: &mut Budget,
-        numerics: &mut Numerics,
+        counts: &mut StepCounts,
     ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
         let within = shooting.multipliers(&monodromy);
         let modulus = within.first().map(|m| m.norm());
         let Some(modulus) = modulus.filter(|m| *m < 1.0) else { return Ok(None) };
-        let start = self.refine_orbit(shooting, (at, n), &monodromy, modulus, budget, numerics)?;
+        let start = self.refine_orbit(shooting, (at, n), &monodromy, modulus, budget, counts)?;
         let (antisymmetric_modulus, multipliers) = self.with_antisymmetric_multipliers(within, start, n, budget)?;
         Ok(Some(SteadyMotion {
             multipliers,
@@ -343,25 +343,25 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             lyapunov: None,
             leaves_symmetry: antisymmetric_modulus > 1.0,
             tolerance: self.limits.tolerance,
-            numerics: *numerics,
+            counts: *counts,
         }))
     }
 
     fn motion_by_integration(
         &self,
-        start: State<D>,
+        start: MotionState<D>,
         budget: &mut Budget,
-        mut numerics: Numerics,
+        mut counts: StepCounts,
     ) -> Result<SteadyMotion<D>, DynamicsError> {
         let all = budget.steps(0);
         let reserve = all - all / 8 * 3;
         let mut motion = self.motion(start, budget);
-        let mut section = Section::without_rigid_body(self.model)?;
+        let mut section = PoincareSection::without_rigid_body(self.model)?;
         section.push(motion.state);
         let mut next_attempt = 8;
         let mut periods_integrated = 0;
         // Of the budget the motion may take a half, tries to close it three eighths; the rest is for what follows.
-        while periods_integrated < MAX_TRANSIENT_MESH_PERIODS && motion.numerics.steps <= all / 2 {
+        while periods_integrated < MAX_TRANSIENT_MESH_PERIODS && motion.counts.steps <= all / 2 {
             periods_integrated += 1;
             let fraction = 0.9 * periods_integrated as f64 / MAX_TRANSIENT_MESH_PERIODS as f64;
             motion.advance_period(&mut Unobserved, self.limits.watch, fraction)?;
@@ -374,8 +374,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
                 next_attempt = periods_integrated + MESH_PERIODS_BETWEEN_ATTEMPTS;
                 match self.find_orbit(motion.state, n as u64, section.size(), budget) {
                     Ok(Some(mut found)) => {
-                        numerics += motion.numerics;
-                        found.numerics += numerics;
+                        counts += motion.counts;
+                        found.counts += counts;
                         return Ok(found);
                     }
                     Ok(None) => {}
@@ -388,9 +388,9 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
                 }
             }
         }
-        budget.spend(&motion.numerics, 0);
-        numerics += motion.numerics;
-        let steps = motion.numerics.steps / periods_integrated.max(1);
+        budget.spend(&motion.counts, 0);
+        counts += motion.counts;
+        let steps = motion.counts.steps / periods_integrated.max(1);
         if periods_integrated < MAX_TRANSIENT_MESH_PERIODS.min(MIN_TRANSIENT_MESH_PERIODS) {
             return Err(budget_exhausted(all, motion.time_s()));
         }
@@ -402,11 +402,11 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         if periods == 0 {
             return Err(budget_exhausted(all, motion.time_s()));
         }
-        let mut exponent_of = |model: &Model<D>| {
+        let mut exponent_of = |model: &DynamicModel<D>| {
             let mut along = self.motion(motion.state, budget);
             let exponent = lyapunov_exponent(&mut along, model, periods, self.limits.watch)?;
-            budget.spend(&along.numerics, 1);
-            numerics += along.numerics;
+            budget.spend(&along.counts, 1);
+            counts += along.counts;
             Ok::<_, DynamicsError>(exponent)
         };
         let exponent = exponent_of(self.model)?;
@@ -420,7 +420,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             lyapunov: Some(exponent),
             leaves_symmetry,
             tolerance: self.limits.tolerance,
-            numerics,
+            counts,
         })
     }
 
@@ -428,7 +428,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
     /// method does not lead to a stable one.
     fn find_orbit(
         &self,
-        near: State<D>,
+        near: MotionState<D>,
         n: u64,
         size: f64,
         budget: &mut Budget,
@@ -453,36 +453,36 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.9)?;
             let change = largest(&rigid_body.project_out(&state_difference(&motion.state, &found.start))) / size;
             if n.is_multiple_of(period) && change < SAME_PERIOD_CHANGE {
-                budget.spend(&motion.numerics, 0);
+                budget.spend(&motion.counts, 0);
                 return Ok(Some(period));
             }
         }
-        budget.spend(&motion.numerics, 0);
+        budget.spend(&motion.counts, 0);
         Ok(None)
     }
 
     /// Newton's method on the map over `n` mesh periods; None when it does not lead to a stable motion close by.
     fn newton_orbit(
         &self,
-        near: State<D>,
+        near: MotionState<D>,
         n: u64,
         size: f64,
         budget: &mut Budget,
     ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
         let perturbations = 2 * self.model.active().count();
         let rigid_body = RigidBodyModes::new(self.model)?;
-        let mut start = State { period: 0, ..near };
-        let mut numerics = Numerics::default();
+        let mut start = MotionState { period: 0, ..near };
+        let mut counts = StepCounts::default();
         let mut last = f64::INFINITY;
         for _ in 0..10 {
             let shooting = self.shooting(self.model, budget)?;
             let period_map = shooting.period_map(self.model, start, n)?;
-            budget.spend(&period_map.numerics, perturbations);
-            numerics += period_map.numerics;
+            budget.spend(&period_map.counts, perturbations);
+            counts += period_map.counts;
             let defect = state_difference(&period_map.end, &start);
             let change = largest(&defect) / size;
             if change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last) {
-                return self.stable_orbit(&shooting, start, n, period_map.monodromy, budget, &mut numerics);
+                return self.stable_orbit(&shooting, start, n, period_map.monodromy, budget, &mut counts);
             }
             last = change;
             let Some(correction) = shooting.correction(&defect, &period_map.monodromy, n) else { return Ok(None) };
@@ -499,12 +499,12 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
     fn refine_orbit(
         &self,
         shooting: &Shooting<'_, D>,
-        (start, n): (State<D>, u64),
+        (start, n): (MotionState<D>, u64),
         monodromy: &DMatrix<f64>,
         modulus: f64,
         budget: &mut Budget,
-        numerics: &mut Numerics,
-    ) -> Result<State<D>, DynamicsError> {
+        counts: &mut StepCounts,
+    ) -> Result<MotionState<D>, DynamicsError> {
         let fine = (1e-3 * self.limits.tolerance).max(1e-15);
         if modulus < SLOW_DECAY || fine >= self.limits.tolerance {
             return Ok(start);
@@ -513,11 +513,11 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         for _ in 0..n {
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
         }
-        budget.spend(&motion.numerics, 0);
-        *numerics += motion.numerics;
+        budget.spend(&motion.counts, 0);
+        *counts += motion.counts;
         let correction = shooting.correction(&state_difference(&motion.state, &start), monodromy, n);
         let better = correction.map(|by| displaced(self.model, start, &by));
-        Ok(better.filter(|b| b.contact == start.contact).map_or(start, |b| State { period: start.period, ..b }))
+        Ok(better.filter(|b| b.contact == start.contact).map_or(start, |b| MotionState { period: start.period, ..b }))
     }
 
     /// Largest modulus of the Floquet multipliers of perturbations against the mirror symmetry over `n` periods (0 with twelve
@@ -525,7 +525,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
     fn with_antisymmetric_multipliers(
         &self,
         mut within: Vec<Complex<f64>>,
-        start: State<D>,
+        start: MotionState<D>,
         n: u64,
         budget: &mut Budget,
     ) -> Result<(f64, Vec<Complex<f64>>), DynamicsError> {
@@ -535,7 +535,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         let antisymmetric = self.model.antisymmetric();
         let shooting = self.shooting(&antisymmetric, budget)?;
         let period_map = shooting.period_map(self.model, start, n)?;
-        budget.spend(&period_map.numerics, 2 * antisymmetric.active().count());
+        budget.spend(&period_map.counts, 2 * antisymmetric.active().count());
         let against = shooting.multipliers(&period_map.monodromy);
         let largest = against.first().map_or(f64::INFINITY, |m| m.norm());
         within.extend(against);
@@ -545,12 +545,12 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
 }
 
 /// A state with a perturbation added, its contact found anew.
-pub(super) fn moved<const D: usize>(model: &Model<D>, mut state: State<D>, by: &Perturbation<D>) -> State<D> {
+pub(super) fn moved<const D: usize>(model: &DynamicModel<D>, mut state: MotionState<D>, by: &Perturbation<D>) -> MotionState<D> {
     for c in 0..D {
         state.x[c] += by.0[c];
         state.v[c] += by.1[c];
     }
-    for j in 0..Model::<D>::HALVES {
+    for j in 0..DynamicModel::<D>::HALVES {
         state.contact[j] = model.contact_of(j, model.s(j, &state.x), state.phase);
     }
     state

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::dynamics::tests::reference::{parameters, reference};
-use crate::dynamics::{DynamicsError, Harmonic, Impact, Integrator, Parameters, Spring, Stiffness};
+use crate::dynamics::{DynamicsError, Harmonic, ImpactExcitation, Integrator, Parameters, Spring, Stiffness};
 use crate::watch::{Canceled, Watch};
 use herringbone_oracle::Tolerance::{Absolute, Relative};
 use herringbone_oracle::{check, check_worst};
@@ -12,7 +12,7 @@ use herringbone_oracle::{check, check_worst};
 fn integrate(name: &str, mesh_periods: u64, record: u64, accuracy: f64, integrator: Integrator) -> Response {
     let case = &reference().cases[name];
     let analysis = Analysis {
-        method: Method::Integrate { mesh_periods, record_mesh_periods: record },
+        method: SolutionMethod::Integrate { mesh_periods, record_mesh_periods: record },
         integrator,
         accuracy,
         initial_state: Some(case.initial_state.as_slice().try_into().unwrap()),
@@ -34,7 +34,7 @@ fn honest(name: &str, what: &str, r: &Response, accuracy: f64) {
     let expected = reference().cases[name].rms_200_to_300.unwrap();
     let error = (mesh_rms(r) / expected - 1.0).abs();
     let estimate = r.summary.error_estimate;
-    println!("{what} {accuracy:.0e}: error {error:.1e} estimate {estimate:.1e} steps {}", r.summary.numerics.steps);
+    println!("{what} {accuracy:.0e}: error {error:.1e} estimate {estimate:.1e} steps {}", r.summary.counts.steps);
     let topic = format!("Response: reference case {name}, RMS of x_left''");
     check(&topic, &format!("{what}, accuracy {accuracy:.0e}, m/s²"), mesh_rms(r), expected, Relative(accuracy));
     assert!(error <= estimate, "{what} {accuracy}: {error} {estimate}");
@@ -77,7 +77,7 @@ fn contact_and_extremes_meet_the_reference() {
     for name in ["A", "B", "C"] {
         let case = &reference().cases[name];
         let analysis = Analysis {
-            method: Method::Integrate { mesh_periods: 300, record_mesh_periods: 300 },
+            method: SolutionMethod::Integrate { mesh_periods: 300, record_mesh_periods: 300 },
             accuracy: 1e-9,
             initial_state: Some(case.initial_state.as_slice().try_into().unwrap()),
             channels: vec![ChannelId::parse("s_left").unwrap()],
@@ -118,7 +118,7 @@ fn chaos_is_recognised() {
     assert!(r.summary.error_estimate < 0.02, "{:?}", r.summary);
     let threefold = Relative(3.0 * r.summary.error_estimate);
     check("Response: reference case B, RMS of x_left''", "on the attractor, m/s²", mesh_rms(&r), 120.85, threefold);
-    let periodic = Analysis { method: Method::Periodic, ..Analysis::default() };
+    let periodic = Analysis { method: SolutionMethod::Periodic, ..Analysis::default() };
     let refused = solve(&parameters("B"), &periodic, &Watch::none());
     assert!(matches!(refused, Err(DynamicsError::NotPeriodic { .. })), "{refused:?}");
 }
@@ -217,7 +217,7 @@ fn sampled_stiffness_is_met() {
     check_worst(topic, "stiffness as 512 samples against its Fourier series, RMS", [error], 1e-4);
     // And both methods use the samples alike.
     let rk = Analysis {
-        method: Method::Integrate { mesh_periods: 250, record_mesh_periods: 20 },
+        method: SolutionMethod::Integrate { mesh_periods: 250, record_mesh_periods: 20 },
         integrator: Integrator::RungeKutta,
         ..Analysis::default()
     };
@@ -233,7 +233,7 @@ fn no_excitation_no_motion() {
         h.impact = None;
         h.mesh_stiffness = Stiffness::Constant { mean_n_per_m: 9e8 };
     }
-    for method in [Method::Auto, Method::Integrate { mesh_periods: 50, record_mesh_periods: 40 }] {
+    for method in [SolutionMethod::Auto, SolutionMethod::Integrate { mesh_periods: 50, record_mesh_periods: 40 }] {
         let r = solve(&p, &Analysis { method, ..Analysis::default() }, &Watch::none()).unwrap();
         let topic = "Response: balances and equivalences";
         check_worst(
@@ -322,7 +322,7 @@ prop_compose! {
                 let values_n_per_m = (0..24).map(|i| h.mesh_stiffness.at(f64::from(i) / 24.0).max(0.0)).collect();
                 h.mesh_stiffness = Stiffness::Samples { values_n_per_m };
             }
-            h.impact = Some(Impact::HalfSine { force_n: force, duration_mesh_periods: duration, start_mesh_periods: start });
+            h.impact = Some(ImpactExcitation::HalfSine { force_n: force, duration_mesh_periods: duration, start_mesh_periods: start });
             h.phase_shift_mesh_periods = shift * j as f64;
         }
         p.couplings.pinion_axial = Spring::with_damping_ratio(stiffness[4], zeta, mp);
@@ -335,7 +335,7 @@ prop_compose! {
 }
 
 /// Whatever the answer, it comes, and it is finite or says why not.
-fn check_wild(p: &Parameters, method: Method, integrator: Integrator) -> Result<(), TestCaseError> {
+fn check_wild(p: &Parameters, method: SolutionMethod, integrator: Integrator) -> Result<(), TestCaseError> {
     let analysis = Analysis { method, integrator, max_steps: 20_000, accuracy: 1e-4, ..Analysis::default() };
     if let Ok(r) = solve(p, &analysis, &Watch::none()) {
         let s = &r.summary;
@@ -353,8 +353,8 @@ proptest! {
 
     #[test]
     fn wild_parameters_end(p in wild()) {
-        check_wild(&p, Method::Auto, Integrator::Taylor)?;
-        let method = Method::Integrate { mesh_periods: 30, record_mesh_periods: 10 };
+        check_wild(&p, SolutionMethod::Auto, Integrator::Taylor)?;
+        let method = SolutionMethod::Integrate { mesh_periods: 30, record_mesh_periods: 10 };
         check_wild(&p, method, Integrator::Taylor)?;
         check_wild(&p, method, Integrator::RungeKutta)?;
     }

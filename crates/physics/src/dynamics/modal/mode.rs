@@ -1,7 +1,7 @@
 //! What a natural mode is made of: energy shares, damping, and a name that follows from them.
 
-use super::members::{SpringGroup, members};
-use super::{NaturalModes, Row, arcs, masses, mirrored};
+use super::springs::{SpringGroup, spring_elements};
+use super::{NaturalModes, SourceVector, arcs, masses, mirrored};
 use crate::dynamics::parameters::Parameters;
 
 /// A natural mode for people and tools.
@@ -67,7 +67,7 @@ impl NaturalModes {
     }
 }
 
-fn describe(p: &Parameters, frequency_hz: f64, shape: &Row) -> Mode {
+fn describe(p: &Parameters, frequency_hz: f64, shape: &SourceVector) -> Mode {
     let masses = masses(p);
     let mut kinetic_energy = KINDS.map(|kind| (kind, 0.0));
     for c in 0..12 {
@@ -76,13 +76,13 @@ fn describe(p: &Parameters, frequency_hz: f64, shape: &Row) -> Mode {
     }
     let mut strain: Vec<(SpringGroup, f64)> = Vec::new();
     let mut damping = 0.0;
-    for member in members(p) {
-        let deflection: f64 = (0..12).map(|c| member.row[c] * shape[c]).sum();
-        damping += member.spring.damping * deflection * deflection;
-        let energy = member.spring.stiffness * deflection * deflection;
-        match strain.iter_mut().find(|(group, _)| *group == member.group) {
+    for element in spring_elements(p) {
+        let deflection: f64 = (0..12).map(|c| element.row[c] * shape[c]).sum();
+        damping += element.spring.damping * deflection * deflection;
+        let energy = element.spring.stiffness * deflection * deflection;
+        match strain.iter_mut().find(|(group, _)| *group == element.group) {
             Some((_, sum)) => *sum += energy,
-            None => strain.push((member.group, energy)),
+            None => strain.push((element.group, energy)),
         }
     }
     let held = frequency_hz > 0.0;
@@ -136,7 +136,7 @@ fn free_name(mode: &Mode) -> String {
 mod tests {
     use super::*;
     use crate::dynamics::tests::reference::parameters;
-    use crate::dynamics::{HalfParameters, IntegrationLimits, Model, Shooting, Stiffness};
+    use crate::dynamics::{HalfParameters, IntegrationLimits, DynamicModel, Shooting, Stiffness};
     use crate::watch::Watch;
     use herringbone_oracle::Tolerance::Relative;
     use herringbone_oracle::{check, check_worst};
@@ -186,7 +186,7 @@ mod tests {
             for (b, second) in natural.shapes.iter().enumerate() {
                 let product: f64 = (0..12).map(|c| masses[c] * first[c] * second[c]).sum();
                 errors.push(product - f64::from(u8::from(a == b)));
-                let strain: f64 = members(&p)
+                let strain: f64 = spring_elements(&p)
                     .iter()
                     .map(|m| {
                         let deflection = |shape: &Row| (0..12).map(|c| m.row[c] * shape[c]).sum::<f64>();
@@ -253,7 +253,7 @@ mod tests {
         }
         p.couplings.pinion_axial.damping *= scale;
         p.couplings.gear_axial.damping *= scale;
-        let model = Model::<12>::new(&p).unwrap();
+        let model = DynamicModel::<12>::new(&p).unwrap();
         let watch = Watch::none();
         let limits = IntegrationLimits { tolerance: 1e-13, max_steps: u64::MAX, watch: &watch };
         let shooting = Shooting::new(&model, [9e8; 2], limits).unwrap();

@@ -145,9 +145,9 @@ fn perturbations_are_differences_of_motions() {
     for (load_nm, in_gap) in [(400.0, true), (30.0, true), (30.0, false)] {
         let (mut p, start) = case(load_nm, 0.2e-6);
         p.damping_in_gap = in_gap;
-        let model = Model::<6>::new(&p).unwrap();
+        let model = DynamicModel::<6>::new(&p).unwrap();
         let from = model.state_from(&start);
-        let go = |state: State<6>| {
+        let go = |state: MotionState<6>| {
             let mut motion = Motion::new(&model, state, Integrator::Taylor, 1e-13, 1_000_000);
             motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
             motion.state

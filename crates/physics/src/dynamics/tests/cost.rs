@@ -1,7 +1,7 @@
 //! What a mesh period costs: allocations (none) and time (printed).
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+use std::cell::ForceCell;
 use std::time::{Duration, Instant};
 
 use super::reference::{parameters, reference};
@@ -33,7 +33,7 @@ unsafe impl GlobalAlloc for Counting {
 static COUNTING: Counting = Counting;
 
 fn motion<'m, const D: usize>(
-    model: &'m Model<D>,
+    model: &'m DynamicModel<D>,
     name: &str,
     integrator: Integrator,
     tolerance: f64,
@@ -46,7 +46,7 @@ fn motion<'m, const D: usize>(
 #[test]
 fn stepping_allocates_nothing() {
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
-        let model = Model::<12>::new(&parameters("C")).unwrap();
+        let model = DynamicModel::<12>::new(&parameters("C")).unwrap();
         let mut m = motion(&model, "C", integrator, 1e-7);
         let mut columns = Variation::new(&model, Variation::unit_perturbations(&model), 1e-7);
         let before = ALLOCATIONS.get();
@@ -61,7 +61,7 @@ fn stepping_allocates_nothing() {
 #[ignore = "prints the time per mesh period"]
 fn time_per_mesh_period() {
     fn best<const D: usize>(name: &str, tolerance: f64, columns: bool) -> f64 {
-        let model = Model::<D>::new(&parameters(name)).unwrap();
+        let model = DynamicModel::<D>::new(&parameters(name)).unwrap();
         let mut least = Duration::MAX;
         for _ in 0..200 {
             let mut m = motion(&model, name, Integrator::Taylor, tolerance);

@@ -26,7 +26,7 @@ fn undamped(half_backlash_m: f64, torque_nm: f64) -> Parameters {
 }
 
 /// Energy in solver coordinates, without the free rotation: kinetic, springs, mesh, less the work of the torques. J.
-fn energy<const D: usize>(model: &Model<D>, p: &Parameters, state: &State<D>) -> f64 {
+fn energy<const D: usize>(model: &DynamicModel<D>, p: &Parameters, state: &MotionState<D>) -> f64 {
     let x = model.source_displacements(&state.x);
     let v = model.source_displacements(&state.v).map(|v| v * model.omega_ref);
     super::physics::energy(p, &x, &v, 9e8)
@@ -34,7 +34,7 @@ fn energy<const D: usize>(model: &Model<D>, p: &Parameters, state: &State<D>) ->
 
 /// Worst relative change of the energy over ten thousand mesh periods, and whether the contact changed.
 fn drift<const D: usize>(p: &Parameters, speeds: [f64; 2], tolerance: f64) -> (f64, bool) {
-    let model = Model::<D>::new(p).unwrap();
+    let model = DynamicModel::<D>::new(p).unwrap();
     let mut start = [0.0; 24];
     start[..12].copy_from_slice(&NaturalModes::new(p).unwrap().static_deflection(p));
     (start[14], start[20]) = (speeds[0], speeds[1]);
@@ -74,7 +74,7 @@ fn energy_stays_over_ten_thousand_periods() {
 fn a_million_periods() {
     for (name, repeats) in [("A", 1u64), ("C", 2)] {
         let p = parameters(name);
-        let model = Model::<6>::new(&p).unwrap();
+        let model = DynamicModel::<6>::new(&p).unwrap();
         let start = model.state_from(reference().cases[name].initial_state.as_slice().try_into().unwrap());
         let mut motion = Motion::new(&model, start, Integrator::Taylor, 1e-12, u64::MAX);
         let mut follow = |periods: u64| {

@@ -31,7 +31,7 @@ fn points() -> (Vec<Parameters>, Vec<[f64; 24]>) {
         }
         if i % 5 == 4 {
             let harmonics = vec![Harmonic { amplitude: 900.0, phase_rad: 0.4 }];
-            p.halves.iter_mut().for_each(|h| h.impact = Some(Impact::Harmonics { harmonics: harmonics.clone() }));
+            p.halves.iter_mut().for_each(|h| h.impact = Some(ImpactExcitation::Harmonics { harmonics: harmonics.clone() }));
         }
         all.push((p, start(name)));
     }
@@ -47,7 +47,7 @@ fn lanes_change_nothing() {
             let alone = advance(p, s, 7, Integrator::Taylor, tolerance, &Watch::none()).unwrap();
             let reached = reached.unwrap();
             assert_eq!(alone.state.map(f64::to_bits), reached.state.map(f64::to_bits));
-            assert_eq!(alone.numerics.steps, reached.numerics.steps);
+            assert_eq!(alone.counts.steps, reached.counts.steps);
         }
     }
 }
@@ -95,7 +95,7 @@ fn time_in_lanes() {
                 let at = Instant::now();
                 let many = pool.install(|| advance_many(&points, &starts, 100, tolerance, &Watch::none())).unwrap();
                 least = least.min(at.elapsed());
-                steps = many.iter().map(|r| r.as_ref().unwrap().numerics.steps).sum();
+                steps = many.iter().map(|r| r.as_ref().unwrap().counts.steps).sum();
             }
             let each = 3200.0;
             println!(

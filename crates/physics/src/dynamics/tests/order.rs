@@ -7,13 +7,13 @@ use herringbone_oracle::Tolerance::Absolute;
 use herringbone_oracle::check;
 
 /// Case A without impact: smooth, contact kept.
-fn smooth() -> Model<6> {
+fn smooth() -> DynamicModel<6> {
     let mut p = parameters("A");
     p.halves.iter_mut().for_each(|h| h.impact = None);
-    Model::new(&p).unwrap()
+    DynamicModel::new(&p).unwrap()
 }
 
-fn start(model: &Model<6>) -> State<6> {
+fn start(model: &DynamicModel<6>) -> MotionState<6> {
     let modes = NaturalModes::new(&parameters("A")).unwrap();
     let mut at_rest = [0.0; 24];
     at_rest[..12].copy_from_slice(&modes.static_deflection(&parameters("A")));
@@ -21,13 +21,13 @@ fn start(model: &Model<6>) -> State<6> {
 }
 
 /// Case C from the reference's start: contact is lost and closed, both edges of the impact are met.
-fn switching() -> (Model<6>, State<6>) {
-    let model = Model::new(&parameters("C")).unwrap();
+fn switching() -> (DynamicModel<6>, MotionState<6>) {
+    let model = DynamicModel::new(&parameters("C")).unwrap();
     let state = model.state_from(reference().cases["C"].initial_state.as_slice().try_into().unwrap());
     (model, state)
 }
 
-fn end(mut motion: Motion<'_, 6>) -> (State<6>, bool) {
+fn end(mut motion: Motion<'_, 6>) -> (MotionState<6>, bool) {
     for _ in 0..3 {
         motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
     }
@@ -36,8 +36,8 @@ fn end(mut motion: Motion<'_, 6>) -> (State<6>, bool) {
 
 /// Slope of log error over log step, by least squares over the numbers of steps per mesh period; and whether contact changed.
 fn order(
-    model: &Model<6>,
-    start: State<6>,
+    model: &DynamicModel<6>,
+    start: MotionState<6>,
     with: impl Fn(Motion<'_, 6>, f64) -> Motion<'_, 6>,
     steps: &[u32],
 ) -> (f64, bool) {
@@ -128,13 +128,13 @@ fn work_is_as_counted() {
     let print = std::env::var_os("HERRINGBONE_SNAPSHOT").is_some();
     let mut other = Vec::new();
     for (name, integrator, tolerance, expected) in COUNTED {
-        let model = Model::<6>::new(&parameters(name)).unwrap();
+        let model = DynamicModel::<6>::new(&parameters(name)).unwrap();
         let state = model.state_from(reference().cases[name].initial_state.as_slice().try_into().unwrap());
         let mut motion = Motion::new(&model, state, integrator, tolerance, u64::MAX);
         for _ in 0..20 {
             motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
         }
-        let Numerics { steps, rejected_steps, force_evaluations } = motion.numerics;
+        let StepCounts { steps, rejected_steps, force_evaluations } = motion.counts;
         let found = [steps, rejected_steps, force_evaluations];
         if print {
             println!("    ({name:?}, Integrator::{integrator:?}, {tolerance:e}, {found:?}),");

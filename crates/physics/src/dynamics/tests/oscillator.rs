@@ -33,7 +33,7 @@ fn oscillator(omega: f64, epsilon: f64, amplitude: f64) -> Parameters {
         },
         mesh_damping_n_s_per_m: 0.1,
         // F_s acts against the torque.
-        impact: Some(Impact::Harmonics {
+        impact: Some(ImpactExcitation::Harmonics {
             harmonics: vec![Harmonic { amplitude: -amplitude * omega * omega, phase_rad: 0.0 }],
         }),
         phase_shift_mesh_periods: 0.0,
@@ -88,7 +88,7 @@ impl Observer<6> for Swing {
 
 /// Steady swing at `omega` from the displacement and velocity (per unit of time) `from`; leaves where it ends. Peak to peak, mean, RMS.
 fn motion(omega: f64, epsilon: f64, amplitude: f64, from: &mut (f64, f64)) -> [f64; 3] {
-    let model = Model::<6>::new(&oscillator(omega, epsilon, amplitude)).unwrap();
+    let model = DynamicModel::<6>::new(&oscillator(omega, epsilon, amplitude)).unwrap();
     let mut state = model.state_from(&[0.0; 24]);
     (state.x[U], state.v[U]) = (from.0, from.1 / model.omega_ref);
     state.contact = [model.contact_of(0, from.0, 0.0); 2];

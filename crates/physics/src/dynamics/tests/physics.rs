@@ -62,7 +62,7 @@ fn natural_frequencies_with_couplings() {
     for (f, shape) in modes.frequencies_hz.iter().zip(&modes.shapes).skip(1) {
         let scale = 1e-6;
         p.mesh_frequency_hz = f / 4.0;
-        let model = Model::<12>::new(&p).unwrap();
+        let model = DynamicModel::<12>::new(&p).unwrap();
         let mut start = [0.0; 24];
         start[..12].copy_from_slice(&shape.map(|c| c * scale));
         let mut motion = Motion::new(&model, model.state_from(&start), Integrator::Taylor, 1e-13, u64::MAX);
@@ -120,7 +120,7 @@ fn nothing_moves_without_excitation() {
     let q = NaturalModes::new(&p).unwrap().static_deflection(&p);
     let mut start = [0.0; 24];
     start[..12].copy_from_slice(&q);
-    let model = Model::<12>::new(&p).unwrap();
+    let model = DynamicModel::<12>::new(&p).unwrap();
     let mut motion = Motion::new(&model, model.state_from(&start), Integrator::Taylor, 1e-12, u64::MAX);
     for _ in 0..50 {
         motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
@@ -174,7 +174,7 @@ fn energy_is_kept() {
     }
     p.couplings.pinion_axial.damping = 0.0;
     p.couplings.gear_axial.damping = 0.0;
-    let model = Model::<12>::new(&p).unwrap();
+    let model = DynamicModel::<12>::new(&p).unwrap();
     let mut start = [0.0; 24];
     start[..12].copy_from_slice(&reference().cases["C"].initial_state[..12]);
     start[14] = 0.6;
@@ -204,12 +204,12 @@ fn motion_scales_with_the_load() {
     q.half_backlash_m *= factor;
     for h in &mut q.halves {
         h.pinion_torque_nm *= factor;
-        if let Some(Impact::HalfSine { force_n, .. }) = &mut h.impact {
+        if let Some(ImpactExcitation::HalfSine { force_n, .. }) = &mut h.impact {
             *force_n *= factor;
         }
     }
     let run = |p: &Parameters, scale: f64| {
-        let model = Model::<6>::new(p).unwrap();
+        let model = DynamicModel::<6>::new(p).unwrap();
         let start: [f64; 24] = reference().cases["C"].initial_state.as_slice().try_into().unwrap();
         let mut motion =
             Motion::new(&model, model.state_from(&start.map(|c| c * scale)), Integrator::Taylor, 1e-13, u64::MAX);
@@ -235,7 +235,7 @@ fn exchanging_the_halves_exchanges_the_motion() {
     let start: [f64; 24] = reference().cases["C"].initial_state.as_slice().try_into().unwrap();
     let swapped: [f64; 24] = std::array::from_fn(|i| start[i / 12 * 12 + (i + 6) % 12]);
     let run = |p: &Parameters, start: &[f64; 24]| {
-        let model = Model::<12>::new(p).unwrap();
+        let model = DynamicModel::<12>::new(p).unwrap();
         let mut motion = Motion::new(&model, model.state_from(start), Integrator::Taylor, 1e-13, u64::MAX);
         for _ in 0..10 {
             motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();

@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use crate::dynamics::equations::{U, YG, YP};
 use crate::dynamics::integrate::{Integrator, Motion};
-use crate::dynamics::model::Model;
+use crate::dynamics::model::DynamicModel;
 use crate::dynamics::segment::{Observer, Segment, Unobserved};
 use crate::dynamics::*;
 use crate::watch::Watch;
@@ -89,7 +89,7 @@ pub fn parameters(name: &str) -> Parameters {
                 .collect(),
         },
         mesh_damping_n_s_per_m: mesh_damping_n_s_per_m(c.mesh_damping_ratio, m.mean_stiffness_n_per_m, me),
-        impact: Some(Impact::HalfSine {
+        impact: Some(ImpactExcitation::HalfSine {
             force_n: m.impact_force_n,
             duration_mesh_periods: m.impact_duration_mesh_periods,
             start_mesh_periods: 0.0,
@@ -146,10 +146,10 @@ impl<const D: usize> Observer<D> for MeanSquare {
 
 /// Largest relative errors of the states at 1, 5 and 20 periods and of the RMS over the first 20 (relative to the largest
 /// displacement or velocity of its kind).
-fn errors<const D: usize>(name: &str, integrator: Integrator, tolerance: f64) -> (BTreeMap<u64, f64>, f64, Numerics) {
+fn errors<const D: usize>(name: &str, integrator: Integrator, tolerance: f64) -> (BTreeMap<u64, f64>, f64, StepCounts) {
     let p = parameters(name);
     let case = &reference().cases[name];
-    let model = Model::<D>::new(&p).unwrap();
+    let model = DynamicModel::<D>::new(&p).unwrap();
     let start = model.state_from(case.initial_state.as_slice().try_into().unwrap());
     let mut motion = Motion::new(&model, start, integrator, tolerance, u64::MAX);
     let mut square = MeanSquare::default();
@@ -172,7 +172,7 @@ fn errors<const D: usize>(name: &str, integrator: Integrator, tolerance: f64) ->
         }
     }
     let rms = (square.integral / square.length).sqrt();
-    (out, (rms / case.rms_first_20 - 1.0).abs(), motion.numerics)
+    (out, (rms / case.rms_first_20 - 1.0).abs(), motion.counts)
 }
 
 fn kind(c: usize) -> usize {

@@ -10,8 +10,8 @@ fn limits<'a>(watch: &'a Watch<'static>) -> IntegrationLimits<'a> {
     IntegrationLimits { tolerance: 1e-13, max_steps: u64::MAX, watch }
 }
 
-fn advance<const D: usize>(model: &Model<D>, mut state: State<D>, periods: u64) -> State<D> {
-    for j in 0..Model::<D>::HALVES {
+fn advance<const D: usize>(model: &DynamicModel<D>, mut state: MotionState<D>, periods: u64) -> MotionState<D> {
+    for j in 0..DynamicModel::<D>::HALVES {
         state.contact[j] = model.contact_of(j, model.s(j, &state.x), state.phase);
     }
     let mut motion = Motion::new(model, state, Integrator::Taylor, 1e-14, u64::MAX);
@@ -23,9 +23,9 @@ fn advance<const D: usize>(model: &Model<D>, mut state: State<D>, periods: u64) 
 
 fn check_map<const D: usize>(p: &Parameters, name: &str) {
     let watch = Watch::none();
-    let model = Model::<D>::new(p).unwrap();
+    let model = DynamicModel::<D>::new(p).unwrap();
     let start = model.state_from(reference().cases[name].initial_state.as_slice().try_into().unwrap());
-    let start = State { period: 0, ..advance(&model, start, 40) };
+    let start = MotionState { period: 0, ..advance(&model, start, 40) };
     let shooting = Shooting::new(&model, [9e8; 2], limits(&watch)).unwrap();
     let map = shooting.period_map(&model, start, 2).unwrap();
     let active: Vec<usize> = model.active().collect();
@@ -73,7 +73,7 @@ fn the_map_is_the_derivative_of_the_motion() {
 #[test]
 fn the_slowest_multiplier_of_case_a() {
     let watch = Watch::none();
-    let model = Model::<12>::new(&parameters("A")).unwrap();
+    let model = DynamicModel::<12>::new(&parameters("A")).unwrap();
     let start = model.state_from(reference().cases["A"].initial_state.as_slice().try_into().unwrap());
     let shooting = Shooting::new(&model, [9e8; 2], limits(&watch)).unwrap();
     let map = shooting.period_map(&model, start, 1).unwrap();
@@ -86,10 +86,10 @@ fn the_slowest_multiplier_of_case_a() {
 /// case, per mesh period, fitted over the mesh periods 10 to 70: of what remains without free motions, and of all of it.
 fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
     let p = parameters(name);
-    let model = Model::<12>::new(&p).unwrap();
+    let model = DynamicModel::<12>::new(&p).unwrap();
     let rigid_body = RigidBodyModes::new(&model).unwrap();
     let start: [f64; 24] = reference().cases[name].initial_state.as_slice().try_into().unwrap();
-    let on_orbit = State { period: 0, ..advance(&model, model.state_from(&start), 400) };
+    let on_orbit = MotionState { period: 0, ..advance(&model, model.state_from(&start), 400) };
     let mut source = model.source_state(&on_orbit);
     for c in 0..12 {
         source[c] += push[c];
@@ -123,9 +123,9 @@ fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
 fn neighbours_of_case_c_approach_as_its_multipliers_say() {
     let watch = Watch::none();
     let p = parameters("C");
-    let model = Model::<6>::new(&p).unwrap();
+    let model = DynamicModel::<6>::new(&p).unwrap();
     let start = model.state_from(reference().cases["C"].initial_state.as_slice().try_into().unwrap());
-    let start = State { period: 0, ..advance(&model, start, 400) };
+    let start = MotionState { period: 0, ..advance(&model, start, 400) };
     let antisymmetric = model.antisymmetric();
     let topic = "Dynamics: perturbations and multipliers";
     let (e, small) = (1e-10, 1e-9);

@@ -1,7 +1,7 @@
 //! The springs of the model one by one, each as a direction in the source's twelve displacements: meshes, supports, shafts between
 //! the halves.
 
-use super::Row;
+use super::SourceVector;
 use crate::dynamics::parameters::{Parameters, Spring};
 
 /// What a spring belongs to. Supports hold a half to the ground, the others hold the halves of a shaft together.
@@ -38,25 +38,25 @@ impl SpringGroup {
     ];
 
     /// Its name in results.
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         Self::ALL.iter().find(|(group, _)| *group == self).map_or("", |(_, word)| word)
     }
 }
 
 /// A spring with its damper: its deflection is `row` times the displacements.
-pub(super) struct Member {
+pub(super) struct SpringElement {
     pub group: SpringGroup,
-    pub row: Row,
+    pub row: SourceVector,
     pub spring: Spring,
 }
 
 /// Every spring there is, the meshes at their mean stiffness and closed; those of no stiffness and damping left out.
-pub(super) fn members(p: &Parameters) -> Vec<Member> {
+pub(super) fn spring_elements(p: &Parameters) -> Vec<SpringElement> {
     use SpringGroup::*;
     let mut out = Vec::with_capacity(16);
     let mut add = |group, row, spring: Spring| {
         if spring != Spring::default() {
-            out.push(Member { group, row, spring });
+            out.push(SpringElement { group, row, spring });
         }
     };
     for (j, h) in p.halves.iter().enumerate() {
@@ -92,7 +92,7 @@ pub(super) fn members(p: &Parameters) -> Vec<Member> {
 }
 
 /// s_j as a row over the twelve displacements.
-pub(super) fn mesh_direction(p: &Parameters, j: usize) -> Row {
+pub(super) fn mesh_direction(p: &Parameters, j: usize) -> SourceVector {
     let (sin, cos) = p.helix_angle_rad.sin_cos();
     let sin = if j == 0 { sin } else { -sin };
     let mut row = [0.0; 12];
