@@ -39,7 +39,7 @@ struct FlankSurface {
 }
 
 /// The highest number of levels, no contact apart: a level is kept in a [`Contact`].
-const MOST_LEVELS: usize = 100;
+const MAX_LEVELS: usize = 100;
 
 impl ContactForce {
     /// From the nodes of both flanks (driving, back) at `knots`, ascending phases in [0, 1).
@@ -55,7 +55,7 @@ impl ContactForce {
         }
         for flank in [driving, back] {
             let levels = flank.level_m.len();
-            if !(2..=MOST_LEVELS).contains(&levels) || flank.level_m[0] != 0.0 || !ascend(&flank.level_m) {
+            if !(2..=MAX_LEVELS).contains(&levels) || flank.level_m[0] != 0.0 || !ascend(&flank.level_m) {
                 return Err(wrong(levels as f64, "its levels must ascend from 0, 2 to 100"));
             }
             let sizes = flank.free_m.len() == knots.len()
@@ -86,15 +86,15 @@ impl ContactForce {
         if contact < 0 { &self.back } else { &self.driving }
     }
 
-    /// The interval that holds `inside`, and the place of `phase` in it.
-    fn interval(&self, phase: f64, inside: f64) -> (usize, f64, f64) {
+    /// The interval that holds `interior`, and the place of `phase` in it.
+    fn interval(&self, phase: f64, interior: f64) -> (usize, f64, f64) {
         let n = self.knots.len();
         let first = self.knots[0];
-        let inside_turned = first + (inside - first).rem_euclid(1.0);
-        let i = self.knots.partition_point(|&k| k <= inside_turned).max(1) - 1;
+        let wrapped = first + (interior - first).rem_euclid(1.0);
+        let i = self.knots.partition_point(|&k| k <= wrapped).max(1) - 1;
         let width = if i + 1 < n { self.knots[i + 1] - self.knots[i] } else { first + 1.0 - self.knots[i] };
-        // Phase and the phase inside may stand on either side of the turn of the period.
-        let at = inside_turned + (phase - inside) - self.knots[i];
+        // Phase and the phase interior may stand on either side of the turn of the period.
+        let at = wrapped + (phase - interior) - self.knots[i];
         (i, at / width, width)
     }
 
@@ -105,13 +105,13 @@ impl ContactForce {
     }
 
     /// A displacement below all of it over the mesh period, by no more than a hundredth of its range, m.
-    pub fn least_free_m(&self, side: ContactSide) -> f64 {
-        const PLACES: u32 = 16;
+    pub fn min_free_m(&self, side: ContactSide) -> f64 {
+        const POINTS: u32 = 16;
         const MARGIN: f64 = 0.01;
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for c in &self.flank(side).free {
-            for i in 0..PLACES {
-                let free = cubic(c, f64::from(i) / f64::from(PLACES));
+            for i in 0..POINTS {
+                let free = cubic(c, f64::from(i) / f64::from(POINTS));
                 (least, most) = (least.min(free), most.max(free));
             }
         }
@@ -126,11 +126,11 @@ impl ContactForce {
     }
 
     /// Force and stiffness on a flank at the displacement `e` beyond its free one.
-    fn at(&self, side: ContactSide, e: f64, phase: f64, inside: f64) -> (f64, f64) {
+    fn at(&self, side: ContactSide, e: f64, phase: f64, interior: f64) -> (f64, f64) {
         if e <= 0.0 {
             return (0.0, 0.0);
         }
-        let (i, u, _) = self.interval(phase, inside);
+        let (i, u, _) = self.interval(phase, interior);
         let flank = self.flank(side);
         let level = flank.level(e);
         let above = e - flank.level_m[level];
@@ -139,14 +139,14 @@ impl ContactForce {
     }
 
     /// Force (signed as s) and stiffness at the displacement `s` with half the backlash `b`.
-    pub fn force(&self, s: f64, b: f64, phase: f64, inside: f64) -> (f64, f64) {
-        let (i, u, _) = self.interval(phase, inside);
+    pub fn force(&self, s: f64, b: f64, phase: f64, interior: f64) -> (f64, f64) {
+        let (i, u, _) = self.interval(phase, interior);
         let e = s - b - cubic(&self.driving.free[i], u);
         if e > 0.0 {
-            return self.at(1, e, phase, inside);
+            return self.at(1, e, phase, interior);
         }
         let e = -s - b - cubic(&self.back.free[i], u);
-        let (force, stiffness) = self.at(-1, e, phase, inside);
+        let (force, stiffness) = self.at(-1, e, phase, interior);
         (-force, stiffness)
     }
 
@@ -198,30 +198,30 @@ impl ContactForce {
 
     /// What the Taylor method needs of the cell a motion is in: polynomials in scaled time about `phase`.
     #[inline(always)]
-    pub(super) fn cell(&self, contact: ContactSide, b: f64, phase: f64, inside: f64, period_tau: f64) -> ForceCell {
-        let (i, u, width) = self.interval(phase, inside);
+    pub(super) fn cell(&self, contact: ContactSide, b: f64, phase: f64, interior: f64, period_tau: f64) -> ForceCell {
+        let (i, u, width) = self.interval(phase, interior);
         let rate = 1.0 / (width * period_tau);
         let shifted = |c: &[f64; 4]| shifted(c, u, rate);
         if contact == 0 {
-            let (mut near, mut far) = (shifted(&self.driving.free[i]), shifted(&self.back.free[i]));
-            near[0] += b;
-            far[0] += b;
-            return ForceCell { side: -1.0, near, far, law: [[0.0; 4]; 4] };
+            let (mut lower, mut upper) = (shifted(&self.driving.free[i]), shifted(&self.back.free[i]));
+            lower[0] += b;
+            upper[0] += b;
+            return ForceCell { side: -1.0, lower, upper, coefficients: [[0.0; 4]; 4] };
         }
         let flank = self.flank(contact);
         let level = (usize::from(contact.unsigned_abs()) - 1).min(flank.level_m.len() - 1);
-        let mut far = shifted(&flank.free[i]);
-        let mut near = far.map(|c| -c);
-        near[0] -= b + flank.level_m[level];
-        far[0] += b + flank.level_m.get(level + 1).copied().unwrap_or(BEYOND_M);
+        let mut upper = shifted(&flank.free[i]);
+        let mut lower = upper.map(|c| -c);
+        lower[0] -= b + flank.level_m[level];
+        upper[0] += b + flank.level_m.get(level + 1).copied().unwrap_or(UNREACHABLE_M);
         let side = if contact < 0 { -1.0 } else { 1.0 };
-        ForceCell { side, near, far, law: flank.cells[level][i].map(|row| shifted(&row)) }
+        ForceCell { side, lower, upper, coefficients: flank.cells[level][i].map(|row| shifted(&row)) }
     }
 
     /// The contact beyond the end of a cell through its near end (false) or its far one.
     #[inline(always)]
-    pub(super) fn next(contact: ContactSide, far: bool) -> ContactSide {
-        match (contact, far) {
+    pub(super) fn adjacent(contact: ContactSide, upper: bool) -> ContactSide {
+        match (contact, upper) {
             (0, false) => 1,
             (0, true) => -1,
             (c, false) => c - c.signum(),
@@ -231,16 +231,16 @@ impl ContactForce {
 }
 
 /// A level that no motion reaches, m.
-const BEYOND_M: f64 = 1e300;
+const UNREACHABLE_M: f64 = 1e300;
 
-/// The cell of one half that a motion is in, polynomials in scaled time: the force is side Σ_a law[a](τ) e^a with e = side s + near(τ); the cell is left
+/// The cell of one half that a motion is in, polynomials in scaled time: the force is side Σ_a coefficients[a](τ) e^a with e = side s + near(τ); the cell is left
 /// where side s + near(τ) or −side s + far(τ) falls below zero.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ForceCell {
     pub side: f64,
-    pub near: [f64; 4],
-    pub far: [f64; 4],
-    pub law: [[f64; 4]; 4],
+    pub lower: [f64; 4],
+    pub upper: [f64; 4],
+    pub coefficients: [[f64; 4]; 4],
 }
 
 /// The cells of both halves in all lanes.
@@ -249,25 +249,25 @@ pub(crate) struct ForceCells<R> {
     /// The mesh force of a half comes from its cell.
     pub in_use: bool,
     pub side: R,
-    pub near: [R; 4],
-    pub far: [R; 4],
-    pub law: [[R; 4]; 4],
+    pub lower: [R; 4],
+    pub upper: [R; 4],
+    pub coefficients: [[R; 4]; 4],
 }
 
 impl<R: Real> ForceCells<R> {
     pub fn none() -> Self {
         let zero = R::splat(0.0);
-        Self { in_use: false, side: zero, near: [zero; 4], far: [zero; 4], law: [[zero; 4]; 4] }
+        Self { in_use: false, side: zero, lower: [zero; 4], upper: [zero; 4], coefficients: [[zero; 4]; 4] }
     }
 
     #[inline(always)]
     pub fn set(&mut self, lane: usize, cell: &Cell) {
         self.side.set(lane, cell.side);
         for k in 0..4 {
-            self.near[k].set(lane, cell.near[k]);
-            self.far[k].set(lane, cell.far[k]);
+            self.lower[k].set(lane, cell.lower[k]);
+            self.upper[k].set(lane, cell.upper[k]);
             for a in 0..4 {
-                self.law[a][k].set(lane, cell.law[a][k]);
+                self.coefficients[a][k].set(lane, cell.coefficients[a][k]);
             }
         }
     }

@@ -297,10 +297,10 @@ impl StiffnessWaveform {
         }
     }
 
-    /// Index of the cubic that holds around `inside`, and the position of `phase` in it.
-    fn piece(&self, count: usize, phase: f64, inside: f64) -> (usize, f64) {
+    /// Index of the cubic that holds around `interior`, and the position of `phase` in it.
+    fn piece(&self, count: usize, phase: f64, interior: f64) -> (usize, f64) {
         let n = count as f64;
-        let index = (((inside - self.shift).rem_euclid(1.0) * n) as usize).min(count - 1);
+        let index = (((interior - self.shift).rem_euclid(1.0) * n) as usize).min(count - 1);
         let mut u = (phase - self.shift).rem_euclid(1.0) * n - index as f64;
         // The start of a piece may be its neighbour's end, one period away.
         if u > 0.5 * n + 0.5 {
@@ -311,12 +311,12 @@ impl StiffnessWaveform {
         (index, u)
     }
 
-    /// Value at `phase`; `inside` is a phase in the interior of the smooth stretch that is meant.
-    pub fn value(&self, phase: f64, inside: f64) -> f64 {
+    /// Value at `phase`; `interior` is a phase in the interior of the smooth stretch that is meant.
+    pub fn value(&self, phase: f64, interior: f64) -> f64 {
         match &self.kind {
             StiffnessKind::Fourier(series) => series.value(phase),
             StiffnessKind::Pieces(pieces) => {
-                let (i, u) = self.piece(pieces.len(), phase, inside);
+                let (i, u) = self.piece(pieces.len(), phase, interior);
                 let c = &pieces[i];
                 c[0] + u * (c[1] + u * (c[2] + u * c[3]))
             }
@@ -333,9 +333,9 @@ impl StiffnessWaveform {
 
     /// Taylor coefficients about `phase`, those above the third zero; None where the course is a series.
     #[inline(always)]
-    pub fn cubic(&self, phase: f64, inside: f64) -> Option<[f64; 4]> {
+    pub fn cubic(&self, phase: f64, interior: f64) -> Option<[f64; 4]> {
         let StiffnessKind::Pieces(pieces) = &self.kind else { return None };
-        let (i, u) = self.piece(pieces.len(), phase, inside);
+        let (i, u) = self.piece(pieces.len(), phase, interior);
         let c = &pieces[i];
         let scale = pieces.len() as f64 / self.period_tau;
         Some([
@@ -390,12 +390,12 @@ impl ImpactWaveform {
         }
     }
 
-    /// Sine and cosine parts of the pulses under way at `phase` (those that are under way at `inside`).
-    fn sine(phase: f64, inside: f64, duration: f64, start: f64) -> (f64, f64) {
-        let mut offset = inside - start;
+    /// Sine and cosine parts of the pulses under way at `phase` (those that are under way at `interior`).
+    fn sine(phase: f64, interior: f64, duration: f64, start: f64) -> (f64, f64) {
+        let mut offset = interior - start;
         offset -= offset.floor();
-        // offset is the age of the youngest pulse at `inside`; older ones are whole periods older.
-        let age = offset + (phase - inside);
+        // offset is the age of the youngest pulse at `interior`; older ones are whole periods older.
+        let age = offset + (phase - interior);
         let (mut sin, mut cos, mut older) = (0.0, 0.0, 0.0);
         while offset + older < duration {
             let (s, c) = (PI * (age + older) / duration).sin_cos();
@@ -406,21 +406,21 @@ impl ImpactWaveform {
         (sin, cos)
     }
 
-    pub fn value(&self, phase: f64, inside: f64) -> f64 {
+    pub fn value(&self, phase: f64, interior: f64) -> f64 {
         match self {
             ImpactWaveform::None => 0.0,
             ImpactWaveform::HalfSine { force_n, duration, start, .. } => {
-                force_n * Self::sine(phase, inside, *duration, *start).0
+                force_n * Self::sine(phase, interior, *duration, *start).0
             }
             ImpactWaveform::Harmonics(series) => series.value(phase),
         }
     }
 
-    /// F sin and F cos of the pulses under way at `phase` (those that are under way at `inside`); None where the force is no pulse.
+    /// F sin and F cos of the pulses under way at `phase` (those that are under way at `interior`); None where the force is no pulse.
     #[inline(always)]
-    pub fn pulse(&self, phase: f64, inside: f64) -> Option<(f64, f64)> {
+    pub fn pulse(&self, phase: f64, interior: f64) -> Option<(f64, f64)> {
         let ImpactWaveform::HalfSine { force_n, duration, start, .. } = self else { return None };
-        let (sin, cos) = Self::sine(phase, inside, *duration, *start);
+        let (sin, cos) = Self::sine(phase, interior, *duration, *start);
         Some((force_n * sin, force_n * cos))
     }
 

@@ -63,35 +63,35 @@ impl<R: Real> ExcitationTerms<R> {
     }
 }
 
-/// Gives the excitations' Taylor coefficients in scaled time, orders 0 to `order`, about `phase`; `inside` is a phase in the
+/// Gives the excitations' Taylor coefficients in scaled time, orders 0 to `order`, about `phase`; `interior` is a phase in the
 /// interior of the smooth stretch that is meant, `contact` the sides and levels the halves are on.
 pub(crate) trait ExcitationExpansion<R> {
-    fn expand(&self, phase: R, inside: R, contact: [R; 2], order: usize, terms: &mut ExcitationTerms<R>);
+    fn expand(&self, phase: R, interior: R, contact: [R; 2], order: usize, terms: &mut ExcitationTerms<R>);
 }
 
 impl ContactForceWaveform {
     /// Puts the cell that a half is in into a lane.
     #[inline(always)]
-    fn put<R: Real>(&self, phase: f64, inside: f64, contact: ContactSide, lane: usize, cells: &mut ForceCells<R>) {
+    fn put<R: Real>(&self, phase: f64, interior: f64, contact: ContactSide, lane: usize, cells: &mut ForceCells<R>) {
         let Self { force, shift, b, period_tau } = self;
-        cells.set(lane, &force.cell(contact, *b, phase - shift, inside - shift, *period_tau));
+        cells.set(lane, &force.cell(contact, *b, phase - shift, interior - shift, *period_tau));
     }
 }
 
 impl<const D: usize> ExcitationExpansion<f64> for DynamicModel<D> {
     #[inline(always)]
-    fn expand(&self, phase: f64, inside: f64, contact: [f64; 2], order: usize, terms: &mut ExcitationTerms<f64>) {
+    fn expand(&self, phase: f64, interior: f64, contact: [f64; 2], order: usize, terms: &mut ExcitationTerms<f64>) {
         for (j, e) in self.excitations.iter().enumerate() {
             terms.cells[j].in_use = e.contact.is_some();
             if let Some(waveform) = &e.contact {
-                waveform.put(phase, inside, contact[j] as ContactSide, 0, &mut terms.cells[j]);
+                waveform.put(phase, interior, contact[j] as ContactSide, 0, &mut terms.cells[j]);
             } else {
                 let stiffness = &mut terms.stiffness[j];
                 if let Some(series) = e.stiffness.series() {
                     series.fill(phase, order, stiffness);
                     terms.degree[j] = if series.is_constant() { 0 } else { order };
                 }
-                if let Some(cubic) = e.stiffness.cubic(phase, inside) {
+                if let Some(cubic) = e.stiffness.cubic(phase, interior) {
                     stiffness[..4].copy_from_slice(&cubic);
                     stiffness[4..=order].fill(0.0);
                     terms.degree[j] = 3;
@@ -99,7 +99,7 @@ impl<const D: usize> ExcitationExpansion<f64> for DynamicModel<D> {
                 terms.reverse_stiffness(j, order);
             }
             terms.impact_active[j] = false;
-            if let Some((sin, cos)) = e.impact.pulse(phase, inside)
+            if let Some((sin, cos)) = e.impact.pulse(phase, interior)
                 && let Some(powers) = e.impact.powers()
                 && (sin != 0.0 || cos != 0.0)
             {
@@ -122,12 +122,12 @@ impl<const D: usize> DynamicModel<D> {
         &self,
         segment: &Segment<'_, D>,
         at: f64,
-        inside: f64,
+        interior: f64,
         order: usize,
         terms: &mut ExcitationTerms<f64>,
     ) {
         let phase = segment.phase + at / self.period_tau;
-        self.expand(phase, inside, segment.contact.map(f64::from), order, terms);
+        self.expand(phase, interior, segment.contact.map(f64::from), order, terms);
         for j in 0..self.excitations.len() {
             if !terms.cells[j].in_use {
                 continue;
@@ -226,7 +226,7 @@ impl<const L: usize> ExcitationExpansion<Lanes<L>> for LaneExcitations<'_, L> {
     fn expand(
         &self,
         phase: Lanes<L>,
-        inside: Lanes<L>,
+        interior: Lanes<L>,
         contact: [Lanes<L>; 2],
         order: usize,
         terms: &mut ExcitationTerms<Lanes<L>>,
@@ -237,8 +237,8 @@ impl<const L: usize> ExcitationExpansion<Lanes<L>> for LaneExcitations<'_, L> {
             if terms.cells[j].in_use {
                 for lane in 0..L {
                     if let Some(waveform) = e.contacts[lane] {
-                        let (phase, inside) = (phase.get(lane), inside.get(lane));
-                        waveform.put(phase, inside, contact[j].get(lane) as ContactSide, lane, &mut terms.cells[j]);
+                        let (phase, interior) = (phase.get(lane), interior.get(lane));
+                        waveform.put(phase, interior, contact[j].get(lane) as ContactSide, lane, &mut terms.cells[j]);
                     }
                 }
             } else {
@@ -246,7 +246,7 @@ impl<const L: usize> ExcitationExpansion<Lanes<L>> for LaneExcitations<'_, L> {
                 e.stiffness.fill(phase, order, stiffness);
                 terms.degree[j] = if e.stiffness.is_constant() { 3 } else { order };
                 for lane in 0..L {
-                    if let Some(cubic) = e.cubics[lane].and_then(|c| c.cubic(phase.get(lane), inside.get(lane))) {
+                    if let Some(cubic) = e.cubics[lane].and_then(|c| c.cubic(phase.get(lane), interior.get(lane))) {
                         for (n, c) in cubic.into_iter().enumerate() {
                             stiffness[n].set(lane, c);
                         }
@@ -256,7 +256,7 @@ impl<const L: usize> ExcitationExpansion<Lanes<L>> for LaneExcitations<'_, L> {
             }
             let (mut sin, mut cos) = (zero, zero);
             for lane in 0..L {
-                let pulse = e.pulses[lane].and_then(|p| p.pulse(phase.get(lane), inside.get(lane)));
+                let pulse = e.pulses[lane].and_then(|p| p.pulse(phase.get(lane), interior.get(lane)));
                 let (s, c) = pulse.unwrap_or((0.0, 0.0));
                 sin.set(lane, s);
                 cos.set(lane, c);

@@ -100,15 +100,15 @@ impl<'a, const D: usize> Motion<'a, D> {
     ) -> Result<(), DynamicsError> {
         let mut from = 0.0;
         for &end in &self.model.breakpoints {
-            let inside = 0.5 * (from + end);
+            let interior = 0.5 * (from + end);
             while self.state.phase < end {
                 let contact = self.state.contact;
                 match &mut self.stepper {
                     Stepper::Taylor(t) => {
-                        t.step(self.model, &mut self.state, end, inside, &mut self.counts, observer)?
+                        t.step(self.model, &mut self.state, end, interior, &mut self.counts, observer)?
                     }
                     Stepper::RungeKutta(r) => {
-                        r.step(self.model, &mut self.state, end, inside, &mut self.counts, observer)?
+                        r.step(self.model, &mut self.state, end, interior, &mut self.counts, observer)?
                     }
                 }
                 self.contact_changed |= contact != self.state.contact;

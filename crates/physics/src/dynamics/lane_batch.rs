@@ -186,7 +186,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
             interval: SmoothInterval {
                 phase: zero,
                 end: zero,
-                inside: zero,
+                interior: zero,
                 period_tau: Lanes::splat(1.0),
                 tolerance: Lanes::splat(1.0),
                 fixed: Lanes::splat(f64::INFINITY),
@@ -239,7 +239,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
     fn set_smooth_interval(&mut self, lane: usize, model: &DynamicModel<D>, from: f64, breakpoint: usize) {
         let end = model.breakpoints[breakpoint];
         self.interval.end.set(lane, end);
-        self.interval.inside.set(lane, 0.5 * (from + end));
+        self.interval.interior.set(lane, 0.5 * (from + end));
     }
 
     fn state(&self, lane: usize, period: u64) -> MotionState<D> {
@@ -365,7 +365,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         let rest = MotionState { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [0; 2] };
         self.set_state(lane, &rest);
         self.interval.end.set(lane, 0.0);
-        self.interval.inside.set(lane, 0.0);
+        self.interval.interior.set(lane, 0.0);
         self.interval.switching.set(lane, 0.0);
         let counts = StepCounts { steps: slot.steps, rejected_steps: 0, force_evaluations: slot.evaluations };
         observer.finished(counts, error);

@@ -133,20 +133,20 @@ fn canonical(vectors: &[SourceVector], wanted: &[SourceVector]) -> Vec<SourceVec
             if basis.len() == vectors.len() {
                 return basis;
             }
-            let mut inside = [0.0; 12];
+            let mut interior = [0.0; 12];
             for v in vectors {
                 let amount = dot(v, direction);
-                (0..12).for_each(|c| inside[c] += amount * v[c]);
+                (0..12).for_each(|c| interior[c] += amount * v[c]);
             }
             for _ in 0..2 {
                 for b in &basis {
-                    let amount = dot(b, &inside);
-                    (0..12).for_each(|c| inside[c] -= amount * b[c]);
+                    let amount = dot(b, &interior);
+                    (0..12).for_each(|c| interior[c] -= amount * b[c]);
                 }
             }
-            let square = dot(&inside, &inside);
+            let square = dot(&interior, &interior);
             if square > least * dot(direction, direction) {
-                basis.push(inside.map(|value| value / square.sqrt()));
+                basis.push(interior.map(|value| value / square.sqrt()));
             }
         }
     }

@@ -160,7 +160,7 @@ impl<const D: usize> DynamicModel<D> {
     /// The largest s of a half at which its driving flanks carry nothing at any phase, m.
     pub fn first_contact_displacement_m(&self, j: usize) -> f64 {
         let contact = self.excitations[j].contact.as_ref();
-        self.b + contact.map_or(0.0, |c| c.force.least_free_m(1))
+        self.b + contact.map_or(0.0, |c| c.force.min_free_m(1))
     }
 
     /// Scaled rate at which the distance from mid-gap to where contact of a side (1 driving, −1 back) begins grows: 0 but for contact forces.
@@ -171,24 +171,24 @@ impl<const D: usize> DynamicModel<D> {
 
     /// Normal mesh force, N.
     #[inline(always)]
-    pub fn mesh_force(&self, j: usize, (phase, inside): (f64, f64), s: f64, s_v: f64) -> f64 {
+    pub fn mesh_force(&self, j: usize, (phase, interior): (f64, f64), s: f64, s_v: f64) -> f64 {
         let e = &self.excitations[j];
         let damper = |closed: bool| if closed { self.halves[j].cm } else { self.halves[j].cm_in_gap } * s_v;
         if let Some(contact) = &e.contact {
-            let (force, _) = contact.force.force(s, self.b, phase - contact.shift, inside - contact.shift);
+            let (force, _) = contact.force.force(s, self.b, phase - contact.shift, interior - contact.shift);
             return damper(self.contact_of(j, s, phase) != 0) + force;
         }
         let contact = self.contact_of(j, s, phase);
-        let spring = e.stiffness.value(phase, inside) * (s - f64::from(contact) * self.b);
+        let spring = e.stiffness.value(phase, interior) * (s - f64::from(contact) * self.b);
         damper(contact != 0) + if contact != 0 { spring } else { 0.0 }
     }
 
     /// Scaled accelerations at a phase: the right-hand side for Runge–Kutta methods.
-    pub fn acceleration(&self, phase: f64, inside: f64, x: &[f64; D], v: &[f64; D]) -> [f64; D] {
+    pub fn acceleration(&self, phase: f64, interior: f64, x: &[f64; D], v: &[f64; D]) -> [f64; D] {
         let mut a = [0.0; D];
         for j in 0..Self::HALVES {
-            let force = self.mesh_force(j, (phase, inside), self.s(j, x), self.s(j, v));
-            let impact = self.excitations[j].impact.value(phase, inside);
+            let force = self.mesh_force(j, (phase, interior), self.s(j, x), self.s(j, v));
+            let impact = self.excitations[j].impact.value(phase, interior);
             let along = self.halves[j].load - self.impact_along * impact;
             let normal = force + self.impact_normal * impact;
             a[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, x, v, normal, along));
@@ -230,11 +230,11 @@ impl<const D: usize> DynamicModel<D> {
 
     /// The part of the normal force that moves the gear along y and z which is the impact, as a cubic through four phases of a step: powers of
     /// the step's fraction.
-    pub fn impact_in_normal(&self, j: usize, phase: f64, step: f64, inside: f64) -> [f64; 4] {
+    pub fn impact_in_normal(&self, j: usize, phase: f64, step: f64, interior: f64) -> [f64; 4] {
         if self.impact_normal == 0.0 {
             return [0.0; 4];
         }
-        let at = |part: f64| self.impact_normal * self.excitations[j].impact.value(phase + part * step, inside);
+        let at = |part: f64| self.impact_normal * self.excitations[j].impact.value(phase + part * step, interior);
         let [y0, y1, y2, y3] = [at(0.0), at(1.0 / 3.0), at(2.0 / 3.0), at(1.0)];
         [
             y0,

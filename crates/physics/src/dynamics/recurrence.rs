@@ -32,19 +32,19 @@ impl<R: Real> ContactSeries<R> {
         Self { e: zero, reversed: zero, square: zero, cube: zero }
     }
 
-    /// Adds coefficient `n` of s to the series, and returns coefficient `n` of Σ_a law[a] e^a.
+    /// Adds coefficient `n` of s to the series, and returns coefficient `n` of Σ_a coefficients[a] e^a.
     #[inline(always)]
     fn force(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
         self.push(cells, n, s);
         let mut sum = R::splat(0.0);
         for m in 0..=n.min(3) {
             let k = n - m;
-            sum += cells.law[1][m] * self.e[k] + cells.law[2][m] * self.square[k] + cells.law[3][m] * self.cube[k];
+            sum += cells.coefficients[1][m] * self.e[k] + cells.coefficients[2][m] * self.square[k] + cells.coefficients[3][m] * self.cube[k];
         }
-        if n < 4 { sum + cells.law[0][n] } else { sum }
+        if n < 4 { sum + cells.coefficients[0][n] } else { sum }
     }
 
-    /// The same of the stiffness, Σ_a a law[a] e^(a-1).
+    /// The same of the stiffness, Σ_a a coefficients[a] e^(a-1).
     #[inline(always)]
     pub fn stiffness(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
         self.push(cells, n, s);
@@ -52,16 +52,16 @@ impl<R: Real> ContactSeries<R> {
         let mut sum = R::splat(0.0);
         for m in 0..=n.min(3) {
             let k = n - m;
-            sum += two * cells.law[2][m] * self.e[k] + three * cells.law[3][m] * self.square[k];
+            sum += two * cells.coefficients[2][m] * self.e[k] + three * cells.coefficients[3][m] * self.square[k];
         }
-        if n < 4 { sum + cells.law[1][n] } else { sum }
+        if n < 4 { sum + cells.coefficients[1][n] } else { sum }
     }
 
     #[inline(always)]
     fn push(&mut self, cells: &ForceCells<R>, n: usize, s: R) {
         self.e[n] = cells.side * s;
         if n < 4 {
-            self.e[n] += cells.near[n];
+            self.e[n] += cells.lower[n];
         }
         self.reversed[MAX_ORDER - n] = self.e[n];
         let back = &self.reversed[MAX_ORDER - n..];

@@ -50,14 +50,14 @@ impl<const D: usize> RungeKutta<D> {
         model: &DynamicModel<D>,
         state: &mut MotionState<D>,
         end: f64,
-        inside: f64,
+        interior: f64,
         counts: &mut StepCounts,
         observer: &mut impl Observer<D>,
     ) -> Result<(), DynamicsError> {
         let time_s = (state.period as f64 + state.phase) * model.period_tau / model.omega_ref;
         let remaining = (end - state.phase) * model.period_tau;
         let mut k = [([0.0; D], [0.0; D]); 6];
-        k[0] = (state.v, model.acceleration(state.phase, inside, &state.x, &state.v));
+        k[0] = (state.v, model.acceleration(state.phase, interior, &state.x, &state.v));
         loop {
             let wanted = self.fixed.unwrap_or(self.next);
             let count = (remaining / wanted - 1e-9).ceil().max(1.0);
@@ -75,7 +75,7 @@ impl<const D: usize> RungeKutta<D> {
                         v[c] += h * a * kv[c];
                     }
                 }
-                k[i] = (v, model.acceleration(state.phase + C[i] * phase_step, inside, &x, &v));
+                k[i] = (v, model.acceleration(state.phase + C[i] * phase_step, interior, &x, &v));
             }
             counts.force_evaluations += 5;
             let (mut x, mut v) = (state.x, state.v);
@@ -117,11 +117,11 @@ impl<const D: usize> RungeKutta<D> {
             self.size = 0.999 * size;
             counts.steps += 1;
             let phase = if to_end { end } else { state.phase + phase_step };
-            let a = model.acceleration(phase, inside, &x, &v);
+            let a = model.acceleration(phase, interior, &x, &v);
             counts.force_evaluations += 1;
             self.quintic(model, (&state.x, &state.v, &k[0].1), (&x, &v, &a), h);
             for j in 0..DynamicModel::<D>::HALVES {
-                let impact = model.impact_in_normal(j, state.phase, phase_step, inside);
+                let impact = model.impact_in_normal(j, state.phase, phase_step, interior);
                 for (n, part) in impact.into_iter().enumerate() {
                     self.force[j][n] -= part / h.powi(n as i32);
                 }

@@ -35,9 +35,9 @@ pub(super) fn order_for(tolerance: f64) -> usize {
 #[derive(Clone, Copy)]
 pub(super) struct SmoothInterval<R> {
     pub phase: R,
-    /// Phase at which the smooth stretch ends, and a phase inside it.
+    /// Phase at which the smooth stretch ends, and a phase interior it.
     pub end: R,
-    pub inside: R,
+    pub interior: R,
     /// One mesh period in scaled time.
     pub period_tau: R,
     /// Local error of a step relative to the size of the motion.
@@ -74,8 +74,8 @@ pub(super) fn step<const D: usize, R: Real>(
     size: &mut R,
     work: &mut TaylorWork<D, R>,
 ) -> StepOutcome<R> {
-    let SmoothInterval { phase, end, inside, period_tau, tolerance, fixed, switching } = interval;
-    excitations.expand(phase, inside, contact, order, &mut work.excitation);
+    let SmoothInterval { phase, end, interior, period_tau, tolerance, fixed, switching } = interval;
+    excitations.expand(phase, interior, contact, order, &mut work.excitation);
     let remaining = (end - phase) * period_tau;
     *size = *size * R::splat(0.98);
     let early_end = EarlyTermination { remaining, tolerance, size: *size };
@@ -157,10 +157,10 @@ fn next_cell<R: Real>(s: &[R], cells: &ForceCells<R>, contact: R, h: R, switchin
         }
         first_crossing(g, h, switching)
     };
-    let near = leaves(cells.side, &cells.near, h);
-    let far = leaves(-cells.side, &cells.far, near.zip(h, f64::min));
-    let to = R::from_fn(|l| f64::from(ContactForce::next(contact.get(l) as ContactSide, far.get(l) < f64::INFINITY)));
-    (near.zip(far, f64::min), to)
+    let lower = leaves(cells.side, &cells.lower, h);
+    let upper = leaves(-cells.side, &cells.upper, lower.zip(h, f64::min));
+    let to = R::from_fn(|l| f64::from(ContactForce::adjacent(contact.get(l) as ContactSide, upper.get(l) < f64::INFINITY)));
+    (lower.zip(upper, f64::min), to)
 }
 
 /// The step at which the last two terms are as large as `allowed`.
@@ -278,13 +278,13 @@ impl<const D: usize> Taylor<D> {
         }
     }
 
-    /// Advances by one step, at most to the phase `end`; `inside` is a phase in the smooth stretch.
+    /// Advances by one step, at most to the phase `end`; `interior` is a phase in the smooth stretch.
     pub fn step(
         &mut self,
         model: &DynamicModel<D>,
         state: &mut MotionState<D>,
         end: f64,
-        inside: f64,
+        interior: f64,
         counts: &mut StepCounts,
         observer: &mut impl Observer<D>,
     ) -> Result<(), DynamicsError> {
@@ -293,7 +293,7 @@ impl<const D: usize> Taylor<D> {
         let interval = SmoothInterval {
             phase: state.phase,
             end,
-            inside,
+            interior,
             period_tau: model.period_tau,
             tolerance: self.tolerance,
             fixed: self.fixed,

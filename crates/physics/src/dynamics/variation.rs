@@ -110,11 +110,11 @@ impl<'m, const D: usize> Variation<'m, D> {
         let mut v: [R; D] = std::array::from_fn(|c| R::from_fn(|l| flushed(self.columns[column(l)].1[c])));
         let order = segment.degree.clamp(12, MAX_ORDER);
         let period_tau = self.model.period_tau;
-        let inside = segment.phase + 0.5 * segment.h / period_tau;
+        let interior = segment.phase + 0.5 * segment.h / period_tau;
         let contact = segment.contact.map(|c| R::splat(f64::from(c.signum())));
         let mut at = 0.0;
         loop {
-            self.model.expand_for_perturbations(segment, at, inside, order, terms);
+            self.model.expand_for_perturbations(segment, at, interior, order, terms);
             work.excitation.broadcast(terms, order);
             (work.rows[0], work.rows[1]) = (x, v);
             taylor(equations, contact, order, R::splat(0.0), None, work);

@@ -67,11 +67,11 @@ impl<const D: usize> Observer<D> for EnergyBalance<'_, D> {
             return;
         }
         let per_tau = 1.0 / self.model.period_tau;
-        let inside = segment.phase + 0.5 * segment.h * per_tau;
+        let interior = segment.phase + 0.5 * segment.h * per_tau;
         for &(node, weight) in GAUSS.iter() {
             let t = node * segment.h;
             let (x, v) = segment.at(t);
-            let a = self.model.acceleration(segment.phase + t * per_tau, inside, &x, &v);
+            let a = self.model.acceleration(segment.phase + t * per_tau, interior, &x, &v);
             for c in 0..D {
                 let power = self.masses[c] * a[c] * v[c] * weight * segment.h;
                 self.work += power;
