@@ -24,7 +24,7 @@ pub struct NaturalModes {
 
 /// Squared frequencies below this fraction of the largest are motions that nothing holds, and those closer than this are equal: far
 /// above rounding (1e-15), far below any spring that matters.
-const RIGID: f64 = 1e-12;
+const RIGID_BODY_EIGENVALUE: f64 = 1e-12;
 
 /// Values over the source's twelve displacements.
 type SourceVector = [f64; 12];
@@ -46,18 +46,18 @@ impl NaturalModes {
         let largest = eigen.eigenvalues.amax();
         // What nothing holds is one group of equal frequencies.
         let squares: Vec<f64> =
-            order.iter().map(|&i| eigen.eigenvalues[i]).map(|l| if l > RIGID * largest { l } else { 0.0 }).collect();
+            order.iter().map(|&i| eigen.eigenvalues[i]).map(|l| if l > RIGID_BODY_EIGENVALUE * largest { l } else { 0.0 }).collect();
         let frequencies_hz = squares.iter().map(|l| l.sqrt() / std::f64::consts::TAU).collect();
         let vectors: Vec<SourceVector> = order.iter().map(|&i| std::array::from_fn(|c| eigen.eigenvectors[(c, i)])).collect();
-        let wanted = preferred(p).map(|row| std::array::from_fn(|c| row[c] / root[c]));
+        let directions = preferred_directions(p).map(|row| std::array::from_fn(|c| row[c] / root[c]));
         let mut shapes = Vec::with_capacity(12);
         let mut from = 0;
         while from < 12 {
-            let group = squares[from..].iter().take_while(|l| **l - squares[from] <= RIGID * largest).count();
-            shapes.extend(canonical(&vectors[from..from + group], &wanted));
+            let group = squares[from..].iter().take_while(|l| **l - squares[from] <= RIGID_BODY_EIGENVALUE * largest).count();
+            shapes.extend(canonical_basis(&vectors[from..from + group], &directions));
             from += group;
         }
-        let shapes = shapes.into_iter().map(|v| upright(p, std::array::from_fn(|c| v[c] * root[c]))).collect();
+        let shapes = shapes.into_iter().map(|v| with_positive_largest(p, std::array::from_fn(|c| v[c] * root[c]))).collect();
         Ok(Self { frequencies_hz, shapes })
     }
 
@@ -72,8 +72,8 @@ impl NaturalModes {
         let mut force = torques(p);
         for j in 0..2 {
             let side = if p.halves[j].pinion_torque_nm < 0.0 { -1.0 } else { 1.0 };
-            let seat = p.halves[j].mesh_stiffness.mean_n_per_m() * side * p.half_backlash_m;
-            force += DVector::from_row_slice(&mesh_direction(p, j)) * seat;
+            let preload = p.halves[j].mesh_stiffness.mean_n_per_m() * side * p.half_backlash_m;
+            force += DVector::from_row_slice(&mesh_direction(p, j)) * preload;
         }
         let mut q = [0.0; 12];
         for (shape, f) in self.shapes.iter().zip(&self.frequencies_hz) {
@@ -100,7 +100,7 @@ fn torques(p: &Parameters) -> DVector<f64> {
 
 /// The directions that modes of one frequency are turned to, in this order: free rotation of both halves alike and against each
 /// other, then every displacement alike (as mirror images) and against each other.
-fn preferred(p: &Parameters) -> [SourceVector; 14] {
+fn preferred_directions(p: &Parameters) -> [SourceVector; 14] {
     let rotation = |c: usize| match c {
         2 => 1.0 / p.pinion_radius_m,
         5 => 1.0 / p.gear_radius_m,
@@ -118,18 +118,18 @@ fn mirrored(c: usize) -> f64 {
     if c % 6 == 1 || c % 6 == 4 { -1.0 } else { 1.0 }
 }
 
-/// An orthonormal basis of the space of the orthonormal `vectors` that depends on that space alone: the directions of `wanted` in
+/// An orthonormal basis of the space of the orthonormal `vectors` that depends on that space alone: the directions of `directions` in
 /// turn, as far as they lie in it and are new.
-fn canonical(vectors: &[SourceVector], wanted: &[SourceVector]) -> Vec<SourceVector> {
+fn canonical_basis(vectors: &[SourceVector], directions: &[SourceVector]) -> Vec<SourceVector> {
     // As the directions span everything, one of those left always has a twelfth of its square in what is left of the space.
-    const NEW: f64 = 1e-2;
+    const INDEPENDENT: f64 = 1e-2;
     if vectors.len() == 1 {
         return vectors.to_vec();
     }
     let dot = |a: &SourceVector, b: &Row| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut basis: Vec<SourceVector> = Vec::with_capacity(vectors.len());
-    for least in [NEW, 1e-9] {
-        for direction in wanted {
+    for least in [INDEPENDENT, 1e-9] {
+        for direction in directions {
             if basis.len() == vectors.len() {
                 return basis;
             }
@@ -156,7 +156,7 @@ fn canonical(vectors: &[SourceVector], wanted: &[SourceVector]) -> Vec<SourceVec
 }
 
 /// The shape with its largest displacement (of rotations: the arc at the radius) positive; of equal ones the first counts.
-fn upright(p: &Parameters, shape: SourceVector) -> SourceVector {
+fn with_positive_largest(p: &Parameters, shape: SourceVector) -> SourceVector {
     const EQUAL: f64 = 1.0 - 1e-6;
     let arcs = arcs(p, &shape);
     let largest = arcs.iter().fold(0.0f64, |m, a| m.max(a.abs()));

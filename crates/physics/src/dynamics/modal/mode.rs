@@ -24,11 +24,11 @@ pub struct Mode {
     pub kinetic_energy: [(&'static str, f64); 6],
 }
 
-const KINDS: [&str; 6] =
+const DISPLACEMENT_KINDS: [&str; 6] =
     ["pinion_lateral", "pinion_axial", "pinion_rotation", "gear_lateral", "gear_axial", "gear_rotation"];
 
 /// What the groups of springs are called in the name of a mode: those of one kind count together.
-const NAMED: [(&str, &[SpringGroup]); 7] = [
+const SPRING_KINDS: [(&str, &[SpringGroup]); 7] = [
     ("mesh", &[SpringGroup::MeshLeft, SpringGroup::MeshRight]),
     ("pinion lateral", &[SpringGroup::PinionLateral, SpringGroup::PinionHalvesLateral]),
     ("gear lateral", &[SpringGroup::GearLateral, SpringGroup::GearHalvesLateral]),
@@ -39,16 +39,16 @@ const NAMED: [(&str, &[SpringGroup]); 7] = [
 ];
 
 /// Share of the strain energy from which one kind of spring names a mode alone.
-const RULES: f64 = 0.5;
+const DOMINANT_SHARE: f64 = 0.5;
 /// Share of the kinetic energy below which a free motion is not called after a direction.
-const NOTHING: f64 = 1e-6;
+const NEGLIGIBLE_SHARE: f64 = 1e-6;
 /// φᵀ M φ' (φ' the mirror image) from which a mode counts as symmetric, and below whose negative as antisymmetric.
-const MIRRORED: f64 = 0.99;
+const MIRROR_CORRELATION: f64 = 0.99;
 
 impl Mode {
     /// Share of both meshes in the strain energy: how far the mesh excites it and feels it.
     pub fn mesh_strain_energy(&self) -> f64 {
-        self.strain_energy_of(NAMED[0].1)
+        self.strain_energy_of(SPRING_KINDS[0].1)
     }
 
     fn strain_energy_of(&self, groups: &[SpringGroup]) -> f64 {
@@ -69,7 +69,7 @@ impl NaturalModes {
 
 fn describe(p: &Parameters, frequency_hz: f64, shape: &SourceVector) -> Mode {
     let masses = masses(p);
-    let mut kinetic_energy = KINDS.map(|kind| (kind, 0.0));
+    let mut kinetic_energy = DISPLACEMENT_KINDS.map(|kind| (kind, 0.0));
     for c in 0..12 {
         // φᵀ M φ = 1.
         kinetic_energy[c % 6].1 += masses[c] * shape[c] * shape[c];
@@ -85,10 +85,10 @@ fn describe(p: &Parameters, frequency_hz: f64, shape: &SourceVector) -> Mode {
             None => strain.push((element.group, energy)),
         }
     }
-    let held = frequency_hz > 0.0;
+    let elastic = frequency_hz > 0.0;
     let all: f64 = strain.iter().map(|(_, energy)| energy).sum();
     let strain_energy =
-        if held { strain.into_iter().map(|(group, energy)| (group, energy / all)).collect() } else { Vec::new() };
+        if elastic { strain.into_iter().map(|(group, energy)| (group, energy / all)).collect() } else { Vec::new() };
     let arcs = arcs(p, shape);
     let largest = arcs.iter().fold(0.0f64, |m, a| m.max(a.abs()));
     let mut mode = Mode {
@@ -96,32 +96,32 @@ fn describe(p: &Parameters, frequency_hz: f64, shape: &SourceVector) -> Mode {
         name: String::new(),
         shape: arcs.map(|a| a / largest),
         modal_mass_kg: 1.0 / (largest * largest),
-        damping_ratio: held.then(|| damping / (2.0 * std::f64::consts::TAU * frequency_hz)),
+        damping_ratio: elastic.then(|| damping / (2.0 * std::f64::consts::TAU * frequency_hz)),
         strain_energy,
         kinetic_energy,
     };
-    mode.name = if held { held_name(&mode) } else { free_name(&mode) };
+    mode.name = if elastic { elastic_mode_name(&mode) } else { rigid_body_mode_name(&mode) };
     let image: f64 = (0..12).map(|c| masses[c] * shape[c] * mirrored(c) * shape[(c + 6) % 12]).sum();
-    if image >= MIRRORED {
-        mode.name.push_str(if held { ", meshes in phase" } else { ", halves alike" });
-    } else if image <= -MIRRORED {
-        mode.name.push_str(if held { ", meshes opposed" } else { ", halves opposed" });
+    if image >= MIRROR_CORRELATION {
+        mode.name.push_str(if elastic { ", meshes in phase" } else { ", halves alike" });
+    } else if image <= -MIRROR_CORRELATION {
+        mode.name.push_str(if elastic { ", meshes opposed" } else { ", halves opposed" });
     }
     mode
 }
 
-fn held_name(mode: &Mode) -> String {
-    let mut shares = NAMED.map(|(name, groups)| (name, mode.strain_energy_of(groups)));
+fn elastic_mode_name(mode: &Mode) -> String {
+    let mut shares = SPRING_KINDS.map(|(name, groups)| (name, mode.strain_energy_of(groups)));
     shares.sort_by(|a, b| b.1.total_cmp(&a.1));
     let [(first, share), (second, _), ..] = shares;
-    if share >= RULES { format!("{first} mode") } else { format!("{first} and {second} mode") }
+    if share >= DOMINANT_SHARE { format!("{first} mode") } else { format!("{first} and {second} mode") }
 }
 
-fn free_name(mode: &Mode) -> String {
+fn rigid_body_mode_name(mode: &Mode) -> String {
     let share = |part: &str| -> f64 {
         mode.kinetic_energy.iter().filter(|(kind, _)| kind.ends_with(part)).map(|(_, share)| share).sum()
     };
-    let moves = |part: &str| share(part) > NOTHING;
+    let moves = |part: &str| share(part) > NEGLIGIBLE_SHARE;
     let name = match (moves("rotation"), moves("axial"), moves("lateral")) {
         (true, false, false) => "rotation",
         (true, true, false) => "axial screw",
@@ -228,11 +228,11 @@ mod tests {
         let me = p.equivalent_mass_kg(0);
         let HalfParameters { mesh_stiffness, mesh_damping_n_s_per_m: c, .. } = &p.halves[0];
         let expected = c / (2.0 * (mesh_stiffness.mean_n_per_m() * me).sqrt());
-        let found = modes(&p).into_iter().find(|mode| mode.mesh_strain_energy() > 0.99).unwrap();
+        let mode = modes(&p).into_iter().find(|mode| mode.mesh_strain_energy() > 0.99).unwrap();
         check(
             TOPIC,
             "damping ratio of the mesh mode of a spur pair held fast",
-            found.damping_ratio.unwrap(),
+            mode.damping_ratio.unwrap(),
             expected,
             Relative(1e-6),
         );
