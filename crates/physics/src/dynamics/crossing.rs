@@ -3,14 +3,14 @@
 use super::lanes::Real;
 
 /// First τ in (0, h] at which the polynomial Σ c_n τ^n, not negative at 0, passes below zero; infinite where there is none or
-/// `wanted` is 0.
+/// `active` is 0.
 ///
 /// The search advances by d with g + g' d − ½ A d² = 0, where A bounds −g'' over d: no zero can be passed over, minima
 /// that dip below zero between the ends of the step included, and towards a simple zero it converges as Newton's method
 /// does, from the near side. The bound is that of g'' over all of [0, h] or, where it leads further, what −g'' can come to over d from
 /// where it is, by the bound of the third derivative. A dip shallower than rounding (1e-16 of A h²) is not seen.
 #[inline(always)]
-pub(super) fn first_crossing<R: Real>(c: &[R], h: R, wanted: R) -> R {
+pub(super) fn first_crossing<R: Real>(c: &[R], h: R, active: R) -> R {
     let zero = R::splat(0.0);
     let (mut reach, mut second, mut third) = (zero, zero, zero);
     let mut power = R::splat(1.0);
@@ -24,7 +24,7 @@ pub(super) fn first_crossing<R: Real>(c: &[R], h: R, wanted: R) -> R {
     }
     let mut at = R::splat(f64::INFINITY);
     // Lanes still searching: 1.
-    let mut open = R::from_fn(|l| if wanted.get(l) != 0.0 && c[0].get(l) <= reach.get(l) { 1.0 } else { 0.0 });
+    let mut open = R::from_fn(|l| if active.get(l) != 0.0 && c[0].get(l) <= reach.get(l) { 1.0 } else { 0.0 });
     if !open.any(|o| o != 0.0) {
         return at;
     }

@@ -85,7 +85,7 @@ pub enum ImpactExcitation {
 }
 
 /// The longest half sine, in mesh periods: beyond it the pulses of a dozen tooth pairs would overlap.
-const LONGEST_PULSE_MESH_PERIODS: f64 = 16.0;
+const MAX_PULSE_MESH_PERIODS: f64 = 16.0;
 
 impl ImpactExcitation {
     /// Mean over one mesh period, N.
@@ -113,7 +113,7 @@ impl ImpactExcitation {
                 check(force_n.is_finite(), *force_n, "the force must be finite")?;
                 check(start_mesh_periods.is_finite(), *start_mesh_periods, "the start must be finite")?;
                 check(
-                    *d >= 1e-9 && *d <= LONGEST_PULSE_MESH_PERIODS,
+                    *d >= 1e-9 && *d <= MAX_PULSE_MESH_PERIODS,
                     *d,
                     "the duration must be 1e-9 to 16 mesh periods",
                 )

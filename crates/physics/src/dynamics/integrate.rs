@@ -42,7 +42,7 @@ impl std::ops::AddAssign for StepCounts {
 const STEPS_PER_CHECKPOINT: u64 = 1024;
 
 /// A displacement (or velocity in scaled time) beyond which a motion has diverged, m.
-const LARGEST_M: f64 = 1e3;
+const DIVERGENCE_LIMIT_M: f64 = 1e3;
 
 enum Stepper<const D: usize> {
     Taylor(Taylor<D>),
@@ -140,5 +140,5 @@ impl<'a, const D: usize> Motion<'a, D> {
 pub(super) fn has_diverged<const D: usize>(state: &MotionState<D>) -> bool {
     [&state.x, &state.v]
         .iter()
-        .any(|row| row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > LARGEST_M)))
+        .any(|row| row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > DIVERGENCE_LIMIT_M)))
 }

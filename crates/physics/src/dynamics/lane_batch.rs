@@ -42,7 +42,7 @@ pub(crate) trait TrajectoryObserver<'m, const D: usize> {
 }
 
 /// Steps between two looks at the watch.
-const STEPS_PER_CHECKPOINT: u32 = 2048;
+const BATCH_STEPS_PER_CHECKPOINT: u32 = 2048;
 
 /// Takes all observers to where they are going, [`BATCH_LANES`] at a time; as soon as one has finished the next takes its lane. Each
 /// moves exactly as it would alone at the order of `tolerance`. `max_steps`: budget of each.
@@ -58,8 +58,8 @@ pub(crate) fn integrate_trajectories<'m, const D: usize, P: TrajectoryObserver<'
     // Lanes share one law of the mesh force.
     let (by_contact, by_stiffness): (Vec<usize>, Vec<usize>) =
         (0..observers.len()).partition(|&i| observers[i].model().uses_contact_force());
-    for waiting in [by_stiffness, by_contact] {
-        integrate_lanes(observers, &waiting, order_tolerance, max_steps, watch)?;
+    for queue in [by_stiffness, by_contact] {
+        integrate_lanes(observers, &queue, order_tolerance, max_steps, watch)?;
     }
     Ok(())
 }
@@ -67,19 +67,19 @@ pub(crate) fn integrate_trajectories<'m, const D: usize, P: TrajectoryObserver<'
 /// Takes the observers of these indices, whose mesh forces follow the same law.
 fn integrate_lanes<'m, const D: usize, P: TrajectoryObserver<'m, D>>(
     observers: &mut [P],
-    waiting: &[usize],
+    queue: &[usize],
     order_tolerance: f64,
     max_steps: u64,
     watch: &Watch<'_>,
 ) -> Result<(), Canceled> {
-    let mut waiting = waiting.iter().copied();
+    let mut queue = queue.iter().copied();
     let mut batch = LaneBatch::<D, BATCH_LANES>::new(order_for(order_tolerance), max_steps);
     let mut finished = 0;
     let mut since_checkpoint = 0;
     loop {
         for lane in 0..BATCH_LANES {
             if batch.slots[lane].is_none()
-                && let Some(next) = waiting.next()
+                && let Some(next) = queue.next()
             {
                 batch.load_lane(lane, next, &observers[next]);
             }
@@ -93,7 +93,7 @@ fn integrate_lanes<'m, const D: usize, P: TrajectoryObserver<'m, D>>(
             let stepped = batch.step();
             finished += batch.finish_step(&stepped, observers);
             since_checkpoint += 1;
-            if since_checkpoint == STEPS_PER_CHECKPOINT {
+            if since_checkpoint == BATCH_STEPS_PER_CHECKPOINT {
                 since_checkpoint = 0;
                 watch.checkpoint(finished as f64 / observers.len() as f64)?;
             }

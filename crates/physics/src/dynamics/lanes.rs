@@ -156,8 +156,8 @@ impl<const L: usize> SubAssign for Lanes<L> {
 /// x^(1/k) to about one part in ten thousand, without branches: for step lengths, where powf would cost as much as the
 /// step. x from 1e-300 to 1e300; 0 gives something tiny, infinity something huge, NaN is the caller's business.
 #[inline(always)]
-pub(super) fn rough_root(x: f64, k: f64) -> f64 {
-    rough_exp2(rough_log2(x) / k)
+pub(super) fn approximate_root(x: f64, k: f64) -> f64 {
+    approximate_exp2(approximate_log2(x) / k)
 }
 
 /// 2^52: adding it to a small whole number puts the number into the last bits of the sum.
@@ -165,7 +165,7 @@ const WHOLE: f64 = 4_503_599_627_370_496.0;
 
 /// From the exponent's bits and the series of the area tangent for the mantissa m: ln m = 2 artanh((m − 1)/(m + 1)).
 #[inline(always)]
-fn rough_log2(x: f64) -> f64 {
+fn approximate_log2(x: f64) -> f64 {
     let bits = x.to_bits();
     let exponent = f64::from_bits((bits >> 52) & 0x7ff | WHOLE.to_bits()) - WHOLE - 1023.0;
     let mantissa = f64::from_bits(bits & 0x000f_ffff_ffff_ffff | 1.0f64.to_bits());
@@ -177,7 +177,7 @@ fn rough_log2(x: f64) -> f64 {
 
 /// From the power series of e^t on |t| ≤ ln 2 / 2, and the whole part put into the exponent's bits.
 #[inline(always)]
-fn rough_exp2(x: f64) -> f64 {
+fn approximate_exp2(x: f64) -> f64 {
     let x = x.clamp(-1000.0, 1000.0);
     // 1.5 · 2^52 rounds to whole numbers of either sign.
     let shifted = x + 1.5 * WHOLE;
@@ -194,11 +194,11 @@ mod tests {
     fn roots_are_good_enough_for_steps() {
         for x in [1e-290, 3e-17, 0.7, 1.0, 1.5, 2.0, 1e9, 7e288] {
             for k in [4.0, 13.0, 24.0] {
-                let ratio = rough_root(x, k) / f64::powf(x, 1.0 / k);
+                let ratio = approximate_root(x, k) / f64::powf(x, 1.0 / k);
                 assert!((ratio - 1.0).abs() < 1e-4, "{x} {k} {ratio}");
             }
         }
-        assert!(rough_root(0.0, 10.0) < 1e-30 && rough_root(f64::INFINITY, 10.0) > 1e30);
+        assert!(approximate_root(0.0, 10.0) < 1e-30 && approximate_root(f64::INFINITY, 10.0) > 1e30);
     }
 
     #[test]

@@ -95,14 +95,14 @@ pub(crate) struct EarlyTermination<R> {
 
 /// The lowest order at which a series is looked at, and the longest stretch (in scaled time, about an angle of the fastest
 /// natural motion) for which it can end below the orders in use.
-const LOWEST_ORDER: usize = 6;
-const LONGEST_SHORT: f64 = 2.0;
+const MIN_ORDER: usize = 6;
+const MAX_EARLY_TERMINATION_SPAN: f64 = 2.0;
 
 /// Taylor coefficients of the motion up to `order` in scaled time, from `rows[0]`, `rows[1]` (x and dx/dτ) and the
 /// excitation in `work`. `loads` 0 gives the variation about a motion with the same contacts, 1 the motion itself. With `early_end`, lanes whose
 /// series are good enough stop early (their higher coefficients are 0). Returns which lanes have (1) and the highest order computed.
 #[inline(always)]
-pub(crate) fn taylor<const D: usize, R: Real>(
+pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
     equations: &Equations<D, R>,
     contact: [R; 2],
     order: usize,
@@ -115,18 +115,18 @@ pub(crate) fn taylor<const D: usize, R: Real>(
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let mut damper = [zero; 2];
     let mut closed = [zero; 2];
-    let mut seat = [zero; 2];
+    let mut backlash_offset = [zero; 2];
     let mut any_closed = [false; 2];
     for j in 0..halves {
         let h = &equations.halves[j];
         closed[j] = contact[j].map(|c| if c != 0.0 { 1.0 } else { 0.0 });
         any_closed[j] = closed[j].any(|c| c != 0.0);
         damper[j] = R::from_fn(|l| if closed[j].get(l) != 0.0 { h.cm.get(l) } else { h.cm_in_gap.get(l) });
-        seat[j] = loads * contact[j] * equations.b;
+        backlash_offset[j] = loads * contact[j] * equations.b;
         s[j][0] = equations.s(j, &rows[0]);
         s[j][1] = equations.s(j, &rows[1]);
     }
-    let short = |r: f64| r <= LONGEST_SHORT;
+    let short = |r: f64| r <= MAX_EARLY_TERMINATION_SPAN;
     let early_end = early_end.filter(|e| e.remaining.any(short));
     let mut alive = one;
     let mut power = early_end.map_or(zero, |e| e.remaining);
@@ -153,7 +153,7 @@ pub(crate) fn taylor<const D: usize, R: Real>(
                     let k = &excitation.reversed[j][MAX_ORDER - n..];
                     f += closed[j] * convolution(k, &s[j][..=n], n - degree);
                     if n <= excitation.degree[j] {
-                        f -= excitation.stiffness[j][n] * seat[j];
+                        f -= excitation.stiffness[j][n] * backlash_offset[j];
                     }
                 }
             }
@@ -180,7 +180,7 @@ pub(crate) fn taylor<const D: usize, R: Real>(
         if let Some(e) = &early_end {
             let before = power;
             power = power * e.remaining;
-            if n + 2 >= LOWEST_ORDER && n % 2 == 0 {
+            if n + 2 >= MIN_ORDER && n % 2 == 0 {
                 let size = e.size.zip(larger(norm(&rows[1]), norm(&rows[2])), f64::max);
                 let allowed = e.tolerance * size;
                 let terms = larger(norm(&rows[n + 1]) * before, norm(&rows[n + 2]) * power);

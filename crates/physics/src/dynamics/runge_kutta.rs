@@ -59,8 +59,8 @@ impl<const D: usize> RungeKutta<D> {
         let mut k = [([0.0; D], [0.0; D]); 6];
         k[0] = (state.v, model.acceleration(state.phase, interior, &state.x, &state.v));
         loop {
-            let wanted = self.fixed.unwrap_or(self.next);
-            let count = (remaining / wanted - 1e-9).ceil().max(1.0);
+            let desired = self.fixed.unwrap_or(self.next);
+            let count = (remaining / desired - 1e-9).ceil().max(1.0);
             let to_end = count <= 1.0;
             let h = if to_end { remaining } else { remaining / count };
             let phase_step = h / model.period_tau;

@@ -1,7 +1,7 @@
 //! Taylor series of high order on the piecewise-linear equations, restarted exactly where they change.
 //!
 //! Between two events (an edge of a pulse, a knot of the stiffness, a change of contact) the equations are linear with analytic
-//! coefficients, so the Taylor coefficients of the motion follow from a recurrence and the step may be as long as the wanted
+//! coefficients, so the Taylor coefficients of the motion follow from a recurrence and the step may be as long as the desired
 //! accuracy allows. Changes of contact are zeros of the polynomial s(τ) ∓ b and are located to rounding. Step length after Jorba
 //! and Zou (Experimental Mathematics 14 (2005) 99), from the last two coefficients.
 
@@ -12,14 +12,14 @@ use super::error::DynamicsError;
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationExpansion;
 use super::integrate::StepCounts;
-use super::lanes::{Real, rough_root};
+use super::lanes::{Real, approximate_root};
 use super::model::{ContactSide, DynamicModel, MotionState};
-use super::recurrence::{EarlyTermination, TaylorWork, larger, norm, taylor};
+use super::recurrence::{EarlyTermination, TaylorWork, larger, norm, taylor_coefficients};
 use super::segment::{Observer, Segment};
 use crate::simd::vectorised;
 
 /// Changes of contact per mesh period beyond which they are no longer located but left to short steps.
-const MOST_CHANGES_PER_PERIOD: u32 = 20_000;
+const MAX_CONTACT_CHANGES_PER_PERIOD: u32 = 20_000;
 
 /// The order that costs least at a tolerance (measured on the reference cases).
 pub(super) fn order_for(tolerance: f64) -> usize {
@@ -80,21 +80,21 @@ pub(super) fn step<const D: usize, R: Real>(
     *size = *size * R::splat(0.98);
     let early_end = EarlyTermination { remaining, tolerance, size: *size };
     let free = !fixed.any(f64::is_finite);
-    let (short, degree) = taylor(equations, contact, order, R::splat(1.0), free.then_some(early_end), work);
+    let (short, degree) = taylor_coefficients(equations, contact, order, R::splat(1.0), free.then_some(early_end), work);
     let moving = larger(norm(&work.rows[1]), norm(&work.rows[2]));
     *size = larger(moving, *size);
     // Below the rounding of the positions no tolerance can be met.
     let allowed = (tolerance * *size).zip(norm(&work.rows[0]), |a, x| a.max(1e-17 * x));
-    let reached = reach(&work.rows, degree, allowed);
-    let wanted = R::from_fn(|l| {
-        let reached = if short.get(l) != 0.0 { f64::INFINITY } else { reached.get(l) };
-        if fixed.get(l).is_finite() { fixed.get(l) } else { reached }
+    let accurate_step = step_of_last_terms(&work.rows, degree, allowed);
+    let desired = R::from_fn(|l| {
+        let accurate_step = if short.get(l) != 0.0 { f64::INFINITY } else { accurate_step.get(l) };
+        if fixed.get(l).is_finite() { fixed.get(l) } else { accurate_step }
     });
-    let mut to_end = R::from_fn(|l| if remaining.get(l) <= wanted.get(l) * (1.0 + 1e-9) { 1.0 } else { 0.0 });
+    let mut to_end = R::from_fn(|l| if remaining.get(l) <= desired.get(l) * (1.0 + 1e-9) { 1.0 } else { 0.0 });
     let mut h = R::from_fn(|l| {
-        let (remaining, wanted) = (remaining.get(l), wanted.get(l));
+        let (remaining, desired) = (remaining.get(l), desired.get(l));
         // Two equal steps rather than a long one and a stub.
-        if to_end.get(l) != 0.0 { remaining } else { remaining / (remaining / wanted - 1e-9).ceil() }
+        if to_end.get(l) != 0.0 { remaining } else { remaining / (remaining / desired - 1e-9).ceil() }
     });
     let mut changed = R::splat(-1.0);
     let mut to = R::splat(0.0);
@@ -165,16 +165,16 @@ fn next_cell<R: Real>(s: &[R], cells: &ForceCells<R>, contact: R, h: R, switchin
 
 /// The step at which the last two terms are as large as `allowed`.
 #[inline(always)]
-fn reach<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, allowed: R) -> R {
-    let before = term_reach(norm(&rows[order - 1]), order - 1, allowed);
-    before.zip(term_reach(norm(&rows[order]), order, allowed), |a, b| if a < b || a.is_nan() { a } else { b })
+fn step_of_last_terms<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, allowed: R) -> R {
+    let before = step_of_term(norm(&rows[order - 1]), order - 1, allowed);
+    before.zip(step_of_term(norm(&rows[order]), order, allowed), |a, b| if a < b || a.is_nan() { a } else { b })
 }
 
 /// The step at which a term of size `last` and power `k` is as large as `allowed`.
 #[inline(always)]
-fn term_reach<R: Real>(last: R, k: usize, allowed: R) -> R {
+fn step_of_term<R: Real>(last: R, k: usize, allowed: R) -> R {
     allowed.zip(last, |allowed, last| {
-        let root = rough_root(allowed / last, k as f64);
+        let root = approximate_root(allowed / last, k as f64);
         let root = if last == 0.0 { f64::INFINITY } else { root };
         if last.is_nan() { f64::NAN } else { root }
     })
@@ -182,9 +182,9 @@ fn term_reach<R: Real>(last: R, k: usize, allowed: R) -> R {
 
 /// The step that keeps the local error at `tolerance` times the size of the polynomials' own motion.
 #[inline(always)]
-pub(super) fn step_reach<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, tolerance: f64) -> R {
+pub(super) fn step_for_tolerance<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, tolerance: f64) -> R {
     let size = larger(norm(&rows[0]), larger(norm(&rows[1]), norm(&rows[2])));
-    reach(rows, order, size * R::splat(tolerance))
+    step_of_last_terms(rows, order, size * R::splat(tolerance))
 }
 
 /// Values and derivatives of all coordinates at τ = t.
@@ -215,7 +215,7 @@ impl ChatterGuard {
             *self = Self { period: state.period, changes: 0 };
         }
         self.changes += 1;
-        if self.changes <= MOST_CHANGES_PER_PERIOD {
+        if self.changes <= MAX_CONTACT_CHANGES_PER_PERIOD {
             return false;
         }
         let step = (end - state.phase).min(1e-4);

@@ -65,7 +65,7 @@ pub fn advance_many(
     watch: &Watch<'_>,
 ) -> Result<Vec<Result<FinalState, DynamicsError>>, Canceled> {
     let input: Vec<_> = points.iter().zip(starts).collect();
-    let groups: Result<Vec<_>, Canceled> = asked
+    let groups: Result<Vec<_>, Canceled> = pairs
         .par_chunks(POINTS_PER_GROUP)
         .map(|group| {
             let mut out = vec![Err(DynamicsError::Canceled(Canceled)); group.len()];
@@ -108,12 +108,12 @@ fn advance_group<const D: usize>(
 ) -> Result<(), Canceled> {
     let models: Vec<_> = indices.iter().map(|&i| DynamicModel::<D>::new(points[i].0)).collect();
     let mut observers = Vec::with_capacity(indices.len());
-    let mut places = Vec::with_capacity(indices.len());
+    let mut positions = Vec::with_capacity(indices.len());
     for (&index, model) in indices.iter().zip(&models) {
         match model {
             Ok(model) => {
                 observers.push(FinalStateObserver::new(model, points[index].1, mesh_periods, tolerance));
-                places.push(index);
+                positions.push(index);
             }
             Err(error) => out[index] = Err(error.clone()),
         }
@@ -121,7 +121,7 @@ fn advance_group<const D: usize>(
     if mesh_periods > 0 {
         integrate_trajectories(&mut observers, tolerance, u64::MAX, watch)?;
     }
-    for (index, observer) in places.into_iter().zip(observers) {
+    for (index, observer) in positions.into_iter().zip(observers) {
         out[index] = observer.outcome;
     }
     Ok(())

@@ -5,9 +5,9 @@ use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
 use super::lanes::{Lanes, Real};
 use super::model::{ContactSide, DynamicModel, MotionState};
-use super::recurrence::{TaylorWork, taylor};
+use super::recurrence::{TaylorWork, taylor_coefficients};
 use super::segment::{Observer, Segment};
-use super::taylor::{evaluate_rows, step_reach};
+use super::taylor::{evaluate_rows, step_for_tolerance};
 use crate::simd::vectorised;
 
 /// Perturbations carried side by side.
@@ -117,9 +117,9 @@ impl<'m, const D: usize> Variation<'m, D> {
             self.model.expand_for_perturbations(segment, at, interior, order, terms);
             work.excitation.broadcast(terms, order);
             (work.rows[0], work.rows[1]) = (x, v);
-            taylor(equations, contact, order, R::splat(0.0), None, work);
+            taylor_coefficients(equations, contact, order, R::splat(0.0), None, work);
             let left = segment.h - at;
-            let reaches: R = step_reach(&work.rows, order, self.tolerance);
+            let reaches: R = step_for_tolerance(&work.rows, order, self.tolerance);
             let reach = (0..R::LANES).fold(f64::INFINITY, |least, lane| least.min(reaches.get(lane)));
             // A NaN reach takes the whole step: the motion itself has diverged and says so.
             let h = if reach < left { left / (left / reach).ceil().min(1e4) } else { left };
