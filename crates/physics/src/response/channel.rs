@@ -46,7 +46,7 @@ pub struct Channel {
 
 /// One of the displacements, or a mesh force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Source {
+enum ChannelKind {
     X,
     S,
     Yp,
@@ -61,25 +61,25 @@ enum Source {
     ToothForce,
 }
 
-impl Source {
+impl ChannelKind {
     fn is_force(self) -> bool {
-        matches!(self, Source::NormalForce | Source::TangentialForce | Source::AxialForce | Source::ToothForce)
+        matches!(self, ChannelKind::NormalForce | ChannelKind::TangentialForce | ChannelKind::AxialForce | ChannelKind::ToothForce)
     }
 }
 
-const SOURCES: [(&str, Source); 12] = [
-    ("x", Source::X),
-    ("s", Source::S),
-    ("y_p", Source::Yp),
-    ("z_p", Source::Zp),
-    ("theta_p", Source::ThetaP),
-    ("y_g", Source::Yg),
-    ("z_g", Source::Zg),
-    ("theta_g", Source::ThetaG),
-    ("f_n", Source::NormalForce),
-    ("f_y", Source::TangentialForce),
-    ("f_z", Source::AxialForce),
-    ("tooth_force", Source::ToothForce),
+const CHANNEL_KINDS: [(&str, ChannelKind); 12] = [
+    ("x", ChannelKind::X),
+    ("s", ChannelKind::S),
+    ("y_p", ChannelKind::Yp),
+    ("z_p", ChannelKind::Zp),
+    ("theta_p", ChannelKind::ThetaP),
+    ("y_g", ChannelKind::Yg),
+    ("z_g", ChannelKind::Zg),
+    ("theta_g", ChannelKind::ThetaG),
+    ("f_n", ChannelKind::NormalForce),
+    ("f_y", ChannelKind::TangentialForce),
+    ("f_z", ChannelKind::AxialForce),
+    ("tooth_force", ChannelKind::ToothForce),
 ];
 
 /// The name of a channel, understood. Names: `x_left` (mesh displacement along the circumference), `s_right` (along the tooth normal), `y_p_left`,
@@ -87,7 +87,7 @@ const SOURCES: [(&str, Source); 12] = [
 /// `tooth_force_…` (the whole normal force on the teeth: mesh force and impact).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ChannelId {
-    source: Source,
+    kind: ChannelKind,
     /// 0 displacement, 1 velocity, 2 acceleration.
     derivative: u8,
     /// 0 left, 1 right.
@@ -97,25 +97,25 @@ pub struct ChannelId {
 impl ChannelId {
     /// x'' of a half: the mesh circumferential acceleration.
     pub(super) fn mesh_acceleration(half: u8) -> Self {
-        Self { source: Source::X, derivative: 2, half }
+        Self { kind: ChannelKind::X, derivative: 2, half }
     }
 
     /// z_p'' of a half: the pinion's axial acceleration.
     pub(super) fn pinion_axial_acceleration(half: u8) -> Self {
-        Self { source: Source::Zp, derivative: 2, half }
+        Self { kind: ChannelKind::Zp, derivative: 2, half }
     }
 
     pub(super) fn s(half: u8) -> Self {
-        Self { source: Source::S, derivative: 0, half }
+        Self { kind: ChannelKind::S, derivative: 0, half }
     }
 
     pub(super) fn normal_force(half: u8) -> Self {
-        Self { source: Source::NormalForce, derivative: 0, half }
+        Self { kind: ChannelKind::NormalForce, derivative: 0, half }
     }
 
     /// The normal force on the teeth of a half, impact included.
     pub(super) fn tooth_force(half: u8) -> Self {
-        Self { source: Source::ToothForce, derivative: 0, half }
+        Self { kind: ChannelKind::ToothForce, derivative: 0, half }
     }
 
     /// Reads a name; None when there is no such channel.
@@ -127,9 +127,9 @@ impl ChannelId {
     pub fn all() -> Vec<Self> {
         let mut out = Vec::new();
         for half in 0..2 {
-            for (_, source) in SOURCES {
-                for derivative in 0..if source.is_force() { 1 } else { 3 } {
-                    out.push(Self { source, derivative, half });
+            for (_, kind) in CHANNEL_KINDS {
+                for derivative in 0..if kind.is_force() { 1 } else { 3 } {
+                    out.push(Self { kind, derivative, half });
                 }
             }
         }
@@ -138,7 +138,7 @@ impl ChannelId {
 
     pub fn name(self) -> String {
         let prefix = ["", "v_", "a_"][usize::from(self.derivative)];
-        let base = SOURCES.iter().find(|(_, s)| *s == self.source).map_or("", |(name, _)| name);
+        let base = CHANNEL_KINDS.iter().find(|(_, s)| *s == self.kind).map_or("", |(name, _)| name);
         let half = ["left", "right"][usize::from(self.half)];
         format!("{prefix}{base}_{half}")
     }
@@ -146,9 +146,9 @@ impl ChannelId {
     pub fn quantity(self) -> Quantity {
         let linear = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
         let angular = [Quantity::Rotation, Quantity::AngularVelocity, Quantity::AngularAcceleration];
-        match self.source {
-            source if source.is_force() => Quantity::Force,
-            Source::ThetaP | Source::ThetaG => angular[usize::from(self.derivative)],
+        match self.kind {
+            kind if kind.is_force() => Quantity::Force,
+            ChannelKind::ThetaP | ChannelKind::ThetaG => angular[usize::from(self.derivative)],
             _ => linear[usize::from(self.derivative)],
         }
     }
@@ -166,33 +166,33 @@ impl ChannelId {
         let i = j * PER_HALF;
         let h = &model.halves[j];
         let sum = h.reduced_p + h.reduced_g;
-        match self.source {
-            Source::X => (row[i + YP], row[i + YG], row[i + U]) = (1.0, -1.0, 1.0),
-            Source::S => {
+        match self.kind {
+            ChannelKind::X => (row[i + YP], row[i + YG], row[i + U]) = (1.0, -1.0, 1.0),
+            ChannelKind::S => {
                 (row[i + YP], row[i + YG], row[i + U]) = (model.cos, -model.cos, model.cos);
                 (row[i + ZP], row[i + ZG]) = (h.sin, -h.sin);
             }
-            Source::Yp => row[i + YP] = 1.0,
-            Source::Zp => row[i + ZP] = mirrored,
-            Source::Yg => row[i + YG] = 1.0,
-            Source::Zg => row[i + ZG] = mirrored,
-            Source::ThetaP => (row[i + U], row[i + W]) = (h.reduced_g / sum / model.radius_p, 1.0 / model.radius_p),
-            Source::ThetaG => (row[i + U], row[i + W]) = (-h.reduced_p / sum / model.radius_g, 1.0 / model.radius_g),
-            Source::NormalForce => return ChannelEvaluator::Force { half: j, factor: 1.0 },
-            Source::TangentialForce => return ChannelEvaluator::Force { half: j, factor: model.cos },
-            Source::AxialForce => return ChannelEvaluator::Force { half: j, factor: mirrored * h.sin },
-            Source::ToothForce => return ChannelEvaluator::ToothForce { half: j },
+            ChannelKind::Yp => row[i + YP] = 1.0,
+            ChannelKind::Zp => row[i + ZP] = mirrored,
+            ChannelKind::Yg => row[i + YG] = 1.0,
+            ChannelKind::Zg => row[i + ZG] = mirrored,
+            ChannelKind::ThetaP => (row[i + U], row[i + W]) = (h.reduced_g / sum / model.radius_p, 1.0 / model.radius_p),
+            ChannelKind::ThetaG => (row[i + U], row[i + W]) = (-h.reduced_p / sum / model.radius_g, 1.0 / model.radius_g),
+            ChannelKind::NormalForce => return ChannelEvaluator::Force { half: j, factor: 1.0 },
+            ChannelKind::TangentialForce => return ChannelEvaluator::Force { half: j, factor: model.cos },
+            ChannelKind::AxialForce => return ChannelEvaluator::Force { half: j, factor: mirrored * h.sin },
+            ChannelKind::ToothForce => return ChannelEvaluator::ToothForce { half: j },
         }
         let factor = model.omega_ref.powi(i32::from(self.derivative));
-        let places: Vec<usize> = (0..D).filter(|&c| row[c] != 0.0).collect();
-        ChannelEvaluator::Linear { row: row.map(|c| c * factor), places, derivative: usize::from(self.derivative) }
+        let positions: Vec<usize> = (0..D).filter(|&c| row[c] != 0.0).collect();
+        ChannelEvaluator::Linear { row: row.map(|c| c * factor), positions, derivative: usize::from(self.derivative) }
     }
 }
 
 /// How a channel is read off a segment.
 #[derive(Debug, Clone)]
 pub(super) enum ChannelEvaluator<const D: usize> {
-    Linear { row: [f64; D], places: Vec<usize>, derivative: usize },
+    Linear { row: [f64; D], positions: Vec<usize>, derivative: usize },
     Force { half: usize, factor: f64 },
     ToothForce { half: usize },
 }
@@ -202,11 +202,11 @@ impl<const D: usize> ChannelEvaluator<D> {
     #[inline(always)]
     pub fn polynomial(&self, segment: &Segment<'_, D>, out: &mut [f64; MAX_ORDER + 1]) -> usize {
         match self {
-            ChannelEvaluator::Linear { row, places, derivative } => {
+            ChannelEvaluator::Linear { row, positions, derivative } => {
                 let degree = segment.degree - derivative;
                 for n in 0..=degree {
                     let from = &segment.rows[n + derivative];
-                    let value: f64 = places.iter().map(|&c| row[c] * from[c]).sum();
+                    let value: f64 = positions.iter().map(|&c| row[c] * from[c]).sum();
                     let factor = match derivative {
                         0 => 1.0,
                         1 => (n + 1) as f64,

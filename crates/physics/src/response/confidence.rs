@@ -51,12 +51,12 @@ pub struct ConfidenceInterval {
 /// their variance.
 const CORRELATIONS_PER_BATCH: f64 = 5.0;
 /// More batches narrow Student's t no further worth mentioning.
-const MOST_BATCHES: usize = 30;
+const MAX_BATCHES: usize = 30;
 /// Fewer batches do not say how much they scatter.
-const FEWEST_BATCHES: usize = 4;
+const MIN_BATCHES: usize = 4;
 
 /// 97.5 % points of Student's t for 3 … 29 degrees of freedom (any table of the distribution).
-const STUDENT_975: [f64; MOST_BATCHES - FEWEST_BATCHES + 1] = [
+const STUDENT_975: [f64; MAX_BATCHES - MIN_BATCHES + 1] = [
     3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101,
     2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045,
 ];
@@ -66,9 +66,9 @@ const STUDENT_975: [f64; MOST_BATCHES - FEWEST_BATCHES + 1] = [
 pub(super) fn rms_interval_95(mean_squares: &[f64]) -> Option<ConfidenceInterval> {
     let n = mean_squares.len();
     let correlation = correlation_time(mean_squares);
-    let length = n.div_ceil(MOST_BATCHES).max((CORRELATIONS_PER_BATCH * correlation).ceil() as usize);
+    let length = n.div_ceil(MAX_BATCHES).max((CORRELATIONS_PER_BATCH * correlation).ceil() as usize);
     let batches = n / length.max(1);
-    if batches < FEWEST_BATCHES {
+    if batches < MIN_BATCHES {
         return None;
     }
     let mean = mean_squares.iter().sum::<f64>() / n as f64;
@@ -78,7 +78,7 @@ pub(super) fn rms_interval_95(mean_squares: &[f64]) -> Option<ConfidenceInterval
     let scatter = of_batches.iter().map(|m| (m - centre).powi(2)).sum::<f64>() / (batches - 1) as f64;
     // The mean is that of the whole record, the part behind the last batch included.
     let error = (scatter * length as f64 / n as f64).sqrt();
-    let reach = STUDENT_975[batches.min(MOST_BATCHES) - FEWEST_BATCHES] * error;
+    let reach = STUDENT_975[batches.min(MAX_BATCHES) - MIN_BATCHES] * error;
     let interval = ConfidenceInterval { low: (mean - reach).max(0.0).sqrt(), high: (mean + reach).sqrt() };
     interval.high.is_finite().then_some(interval)
 }

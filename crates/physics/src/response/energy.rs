@@ -4,10 +4,10 @@ use super::quadrature::GAUSS;
 use crate::dynamics::{DynamicModel, Observer, PER_HALF, Segment, W};
 
 /// Of longer records the first mesh periods are balanced, which says as much at a bounded cost.
-const MOST_MESH_PERIODS: u64 = 200;
+const MAX_MESH_PERIODS: u64 = 200;
 
 /// A motion whose velocities stay below this part of its displacements (scaled time) does not move: what it shows is rounding.
-const STILL: f64 = 1e-9;
+const REST_VELOCITY_RATIO: f64 = 1e-9;
 
 /// Change of the kinetic energy of a motion against the work of all forces on it, ∫ Σ_c F_c v_c dt with the forces of `model` (springs,
 /// dampers, mesh, impacts, torques) at the displacements and velocities of the solution, by quadrature on every segment. The free
@@ -16,13 +16,13 @@ pub(super) struct EnergyBalance<'m, const D: usize> {
     model: &'m DynamicModel<D>,
     masses: [f64; D],
     /// Over ω_ref², J s².
-    first: Option<f64>,
+    initial_energy: Option<f64>,
     /// The mesh period before which the balance ends.
     until: u64,
-    last: f64,
+    final_energy: f64,
     work: f64,
     /// ∫ Σ_c |F_c v_c| dt.
-    traffic: f64,
+    absolute_work: f64,
     largest_x: f64,
     largest_v: f64,
 }
@@ -34,11 +34,11 @@ impl<'m, const D: usize> EnergyBalance<'m, D> {
         Self {
             model,
             masses,
-            first: None,
+            initial_energy: None,
             until: 0,
-            last: 0.0,
+            final_energy: 0.0,
             work: 0.0,
-            traffic: 0.0,
+            absolute_work: 0.0,
             largest_x: 0.0,
             largest_v: 0.0,
         }
@@ -47,9 +47,9 @@ impl<'m, const D: usize> EnergyBalance<'m, D> {
     /// What the forces' work does not explain of the change of kinetic energy, over the integral of the absolute power of the
     /// forces on each coordinate. None where nothing moved.
     pub fn residual(&self) -> Option<f64> {
-        let change = self.last - self.first?;
-        let moves = self.largest_v > STILL * self.largest_x && self.traffic > 0.0;
-        moves.then(|| (change - self.work).abs() / self.traffic)
+        let change = self.final_energy - self.initial_energy?;
+        let moves = self.largest_v > REST_VELOCITY_RATIO * self.largest_x && self.absolute_work > 0.0;
+        moves.then(|| (change - self.work).abs() / self.absolute_work)
     }
 
     fn kinetic(&self, v: &[f64; D]) -> f64 {
@@ -59,9 +59,9 @@ impl<'m, const D: usize> EnergyBalance<'m, D> {
 
 impl<const D: usize> Observer<D> for EnergyBalance<'_, D> {
     fn segment(&mut self, segment: &Segment<'_, D>) {
-        if self.first.is_none() {
-            self.first = Some(self.kinetic(&segment.rows[1]));
-            self.until = segment.period + MOST_MESH_PERIODS;
+        if self.initial_energy.is_none() {
+            self.initial_energy = Some(self.kinetic(&segment.rows[1]));
+            self.until = segment.period + MAX_MESH_PERIODS;
         }
         if segment.period >= self.until {
             return;
@@ -75,14 +75,14 @@ impl<const D: usize> Observer<D> for EnergyBalance<'_, D> {
             for c in 0..D {
                 let power = self.masses[c] * a[c] * v[c] * weight * segment.h;
                 self.work += power;
-                self.traffic += power.abs();
+                self.absolute_work += power.abs();
                 if self.masses[c] > 0.0 {
                     self.largest_x = self.largest_x.max(x[c].abs());
                     self.largest_v = self.largest_v.max(v[c].abs());
                 }
             }
         }
-        self.last = self.kinetic(&segment.at(segment.h).1);
+        self.final_energy = self.kinetic(&segment.at(segment.h).1);
     }
 }
 

@@ -13,19 +13,19 @@ use crate::dynamics::{DynamicsError, DynamicModel, StepCounts, Observer, Traject
 /// Parts of a record whose scatter gives its standard error.
 const BATCHES: u64 = 10;
 /// Up to this many recorded mesh periods it is known that the motion repeats, and not input.
-const KNOWN_TO_REPEAT: u64 = 8;
+const SHORT_RECORD_MESH_PERIODS: u64 = 8;
 
 /// The run, and what has been gathered of it. Mesh periods are counted as the start's are.
 pub(super) struct RecordedRun<'m, const D: usize> {
     model: &'m DynamicModel<D>,
     state: MotionState<D>,
     tolerance: f64,
-    first: u64,
+    first_period: u64,
     record_from: u64,
     end: u64,
     /// The state at the start of this mesh period is kept.
-    keep_at: u64,
-    pub kept: MotionState<D>,
+    store_at: u64,
+    pub stored: MotionState<D>,
     /// The state from which the record starts.
     pub from: MotionState<D>,
     pub recorder: ChannelRecorder<D>,
@@ -54,15 +54,15 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
             model,
             state: start,
             tolerance,
-            first: start.period,
+            first_period: start.period,
             record_from,
             end,
-            keep_at: start.period,
-            kept: start,
+            store_at: start.period,
+            stored: start,
             from: start,
             recorder,
             energy: None,
-            recent: if recorded > KNOWN_TO_REPEAT { PoincareSection::without_rigid_body(model)? } else { PoincareSection::new() },
+            recent: if recorded > SHORT_RECORD_MESH_PERIODS { PoincareSection::without_rigid_body(model)? } else { PoincareSection::new() },
             points: Vec::with_capacity(recorded.min(1 << 20) as usize),
             batch: (recorded / BATCHES).max(1),
             batches: Vec::new(),
@@ -71,7 +71,7 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
             counts: StepCounts::default(),
             error: None,
         };
-        run.period_begins();
+        run.begin_period();
         Ok(run)
     }
 
@@ -80,15 +80,15 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
         Self { energy, ..self }
     }
 
-    /// Keeps the state at the start of the mesh period `keep_at`.
-    pub fn keeping(self, keep_at: u64) -> Self {
-        Self { keep_at, ..self }
+    /// Keeps the state at the start of the mesh period `store_at`.
+    pub fn storing_state_at(self, store_at: u64) -> Self {
+        Self { store_at, ..self }
     }
 
-    fn period_begins(&mut self) {
+    fn begin_period(&mut self) {
         let state = self.state;
-        if state.period == self.keep_at {
-            self.kept = state;
+        if state.period == self.store_at {
+            self.stored = state;
         }
         if state.period == self.record_from {
             self.from = state;
@@ -114,7 +114,7 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
             batch_error: standard_error(&self.batches),
             mean_squares: self.squares.finish(),
         };
-        Ok(FinishedRun { record, recorder: self.recorder, energy: self.energy, kept: self.kept, from: self.from })
+        Ok(FinishedRun { record, recorder: self.recorder, energy: self.energy, stored: self.stored, from: self.from })
     }
 }
 
@@ -123,7 +123,7 @@ pub(super) struct FinishedRun<'m, const D: usize> {
     pub record: RecordedMotion<D>,
     pub recorder: ChannelRecorder<D>,
     pub energy: Option<EnergyBalance<'m, D>>,
-    pub kept: MotionState<D>,
+    pub stored: MotionState<D>,
     pub from: MotionState<D>,
 }
 
@@ -141,7 +141,7 @@ impl<'m, const D: usize> TrajectoryObserver<'m, D> for RecordedRun<'m, D> {
     }
 
     fn fraction_done(&self) -> f64 {
-        (self.state.period - self.first) as f64 / (self.end - self.first).max(1) as f64
+        (self.state.period - self.first_period) as f64 / (self.end - self.first_period).max(1) as f64
     }
 
     fn wants_segments(&self) -> bool {
@@ -167,7 +167,7 @@ impl<'m, const D: usize> TrajectoryObserver<'m, D> for RecordedRun<'m, D> {
         }
         let goes_on = state.period < self.end;
         if goes_on {
-            self.period_begins();
+            self.begin_period();
         }
         goes_on
     }

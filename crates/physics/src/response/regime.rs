@@ -50,7 +50,7 @@ impl<const D: usize> PoincareSection<D> {
     pub fn change(&self, n: usize) -> Option<f64> {
         let last = self.states.len().checked_sub(1)?;
         let before = self.states.get(last.checked_sub(n)?)?;
-        Some(largest(&state_difference(&self.states[last], before)) / self.size())
+        Some(largest_component(&state_difference(&self.states[last], before)) / self.size())
     }
 
     /// The shortest period over which the state changes by less than `limit`, and by how much. A multiple of a shorter
@@ -87,7 +87,7 @@ impl<const D: usize> PoincareSection<D> {
 }
 
 /// Largest component of a perturbation, free rotation apart.
-pub(super) fn largest<const D: usize>(d: &Perturbation<D>) -> f64 {
+pub(super) fn largest_component<const D: usize>(d: &Perturbation<D>) -> f64 {
     (0..D).filter(|c| c % PER_HALF != W).fold(0.0, |m, c| m.max(d.0[c].abs()).max(d.1[c].abs()))
 }
 
@@ -119,11 +119,11 @@ pub(super) fn lyapunov_exponent_with<const D: usize>(
     let mut variation = Variation::new(variation_model, vec![rigid_body.project_out(&start)], 1e-9);
     let (mut sum, mut counted) = (0.0, 0u64);
     for period in 0..periods {
-        let before = largest(&variation.columns[0]);
+        let before = largest_component(&variation.columns[0]);
         motion.advance_period(&mut ObserverPair(&mut Unobserved, &mut variation), watch, 0.0)?;
         variation.columns[0] = rigid_body.project_out(&variation.columns[0]);
         let (x, v) = &mut variation.columns[0];
-        let after = largest(&(*x, *v));
+        let after = largest_component(&(*x, *v));
         if !(after > 0.0 && after.is_finite()) {
             return Ok(f64::NEG_INFINITY);
         }
@@ -147,7 +147,7 @@ pub(super) fn perturbation_decay<const D: usize>(
     let start = rigid_body.project_out(&generic_perturbation(variation_model));
     let mut variation = Variation::new(variation_model, vec![start], 1e-6);
     motion.advance_period(&mut ObserverPair(&mut Unobserved, &mut variation), watch, 0.0)?;
-    let left = largest(&rigid_body.project_out(&variation.columns[0])) / largest(&start);
+    let left = largest_component(&rigid_body.project_out(&variation.columns[0])) / largest_component(&start);
     // An infinite or undefined answer is no sign of fading.
     Ok(if left.is_nan() { f64::INFINITY } else { left })
 }

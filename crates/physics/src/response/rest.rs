@@ -9,7 +9,7 @@ use crate::dynamics::{DynamicsError, ImpactExcitation, Integrator, DynamicModel,
 impl OperatingPoint<'_> {
     /// Whether the pair stays where it starts: without load and impact, set out at rest in the middle of its backlash (all zero) or, where
     /// no start is given, with the driving flanks just touching, which is where ever smaller loads leave it.
-    pub(super) fn rests(&self) -> bool {
+    pub(super) fn stays_at_rest(&self) -> bool {
         let [left, right] = &self.p.halves;
         let unloaded =
             [left, right].iter().all(|h| h.pinion_torque_nm == 0.0 && h.impact.as_ref().is_none_or(ImpactExcitation::is_zero));
@@ -25,11 +25,11 @@ impl OperatingPoint<'_> {
     ///
     /// # Errors
     /// [`DynamicsError`] for parameters the equations cannot use.
-    pub(super) fn at_rest(&self) -> Result<Response, DynamicsError> {
-        if self.p.is_symmetric() { self.resting::<6>() } else { self.resting::<12>() }
+    pub(super) fn rest_response(&self) -> Result<Response, DynamicsError> {
+        if self.p.is_symmetric() { self.rest_response_in::<6>() } else { self.rest_response_in::<12>() }
     }
 
-    fn resting<const D: usize>(&self) -> Result<Response, DynamicsError> {
+    fn rest_response_in<const D: usize>(&self) -> Result<Response, DynamicsError> {
         let model = DynamicModel::<D>::new(self.p)?;
         let touching = self.analysis.initial_state.is_none() || model.b == 0.0;
         let (method, from, periods) = match self.analysis.method {

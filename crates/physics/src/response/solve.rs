@@ -20,10 +20,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// # Errors
 /// [`DynamicsError`].
 pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<Response, DynamicsError> {
-    let modes = modes(p, analysis)?;
+    let modes = validated_modes(p, analysis)?;
     let point = OperatingPoint { p, analysis, modes: &modes, watch };
-    if point.rests() {
-        return point.at_rest();
+    if point.stays_at_rest() {
+        return point.rest_response();
     }
     let start = point.start();
     let mirrored = point.is_mirrored(&start);
@@ -35,11 +35,11 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
             responses.pop().unwrap_or(Err(DynamicsError::Canceled(Canceled)))
         }
         SolutionMethod::Auto | SolutionMethod::Periodic => {
-            if mirrored && let Some(response) = point.steady::<6>(&start, false)? {
+            if mirrored && let Some(response) = point.solve_steady::<6>(&start, false)? {
                 return Ok(response);
             }
             // Equal halves come here only when their motion leaves the mirror symmetry by itself: a start off the symmetry lets it.
-            let found = point.steady::<12>(&start, mirrored)?;
+            let found = point.solve_steady::<12>(&start, mirrored)?;
             // Twelve coordinates are never given up for fewer.
             found.ok_or(DynamicsError::NotPeriodic { mesh_periods: 0, change: f64::NAN })
         }
@@ -88,16 +88,16 @@ fn solve_group(
         });
         return solved.collect();
     }
-    let modes: Vec<_> = group.iter().map(|p| modes(p, analysis)).collect();
+    let modes: Vec<_> = group.iter().map(|p| validated_modes(p, analysis)).collect();
     let mut out = vec![Err(DynamicsError::Canceled(Canceled)); group.len()];
-    // Points in six coordinates, and in twelve, with their places.
+    // Points in six coordinates, and in twelve, with their positions.
     let mut sides: [(Vec<usize>, Vec<OperatingPoint<'_>>); 2] = Default::default();
     for (i, (p, modes)) in group.iter().zip(&modes).enumerate() {
         match modes {
             Ok(modes) => {
                 let point = OperatingPoint { p, analysis, modes, watch };
-                if point.rests() {
-                    out[i] = point.at_rest();
+                if point.stays_at_rest() {
+                    out[i] = point.rest_response();
                     continue;
                 }
                 let side = &mut sides[usize::from(!point.is_mirrored(&point.start()))];
@@ -118,7 +118,7 @@ fn solve_group(
 }
 
 /// Checks the question and solves for the natural modes.
-fn modes(p: &Parameters, analysis: &Analysis) -> Result<NaturalModes, DynamicsError> {
+fn validated_modes(p: &Parameters, analysis: &Analysis) -> Result<NaturalModes, DynamicsError> {
     p.validate()?;
     if !(1e-13..=0.1).contains(&analysis.accuracy) {
         return Err(DynamicsError::InvalidParameter {
@@ -172,7 +172,7 @@ impl OperatingPoint<'_> {
     }
 
     /// The steady state; None when six coordinates do not tell the whole story.
-    fn steady<const D: usize>(&self, start: &[f64; 24], off_symmetry: bool) -> Result<Option<Response>, DynamicsError> {
+    fn solve_steady<const D: usize>(&self, start: &[f64; 24], off_symmetry: bool) -> Result<Option<Response>, DynamicsError> {
         let model = DynamicModel::<D>::new(self.p)?;
         let search = SteadyStateSearch {
             model: &model,
@@ -327,14 +327,14 @@ impl OperatingPoint<'_> {
     ) -> Result<f64, DynamicsError> {
         let tight = (1e-3 * found.tolerance).max(1e-15);
         let start = MotionState { period: 0, ..found.start };
-        let once = self.record(model, (start, tight), n, self.recorder_of_rms(model), None)?.record;
+        let once = self.record(model, (start, tight), n, self.rms_recorder(model), None)?.record;
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tight))?;
         let defect = state_difference(&once.last, &start);
         let Some(correction) = shooting.correction(&defect, monodromy, n) else { return Ok(f64::INFINITY) };
         let better = self
-            .record(model, (displaced(model, start, &correction), tight), n, self.recorder_of_rms(model), None)?
+            .record(model, (displaced(model, start, &correction), tight), n, self.rms_recorder(model), None)?
             .recorder;
-        Ok(SAFETY * rms_difference(recorder, &better, smallest(model)) + ROUNDING)
+        Ok(SAFETY * rms_difference(recorder, &better, acceleration_floor(model)) + ROUNDING)
     }
 
     /// Channels every response needs, and those asked for.
@@ -351,7 +351,7 @@ impl OperatingPoint<'_> {
     }
 
     /// The accelerations alone.
-    fn recorder_of_rms<const D: usize>(&self, model: &DynamicModel<D>) -> ChannelRecorder<D> {
+    fn rms_recorder<const D: usize>(&self, model: &DynamicModel<D>) -> ChannelRecorder<D> {
         let mut statistics = Vec::new();
         for half in solved_halves::<D>() {
             statistics.push((ChannelId::mesh_acceleration(half), false));
@@ -411,12 +411,12 @@ fn integrate<const D: usize>(
     let tolerance = (per_accuracy * analysis.accuracy).max(1e-15);
     let tight = (1e-2 * tolerance).clamp(1e-15, 1e-9);
     // Where the comparison sets out: far enough before the record for its own start to fade.
-    let compared_from = record_from.saturating_sub(COMPARED_LEAD_MESH_PERIODS);
+    let compared_from = record_from.saturating_sub(COMPARISON_LEAD_MESH_PERIODS);
 
     let models: Vec<_> = points.iter().map(|point| DynamicModel::<D>::new(point.p)).collect();
     let mut runs = Vec::with_capacity(points.len());
     let mut out: Vec<Result<Response, DynamicsError>> = Vec::with_capacity(points.len());
-    let mut places = Vec::with_capacity(points.len());
+    let mut positions = Vec::with_capacity(points.len());
     for (i, (point, model)) in points.iter().zip(&models).enumerate() {
         out.push(Err(DynamicsError::Canceled(Canceled)));
         let run = model.as_ref().map_err(Clone::clone).and_then(|model| {
@@ -426,12 +426,12 @@ fn integrate<const D: usize>(
                 model.close_contact(&mut start);
             }
             let run = RecordedRun::new(model, start, tolerance, (record_from, end), recorder)?;
-            Ok(run.keeping(compared_from).with_energy(point.energy(model)))
+            Ok(run.storing_state_at(compared_from).with_energy(point.energy(model)))
         });
         match run {
             Ok(run) => {
                 runs.push(run);
-                places.push(i);
+                positions.push(i);
             }
             Err(error) => out[i] = Err(error),
         }
@@ -439,14 +439,14 @@ fn integrate<const D: usize>(
     lane_use.integrate(&mut runs, tolerance, analysis.max_steps, watch)?;
 
     let mut compared = Vec::new();
-    let mut waiting = Vec::new();
-    for (i, run) in places.into_iter().zip(runs) {
+    let mut pending = Vec::new();
+    for (i, run) in positions.into_iter().zip(runs) {
         let Ok(model) = &models[i] else { continue };
         let point = &points[i];
         let next = run.finish().and_then(|finished| {
             let (assessment, compare) = point.assess(model, &finished, tolerance)?;
             let finely = compare
-                .then(|| RecordedRun::new(model, finished.kept, tight, (record_from, end), point.recorder_of_rms(model)));
+                .then(|| RecordedRun::new(model, finished.stored, tight, (record_from, end), point.rms_recorder(model)));
             Ok((finished, assessment, finely.transpose()?))
         });
         match next {
@@ -460,15 +460,15 @@ fn integrate<const D: usize>(
             }
             Ok((finished, assessment, Some(finely))) => {
                 compared.push(finely);
-                waiting.push((i, finished, assessment));
+                pending.push((i, finished, assessment));
             }
         }
     }
     lane_use.for_comparison().integrate(&mut compared, tight, analysis.max_steps, watch)?;
-    for ((i, finished, mut assessment), finely) in waiting.into_iter().zip(compared) {
+    for ((i, finished, mut assessment), finely) in pending.into_iter().zip(compared) {
         let Ok(model) = &models[i] else { continue };
         out[i] = finely.finish().map(|fine| {
-            let difference = rms_difference(&finished.recorder, &fine.recorder, smallest(model));
+            let difference = rms_difference(&finished.recorder, &fine.recorder, acceleration_floor(model));
             assessment.error_estimate = SAFETY * difference + ROUNDING;
             assessment.counts += fine.record.counts;
             assemble_response(&points[i].report_input(), model, finished.recorder, finished.record, assessment)
@@ -482,12 +482,12 @@ pub(super) const REPEATS: f64 = 1e-3;
 /// What an error found by comparison is multiplied by, because it is a comparison with something that has an error too.
 const SAFETY: f64 = 3.0;
 /// Mesh periods before the record from which a run is compared with a more accurate one.
-const COMPARED_LEAD_MESH_PERIODS: u64 = 50;
+const COMPARISON_LEAD_MESH_PERIODS: u64 = 50;
 /// RMS values in double precision are not better than this.
 const ROUNDING: f64 = 1e-13;
 
 /// An acceleration that is nothing but rounding: 1e-12 of what the load would give the free mesh, m/s².
-fn smallest<const D: usize>(model: &DynamicModel<D>) -> f64 {
+fn acceleration_floor<const D: usize>(model: &DynamicModel<D>) -> f64 {
     let square = model.omega_ref * model.omega_ref;
     (0..DynamicModel::<D>::HALVES).fold(0.0f64, |m, j| m.max(model.max_excitation_force_n(j) * model.halves[j].inv_me * square))
         * 1e-12

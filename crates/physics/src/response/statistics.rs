@@ -27,22 +27,22 @@ static POWERS: LazyLock<[[f64; NODES]; MAX_ORDER + 1]> =
 pub(super) struct MomentAccumulator {
     /// Taken off before squaring, so that a large mean costs no digits.
     offset: Option<f64>,
-    first: f64,
-    second: f64,
+    integral: f64,
+    square_integral: f64,
     length: f64,
     min: f64,
     max: f64,
-    keeps_mean: bool,
+    includes_mean: bool,
 }
 
 impl MomentAccumulator {
-    /// `keeps_mean`: whether the mean counts in the mean square.
-    pub fn new(keeps_mean: bool) -> Self {
+    /// `includes_mean`: whether the mean counts in the mean square.
+    pub fn new(includes_mean: bool) -> Self {
         Self {
-            keeps_mean,
+            includes_mean,
             offset: None,
-            first: 0.0,
-            second: 0.0,
+            integral: 0.0,
+            square_integral: 0.0,
             length: 0.0,
             min: f64::INFINITY,
             max: f64::NEG_INFINITY,
@@ -73,8 +73,8 @@ impl MomentAccumulator {
             mean += weight * value;
             square += weight * value * value;
         }
-        self.first += h * mean;
-        self.second += h * square;
+        self.integral += h * mean;
+        self.square_integral += h * square;
         self.length += h;
         if extremes {
             self.add_extremes(b, &values, offset);
@@ -128,22 +128,22 @@ impl MomentAccumulator {
 
     /// Mean of the channel, and mean square: about that mean unless the mean is kept.
     pub fn mean_and_square(&self) -> (f64, f64) {
-        let first = self.first / self.length;
+        let first = self.integral / self.length;
         let mean = self.offset.unwrap_or(0.0) + first;
-        let variance = (self.second / self.length - first * first).max(0.0);
-        (mean, if self.keeps_mean { variance + mean * mean } else { variance })
+        let variance = (self.square_integral / self.length - first * first).max(0.0);
+        (mean, if self.includes_mean { variance + mean * mean } else { variance })
     }
 
     /// Variance of what came after the snapshot `earlier`.
     pub fn variance_since(&self, earlier: &MomentAccumulator) -> f64 {
-        let (first, second) = (self.first - earlier.first, self.second - earlier.second);
+        let (first, second) = (self.integral - earlier.integral, self.square_integral - earlier.square_integral);
         let length = self.length - earlier.length;
         (second / length - (first / length).powi(2)).max(0.0)
     }
 
     /// Mean square, the mean included, of what came after the snapshot `earlier`.
     pub fn square_since(&self, earlier: &MomentAccumulator) -> f64 {
-        let (first, second) = (self.first - earlier.first, self.second - earlier.second);
+        let (first, second) = (self.integral - earlier.integral, self.square_integral - earlier.square_integral);
         let length = self.length - earlier.length;
         let offset = self.offset.unwrap_or(0.0);
         second / length + offset * (2.0 * first / length + offset)

@@ -3,7 +3,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::budget::{Budget, budget_exhausted, steps_per_period};
-use super::regime::{CHAOS_PER_MESH_PERIOD, PoincareSection, perturbation_decay, largest, lyapunov_exponent};
+use super::regime::{CHAOS_PER_MESH_PERIOD, PoincareSection, perturbation_decay, largest_component, lyapunov_exponent};
 use crate::dynamics::{
     Perturbation, DynamicsError, RigidBodyModes, Integrator, IntegrationLimits, DynamicModel, Motion, StepCounts, PER_HALF, Shooting, MotionState, U,
     Unobserved, state_difference,
@@ -95,7 +95,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
     /// Fails where the load would press the pair further than any motion may go.
     fn check_static_deflection(&self, start: &MotionState<D>) -> Result<(), DynamicsError> {
         const FURTHEST_M: f64 = 1e3;
-        let furthest = largest(&(start.x, [0.0; D]));
+        let furthest = largest_component(&(start.x, [0.0; D]));
         if furthest > FURTHEST_M {
             return Err(DynamicsError::InvalidParameter {
                 name: "static deflection in m",
@@ -286,8 +286,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         let mut last = f64::INFINITY;
         let mut monodromy_is_current = true;
         for _ in 0..MAX_ITERATIONS {
-            let size = period_map.size.max(1e-9 * largest(&(at.x, [0.0; D])));
-            let change = largest(&defect) / size;
+            let size = period_map.size.max(1e-9 * largest_component(&(at.x, [0.0; D])));
+            let change = largest_component(&defect) / size;
             let converged = change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last);
             if converged && monodromy_is_current {
                 break;
@@ -312,8 +312,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             defect = state_difference(&motion.state, &at);
             monodromy_is_current = false;
         }
-        let size = period_map.size.max(1e-9 * largest(&(at.x, [0.0; D])));
-        if !monodromy_is_current || period_map.separated || largest(&defect) / size > 1e-9f64.max(10.0 * self.limits.tolerance) {
+        let size = period_map.size.max(1e-9 * largest_component(&(at.x, [0.0; D])));
+        if !monodromy_is_current || period_map.separated || largest_component(&defect) / size > 1e-9f64.max(10.0 * self.limits.tolerance) {
             return Ok(None);
         }
         self.stable_orbit(&shooting, at, 1, period_map.monodromy, budget, counts)
@@ -451,7 +451,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         let mut motion = self.motion(found.start, budget);
         for period in 1..=n / 2 {
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.9)?;
-            let change = largest(&rigid_body.project_out(&state_difference(&motion.state, &found.start))) / size;
+            let change = largest_component(&rigid_body.project_out(&state_difference(&motion.state, &found.start))) / size;
             if n.is_multiple_of(period) && change < SAME_PERIOD_CHANGE {
                 budget.spend(&motion.counts, 0);
                 return Ok(Some(period));
@@ -480,14 +480,14 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             budget.spend(&period_map.counts, perturbations);
             counts += period_map.counts;
             let defect = state_difference(&period_map.end, &start);
-            let change = largest(&defect) / size;
+            let change = largest_component(&defect) / size;
             if change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last) {
                 return self.stable_orbit(&shooting, start, n, period_map.monodromy, budget, &mut counts);
             }
             last = change;
             let Some(correction) = shooting.correction(&defect, &period_map.monodromy, n) else { return Ok(None) };
             // A free motion may need any speed to close.
-            if largest(&rigid_body.project_out(&correction)) > 0.1 * size {
+            if largest_component(&rigid_body.project_out(&correction)) > 0.1 * size {
                 return Ok(None);
             }
             start = displaced(self.model, start, &correction);
