@@ -87,7 +87,7 @@ pub(crate) struct Equations<const D: usize, R> {
     pub(super) impact_along: R,
     pub(super) impact_normal: R,
     torsional: bool,
-    /// D = 6 only: the other half moves as the mirror image (1) or as its opposite (−1, for variations).
+    /// D = 6 only: the other half moves as the mirror image (1) or as its antisymmetric (−1, for variations).
     parity: f64,
 }
 
@@ -107,7 +107,7 @@ impl<const D: usize> Equations<D, f64> {
     }
 
     /// The equations that variations against the mirror symmetry obey (D = 6).
-    pub fn against_symmetry(&self) -> Self {
+    pub fn antisymmetric(&self) -> Self {
         Self { parity: -1.0, ..self.clone() }
     }
 
@@ -218,7 +218,7 @@ impl<const D: usize, R: Real> Equations<D, R> {
 
     /// Scaled accelerations of one half given its normal force on the teeth and the other force along the mesh, T_p/R_p − F_s (of an
     /// impact that acts on all motions: T_p/R_p, F_s being part of the normal force). Linear
-    /// and homogeneous, so it serves single Taylor coefficients and deviations too.
+    /// and homogeneous, so it serves single Taylor coefficients and perturbations too.
     #[inline(always)]
     pub(super) fn half_acceleration(&self, j: usize, x: &[R; D], v: &[R; D], force: R, along: R) -> [R; PER_HALF] {
         let h = &self.halves[j];

@@ -115,7 +115,7 @@ impl<const D: usize> Excite<f64> for Model<D> {
 }
 
 impl<const D: usize> Model<D> {
-    /// The excitations that deviations from a motion feel, about the scaled time `at` of one of its segments: where the mesh force is that of the
+    /// The excitations that perturbations from a motion feel, about the scaled time `at` of one of its segments: where the mesh force is that of the
     /// loaded contact, its stiffness along the motion.
     #[inline(always)]
     pub fn excite_variation(

@@ -23,13 +23,13 @@
 #![allow(clippy::needless_range_loop)]
 
 mod contact_force;
-mod convoy;
+mod lane_batch;
 mod crossing;
 mod equations;
 mod error;
 mod excitation;
 mod expansion;
-mod free;
+mod rigid_body;
 mod integrate;
 mod lanes;
 mod modal;
@@ -52,18 +52,18 @@ pub use model::Contact;
 pub use parameters::{
     Couplings, HalfParameters, ImpactActsOn, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m,
 };
-pub use trajectory::{Reached, advance, advance_many};
+pub use trajectory::{FinalState, advance, advance_many};
 
-pub(crate) use convoy::{Passenger, carry, carry_one};
+pub(crate) use lane_batch::{TrajectoryObserver, integrate_trajectories, integrate_trajectory};
 pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP};
 pub(crate) use excitation::MAX_ORDER;
-pub(crate) use free::FreeMotions;
+pub(crate) use rigid_body::RigidBodyModes;
 pub(crate) use integrate::Motion;
 pub(crate) use model::{Model, State};
 pub(crate) use segment::{Observer, Segment, Unobserved};
-pub(crate) use shooting::{Limits, Shooting};
+pub(crate) use shooting::{IntegrationLimits, Shooting};
 pub(crate) use trajectory::is_mirrored;
-pub(crate) use variation::{Both, Deviation, Variation, difference};
+pub(crate) use variation::{ObserverPair, Perturbation, Variation, state_difference};
 
 #[cfg(test)]
 pub(crate) mod tests;

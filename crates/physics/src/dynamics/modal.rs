@@ -62,7 +62,7 @@ impl NaturalModes {
     }
 
     /// The shapes of the motions that nothing holds.
-    pub fn free_motions(&self) -> impl Iterator<Item = &[f64; 12]> {
+    pub fn rigid_body_modes(&self) -> impl Iterator<Item = &[f64; 12]> {
         self.shapes.iter().zip(&self.frequencies_hz).filter(|(_, f)| **f == 0.0).map(|(shape, _)| shape)
     }
 

@@ -124,8 +124,8 @@ impl<const D: usize> Model<D> {
     }
 
     /// The same with the equations that variations against the mirror symmetry obey (D = 6).
-    pub fn against_symmetry(&self) -> Self {
-        Self { equations: self.equations.against_symmetry(), ..self.clone() }
+    pub fn antisymmetric(&self) -> Self {
+        Self { equations: self.equations.antisymmetric(), ..self.clone() }
     }
 
     /// The diagonal mass matrix of the solver coordinates, kg.

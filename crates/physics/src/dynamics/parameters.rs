@@ -126,7 +126,7 @@ impl Parameters {
         1.0 / self.mesh_frequency_hz
     }
 
-    /// Both halves equal in every respect, phase included: the motion is then mirror symmetric (z_2 = −z_1).
+    /// ObserverPair halves equal in every respect, phase included: the motion is then mirror symmetric (z_2 = −z_1).
     pub fn is_symmetric(&self) -> bool {
         self.halves[0] == self.halves[1]
     }

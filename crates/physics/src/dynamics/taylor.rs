@@ -33,7 +33,7 @@ pub(super) fn order_for(tolerance: f64) -> usize {
 
 /// What a step sets out from and how far it may go.
 #[derive(Clone, Copy)]
-pub(super) struct Stretch<R> {
+pub(super) struct SmoothInterval<R> {
     pub phase: R,
     /// Phase at which the smooth stretch ends, and a phase inside it.
     pub end: R,
@@ -69,12 +69,12 @@ pub(super) fn step<const D: usize, R: Real>(
     equations: &Equations<D, R>,
     excitations: &impl Excite<R>,
     order: usize,
-    stretch: Stretch<R>,
+    interval: SmoothInterval<R>,
     contact: [R; 2],
     size: &mut R,
     work: &mut TaylorWork<D, R>,
 ) -> Stepped<R> {
-    let Stretch { phase, end, inside, period_tau, tolerance, fixed, switching } = stretch;
+    let SmoothInterval { phase, end, inside, period_tau, tolerance, fixed, switching } = interval;
     excitations.excite(phase, inside, contact, order, &mut work.excitation);
     let remaining = (end - phase) * period_tau;
     *size = *size * R::splat(0.98);
@@ -202,15 +202,15 @@ pub(super) fn evaluate_rows<const D: usize, R: Real>(rows: &[[R; D]], t: R) -> (
 
 /// Counts the changes of contact of a motion, and goes on when there are too many.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Rattling {
+pub(super) struct ChatterGuard {
     period: u64,
     changes: u32,
 }
 
-impl Rattling {
-    /// To be told of each change. Rattling faster than can be followed goes on by a short free step and takes the contact it
+impl ChatterGuard {
+    /// To be told of each change. ChatterGuard faster than can be followed goes on by a short free step and takes the contact it
     /// finds; returns whether it did.
-    pub fn changed<const D: usize>(&mut self, model: &Model<D>, state: &mut State<D>, end: f64) -> bool {
+    pub fn contact_changed<const D: usize>(&mut self, model: &Model<D>, state: &mut State<D>, end: f64) -> bool {
         if self.period != state.period {
             *self = Self { period: state.period, changes: 0 };
         }
@@ -262,7 +262,7 @@ pub(super) struct Taylor<const D: usize> {
     work: Box<TaylorWork<D, f64>>,
     /// Size of the recent motion: scaled velocity and acceleration, as lengths.
     size: f64,
-    rattling: Rattling,
+    chatter: ChatterGuard,
 }
 
 impl<const D: usize> Taylor<D> {
@@ -274,7 +274,7 @@ impl<const D: usize> Taylor<D> {
             fixed: fixed.unwrap_or(f64::INFINITY),
             work: TaylorWork::new(),
             size: 0.0,
-            rattling: Rattling::default(),
+            chatter: ChatterGuard::default(),
         }
     }
 
@@ -290,7 +290,7 @@ impl<const D: usize> Taylor<D> {
     ) -> Result<(), DynamicsError> {
         self.work.rows[0] = state.x;
         self.work.rows[1] = state.v;
-        let stretch = Stretch {
+        let interval = SmoothInterval {
             phase: state.phase,
             end,
             inside,
@@ -303,7 +303,7 @@ impl<const D: usize> Taylor<D> {
         let Self { order, work, size, .. } = self;
         let stepped = vectorised(
             #[inline(always)]
-            || step(model, model, *order, stretch, contact, size, work),
+            || step(model, model, *order, interval, contact, size, work),
         );
         numerics.steps += 1;
         numerics.force_evaluations += (stepped.degree - 1) as u64;
@@ -327,7 +327,7 @@ impl<const D: usize> Taylor<D> {
         state.phase = phase;
         if stepped.changed >= 0.0 {
             state.contact[stepped.changed as usize] = stepped.contact as Contact;
-            self.rattling.changed(model, state, end);
+            self.chatter.contact_changed(model, state, end);
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::convoy::{Passenger, carry, carry_one};
+use super::lane_batch::{TrajectoryObserver, integrate_trajectories, integrate_trajectory};
 use super::error::DynamicsError;
 use super::integrate::{Integrator, Numerics};
 use super::model::{Model, State};
@@ -12,7 +12,7 @@ use crate::watch::{Canceled, Watch};
 
 /// Where a motion has got to.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reached {
+pub struct FinalState {
     /// 12 displacements in the source's order (m, rad), then 12 velocities (m/s, rad/s).
     pub state: [f64; 24],
     pub numerics: Numerics,
@@ -30,20 +30,20 @@ pub fn advance(
     integrator: Integrator,
     tolerance: f64,
     watch: &Watch<'_>,
-) -> Result<Reached, DynamicsError> {
+) -> Result<FinalState, DynamicsError> {
     fn run<const D: usize>(
         p: &Parameters,
         start: &[f64; 24],
         mesh_periods: u64,
         (integrator, tolerance): (Integrator, f64),
         watch: &Watch<'_>,
-    ) -> Result<Reached, DynamicsError> {
+    ) -> Result<FinalState, DynamicsError> {
         let model = Model::<D>::new(p)?;
-        let mut traveller = Traveller::new(&model, start, mesh_periods, tolerance);
+        let mut observer = FinalStateObserver::new(&model, start, mesh_periods, tolerance);
         if mesh_periods > 0 {
-            carry_one(&mut traveller, integrator, u64::MAX, watch)?;
+            integrate_trajectory(&mut observer, integrator, u64::MAX, watch)?;
         }
-        traveller.reached
+        observer.outcome
     }
     if p.is_symmetric() && is_mirrored(start) {
         run::<6>(p, start, mesh_periods, (integrator, tolerance), watch)
@@ -63,7 +63,7 @@ pub fn advance_many(
     mesh_periods: u64,
     tolerance: f64,
     watch: &Watch<'_>,
-) -> Result<Vec<Result<Reached, DynamicsError>>, Canceled> {
+) -> Result<Vec<Result<FinalState, DynamicsError>>, Canceled> {
     let asked: Vec<_> = points.iter().zip(starts).collect();
     let groups: Result<Vec<_>, Canceled> = asked
         .par_chunks(POINTS_PER_GROUP)
@@ -71,8 +71,8 @@ pub fn advance_many(
             let mut out = vec![Err(DynamicsError::Canceled(Canceled)); group.len()];
             let mirrored = |(p, start): &(&Parameters, &[f64; 24])| p.is_symmetric() && is_mirrored(start);
             let (halves, whole): (Vec<usize>, Vec<usize>) = (0..group.len()).partition(|&i| mirrored(&group[i]));
-            travel::<6>(group, &halves, mesh_periods, tolerance, watch, &mut out)?;
-            travel::<12>(group, &whole, mesh_periods, tolerance, watch, &mut out)?;
+            advance_group::<6>(group, &halves, mesh_periods, tolerance, watch, &mut out)?;
+            advance_group::<12>(group, &whole, mesh_periods, tolerance, watch, &mut out)?;
             Ok(out)
         })
         .collect();
@@ -83,51 +83,51 @@ pub fn advance_many(
 const POINTS_PER_GROUP: usize = 32;
 
 /// A motion that only wants to get there.
-struct Traveller<'m, const D: usize> {
+struct FinalStateObserver<'m, const D: usize> {
     model: &'m Model<D>,
     state: State<D>,
     mesh_periods: u64,
     tolerance: f64,
-    reached: Result<Reached, DynamicsError>,
+    outcome: Result<FinalState, DynamicsError>,
 }
 
-impl<'m, const D: usize> Traveller<'m, D> {
+impl<'m, const D: usize> FinalStateObserver<'m, D> {
     fn new(model: &'m Model<D>, start: &[f64; 24], mesh_periods: u64, tolerance: f64) -> Self {
-        let reached = Ok(Reached { state: *start, numerics: Numerics::default() });
+        let reached = Ok(FinalState { state: *start, numerics: Numerics::default() });
         Self { model, state: model.state_from(start), mesh_periods, tolerance, reached }
     }
 }
 
-fn travel<const D: usize>(
+fn advance_group<const D: usize>(
     points: &[(&Parameters, &[f64; 24])],
     indices: &[usize],
     mesh_periods: u64,
     tolerance: f64,
     watch: &Watch<'_>,
-    out: &mut [Result<Reached, DynamicsError>],
+    out: &mut [Result<FinalState, DynamicsError>],
 ) -> Result<(), Canceled> {
     let models: Vec<_> = indices.iter().map(|&i| Model::<D>::new(points[i].0)).collect();
-    let mut travellers = Vec::with_capacity(indices.len());
+    let mut observers = Vec::with_capacity(indices.len());
     let mut places = Vec::with_capacity(indices.len());
     for (&index, model) in indices.iter().zip(&models) {
         match model {
             Ok(model) => {
-                travellers.push(Traveller::new(model, points[index].1, mesh_periods, tolerance));
+                observers.push(FinalStateObserver::new(model, points[index].1, mesh_periods, tolerance));
                 places.push(index);
             }
             Err(error) => out[index] = Err(error.clone()),
         }
     }
     if mesh_periods > 0 {
-        carry(&mut travellers, tolerance, u64::MAX, watch)?;
+        integrate_trajectories(&mut observers, tolerance, u64::MAX, watch)?;
     }
-    for (index, traveller) in places.into_iter().zip(travellers) {
-        out[index] = traveller.reached;
+    for (index, observer) in places.into_iter().zip(observers) {
+        out[index] = observer.outcome;
     }
     Ok(())
 }
 
-impl<'m, const D: usize> Passenger<'m, D> for Traveller<'m, D> {
+impl<'m, const D: usize> TrajectoryObserver<'m, D> for FinalStateObserver<'m, D> {
     fn model(&self) -> &'m Model<D> {
         self.model
     }
@@ -144,24 +144,24 @@ impl<'m, const D: usize> Passenger<'m, D> for Traveller<'m, D> {
         self.state.period as f64 / self.mesh_periods as f64
     }
 
-    fn looks(&self) -> bool {
+    fn wants_segments(&self) -> bool {
         false
     }
 
     fn segment(&mut self, _: &Segment<'_, D>) {}
 
-    fn period_ended(&mut self, state: &State<D>) -> bool {
+    fn finish_period(&mut self, state: &State<D>) -> bool {
         self.state = *state;
         state.period < self.mesh_periods
     }
 
-    fn ended(&mut self, numerics: Numerics, error: Option<DynamicsError>) {
-        let reached = Reached { state: self.model.source_state(&self.state), numerics };
-        self.reached = error.map_or(Ok(reached), Err);
+    fn finished(&mut self, numerics: Numerics, error: Option<DynamicsError>) {
+        let reached = FinalState { state: self.model.source_state(&self.state), numerics };
+        self.outcome = error.map_or(Ok(reached), Err);
     }
 }
 
-/// z of one half the opposite of the other's, the rest equal, displacements and velocities.
+/// z of one half the antisymmetric of the other's, the rest equal, displacements and velocities.
 pub(crate) fn is_mirrored(state: &[f64; 24]) -> bool {
     [0, 12].iter().all(|&at| {
         (0..6).all(|c| {

@@ -1,4 +1,4 @@
-//! Small deviations from a motion: the linear map over mesh periods, and how fast they grow.
+//! Small perturbations from a motion: the linear map over mesh periods, and how fast they grow.
 
 use super::equations::Equations;
 use super::excitation::MAX_ORDER;
@@ -10,51 +10,51 @@ use super::segment::{Observer, Segment};
 use super::taylor::{evaluate_rows, step_reach};
 use crate::simd::vectorised;
 
-/// Deviations carried side by side.
-const COLUMNS: usize = 12;
+/// Perturbations carried side by side.
+const PERTURBATION_LANES: usize = 12;
 
 /// What has died away as far as this is nothing: below the normal range of numbers it would have no digits left to choose a step by, and
 /// the steps would shrink for ever.
-const GONE: f64 = 1e-200;
+const NEGLIGIBLE: f64 = 1e-200;
 
-/// A deviation: displacements and scaled velocities.
-pub(crate) type Deviation<const D: usize> = ([f64; D], [f64; D]);
+/// A perturbation: displacements and scaled velocities.
+pub(crate) type Perturbation<const D: usize> = ([f64; D], [f64; D]);
 
-/// Carries deviations along a motion, as the observer of that motion. `model` holds the equations the deviations obey:
+/// Carries perturbations along a motion, as the observer of that motion. `model` holds the equations the perturbations obey:
 /// the motion's own, or those against its mirror symmetry.
 ///
-/// With damping in the gap the mesh force is continuous in the state, so deviations pass a change of contact unchanged; without,
-/// the force jumps by c_m ds/dt and the deviation of the velocity by (a₊ − a₋) δs/(ds/dt).
+/// With damping in the gap the mesh force is continuous in the state, so perturbations pass a change of contact unchanged; without,
+/// the force jumps by c_m ds/dt and the perturbation of the velocity by (a₊ − a₋) δs/(ds/dt).
 pub(crate) struct Variation<'m, const D: usize> {
     model: &'m Model<D>,
-    pub columns: Vec<Deviation<D>>,
+    pub columns: Vec<Perturbation<D>>,
     tolerance: f64,
     last_contact: Option<[Contact; 2]>,
     /// Taken out while in use.
-    memory: Option<Box<Memory<D>>>,
+    workspace: Option<Box<Workspace<D>>>,
 }
 
-/// Working memory for one deviation and for several.
-struct Memory<const D: usize> {
+/// Working workspace for one perturbation and for several.
+struct Workspace<const D: usize> {
     one: Box<TaylorWork<D, f64>>,
-    several: Box<TaylorWork<D, Lanes<COLUMNS>>>,
-    equations: Equations<D, Lanes<COLUMNS>>,
+    several: Box<TaylorWork<D, Lanes<PERTURBATION_LANES>>>,
+    equations: Equations<D, Lanes<PERTURBATION_LANES>>,
     terms: ExcitationTerms<f64>,
 }
 
 impl<'m, const D: usize> Variation<'m, D> {
-    pub fn new(model: &'m Model<D>, columns: Vec<Deviation<D>>, tolerance: f64) -> Self {
-        let memory = Memory {
+    pub fn new(model: &'m Model<D>, columns: Vec<Perturbation<D>>, tolerance: f64) -> Self {
+        let workspace = Workspace {
             one: TaylorWork::new(),
             several: TaylorWork::new(),
             equations: model.in_all_lanes(),
             terms: ExcitationTerms::new(),
         };
-        Self { model, columns, tolerance, last_contact: None, memory: Some(Box::new(memory)) }
+        Self { model, columns, tolerance, last_contact: None, workspace: Some(Box::new(workspace)) }
     }
 
-    /// One unit deviation per active displacement, then one per active velocity.
-    pub fn units(model: &Model<D>) -> Vec<Deviation<D>> {
+    /// One unit perturbation per active displacement, then one per active velocity.
+    pub fn unit_perturbations(model: &Model<D>) -> Vec<Perturbation<D>> {
         let unit = |c: usize| {
             let mut row = [0.0; D];
             row[c] = 1.0;
@@ -65,7 +65,7 @@ impl<'m, const D: usize> Variation<'m, D> {
         places.chain(speeds).collect()
     }
 
-    fn jump(&mut self, segment: &Segment<'_, D>, before: [Contact; 2]) {
+    fn apply_saltation(&mut self, segment: &Segment<'_, D>, before: [Contact; 2]) {
         for j in 0..Model::<D>::HALVES {
             let (was, is) = (before[j], segment.contact[j]);
             let speed = self.model.s(j, &segment.rows[1]);
@@ -94,7 +94,7 @@ impl<'m, const D: usize> Variation<'m, D> {
 
     /// Carries the columns from `first` on, one per lane, over a segment.
     #[inline(always)]
-    fn carry<R: Real>(
+    fn propagate<R: Real>(
         &mut self,
         segment: &Segment<'_, D>,
         first: usize,
@@ -105,9 +105,9 @@ impl<'m, const D: usize> Variation<'m, D> {
         let count = (self.columns.len() - first).min(R::LANES);
         // Lanes without a column of their own repeat the last one.
         let column = |lane: usize| first + lane.min(count - 1);
-        let alive = |c: f64| if c.abs() < GONE { 0.0 } else { c };
-        let mut x: [R; D] = std::array::from_fn(|c| R::from_fn(|l| alive(self.columns[column(l)].0[c])));
-        let mut v: [R; D] = std::array::from_fn(|c| R::from_fn(|l| alive(self.columns[column(l)].1[c])));
+        let flushed = |c: f64| if c.abs() < NEGLIGIBLE { 0.0 } else { c };
+        let mut x: [R; D] = std::array::from_fn(|c| R::from_fn(|l| flushed(self.columns[column(l)].0[c])));
+        let mut v: [R; D] = std::array::from_fn(|c| R::from_fn(|l| flushed(self.columns[column(l)].1[c])));
         let order = segment.degree.clamp(12, MAX_ORDER);
         let period_tau = self.model.period_tau;
         let inside = segment.phase + 0.5 * segment.h / period_tau;
@@ -140,11 +140,11 @@ impl<const D: usize> Observer<D> for Variation<'_, D> {
         if let Some(before) = self.last_contact
             && before != segment.contact
         {
-            self.jump(segment, before);
+            self.apply_saltation(segment, before);
         }
         self.last_contact = Some(segment.contact);
-        let Some(mut memory) = self.memory.take() else { return };
-        let Memory { one, several, equations, terms } = &mut *memory;
+        let Some(mut workspace) = self.workspace.take() else { return };
+        let Workspace { one, several, equations, terms } = &mut *workspace;
         vectorised(
             #[inline(always)]
             || {
@@ -152,30 +152,30 @@ impl<const D: usize> Observer<D> for Variation<'_, D> {
                 while first < self.columns.len() {
                     if self.columns.len() - first == 1 {
                         let alone: &Equations<D, f64> = self.model;
-                        self.carry::<f64>(segment, first, alone, terms, one);
+                        self.propagate::<f64>(segment, first, alone, terms, one);
                         first += 1;
                     } else {
-                        self.carry::<Lanes<COLUMNS>>(segment, first, equations, terms, several);
-                        first += COLUMNS;
+                        self.propagate::<Lanes<PERTURBATION_LANES>>(segment, first, equations, terms, several);
+                        first += PERTURBATION_LANES;
                     }
                 }
             },
         );
-        self.memory = Some(memory);
+        self.workspace = Some(workspace);
     }
 }
 
 /// Looks through two observers at once.
-pub(crate) struct Both<'a, A, B>(pub &'a mut A, pub &'a mut B);
+pub(crate) struct ObserverPair<'a, A, B>(pub &'a mut A, pub &'a mut B);
 
-impl<const D: usize, A: Observer<D>, B: Observer<D>> Observer<D> for Both<'_, A, B> {
+impl<const D: usize, A: Observer<D>, B: Observer<D>> Observer<D> for ObserverPair<'_, A, B> {
     fn segment(&mut self, segment: &Segment<'_, D>) {
         self.0.segment(segment);
         self.1.segment(segment);
     }
 }
 
-/// Deviation of one state from another.
-pub(crate) fn difference<const D: usize>(a: &State<D>, b: &State<D>) -> Deviation<D> {
+/// Perturbation of one state from another.
+pub(crate) fn state_difference<const D: usize>(a: &State<D>, b: &State<D>) -> Perturbation<D> {
     (std::array::from_fn(|c| a.x[c] - b.x[c]), std::array::from_fn(|c| a.v[c] - b.v[c]))
 }

@@ -130,7 +130,7 @@ pub struct RmsIntervals {
     pub pinion_axial_acceleration_m_s2: Halves<Interval>,
 }
 
-/// A Floquet multiplier: what a small deviation of its kind is multiplied by over one period of the motion.
+/// A Floquet multiplier: what a small perturbation of its kind is multiplied by over one period of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Multiplier {
     pub modulus: f64,

@@ -1,9 +1,9 @@
 //! What a search for a steady motion may spend.
 
-use crate::dynamics::{DynamicsError, Limits, Model, Numerics, PER_HALF};
+use crate::dynamics::{DynamicsError, IntegrationLimits, Model, Numerics, PER_HALF};
 
 /// Work of a search in all its parts: transient, maps, exponents. One unit is one step of the six coordinates of one half, or
-/// of one deviation carried along with them: 0.5 to 2 µs on a processor of 2020, so that a search ends within some 20 s and an
+/// of one perturbation carried along with them: 0.5 to 2 µs on a processor of 2020, so that a search ends within some 20 s and an
 /// answer with its record and its error within 30 s. It counts steps, not seconds, so that equal input ends in the same way on every
 /// machine.
 const SEARCH_UNITS: u64 = 10_000_000;
@@ -18,7 +18,7 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    pub fn new<const D: usize>(limits: &Limits<'_>) -> Self {
+    pub fn new<const D: usize>(limits: &IntegrationLimits<'_>) -> Self {
         let per_step = (D / PER_HALF) as u64;
         Self {
             left: SEARCH_UNITS.min(limits.max_steps.saturating_mul(per_step)),
@@ -27,25 +27,25 @@ impl Budget {
         }
     }
 
-    /// Steps that a motion which carries `deviations` may still take.
-    pub fn steps(&self, deviations: usize) -> u64 {
-        (self.left / (self.per_step * (1 + deviations as u64))).min(self.max_steps)
+    /// Steps that a motion which carries `perturbations` may still take.
+    pub fn steps(&self, perturbations: usize) -> u64 {
+        (self.left / (self.per_step * (1 + perturbations as u64))).min(self.max_steps)
     }
 
-    /// Whether a motion of `steps` steps that carries `deviations` can be afforded.
-    pub fn affords(&self, steps: u64, deviations: usize) -> bool {
-        steps <= self.steps(deviations)
+    /// Whether a motion of `steps` steps that carries `perturbations` can be afforded.
+    pub fn affords(&self, steps: u64, perturbations: usize) -> bool {
+        steps <= self.steps(perturbations)
     }
 
-    /// Limits under which a motion that carries `deviations` keeps within the budget.
-    pub fn limits<'a>(&self, of: &Limits<'a>, deviations: usize) -> Limits<'a> {
-        Limits { max_steps: self.steps(deviations), ..*of }
+    /// IntegrationLimits under which a motion that carries `perturbations` keeps within the budget.
+    pub fn limits<'a>(&self, of: &IntegrationLimits<'a>, perturbations: usize) -> IntegrationLimits<'a> {
+        IntegrationLimits { max_steps: self.steps(perturbations), ..*of }
     }
 
-    /// Takes off what a motion that carried `deviations` has spent.
-    pub fn spend(&mut self, numerics: &Numerics, deviations: usize) {
+    /// Takes off what a motion that carried `perturbations` has spent.
+    pub fn spend(&mut self, numerics: &Numerics, perturbations: usize) {
         let steps = numerics.steps + numerics.rejected_steps;
-        self.left = self.left.saturating_sub(steps * self.per_step * (1 + deviations as u64));
+        self.left = self.left.saturating_sub(steps * self.per_step * (1 + perturbations as u64));
     }
 }
 
@@ -81,6 +81,6 @@ pub(super) fn steps_per_period<const D: usize>(model: &Model<D>) -> f64 {
 }
 
 /// The answer to a search whose budget is used up at `time_s`.
-pub(super) fn exhausted(steps: u64, time_s: f64) -> DynamicsError {
+pub(super) fn budget_exhausted(steps: u64, time_s: f64) -> DynamicsError {
     DynamicsError::TooManySteps { time_s, limit: steps }
 }

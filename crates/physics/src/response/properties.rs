@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::regime::lyapunov;
+use super::regime::lyapunov_exponent;
 use super::*;
 use crate::dynamics::tests::reference::{parameters, reference};
 use crate::dynamics::{DynamicsError, Integrator, Model, Motion, Parameters, Spring, Stiffness, Unobserved};
@@ -160,7 +160,7 @@ fn a_drifting_pinion_repeats() {
         let r = auto(&p, 1e-9);
         assert!(r.summary.period_mesh_periods.is_some(), "{name} {stagger}: {:?}", r.summary);
         assert!(r.summary.error_estimate <= 1e-9, "{name} {stagger}: {}", r.summary.error_estimate);
-        // From rest the same motion drifts: followed, it is seen to repeat too.
+        // From rest the same motion drifts: followed, it is on_period to repeat too.
         let method = Method::Integrate { mesh_periods: 1200, record_mesh_periods: 120 };
         let analysis = Analysis { method, accuracy: 1e-9, samples_per_mesh_period: 0, ..Analysis::default() };
         let followed = solve(&p, &analysis, &Watch::none()).unwrap();
@@ -208,8 +208,8 @@ fn exponents_of_the_chaotic_case() {
         for _ in 0..300 {
             motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
         }
-        let of = if against { model.against_symmetry() } else { model.clone() };
-        lyapunov(&mut motion, &of, periods, &Watch::none()).unwrap()
+        let of = if against { model.antisymmetric() } else { model.clone() };
+        lyapunov_exponent(&mut motion, &of, periods, &Watch::none()).unwrap()
     }
     let topic = "Response: regime";
     let of = |what: &str| format!("Lyapunov exponent of case B over 8000 mesh periods, {what}");

@@ -8,7 +8,7 @@ use super::recorder::Recorder;
 use super::regime::Section;
 use super::report::Record;
 use super::statistics::Gathered;
-use crate::dynamics::{DynamicsError, Model, Numerics, Observer, Passenger, Segment, State, U, YG, YP};
+use crate::dynamics::{DynamicsError, Model, Numerics, Observer, TrajectoryObserver, Segment, State, U, YG, YP};
 
 /// Parts of a record whose scatter gives its standard error.
 const BATCHES: u64 = 10;
@@ -62,7 +62,7 @@ impl<'m, const D: usize> Run<'m, D> {
             from: start,
             recorder,
             energy: None,
-            recent: if recorded > KNOWN_TO_REPEAT { Section::held(model)? } else { Section::new() },
+            recent: if recorded > KNOWN_TO_REPEAT { Section::without_rigid_body(model)? } else { Section::new() },
             points: Vec::with_capacity(recorded.min(1 << 20) as usize),
             batch: (recorded / BATCHES).max(1),
             batches: Vec::new(),
@@ -93,7 +93,7 @@ impl<'m, const D: usize> Run<'m, D> {
         if state.period == self.record_from {
             self.from = state;
         }
-        if self.looks() {
+        if self.wants_segments() {
             self.recent.push(state);
             self.points.push(poincare(self.model, &state));
         }
@@ -127,7 +127,7 @@ pub(super) struct Finished<'m, const D: usize> {
     pub from: State<D>,
 }
 
-impl<'m, const D: usize> Passenger<'m, D> for Run<'m, D> {
+impl<'m, const D: usize> TrajectoryObserver<'m, D> for Run<'m, D> {
     fn model(&self) -> &'m Model<D> {
         self.model
     }
@@ -144,7 +144,7 @@ impl<'m, const D: usize> Passenger<'m, D> for Run<'m, D> {
         (self.state.period - self.first) as f64 / (self.end - self.first).max(1) as f64
     }
 
-    fn looks(&self) -> bool {
+    fn wants_segments(&self) -> bool {
         self.state.period >= self.record_from && self.state.period < self.end
     }
 
@@ -153,8 +153,8 @@ impl<'m, const D: usize> Passenger<'m, D> for Run<'m, D> {
         self.energy.segment(segment);
     }
 
-    fn period_ended(&mut self, state: &State<D>) -> bool {
-        let recorded = self.looks();
+    fn finish_period(&mut self, state: &State<D>) -> bool {
+        let recorded = self.wants_segments();
         self.state = *state;
         if recorded {
             self.squares.push(&self.recorder);
@@ -172,7 +172,7 @@ impl<'m, const D: usize> Passenger<'m, D> for Run<'m, D> {
         goes_on
     }
 
-    fn ended(&mut self, numerics: Numerics, error: Option<DynamicsError>) {
+    fn finished(&mut self, numerics: Numerics, error: Option<DynamicsError>) {
         (self.numerics, self.error) = (numerics, error);
     }
 }

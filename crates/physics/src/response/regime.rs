@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::dynamics::{
-    Both, Deviation, DynamicsError, FreeMotions, Model, Motion, PER_HALF, State, Unobserved, Variation, W, difference,
+    ObserverPair, Perturbation, DynamicsError, RigidBodyModes, Model, Motion, PER_HALF, State, Unobserved, Variation, W, state_difference,
 };
 use crate::watch::Watch;
 
@@ -17,22 +17,22 @@ pub(super) const CHAOS_PER_MESH_PERIOD: f64 = 0.01;
 /// States at the starts of the last mesh periods.
 pub(super) struct Section<const D: usize> {
     states: VecDeque<State<D>>,
-    free: FreeMotions<D>,
+    rigid_body: RigidBodyModes<D>,
 }
 
 impl<const D: usize> Section<D> {
     /// States as they are: for motions of which it is not asked whether they repeat.
     pub fn new() -> Self {
-        Self { states: VecDeque::with_capacity(LONGEST_PERIOD + 1), free: FreeMotions::none() }
+        Self { states: VecDeque::with_capacity(LONGEST_PERIOD + 1), rigid_body: RigidBodyModes::none() }
     }
 
     /// States without their free motions, whose drift keeps no motion from repeating.
-    pub fn held(model: &Model<D>) -> Result<Self, DynamicsError> {
-        Ok(Self { free: FreeMotions::new(model)?, ..Self::new() })
+    pub fn without_rigid_body(model: &Model<D>) -> Result<Self, DynamicsError> {
+        Ok(Self { rigid_body: RigidBodyModes::new(model)?, ..Self::new() })
     }
 
     pub fn push(&mut self, mut state: State<D>) {
-        (state.x, state.v) = self.free.held(&(state.x, state.v));
+        (state.x, state.v) = self.rigid_body.project_out(&(state.x, state.v));
         if self.states.len() > LONGEST_PERIOD {
             self.states.pop_front();
         }
@@ -50,7 +50,7 @@ impl<const D: usize> Section<D> {
     pub fn change(&self, n: usize) -> Option<f64> {
         let last = self.states.len().checked_sub(1)?;
         let before = self.states.get(last.checked_sub(n)?)?;
-        Some(largest(&difference(&self.states[last], before)) / self.size())
+        Some(largest(&state_difference(&self.states[last], before)) / self.size())
     }
 
     /// The shortest period over which the state changes by less than `limit`, and by how much. A multiple of a shorter
@@ -86,48 +86,48 @@ impl<const D: usize> Section<D> {
     }
 }
 
-/// Largest component of a deviation, free rotation apart.
-pub(super) fn largest<const D: usize>(d: &Deviation<D>) -> f64 {
+/// Largest component of a perturbation, free rotation apart.
+pub(super) fn largest<const D: usize>(d: &Perturbation<D>) -> f64 {
     (0..D).filter(|c| c % PER_HALF != W).fold(0.0, |m, c| m.max(d.0[c].abs()).max(d.1[c].abs()))
 }
 
-/// Largest Lyapunov exponent per mesh period, from one deviation carried along `periods` mesh periods of the motion (the first
+/// Largest Lyapunov exponent per mesh period, from one perturbation carried along `periods` mesh periods of the motion (the first
 /// tenth only turns it into the fastest direction).
 ///
-/// Deviations along free motions are taken out after every mesh period: they stay for ever (or grow with time, not
+/// Perturbations along free motions are taken out after every mesh period: they stay for ever (or grow with time, not
 /// exponentially), so over any finite time they would hide every exponent below zero: a mean that tends to 0 like
 /// ln(t)/t from whatever the motion's own is.
-pub(super) fn lyapunov<const D: usize>(
+pub(super) fn lyapunov_exponent<const D: usize>(
     motion: &mut Motion<'_, D>,
     variation_model: &Model<D>,
     periods: u64,
     watch: &Watch<'_>,
 ) -> Result<f64, DynamicsError> {
-    lyapunov_seen(motion, variation_model, periods, watch, |_, _| ())
+    lyapunov_exponent_with(motion, variation_model, periods, watch, |_, _| ())
 }
 
-/// The same; `seen` is told the logarithm of the deviation's growth over each mesh period and the state at its end.
-pub(super) fn lyapunov_seen<const D: usize>(
+/// The same; `on_period` is told the logarithm of the perturbation's growth over each mesh period and the state at its end.
+pub(super) fn lyapunov_exponent_with<const D: usize>(
     motion: &mut Motion<'_, D>,
     variation_model: &Model<D>,
     periods: u64,
     watch: &Watch<'_>,
-    mut seen: impl FnMut(f64, &State<D>),
+    mut on_period: impl FnMut(f64, &State<D>),
 ) -> Result<f64, DynamicsError> {
-    let start = every_way(variation_model);
-    let free = FreeMotions::new(variation_model)?;
-    let mut variation = Variation::new(variation_model, vec![free.held(&start)], 1e-9);
+    let start = generic_perturbation(variation_model);
+    let rigid_body = RigidBodyModes::new(variation_model)?;
+    let mut variation = Variation::new(variation_model, vec![rigid_body.project_out(&start)], 1e-9);
     let (mut sum, mut counted) = (0.0, 0u64);
     for period in 0..periods {
         let before = largest(&variation.columns[0]);
-        motion.advance_period(&mut Both(&mut Unobserved, &mut variation), watch, 0.0)?;
-        variation.columns[0] = free.held(&variation.columns[0]);
+        motion.advance_period(&mut ObserverPair(&mut Unobserved, &mut variation), watch, 0.0)?;
+        variation.columns[0] = rigid_body.project_out(&variation.columns[0]);
         let (x, v) = &mut variation.columns[0];
         let after = largest(&(*x, *v));
         if !(after > 0.0 && after.is_finite()) {
             return Ok(f64::NEG_INFINITY);
         }
-        seen((after / before).ln(), &motion.state);
+        on_period((after / before).ln(), &motion.state);
         if period >= periods / 10 {
             sum += (after / before).ln();
             counted += 1;
@@ -137,23 +137,23 @@ pub(super) fn lyapunov_seen<const D: usize>(
     Ok(sum / counted.max(1) as f64)
 }
 
-/// What is left of a deviation after one mesh period of the motion, free motions apart: its largest component over what it was.
-pub(super) fn faded<const D: usize>(
+/// What is left of a perturbation after one mesh period of the motion, free motions apart: its largest component over what it was.
+pub(super) fn perturbation_decay<const D: usize>(
     motion: &mut Motion<'_, D>,
     variation_model: &Model<D>,
-    free: &FreeMotions<D>,
+    rigid_body: &RigidBodyModes<D>,
     watch: &Watch<'_>,
 ) -> Result<f64, DynamicsError> {
-    let start = free.held(&every_way(variation_model));
+    let start = rigid_body.project_out(&generic_perturbation(variation_model));
     let mut variation = Variation::new(variation_model, vec![start], 1e-6);
-    motion.advance_period(&mut Both(&mut Unobserved, &mut variation), watch, 0.0)?;
-    let left = largest(&free.held(&variation.columns[0])) / largest(&start);
+    motion.advance_period(&mut ObserverPair(&mut Unobserved, &mut variation), watch, 0.0)?;
+    let left = largest(&rigid_body.project_out(&variation.columns[0])) / largest(&start);
     // An infinite or undefined answer is no sign of fading.
     Ok(if left.is_nan() { f64::INFINITY } else { left })
 }
 
-/// A deviation that prefers no direction and leaves none out.
-fn every_way<const D: usize>(model: &Model<D>) -> Deviation<D> {
+/// A perturbation that prefers no direction and leaves none out.
+fn generic_perturbation<const D: usize>(model: &Model<D>) -> Perturbation<D> {
     let mut start = ([0.0; D], [0.0; D]);
     for (i, c) in model.active().enumerate() {
         start.0[c] = 1.0 / (i + 1) as f64;

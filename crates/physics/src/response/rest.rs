@@ -4,7 +4,7 @@ use super::analysis::{ContactState, Halves, Method, Regime, Response};
 use super::recording::Run;
 use super::report::{Verdict, report};
 use super::solve::Point;
-use crate::dynamics::{DynamicsError, Impact, Integrator, Model, Numerics, PER_HALF, Spring, State, U, carry_one};
+use crate::dynamics::{DynamicsError, Impact, Integrator, Model, Numerics, PER_HALF, Spring, State, U, integrate_trajectory};
 
 impl Point<'_> {
     /// Whether the pair stays where it starts: without load and impact, set out at rest in the middle of its backlash (all zero) or, where
@@ -49,7 +49,7 @@ impl Point<'_> {
         let held = model.holding_contact();
         let span = (from, from + periods);
         let mut run = Run::new(&held, start, 1e-6, span, self.recorder(&held, periods))?;
-        carry_one(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
+        integrate_trajectory(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
         let finished = run.finish()?;
         let verdict = Verdict {
             regime: Regime::Period1,

@@ -1,24 +1,24 @@
 //! What a motion is that was followed and did not come to repeat: on its way to another motion, growing without bound, or one that
 //! never repeats.
 //!
-//! A motion that never repeats is stationary: a quasi-periodic one moves on a torus, along which deviations neither grow nor decay, and
-//! of a chaotic one the statistics stay. One that still decays is told from a quasi-periodic one by its deviations, which decay as it
+//! A motion that never repeats is stationary: a quasi-periodic one moves on a torus, along which perturbations neither grow nor decay, and
+//! of a chaotic one the statistics stay. One that still decays is told from a quasi-periodic one by its perturbations, which decay as it
 //! does. While contact does not change the equations are linear with periodic coefficients, and the Floquet multipliers decide exactly.
 
 use super::analysis::{Regime, Response};
 use super::channel::ChannelId;
 use super::recorder::Recorder;
 use super::recording::Finished;
-use super::regime::{CHAOS_PER_MESH_PERIOD, Section, lyapunov_seen};
+use super::regime::{CHAOS_PER_MESH_PERIOD, Section, lyapunov_exponent_with};
 use super::report::{Verdict, report, solved_halves};
 use super::solve::{Point, REPEATS};
-use crate::dynamics::{DynamicsError, Integrator, Limits, Model, Motion, Numerics, Shooting, State};
+use crate::dynamics::{DynamicsError, Integrator, IntegrationLimits, Model, Motion, Numerics, Shooting, State};
 
 /// Mesh periods over which a Lyapunov exponent is averaged.
 const FOLLOWED_MESH_PERIODS: u64 = 300;
 /// A multiplier this close to one is one: of an undamped motion, computed.
 const SAME_MODULUS: f64 = 1e-7;
-/// A trend of the logarithm of a deviation per mesh period below which it decays. Along a torus a deviation swings about what it was; the
+/// A trend of the logarithm of a perturbation per mesh period below which it decays. Along a torus a perturbation swings about what it was; the
 /// trend of that over the mesh periods followed stays well below this.
 const DECAY_PER_MESH_PERIOD: f64 = 1e-3;
 /// A motion this many times as far as the backlash is wide is ruled by the stiffness of both flanks alone.
@@ -37,12 +37,12 @@ pub(super) struct Fate {
     pub numerics: Numerics,
 }
 
-/// A motion followed on with a deviation beside it.
+/// A motion followed on with a perturbation beside it.
 struct Course {
     exponent: f64,
     /// The motion has come to repeat.
     repeats: bool,
-    /// The deviation decays.
+    /// The perturbation decays.
     decays: bool,
     numerics: Numerics,
 }
@@ -113,9 +113,9 @@ impl Point<'_> {
         tolerance: f64,
     ) -> Result<Course, DynamicsError> {
         let mut motion = Motion::new(model, from, integrator, tolerance, self.analysis.max_steps);
-        let mut section = Section::held(model)?;
+        let mut section = Section::without_rigid_body(model)?;
         let mut growth = Vec::with_capacity(FOLLOWED_MESH_PERIODS as usize);
-        let exponent = lyapunov_seen(&mut motion, model, FOLLOWED_MESH_PERIODS, self.watch, |ln, state| {
+        let exponent = lyapunov_exponent_with(&mut motion, model, FOLLOWED_MESH_PERIODS, self.watch, |ln, state| {
             growth.push(ln);
             section.push(*state);
         })?;
@@ -127,7 +127,7 @@ impl Point<'_> {
     /// that keeps contact, or is far beyond its backlash, is multiplied by.
     fn held_modulus<const D: usize>(&self, model: &Model<D>, near: &State<D>) -> Result<f64, DynamicsError> {
         const TOLERANCE: f64 = 1e-12;
-        let limits = Limits { tolerance: TOLERANCE, max_steps: self.analysis.max_steps, watch: self.watch };
+        let limits = IntegrationLimits { tolerance: TOLERANCE, max_steps: self.analysis.max_steps, watch: self.watch };
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), limits)?;
         let mut start = State { period: 0, phase: 0.0, ..*near };
         for j in 0..Model::<D>::HALVES {
@@ -137,8 +137,8 @@ impl Point<'_> {
                 true => model.contact_of(j, model.s(j, &start.x), 0.0),
             };
         }
-        let once = shooting.map(&model.holding_contact(), start, 1)?;
-        Ok(shooting.multipliers(&once.map).first().map_or(0.0, |m| m.norm()))
+        let period_map = shooting.period_map(&model.holding_contact(), start, 1)?;
+        Ok(shooting.multipliers(&period_map.monodromy).first().map_or(0.0, |m| m.norm()))
     }
 
     /// The answer where the motion from `start` grows without bound: its first mesh periods, told as such.

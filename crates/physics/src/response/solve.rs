@@ -6,10 +6,10 @@ use super::energy::EnergyBalance;
 use super::recorder::Recorder;
 use super::recording::{Finished, Run};
 use super::report::{Asked, Verdict, report, solved_halves};
-use super::steady::{Found, Search, moved};
+use super::steady::{SteadyMotion, SteadyStateSearch, displaced};
 use crate::dynamics::{
-    Deviation, DynamicsError, Integrator, Limits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, carry,
-    carry_one, difference, is_mirrored,
+    Perturbation, DynamicsError, Integrator, IntegrationLimits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, integrate_trajectories,
+    integrate_trajectory, state_difference, is_mirrored,
 };
 use crate::watch::{Canceled, Watch};
 use rayon::prelude::*;
@@ -30,7 +30,7 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
     match analysis.method {
         Method::Integrate { .. } => {
             let points = std::slice::from_ref(&point);
-            let alone = Together::Alone(analysis.integrator);
+            let alone = LaneUse::Sequential(analysis.integrator);
             let mut responses = if mirrored { integrate::<6>(points, alone) } else { integrate::<12>(points, alone) }?;
             responses.pop().unwrap_or(Err(DynamicsError::Canceled(Canceled)))
         }
@@ -108,10 +108,10 @@ fn solve_group(
         }
     }
     let [(halves, six), (whole, twelve)] = &sides;
-    for (i, response) in halves.iter().zip(integrate::<6>(six, Together::InLanes)?) {
+    for (i, response) in halves.iter().zip(integrate::<6>(six, LaneUse::Batched)?) {
         out[*i] = response;
     }
-    for (i, response) in whole.iter().zip(integrate::<12>(twelve, Together::InLanes)?) {
+    for (i, response) in whole.iter().zip(integrate::<12>(twelve, LaneUse::Batched)?) {
         out[*i] = response;
     }
     Ok(out)
@@ -154,7 +154,7 @@ impl Point<'_> {
         })
     }
 
-    /// Both halves and the start mirror each other.
+    /// ObserverPair halves and the start mirror each other.
     fn is_mirrored(&self, start: &[f64; 24]) -> bool {
         self.p.is_symmetric() && (self.analysis.initial_state.is_none() || is_mirrored(start))
     }
@@ -163,8 +163,8 @@ impl Point<'_> {
         Asked { p: self.p, analysis: self.analysis, modes: self.modes }
     }
 
-    fn limits(&self, tolerance: f64) -> Limits<'_> {
-        Limits { tolerance, max_steps: self.analysis.max_steps, watch: self.watch }
+    fn limits(&self, tolerance: f64) -> IntegrationLimits<'_> {
+        IntegrationLimits { tolerance, max_steps: self.analysis.max_steps, watch: self.watch }
     }
 
     pub(super) fn mean_stiffness_n_per_m(&self) -> [f64; 2] {
@@ -174,7 +174,7 @@ impl Point<'_> {
     /// The steady state; None when six coordinates do not tell the whole story.
     fn steady<const D: usize>(&self, start: &[f64; 24], off_symmetry: bool) -> Result<Option<Response>, DynamicsError> {
         let model = Model::<D>::new(self.p)?;
-        let search = Search {
+        let search = SteadyStateSearch {
             model: &model,
             mean_stiffness_n_per_m: self.mean_stiffness_n_per_m(),
             limits: self.limits((1e-3 * self.analysis.accuracy).clamp(1e-14, 1e-6)),
@@ -186,11 +186,11 @@ impl Point<'_> {
             model.seat_teeth(&mut state);
         }
         if off_symmetry {
-            let mut push: Deviation<D> = ([0.0; D], [0.0; D]);
+            let mut push: Perturbation<D> = ([0.0; D], [0.0; D]);
             for c in 0..PER_HALF - 1 {
                 push.0[c] = OFF_SYMMETRY * state.x[c];
             }
-            state = moved(&model, state, &push);
+            state = displaced(&model, state, &push);
         }
         let bounded = |error: DynamicsError| {
             let diverged = matches!(error, DynamicsError::Diverged { .. }) && self.analysis.method == Method::Auto;
@@ -233,7 +233,7 @@ impl Point<'_> {
         let section = finished.record;
         numerics += section.numerics;
         let error_estimate = match &found.orbit {
-            Some((n, map)) => self.orbit_error(&model, &found, *n, map, &finished.recorder)?,
+            Some((n, monodromy)) => self.orbit_error(&model, &found, *n, monodromy, &finished.recorder)?,
             None => section.batch_error,
         };
         let verdict = Verdict {
@@ -311,7 +311,7 @@ impl Point<'_> {
     ) -> Result<Finished<'m, D>, DynamicsError> {
         let span = (start.period, start.period + periods);
         let mut run = Run::new(model, start, tolerance, span, recorder)?.with_energy(energy);
-        carry_one(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
+        integrate_trajectory(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
         run.finish()
     }
 
@@ -320,19 +320,19 @@ impl Point<'_> {
     fn orbit_error<const D: usize>(
         &self,
         model: &Model<D>,
-        found: &Found<D>,
+        found: &SteadyMotion<D>,
         n: u64,
-        map: &nalgebra::DMatrix<f64>,
+        monodromy: &nalgebra::DMatrix<f64>,
         recorder: &Recorder<D>,
     ) -> Result<f64, DynamicsError> {
         let tight = (1e-3 * found.tolerance).max(1e-15);
         let start = State { period: 0, ..found.start };
         let once = self.record(model, (start, tight), n, self.recorder_of_rms(model), None)?.record;
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tight))?;
-        let defect = difference(&once.last, &start);
-        let Some(correction) = shooting.correction(&defect, map, n) else { return Ok(f64::INFINITY) };
+        let defect = state_difference(&once.last, &start);
+        let Some(correction) = shooting.correction(&defect, monodromy, n) else { return Ok(f64::INFINITY) };
         let better = self
-            .record(model, (moved(model, start, &correction), tight), n, self.recorder_of_rms(model), None)?
+            .record(model, (displaced(model, start, &correction), tight), n, self.recorder_of_rms(model), None)?
             .recorder;
         Ok(SAFETY * rms_difference(recorder, &better, smallest(model)) + ROUNDING)
     }
@@ -363,13 +363,13 @@ impl Point<'_> {
 
 /// How points are integrated: one after the other by any method, or side by side by Taylor series.
 #[derive(Clone, Copy)]
-enum Together {
-    Alone(Integrator),
-    InLanes,
+enum LaneUse {
+    Sequential(Integrator),
+    Batched,
 }
 
-impl Together {
-    fn carry<const D: usize>(
+impl LaneUse {
+    fn integrate<const D: usize>(
         self,
         runs: &mut [Run<'_, D>],
         tolerance: f64,
@@ -377,18 +377,18 @@ impl Together {
         watch: &Watch<'_>,
     ) -> Result<(), Canceled> {
         match self {
-            Together::Alone(integrator) => {
-                runs.iter_mut().try_for_each(|run| carry_one(run, integrator, max_steps, watch))
+            LaneUse::Sequential(integrator) => {
+                runs.iter_mut().try_for_each(|run| integrate_trajectory(run, integrator, max_steps, watch))
             }
-            Together::InLanes => carry(runs, tolerance, max_steps, watch),
+            LaneUse::Batched => integrate_trajectories(runs, tolerance, max_steps, watch),
         }
     }
 
     /// For the comparison that measures the error: by Taylor series always.
-    fn finely(self) -> Self {
+    fn for_comparison(self) -> Self {
         match self {
-            Together::Alone(_) => Together::Alone(Integrator::Taylor),
-            Together::InLanes => Together::InLanes,
+            LaneUse::Sequential(_) => LaneUse::Sequential(Integrator::Taylor),
+            LaneUse::Batched => LaneUse::Batched,
         }
     }
 }
@@ -397,7 +397,7 @@ impl Together {
 /// each.
 fn integrate<const D: usize>(
     points: &[Point<'_>],
-    together: Together,
+    lane_use: LaneUse,
 ) -> Result<Vec<Result<Response, DynamicsError>>, Canceled> {
     let Some(Point { analysis, watch, .. }) = points.first() else { return Ok(Vec::new()) };
     let Method::Integrate { mesh_periods, record_mesh_periods } = analysis.method else { return Ok(Vec::new()) };
@@ -436,7 +436,7 @@ fn integrate<const D: usize>(
             Err(error) => out[i] = Err(error),
         }
     }
-    together.carry(&mut runs, tolerance, analysis.max_steps, watch)?;
+    lane_use.integrate(&mut runs, tolerance, analysis.max_steps, watch)?;
 
     let mut compared = Vec::new();
     let mut waiting = Vec::new();
@@ -464,7 +464,7 @@ fn integrate<const D: usize>(
             }
         }
     }
-    together.finely().carry(&mut compared, tight, analysis.max_steps, watch)?;
+    lane_use.for_comparison().integrate(&mut compared, tight, analysis.max_steps, watch)?;
     for ((i, finished, mut verdict), finely) in waiting.into_iter().zip(compared) {
         let Ok(model) = &models[i] else { continue };
         out[i] = finely.finish().map(|fine| {

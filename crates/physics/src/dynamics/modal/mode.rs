@@ -61,7 +61,7 @@ impl NaturalModes {
     /// The modes with their energy shares, damping and names. The name is that of the springs with the largest share of the strain energy
     /// (meshes; lateral, axial or torsional springs of pinion or gear, supports and shafts together) if that is at least half, else
     /// those of the two largest; "meshes in phase" if the mode is its own mirror image between the halves, "meshes opposed" if it is the
-    /// opposite of it. Motions that nothing holds are called by what moves in them: rotation, axial screw (rotation and axial), axial, lateral.
+    /// antisymmetric of it. Motions that nothing holds are called by what moves in them: rotation, axial screw (rotation and axial), axial, lateral.
     pub fn describe(&self, p: &Parameters) -> Vec<Mode> {
         self.frequencies_hz.iter().zip(&self.shapes).map(|(f, shape)| describe(p, *f, shape)).collect()
     }
@@ -136,7 +136,7 @@ fn free_name(mode: &Mode) -> String {
 mod tests {
     use super::*;
     use crate::dynamics::tests::reference::parameters;
-    use crate::dynamics::{HalfParameters, Limits, Model, Shooting, Stiffness};
+    use crate::dynamics::{HalfParameters, IntegrationLimits, Model, Shooting, Stiffness};
     use crate::watch::Watch;
     use herringbone_oracle::Tolerance::Relative;
     use herringbone_oracle::{check, check_worst};
@@ -255,12 +255,12 @@ mod tests {
         p.couplings.gear_axial.damping *= scale;
         let model = Model::<12>::new(&p).unwrap();
         let watch = Watch::none();
-        let limits = Limits { tolerance: 1e-13, max_steps: u64::MAX, watch: &watch };
+        let limits = IntegrationLimits { tolerance: 1e-13, max_steps: u64::MAX, watch: &watch };
         let shooting = Shooting::new(&model, [9e8; 2], limits).unwrap();
         let mut start = model.state_from(&[0.0; 24]);
         start.contact = [1; 2];
-        let round = shooting.map(&model.holding_contact(), start, 1).unwrap();
-        let mut rates: Vec<f64> = shooting.multipliers(&round.map).iter().map(|m| -m.norm().ln()).collect();
+        let round = shooting.period_map(&model.holding_contact(), start, 1).unwrap();
+        let mut rates: Vec<f64> = shooting.multipliers(&round.monodromy).iter().map(|m| -m.norm().ln()).collect();
         let mut expected: Vec<f64> = modes(&p)
             .iter()
             .filter_map(|m| m.damping_ratio.map(|z| z * std::f64::consts::TAU * m.frequency_hz * p.mesh_period_s()))

@@ -1,4 +1,4 @@
-//! The mesh force of a loaded contact: its polynomials, motions under it by independent methods, lanes, deviations.
+//! The mesh force of a loaded contact: its polynomials, motions under it by independent methods, lanes, perturbations.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -138,9 +138,9 @@ fn lanes_change_nothing_under_contact_forces_and_beside_stiffnesses() {
     }
 }
 
-/// The map of deviations against differences of motions, over levels and loss of contact, the damper acting in the gap or not.
+/// The map of perturbations against differences of motions, over levels and loss of contact, the damper acting in the gap or not.
 #[test]
-fn deviations_are_differences_of_motions() {
+fn perturbations_are_differences_of_motions() {
     let mut errors = Vec::new();
     for (load_nm, in_gap) in [(400.0, true), (30.0, true), (30.0, false)] {
         let (mut p, start) = case(load_nm, 0.2e-6);
@@ -152,18 +152,18 @@ fn deviations_are_differences_of_motions() {
             motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
             motion.state
         };
-        let mut variation = Variation::new(&model, Variation::units(&model), 1e-12);
+        let mut variation = Variation::new(&model, Variation::unit_perturbations(&model), 1e-12);
         let mut motion = Motion::new(&model, from, Integrator::Taylor, 1e-13, 1_000_000);
         motion.advance_period(&mut variation, &Watch::none(), 0.0).unwrap();
         for (c, column) in variation.columns.iter().take(5).enumerate() {
-            let moved = |by: f64| {
+            let displaced = |by: f64| {
                 let mut state = from;
                 state.x[c] += by;
                 state.contact[0] = model.contact_of(0, model.s(0, &state.x), 0.0);
                 go(state)
             };
             let step = 2e-10;
-            let (up, down) = (moved(step), moved(-step));
+            let (up, down) = (displaced(step), displaced(-step));
             let size = column.0.iter().fold(0.0f64, |m, v| m.max(v.abs()));
             let worst = (0..5)
                 .map(|r| ((up.x[r] - down.x[r]) / (2.0 * step) - column.0[r]) / size)
@@ -171,7 +171,7 @@ fn deviations_are_differences_of_motions() {
             errors.push(worst);
         }
     }
-    check_worst(TOPIC, "deviations over a mesh period against differences", errors, 5e-4);
+    check_worst(TOPIC, "perturbations over a mesh period against differences", errors, 5e-4);
 }
 
 #[test]

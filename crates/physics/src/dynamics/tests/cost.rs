@@ -48,7 +48,7 @@ fn stepping_allocates_nothing() {
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
         let model = Model::<12>::new(&parameters("C")).unwrap();
         let mut m = motion(&model, "C", integrator, 1e-7);
-        let mut columns = Variation::new(&model, Variation::units(&model), 1e-7);
+        let mut columns = Variation::new(&model, Variation::unit_perturbations(&model), 1e-7);
         let before = ALLOCATIONS.get();
         for _ in 0..20 {
             m.advance_period(&mut columns, &Watch::none(), 0.0).unwrap();
@@ -65,7 +65,7 @@ fn time_per_mesh_period() {
         let mut least = Duration::MAX;
         for _ in 0..200 {
             let mut m = motion(&model, name, Integrator::Taylor, tolerance);
-            let mut v = Variation::new(&model, Variation::units(&model), tolerance);
+            let mut v = Variation::new(&model, Variation::unit_perturbations(&model), tolerance);
             let at = Instant::now();
             for _ in 0..20 {
                 if columns {
@@ -81,7 +81,7 @@ fn time_per_mesh_period() {
     for name in ["A", "B", "C"] {
         for tolerance in [5e-8, 1e-12] {
             println!(
-                "{name} {tolerance:e}: {:.1} µs (6), {:.1} µs (12); with all deviations {:.1} µs, {:.1} µs",
+                "{name} {tolerance:e}: {:.1} µs (6), {:.1} µs (12); with all perturbations {:.1} µs, {:.1} µs",
                 best::<6>(name, tolerance, false),
                 best::<12>(name, tolerance, false),
                 best::<6>(name, tolerance, true),

@@ -47,7 +47,7 @@ fn order(
         .iter()
         .map(|&per_period| {
             let h = model.period_tau / f64::from(per_period);
-            let d = difference(&end(with(motion(1.0), h)).0, &exact);
+            let d = state_difference(&end(with(motion(1.0), h)).0, &exact);
             [h.ln(), d.0.iter().chain(&d.1).fold(0.0f64, |m, c| m.max(c.abs())).ln()]
         })
         .collect();

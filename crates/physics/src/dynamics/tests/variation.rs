@@ -1,4 +1,4 @@
-//! Deviations: the linear map against differences of motions.
+//! Perturbations: the linear map against differences of motions.
 
 use super::reference::{parameters, reference};
 use crate::dynamics::*;
@@ -6,8 +6,8 @@ use crate::watch::Watch;
 use herringbone_oracle::Tolerance::Absolute;
 use herringbone_oracle::{check, check_worst};
 
-fn limits<'a>(watch: &'a Watch<'static>) -> Limits<'a> {
-    Limits { tolerance: 1e-13, max_steps: u64::MAX, watch }
+fn limits<'a>(watch: &'a Watch<'static>) -> IntegrationLimits<'a> {
+    IntegrationLimits { tolerance: 1e-13, max_steps: u64::MAX, watch }
 }
 
 fn advance<const D: usize>(model: &Model<D>, mut state: State<D>, periods: u64) -> State<D> {
@@ -27,13 +27,13 @@ fn check_map<const D: usize>(p: &Parameters, name: &str) {
     let start = model.state_from(reference().cases[name].initial_state.as_slice().try_into().unwrap());
     let start = State { period: 0, ..advance(&model, start, 40) };
     let shooting = Shooting::new(&model, [9e8; 2], limits(&watch)).unwrap();
-    let map = shooting.map(&model, start, 2).unwrap();
+    let map = shooting.period_map(&model, start, 2).unwrap();
     let active: Vec<usize> = model.active().collect();
     let n = active.len();
     let mut errors = Vec::new();
     for column in 0..2 * n {
         let step = 1e-11;
-        let moved = |sign: f64| {
+        let displaced = |sign: f64| {
             let mut s = start;
             if column < n {
                 s.x[active[column]] += sign * step;
@@ -42,20 +42,20 @@ fn check_map<const D: usize>(p: &Parameters, name: &str) {
             }
             advance(&model, s, 2)
         };
-        let (plus, minus) = (moved(1.0), moved(-1.0));
-        let scale = map.map.column(column).amax();
+        let (plus, minus) = (displaced(1.0), displaced(-1.0));
+        let scale = map.monodromy.column(column).amax();
         for row in 0..2 * n {
             let slope = if row < n {
                 plus.x[active[row]] - minus.x[active[row]]
             } else {
                 plus.v[active[row - n]] - minus.v[active[row - n]]
             } / (2.0 * step);
-            errors.push((slope - map.map[(row, column)]) / scale);
+            errors.push((slope - map.monodromy[(row, column)]) / scale);
         }
     }
     let gap = if p.damping_in_gap { "" } else { ", no damping in the gap" };
     let quantity = format!("map over two periods against differences, case {name}, {D} coordinates{gap}");
-    check_worst("Dynamics: deviations and multipliers", &quantity, errors, 1e-3);
+    check_worst("Dynamics: perturbations and multipliers", &quantity, errors, 1e-3);
 }
 
 #[test]
@@ -76,9 +76,9 @@ fn the_slowest_multiplier_of_case_a() {
     let model = Model::<12>::new(&parameters("A")).unwrap();
     let start = model.state_from(reference().cases["A"].initial_state.as_slice().try_into().unwrap());
     let shooting = Shooting::new(&model, [9e8; 2], limits(&watch)).unwrap();
-    let map = shooting.map(&model, start, 1).unwrap();
-    let slowest = shooting.multipliers(&map.map)[0].norm();
-    let topic = "Dynamics: deviations and multipliers";
+    let map = shooting.period_map(&model, start, 1).unwrap();
+    let slowest = shooting.multipliers(&map.monodromy)[0].norm();
+    let topic = "Dynamics: perturbations and multipliers";
     check(topic, "slowest multiplier of case A, twelve coordinates", slowest, 0.891, Absolute(5e-4));
 }
 
@@ -87,7 +87,7 @@ fn the_slowest_multiplier_of_case_a() {
 fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
     let p = parameters(name);
     let model = Model::<12>::new(&p).unwrap();
-    let free = FreeMotions::new(&model).unwrap();
+    let rigid_body = RigidBodyModes::new(&model).unwrap();
     let start: [f64; 24] = reference().cases[name].initial_state.as_slice().try_into().unwrap();
     let on_orbit = State { period: 0, ..advance(&model, model.state_from(&start), 400) };
     let mut source = model.source_state(&on_orbit);
@@ -98,10 +98,10 @@ fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
     let mut points: Vec<[f64; 3]> = Vec::new();
     for period in 1..=70 {
         (a, b) = (advance(&model, a, 1), advance(&model, b, 1));
-        let d = difference(&b, &a);
-        let held = free.held(&d);
+        let d = state_difference(&b, &a);
+        let held = rigid_body.project_out(&d);
         // The free rotations are coordinates of their own, left out of `held` by their places.
-        let rows = |d: &Deviation<12>, all: bool| {
+        let rows = |d: &Perturbation<12>, all: bool| {
             (0..12).filter(|c| all || c % PER_HALF != W).fold(0.0f64, |m, c| m.max(d.0[c].abs()).max(d.1[c].abs()))
         };
         if period >= 10 {
@@ -115,9 +115,9 @@ fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
 }
 
 /// How fast neighbours of case C come back to it. An independent program states -0.037 per mesh period for all twelve
-/// coordinates and -0.03 for deviations against the mirror symmetry. The multipliers of the period-2 orbit, and two motions that are
+/// coordinates and -0.03 for perturbations against the mirror symmetry. The multipliers of the period-2 orbit, and two motions that are
 /// simply followed side by side, agree with each other on a faster decay. A likely reason, not shown: free motions (rotation of each half, screw
-/// motion of the pinion), along which a deviation stays for ever, were part of the stated averages; with them in, the distance
+/// motion of the pinion), along which a perturbation stays for ever, were part of the stated averages; with them in, the distance
 /// of the same two motions falls more slowly here too.
 #[test]
 fn neighbours_of_case_c_approach_as_its_multipliers_say() {
@@ -126,15 +126,15 @@ fn neighbours_of_case_c_approach_as_its_multipliers_say() {
     let model = Model::<6>::new(&p).unwrap();
     let start = model.state_from(reference().cases["C"].initial_state.as_slice().try_into().unwrap());
     let start = State { period: 0, ..advance(&model, start, 400) };
-    let opposite = model.against_symmetry();
-    let topic = "Dynamics: deviations and multipliers";
+    let antisymmetric = model.antisymmetric();
+    let topic = "Dynamics: perturbations and multipliers";
     let (e, small) = (1e-10, 1e-9);
     let symmetric = [e, 0.0, small, -e, 0.0, 0.0, e, 0.0, small, -e, 0.0, 0.0];
     let against = [e, e, small, -e, e, 0.0, -e, e, -small, e, e, 0.0];
-    for (what, of, push) in [("within", &model, symmetric), ("against", &opposite, against)] {
+    for (what, of, push) in [("within", &model, symmetric), ("against", &antisymmetric, against)] {
         let shooting = Shooting::new(of, [9e8; 2], limits(&watch)).unwrap();
-        let map = shooting.map(&model, start, 2).unwrap();
-        let exponent = shooting.multipliers(&map.map)[0].norm().ln() / 2.0;
+        let map = shooting.period_map(&model, start, 2).unwrap();
+        let exponent = shooting.multipliers(&map.monodromy)[0].norm().ln() / 2.0;
         let (held, all) = approach("C", push);
         println!("case C, {what}: multipliers {exponent:.5}, followed {held:.5}, free motions left in {all:.5}");
         let quantity = format!("case C, decay {what} the mirror symmetry per mesh period, two motions followed");

@@ -9,15 +9,15 @@ use super::lanes::{Lanes, Real};
 use super::model::{Contact, Model, State};
 use super::recurrence::TaylorWork;
 use super::segment::{Observer, Segment};
-use super::taylor::{Rattling, Stepped, Stretch, evaluate_rows, order_for, refused, step};
+use super::taylor::{ChatterGuard, Stepped, SmoothInterval, evaluate_rows, order_for, refused, step};
 use crate::simd::vectorised;
 use crate::watch::{Canceled, Watch};
 
 /// Motions that go side by side.
-pub(crate) const SIDE_BY_SIDE: usize = 8;
+pub(crate) const BATCH_LANES: usize = 8;
 
-/// One motion of a convoy: where it starts, what looks at it, and when it has got where it was to go.
-pub(crate) trait Passenger<'m, const D: usize> {
+/// One motion of a batch: where it starts, what looks at it, and when it has got where it was to go.
+pub(crate) trait TrajectoryObserver<'m, const D: usize> {
     fn model(&self) -> &'m Model<D>;
 
     /// State at the start of a mesh period.
@@ -29,116 +29,116 @@ pub(crate) trait Passenger<'m, const D: usize> {
     /// How far it has got, 0 … 1: for progress.
     fn fraction_done(&self) -> f64;
 
-    /// Whether [`Passenger::segment`] wants to see the present mesh period.
-    fn looks(&self) -> bool;
+    /// Whether [`TrajectoryObserver::segment`] wants to see the present mesh period.
+    fn wants_segments(&self) -> bool;
 
     fn segment(&mut self, segment: &Segment<'_, D>);
 
     /// A mesh period has ended in `state`. Returns whether the motion goes on.
-    fn period_ended(&mut self, state: &State<D>) -> bool;
+    fn finish_period(&mut self, state: &State<D>) -> bool;
 
     /// The motion has ended, by itself or with an error.
-    fn ended(&mut self, numerics: Numerics, error: Option<DynamicsError>);
+    fn finished(&mut self, numerics: Numerics, error: Option<DynamicsError>);
 }
 
 /// Steps between two looks at the watch.
 const STEPS_PER_CHECKPOINT: u32 = 2048;
 
-/// Takes all passengers to where they are going, [`SIDE_BY_SIDE`] at a time; as soon as one has arrived the next takes its lane. Each
+/// Takes all observers to where they are going, [`BATCH_LANES`] at a time; as soon as one has finished the next takes its lane. Each
 /// moves exactly as it would alone at the order of `tolerance`. `max_steps`: budget of each.
 ///
 /// # Errors
-/// [`Canceled`] by the watch; passengers' own errors go to the passengers.
-pub(crate) fn carry<'m, const D: usize, P: Passenger<'m, D>>(
-    passengers: &mut [P],
+/// [`Canceled`] by the watch; observers' own errors go to the observers.
+pub(crate) fn integrate_trajectories<'m, const D: usize, P: TrajectoryObserver<'m, D>>(
+    observers: &mut [P],
     order_tolerance: f64,
     max_steps: u64,
     watch: &Watch<'_>,
 ) -> Result<(), Canceled> {
     // Lanes share one law of the mesh force.
     let (by_contact, by_stiffness): (Vec<usize>, Vec<usize>) =
-        (0..passengers.len()).partition(|&i| passengers[i].model().follows_contact());
+        (0..observers.len()).partition(|&i| observers[i].model().follows_contact());
     for waiting in [by_stiffness, by_contact] {
-        carry_alike(passengers, &waiting, order_tolerance, max_steps, watch)?;
+        integrate_lanes(observers, &waiting, order_tolerance, max_steps, watch)?;
     }
     Ok(())
 }
 
-/// Takes the passengers of these indices, whose mesh forces follow the same law.
-fn carry_alike<'m, const D: usize, P: Passenger<'m, D>>(
-    passengers: &mut [P],
+/// Takes the observers of these indices, whose mesh forces follow the same law.
+fn integrate_lanes<'m, const D: usize, P: TrajectoryObserver<'m, D>>(
+    observers: &mut [P],
     waiting: &[usize],
     order_tolerance: f64,
     max_steps: u64,
     watch: &Watch<'_>,
 ) -> Result<(), Canceled> {
     let mut waiting = waiting.iter().copied();
-    let mut convoy = Convoy::<D, SIDE_BY_SIDE>::new(order_for(order_tolerance), max_steps);
-    let mut arrived = 0;
+    let mut batch = LaneBatch::<D, BATCH_LANES>::new(order_for(order_tolerance), max_steps);
+    let mut finished = 0;
     let mut since_checkpoint = 0;
     loop {
-        for lane in 0..SIDE_BY_SIDE {
-            if convoy.riders[lane].is_none()
+        for lane in 0..BATCH_LANES {
+            if batch.slots[lane].is_none()
                 && let Some(next) = waiting.next()
             {
-                convoy.board(lane, next, &passengers[next]);
+                batch.load_lane(lane, next, &observers[next]);
             }
         }
-        if convoy.riders.iter().all(Option::is_none) {
+        if batch.slots.iter().all(Option::is_none) {
             return Ok(());
         }
-        // Lanes are looked at for new passengers only after one has arrived.
+        // Lanes are looked at for new observers only after one has finished.
         loop {
-            let before = arrived;
-            let stepped = convoy.step();
-            arrived += convoy.settle(&stepped, passengers);
+            let before = finished;
+            let stepped = batch.step();
+            finished += batch.finish_step(&stepped, observers);
             since_checkpoint += 1;
             if since_checkpoint == STEPS_PER_CHECKPOINT {
                 since_checkpoint = 0;
-                watch.checkpoint(arrived as f64 / passengers.len() as f64)?;
+                watch.checkpoint(finished as f64 / observers.len() as f64)?;
             }
-            if arrived > before {
+            if finished > before {
                 break;
             }
         }
     }
 }
 
-/// Takes one passenger where it is going, by any method.
+/// Takes one observer where it is going, by any method.
 ///
 /// # Errors
-/// [`Canceled`] by the watch; the passenger's own errors go to the passenger.
-pub(crate) fn carry_one<'m, const D: usize, P: Passenger<'m, D>>(
-    passenger: &mut P,
+/// [`Canceled`] by the watch; the observer's own errors go to the observer.
+pub(crate) fn integrate_trajectory<'m, const D: usize, P: TrajectoryObserver<'m, D>>(
+    observer: &mut P,
     integrator: Integrator,
     max_steps: u64,
     watch: &Watch<'_>,
 ) -> Result<(), Canceled> {
-    let mut motion = Motion::new(passenger.model(), passenger.start(), integrator, passenger.tolerance(), max_steps);
+    let mut motion = Motion::new(observer.model(), observer.start(), integrator, observer.tolerance(), max_steps);
     let error = loop {
-        let fraction = passenger.fraction_done();
-        let advanced = motion.advance_period(&mut Looking(passenger), watch, fraction);
+        let fraction = observer.fraction_done();
+        let advanced = motion.advance_period(&mut SegmentForwarder(observer), watch, fraction);
         if let Err(error) = advanced {
             break Some(error);
         }
         watch.checkpoint(fraction)?;
-        if !passenger.period_ended(&motion.state) {
+        if !observer.finish_period(&motion.state) {
             break None;
         }
     };
     if error == Some(DynamicsError::Canceled(Canceled)) {
         return Err(Canceled);
     }
-    passenger.ended(motion.numerics, error);
+    observer.finished(motion.numerics, error);
     Ok(())
 }
 
-/// Shows a motion to the passenger that wants to see it.
-struct Looking<'a, P>(&'a mut P);
+/// Shows a motion to the observer that wants to see it.
+struct SegmentForwarder<'a, P>(&'a mut P);
 
-impl<'m, const D: usize, P: Passenger<'m, D>> Observer<D> for Looking<'_, P> {
+impl<'m, const D: usize, P: TrajectoryObserver<'m, D>> Observer<D> for SegmentForwarder<'_, P> {
     fn segment(&mut self, segment: &Segment<'_, D>) {
-        if self.0.looks() {
+        if self.0.wants_segments() {
             self.0.segment(segment);
         }
     }
@@ -146,24 +146,24 @@ impl<'m, const D: usize, P: Passenger<'m, D>> Observer<D> for Looking<'_, P> {
 
 /// Who is in a lane.
 #[derive(Clone, Copy)]
-struct Rider {
-    passenger: usize,
+struct LaneSlot {
+    observer: usize,
     period: u64,
     /// Index of the breakpoint at which the present smooth stretch ends.
     breakpoint: usize,
     steps: u64,
     evaluations: u64,
-    rattling: Rattling,
+    chatter: ChatterGuard,
 }
 
 /// The lanes.
-struct Convoy<'m, const D: usize, const L: usize> {
+struct LaneBatch<'m, const D: usize, const L: usize> {
     order: usize,
     max_steps: u64,
-    riders: [Option<Rider>; L],
+    slots: [Option<LaneSlot>; L],
     equations: Equations<D, Lanes<L>>,
     excitations: LaneExcitations<'m, L>,
-    stretch: Stretch<Lanes<L>>,
+    interval: SmoothInterval<Lanes<L>>,
     contact: [Lanes<L>; 2],
     size: Lanes<L>,
     work: Box<TaylorWork<D, Lanes<L>>>,
@@ -174,16 +174,16 @@ struct Convoy<'m, const D: usize, const L: usize> {
     force: Box<[[f64; MAX_ORDER + 1]; 2]>,
 }
 
-impl<'m, const D: usize, const L: usize> Convoy<'m, D, L> {
+impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
     fn new(order: usize, max_steps: u64) -> Self {
         let zero = Lanes::splat(0.0);
         Self {
             order,
             max_steps,
-            riders: [None; L],
+            slots: [None; L],
             equations: Equations::at_rest(),
             excitations: LaneExcitations::none(),
-            stretch: Stretch {
+            interval: SmoothInterval {
                 phase: zero,
                 end: zero,
                 inside: zero,
@@ -201,30 +201,30 @@ impl<'m, const D: usize, const L: usize> Convoy<'m, D, L> {
         }
     }
 
-    fn board(&mut self, lane: usize, passenger: usize, who: &impl Passenger<'m, D>) {
-        let model = who.model();
-        let state = who.start();
+    fn load_lane(&mut self, lane: usize, index: usize, observer: &impl TrajectoryObserver<'m, D>) {
+        let model = observer.model();
+        let state = observer.start();
         self.equations.put(lane, model);
         self.excitations.put(lane, &model.excitations);
-        self.riders[lane] = Some(Rider {
-            passenger,
+        self.slots[lane] = Some(LaneSlot {
+            observer: index,
             period: state.period,
             breakpoint: 0,
             steps: 0,
             evaluations: 0,
-            rattling: Rattling::default(),
+            chatter: ChatterGuard::default(),
         });
         self.size.set(lane, 0.0);
-        let s = &mut self.stretch;
+        let s = &mut self.interval;
         s.period_tau.set(lane, model.period_tau);
-        s.tolerance.set(lane, who.tolerance());
+        s.tolerance.set(lane, observer.tolerance());
         s.switching.set(lane, if model.switches() { 1.0 } else { 0.0 });
-        self.place(lane, &state);
-        self.aim(lane, model, 0.0, 0);
+        self.set_state(lane, &state);
+        self.set_smooth_interval(lane, model, 0.0, 0);
     }
 
     /// Puts a state into a lane.
-    fn place(&mut self, lane: usize, state: &State<D>) {
+    fn set_state(&mut self, lane: usize, state: &State<D>) {
         for c in 0..D {
             self.end.0[c].set(lane, state.x[c]);
             self.end.1[c].set(lane, state.v[c]);
@@ -232,20 +232,20 @@ impl<'m, const D: usize, const L: usize> Convoy<'m, D, L> {
         for j in 0..2 {
             self.contact[j].set(lane, f64::from(state.contact[j]));
         }
-        self.stretch.phase.set(lane, state.phase);
+        self.interval.phase.set(lane, state.phase);
     }
 
     /// The smooth stretch from `from` to the breakpoint of this index.
-    fn aim(&mut self, lane: usize, model: &Model<D>, from: f64, breakpoint: usize) {
+    fn set_smooth_interval(&mut self, lane: usize, model: &Model<D>, from: f64, breakpoint: usize) {
         let end = model.breakpoints[breakpoint];
-        self.stretch.end.set(lane, end);
-        self.stretch.inside.set(lane, 0.5 * (from + end));
+        self.interval.end.set(lane, end);
+        self.interval.inside.set(lane, 0.5 * (from + end));
     }
 
     fn state(&self, lane: usize, period: u64) -> State<D> {
         State {
             period,
-            phase: self.stretch.phase.get(lane),
+            phase: self.interval.phase.get(lane),
             x: self.end.0.map(|c| c.get(lane)),
             v: self.end.1.map(|c| c.get(lane)),
             contact: self.contact.map(|c| c.get(lane) as Contact),
@@ -254,88 +254,88 @@ impl<'m, const D: usize, const L: usize> Convoy<'m, D, L> {
 
     /// One step of every lane.
     fn step(&mut self) -> Stepped<Lanes<L>> {
-        let Self { order, equations, excitations, stretch, contact, size, work, end, .. } = self;
+        let Self { order, equations, excitations, interval, contact, size, work, end, .. } = self;
         vectorised(
             #[inline(always)]
             || {
                 (work.rows[0], work.rows[1]) = *end;
-                let stepped = step(equations, &*excitations, *order, *stretch, *contact, size, work);
+                let stepped = step(equations, &*excitations, *order, *interval, *contact, size, work);
                 *end = evaluate_rows(&work.rows[..=stepped.degree], stepped.h);
                 stepped
             },
         )
     }
 
-    /// What the step means to each lane's rider; returns how many have arrived.
-    fn settle<P: Passenger<'m, D>>(&mut self, stepped: &Stepped<Lanes<L>>, passengers: &mut [P]) -> usize {
-        let mut arrived = 0;
+    /// What the step means to each lane's slot; returns how many have finished.
+    fn finish_step<P: TrajectoryObserver<'m, D>>(&mut self, stepped: &Stepped<Lanes<L>>, observers: &mut [P]) -> usize {
+        let mut finished = 0;
         for lane in 0..L {
-            let Some(mut rider) = self.riders[lane] else { continue };
-            let who = &mut passengers[rider.passenger];
-            let model = who.model();
+            let Some(mut slot) = self.slots[lane] else { continue };
+            let observer = &mut observers[slot.observer];
+            let model = observer.model();
             let (h, changed) = (stepped.h.get(lane), stepped.changed.get(lane));
-            let (from, end) = (self.stretch.phase.get(lane), self.stretch.end.get(lane));
+            let (from, end) = (self.interval.phase.get(lane), self.interval.end.get(lane));
             let to_end = stepped.to_end.get(lane) != 0.0;
             let phase = if to_end { end } else { (from + h / model.period_tau).min(end) };
-            rider.steps += 1;
-            rider.evaluations += (stepped.degree - 1) as u64;
-            let refused = refused(model, rider.period, from, h, phase > from || changed >= 0.0);
+            slot.steps += 1;
+            slot.evaluations += (stepped.degree - 1) as u64;
+            let refused = refused(model, slot.period, from, h, phase > from || changed >= 0.0);
             let error = refused.or_else(|| {
-                (rider.steps > self.max_steps).then(|| DynamicsError::TooManySteps {
-                    time_s: (rider.period as f64 + from) * model.period_tau / model.omega_ref,
+                (slot.steps > self.max_steps).then(|| DynamicsError::TooManySteps {
+                    time_s: (slot.period as f64 + from) * model.period_tau / model.omega_ref,
                     limit: self.max_steps,
                 })
             });
             if let Some(error) = error {
-                self.leave(lane, &rider, who, Some(error));
-                arrived += 1;
+                self.unload_lane(lane, &slot, observer, Some(error));
+                finished += 1;
                 continue;
             }
-            if who.looks() {
-                self.show(lane, &rider, model, h, stepped.degree, who);
+            if observer.wants_segments() {
+                self.emit_segment(lane, &slot, model, h, stepped.degree, observer);
             }
-            self.stretch.phase.set(lane, phase);
+            self.interval.phase.set(lane, phase);
             if changed >= 0.0 {
                 self.contact[changed as usize].set(lane, stepped.contact.get(lane));
-                let mut state = self.state(lane, rider.period);
-                if rider.rattling.changed(model, &mut state, end) {
-                    self.place(lane, &state);
+                let mut state = self.state(lane, slot.period);
+                if slot.chatter.contact_changed(model, &mut state, end) {
+                    self.set_state(lane, &state);
                 }
             }
-            if self.stretch.phase.get(lane) >= end {
-                rider.breakpoint += 1;
-                if rider.breakpoint < model.breakpoints.len() {
-                    self.aim(lane, model, end, rider.breakpoint);
+            if self.interval.phase.get(lane) >= end {
+                slot.breakpoint += 1;
+                if slot.breakpoint < model.breakpoints.len() {
+                    self.set_smooth_interval(lane, model, end, slot.breakpoint);
                 } else {
-                    rider.period += 1;
-                    rider.breakpoint = 0;
-                    self.stretch.phase.set(lane, 0.0);
-                    self.aim(lane, model, 0.0, 0);
-                    let state = self.state(lane, rider.period);
+                    slot.period += 1;
+                    slot.breakpoint = 0;
+                    self.interval.phase.set(lane, 0.0);
+                    self.set_smooth_interval(lane, model, 0.0, 0);
+                    let state = self.state(lane, slot.period);
                     let error = grown(&state).then(|| DynamicsError::Diverged {
-                        time_s: rider.period as f64 * model.period_tau / model.omega_ref,
+                        time_s: slot.period as f64 * model.period_tau / model.omega_ref,
                     });
-                    if error.is_some() || !who.period_ended(&state) {
-                        self.leave(lane, &rider, who, error);
-                        arrived += 1;
+                    if error.is_some() || !observer.finish_period(&state) {
+                        self.unload_lane(lane, &slot, observer, error);
+                        finished += 1;
                         continue;
                     }
                 }
             }
-            self.riders[lane] = Some(rider);
+            self.slots[lane] = Some(slot);
         }
-        arrived
+        finished
     }
 
-    /// Shows the step of a lane to its passenger.
-    fn show(
+    /// Shows the step of a lane to its observer.
+    fn emit_segment(
         &mut self,
         lane: usize,
-        rider: &Rider,
+        slot: &LaneSlot,
         model: &Model<D>,
         h: f64,
         degree: usize,
-        who: &mut impl Passenger<'m, D>,
+        observer: &mut impl TrajectoryObserver<'m, D>,
     ) {
         for n in 0..=degree {
             for c in 0..D {
@@ -347,10 +347,10 @@ impl<'m, const D: usize, const L: usize> Convoy<'m, D, L> {
                 self.force[j][n] = self.work.force[j][n].get(lane);
             }
         }
-        who.segment(&Segment {
+        observer.segment(&Segment {
             model,
-            period: rider.period,
-            phase: self.stretch.phase.get(lane),
+            period: slot.period,
+            phase: self.interval.phase.get(lane),
             h,
             degree,
             rows: &self.rows,
@@ -360,14 +360,14 @@ impl<'m, const D: usize, const L: usize> Convoy<'m, D, L> {
     }
 
     /// Empties a lane: what is left in it stands still.
-    fn leave(&mut self, lane: usize, rider: &Rider, who: &mut impl Passenger<'m, D>, error: Option<DynamicsError>) {
-        self.riders[lane] = None;
+    fn unload_lane(&mut self, lane: usize, slot: &LaneSlot, observer: &mut impl TrajectoryObserver<'m, D>, error: Option<DynamicsError>) {
+        self.slots[lane] = None;
         let rest = State { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [0; 2] };
-        self.place(lane, &rest);
-        self.stretch.end.set(lane, 0.0);
-        self.stretch.inside.set(lane, 0.0);
-        self.stretch.switching.set(lane, 0.0);
-        let numerics = Numerics { steps: rider.steps, rejected_steps: 0, force_evaluations: rider.evaluations };
-        who.ended(numerics, error);
+        self.set_state(lane, &rest);
+        self.interval.end.set(lane, 0.0);
+        self.interval.inside.set(lane, 0.0);
+        self.interval.switching.set(lane, 0.0);
+        let numerics = Numerics { steps: slot.steps, rejected_steps: 0, force_evaluations: slot.evaluations };
+        observer.finished(numerics, error);
     }
 }
