@@ -188,7 +188,7 @@ impl ContactForce {
             return 1 + self.driving.level(driving) as ContactSide;
         }
         let back = -s - b - self.free_m(-1, phase);
-        if back > 0.0 { -1 - self.back.level(back) as Contact } else { 0 }
+        if back > 0.0 { -1 - self.back.level(back) as ContactSide } else { 0 }
     }
 
     /// Largest stiffness of a flank (1 driving, −1 back) at any knot and level, N/m.
@@ -261,7 +261,7 @@ impl<R: Real> ForceCells<R> {
     }
 
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, cell: &Cell) {
+    pub fn set(&mut self, lane: usize, cell: &ForceCell) {
         self.side.set(lane, cell.side);
         for k in 0..4 {
             self.lower[k].set(lane, cell.lower[k]);

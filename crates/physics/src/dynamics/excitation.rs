@@ -91,7 +91,9 @@ impl ImpactExcitation {
     /// Mean over one mesh period, N.
     pub fn mean_n(&self) -> f64 {
         match self {
-            ImpactExcitation::HalfSine { force_n, duration_mesh_periods, .. } => force_n * duration_mesh_periods * 2.0 / PI,
+            ImpactExcitation::HalfSine { force_n, duration_mesh_periods, .. } => {
+                force_n * duration_mesh_periods * 2.0 / PI
+            }
             ImpactExcitation::Harmonics { .. } => 0.0,
         }
     }
@@ -112,11 +114,7 @@ impl ImpactExcitation {
             ImpactExcitation::HalfSine { force_n, duration_mesh_periods: d, start_mesh_periods } => {
                 check(force_n.is_finite(), *force_n, "the force must be finite")?;
                 check(start_mesh_periods.is_finite(), *start_mesh_periods, "the start must be finite")?;
-                check(
-                    *d >= 1e-9 && *d <= MAX_PULSE_MESH_PERIODS,
-                    *d,
-                    "the duration must be 1e-9 to 16 mesh periods",
-                )
+                check(*d >= 1e-9 && *d <= MAX_PULSE_MESH_PERIODS, *d, "the duration must be 1e-9 to 16 mesh periods")
             }
             ImpactExcitation::Harmonics { harmonics } => harmonics.iter().try_for_each(|h| {
                 check(h.amplitude.is_finite() && h.phase_rad.is_finite(), h.amplitude, "harmonics must be finite")

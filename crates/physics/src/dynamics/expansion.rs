@@ -1,9 +1,9 @@
 //! Taylor coefficients of the excitations about a phase: of one motion, or of the motions in all lanes.
 
 use super::contact_force::ForceCells;
-use super::excitation::{Coefficients, ImpactWaveform, MAX_ORDER, FourierSeries, StiffnessWaveform};
+use super::excitation::{Coefficients, FourierSeries, ImpactWaveform, MAX_ORDER, StiffnessWaveform};
 use super::lanes::{Lanes, Real};
-use super::model::{ContactSide, ContactForceWaveform, Excitation, DynamicModel};
+use super::model::{ContactForceWaveform, ContactSide, DynamicModel, Excitation};
 use super::recurrence::ContactSeries;
 use super::segment::Segment;
 

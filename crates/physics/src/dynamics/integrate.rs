@@ -63,7 +63,13 @@ pub(crate) struct Motion<'a, const D: usize> {
 
 impl<'a, const D: usize> Motion<'a, D> {
     /// `tolerance`: local error of a step relative to the size of the motion; `max_steps`: budget over the life of the motion.
-    pub fn new(model: &'a DynamicModel<D>, state: MotionState<D>, integrator: Integrator, tolerance: f64, max_steps: u64) -> Self {
+    pub fn new(
+        model: &'a DynamicModel<D>,
+        state: MotionState<D>,
+        integrator: Integrator,
+        tolerance: f64,
+        max_steps: u64,
+    ) -> Self {
         let stepper = match integrator {
             Integrator::Taylor => Stepper::Taylor(Taylor::new(tolerance, order_for(tolerance), None)),
             Integrator::RungeKutta => Stepper::RungeKutta(RungeKutta::new(tolerance, None)),
@@ -138,7 +144,7 @@ impl<'a, const D: usize> Motion<'a, D> {
 
 /// A state beyond all reason: free rotation may go on for ever, everything else is a few micrometres.
 pub(super) fn has_diverged<const D: usize>(state: &MotionState<D>) -> bool {
-    [&state.x, &state.v]
-        .iter()
-        .any(|row| row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > DIVERGENCE_LIMIT_M)))
+    [&state.x, &state.v].iter().any(|row| {
+        row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > DIVERGENCE_LIMIT_M))
+    })
 }

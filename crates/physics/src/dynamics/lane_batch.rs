@@ -9,7 +9,7 @@ use super::lanes::{Lanes, Real};
 use super::model::{ContactSide, DynamicModel, MotionState};
 use super::recurrence::TaylorWork;
 use super::segment::{Observer, Segment};
-use super::taylor::{ChatterGuard, StepOutcome, SmoothInterval, evaluate_rows, order_for, step, step_error};
+use super::taylor::{ChatterGuard, SmoothInterval, StepOutcome, evaluate_rows, order_for, step, step_error};
 use crate::simd::vectorised;
 use crate::watch::{Canceled, Watch};
 
@@ -267,7 +267,11 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
     }
 
     /// What the step means to each lane's slot; returns how many have finished.
-    fn finish_step<P: TrajectoryObserver<'m, D>>(&mut self, stepped: &StepOutcome<Lanes<L>>, observers: &mut [P]) -> usize {
+    fn finish_step<P: TrajectoryObserver<'m, D>>(
+        &mut self,
+        stepped: &StepOutcome<Lanes<L>>,
+        observers: &mut [P],
+    ) -> usize {
         let mut finished = 0;
         for lane in 0..L {
             let Some(mut slot) = self.slots[lane] else { continue };
@@ -360,7 +364,13 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
     }
 
     /// Empties a lane: what is left in it stands still.
-    fn unload_lane(&mut self, lane: usize, slot: &LaneSlot, observer: &mut impl TrajectoryObserver<'m, D>, error: Option<DynamicsError>) {
+    fn unload_lane(
+        &mut self,
+        lane: usize,
+        slot: &LaneSlot,
+        observer: &mut impl TrajectoryObserver<'m, D>,
+        error: Option<DynamicsError>,
+    ) {
         self.slots[lane] = None;
         let rest = MotionState { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [0; 2] };
         self.set_state(lane, &rest);

@@ -23,19 +23,19 @@
 #![allow(clippy::needless_range_loop)]
 
 mod contact_force;
-mod lane_batch;
 mod crossing;
 mod equations;
 mod error;
 mod excitation;
 mod expansion;
-mod rigid_body;
 mod integrate;
+mod lane_batch;
 mod lanes;
 mod modal;
 mod model;
 mod parameters;
 mod recurrence;
+mod rigid_body;
 mod runge_kutta;
 mod segment;
 mod shooting;
@@ -54,12 +54,12 @@ pub use parameters::{
 };
 pub use trajectory::{FinalState, advance, advance_many};
 
-pub(crate) use lane_batch::{TrajectoryObserver, integrate_trajectories, integrate_trajectory};
 pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP};
 pub(crate) use excitation::MAX_ORDER;
-pub(crate) use rigid_body::RigidBodyModes;
 pub(crate) use integrate::Motion;
+pub(crate) use lane_batch::{TrajectoryObserver, integrate_trajectories, integrate_trajectory};
 pub(crate) use model::{DynamicModel, MotionState};
+pub(crate) use rigid_body::RigidBodyModes;
 pub(crate) use segment::{Observer, Segment, Unobserved};
 pub(crate) use shooting::{IntegrationLimits, Shooting};
 pub(crate) use trajectory::is_mirrored;

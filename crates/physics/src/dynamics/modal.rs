@@ -1,12 +1,12 @@
 //! Natural frequencies and static deflection with the mean mesh stiffness, in the source's twelve displacements.
 
-mod springs;
 mod mode;
+mod springs;
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
-use springs::{spring_elements, mesh_direction};
+use springs::{mesh_direction, spring_elements};
 
 use super::error::DynamicsError;
 use super::parameters::Parameters;
@@ -45,19 +45,25 @@ impl NaturalModes {
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
         let largest = eigen.eigenvalues.amax();
         // What nothing holds is one group of equal frequencies.
-        let squares: Vec<f64> =
-            order.iter().map(|&i| eigen.eigenvalues[i]).map(|l| if l > RIGID_BODY_EIGENVALUE * largest { l } else { 0.0 }).collect();
+        let squares: Vec<f64> = order
+            .iter()
+            .map(|&i| eigen.eigenvalues[i])
+            .map(|l| if l > RIGID_BODY_EIGENVALUE * largest { l } else { 0.0 })
+            .collect();
         let frequencies_hz = squares.iter().map(|l| l.sqrt() / std::f64::consts::TAU).collect();
-        let vectors: Vec<SourceVector> = order.iter().map(|&i| std::array::from_fn(|c| eigen.eigenvectors[(c, i)])).collect();
+        let vectors: Vec<SourceVector> =
+            order.iter().map(|&i| std::array::from_fn(|c| eigen.eigenvectors[(c, i)])).collect();
         let directions = preferred_directions(p).map(|row| std::array::from_fn(|c| row[c] / root[c]));
         let mut shapes = Vec::with_capacity(12);
         let mut from = 0;
         while from < 12 {
-            let group = squares[from..].iter().take_while(|l| **l - squares[from] <= RIGID_BODY_EIGENVALUE * largest).count();
+            let group =
+                squares[from..].iter().take_while(|l| **l - squares[from] <= RIGID_BODY_EIGENVALUE * largest).count();
             shapes.extend(canonical_basis(&vectors[from..from + group], &directions));
             from += group;
         }
-        let shapes = shapes.into_iter().map(|v| with_positive_largest(p, std::array::from_fn(|c| v[c] * root[c]))).collect();
+        let shapes =
+            shapes.into_iter().map(|v| with_positive_largest(p, std::array::from_fn(|c| v[c] * root[c]))).collect();
         Ok(Self { frequencies_hz, shapes })
     }
 
@@ -126,7 +132,7 @@ fn canonical_basis(vectors: &[SourceVector], directions: &[SourceVector]) -> Vec
     if vectors.len() == 1 {
         return vectors.to_vec();
     }
-    let dot = |a: &SourceVector, b: &Row| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let dot = |a: &SourceVector, b: &SourceVector| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let mut basis: Vec<SourceVector> = Vec::with_capacity(vectors.len());
     for least in [INDEPENDENT, 1e-9] {
         for direction in directions {

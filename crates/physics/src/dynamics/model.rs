@@ -347,7 +347,8 @@ fn fastest(p: &Parameters, h: &HalfParameters, equivalent_mass: f64) -> f64 {
 
 fn excitation(h: &HalfParameters, b: f64, period_tau: f64) -> Excitation {
     let shift = h.phase_shift_mesh_periods.rem_euclid(1.0);
-    let contact = h.contact_force.as_ref().map(|force| ContactForceWaveform { force: force.clone(), shift, b, period_tau });
+    let contact =
+        h.contact_force.as_ref().map(|force| ContactForceWaveform { force: force.clone(), shift, b, period_tau });
     // Where the contact gives the force, the stiffness has no say and no knots.
     let stiffness = match &contact {
         None => StiffnessWaveform::new(&h.mesh_stiffness, shift, period_tau),

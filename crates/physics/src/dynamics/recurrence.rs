@@ -39,7 +39,9 @@ impl<R: Real> ContactSeries<R> {
         let mut sum = R::splat(0.0);
         for m in 0..=n.min(3) {
             let k = n - m;
-            sum += cells.coefficients[1][m] * self.e[k] + cells.coefficients[2][m] * self.square[k] + cells.coefficients[3][m] * self.cube[k];
+            sum += cells.coefficients[1][m] * self.e[k]
+                + cells.coefficients[2][m] * self.square[k]
+                + cells.coefficients[3][m] * self.cube[k];
         }
         if n < 4 { sum + cells.coefficients[0][n] } else { sum }
     }

@@ -74,7 +74,12 @@ impl<'m, const D: usize> Shooting<'m, D> {
 
     /// Goes through `periods` mesh periods of the motion of `motion_model` from `start` with the unit perturbations of this model
     /// (another one than the motion's to look against the symmetry).
-    pub fn period_map(&self, motion_model: &DynamicModel<D>, start: MotionState<D>, periods: u64) -> Result<PeriodMap<D>, DynamicsError> {
+    pub fn period_map(
+        &self,
+        motion_model: &DynamicModel<D>,
+        start: MotionState<D>,
+        periods: u64,
+    ) -> Result<PeriodMap<D>, DynamicsError> {
         let IntegrationLimits { tolerance, max_steps, watch } = self.limits;
         let mut variation = Variation::new(self.model, Variation::unit_perturbations(self.model), tolerance);
         let mut motion = Motion::new(motion_model, start, Integrator::Taylor, tolerance, max_steps);
@@ -118,7 +123,12 @@ impl<'m, const D: usize> Shooting<'m, D> {
 
     /// What to add to the start so that the motion closes after `periods` mesh periods, to first order. Free motions get
     /// the velocity with which they close.
-    pub fn correction(&self, defect: &Perturbation<D>, monodromy: &DMatrix<f64>, periods: u64) -> Option<Perturbation<D>> {
+    pub fn correction(
+        &self,
+        defect: &Perturbation<D>,
+        monodromy: &DMatrix<f64>,
+        periods: u64,
+    ) -> Option<Perturbation<D>> {
         let n = self.active.len();
         let projector = self.rigid_body_projector();
         let r =
@@ -153,7 +163,9 @@ impl<'m, const D: usize> Shooting<'m, D> {
     /// Floquet multipliers, free motions left out, largest first.
     pub fn multipliers(&self, monodromy: &DMatrix<f64>) -> Vec<Complex<f64>> {
         let projector = self.rigid_body_projector();
-        let Some(schur) = Schur::try_new(&projector * monodromy * &projector, f64::EPSILON, 10_000) else { return Vec::new() };
+        let Some(schur) = Schur::try_new(&projector * monodromy * &projector, f64::EPSILON, 10_000) else {
+            return Vec::new();
+        };
         let mut all: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
         all.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
         // What was projected out is the zeros at the end.

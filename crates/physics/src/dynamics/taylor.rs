@@ -5,7 +5,7 @@
 //! accuracy allows. Changes of contact are zeros of the polynomial s(τ) ∓ b and are located to rounding. Step length after Jorba
 //! and Zou (Experimental Mathematics 14 (2005) 99), from the last two coefficients.
 
-use super::contact_force::{ForceCells, ContactForce};
+use super::contact_force::{ContactForce, ForceCells};
 use super::crossing::first_crossing;
 use super::equations::{Equations, PER_HALF};
 use super::error::DynamicsError;
@@ -80,7 +80,8 @@ pub(super) fn step<const D: usize, R: Real>(
     *size = *size * R::splat(0.98);
     let early_end = EarlyTermination { remaining, tolerance, size: *size };
     let free = !fixed.any(f64::is_finite);
-    let (short, degree) = taylor_coefficients(equations, contact, order, R::splat(1.0), free.then_some(early_end), work);
+    let (short, degree) =
+        taylor_coefficients(equations, contact, order, R::splat(1.0), free.then_some(early_end), work);
     let moving = larger(norm(&work.rows[1]), norm(&work.rows[2]));
     *size = larger(moving, *size);
     // Below the rounding of the positions no tolerance can be met.
@@ -159,7 +160,8 @@ fn next_cell<R: Real>(s: &[R], cells: &ForceCells<R>, contact: R, h: R, switchin
     };
     let lower = leaves(cells.side, &cells.lower, h);
     let upper = leaves(-cells.side, &cells.upper, lower.zip(h, f64::min));
-    let to = R::from_fn(|l| f64::from(ContactForce::adjacent(contact.get(l) as ContactSide, upper.get(l) < f64::INFINITY)));
+    let to =
+        R::from_fn(|l| f64::from(ContactForce::adjacent(contact.get(l) as ContactSide, upper.get(l) < f64::INFINITY)));
     (lower.zip(upper, f64::min), to)
 }
 
@@ -182,7 +184,11 @@ fn step_of_term<R: Real>(last: R, k: usize, allowed: R) -> R {
 
 /// The step that keeps the local error at `tolerance` times the size of the polynomials' own motion.
 #[inline(always)]
-pub(super) fn step_for_tolerance<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, tolerance: f64) -> R {
+pub(super) fn step_for_tolerance<const D: usize, R: Real>(
+    rows: &[[R; D]; MAX_ORDER + 1],
+    order: usize,
+    tolerance: f64,
+) -> R {
     let size = larger(norm(&rows[0]), larger(norm(&rows[1]), norm(&rows[2])));
     step_of_last_terms(rows, order, size * R::splat(tolerance))
 }
@@ -210,7 +216,12 @@ pub(super) struct ChatterGuard {
 impl ChatterGuard {
     /// To be told of each change. ChatterGuard faster than can be followed goes on by a short free step and takes the contact it
     /// finds; returns whether it did.
-    pub fn contact_changed<const D: usize>(&mut self, model: &DynamicModel<D>, state: &mut MotionState<D>, end: f64) -> bool {
+    pub fn contact_changed<const D: usize>(
+        &mut self,
+        model: &DynamicModel<D>,
+        state: &mut MotionState<D>,
+        end: f64,
+    ) -> bool {
         if self.period != state.period {
             *self = Self { period: state.period, changes: 0 };
         }

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::lane_batch::{TrajectoryObserver, integrate_trajectories, integrate_trajectory};
 use super::error::DynamicsError;
 use super::integrate::{Integrator, StepCounts};
+use super::lane_batch::{TrajectoryObserver, integrate_trajectories, integrate_trajectory};
 use super::model::{DynamicModel, MotionState};
 use super::parameters::Parameters;
 use super::segment::Segment;
@@ -64,7 +64,7 @@ pub fn advance_many(
     tolerance: f64,
     watch: &Watch<'_>,
 ) -> Result<Vec<Result<FinalState, DynamicsError>>, Canceled> {
-    let input: Vec<_> = points.iter().zip(starts).collect();
+    let pairs: Vec<_> = points.iter().zip(starts).collect();
     let groups: Result<Vec<_>, Canceled> = pairs
         .par_chunks(POINTS_PER_GROUP)
         .map(|group| {
@@ -93,8 +93,8 @@ struct FinalStateObserver<'m, const D: usize> {
 
 impl<'m, const D: usize> FinalStateObserver<'m, D> {
     fn new(model: &'m DynamicModel<D>, start: &[f64; 24], mesh_periods: u64, tolerance: f64) -> Self {
-        let reached = Ok(FinalState { state: *start, counts: StepCounts::default() });
-        Self { model, state: model.state_from(start), mesh_periods, tolerance, reached }
+        let outcome = Ok(FinalState { state: *start, counts: StepCounts::default() });
+        Self { model, state: model.state_from(start), mesh_periods, tolerance, outcome }
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a search for a steady motion may spend.
 
-use crate::dynamics::{DynamicsError, IntegrationLimits, DynamicModel, StepCounts, PER_HALF};
+use crate::dynamics::{DynamicModel, DynamicsError, IntegrationLimits, PER_HALF, StepCounts};
 
 /// Work of a search in all its parts: transient, maps, exponents. One unit is one step of the six coordinates of one half, or
 /// of one perturbation carried along with them: 0.5 to 2 µs on a processor of 2020, so that a search ends within some 20 s and an

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::{MAX_ORDER, DynamicModel, PER_HALF, Segment, U, W, YG, YP, ZG, ZP};
+use crate::dynamics::{DynamicModel, MAX_ORDER, PER_HALF, Segment, U, W, YG, YP, ZG, ZP};
 
 /// What a channel is a course of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -63,7 +63,10 @@ enum ChannelKind {
 
 impl ChannelKind {
     fn is_force(self) -> bool {
-        matches!(self, ChannelKind::NormalForce | ChannelKind::TangentialForce | ChannelKind::AxialForce | ChannelKind::ToothForce)
+        matches!(
+            self,
+            ChannelKind::NormalForce | ChannelKind::TangentialForce | ChannelKind::AxialForce | ChannelKind::ToothForce
+        )
     }
 }
 
@@ -176,8 +179,12 @@ impl ChannelId {
             ChannelKind::Zp => row[i + ZP] = mirrored,
             ChannelKind::Yg => row[i + YG] = 1.0,
             ChannelKind::Zg => row[i + ZG] = mirrored,
-            ChannelKind::ThetaP => (row[i + U], row[i + W]) = (h.reduced_g / sum / model.radius_p, 1.0 / model.radius_p),
-            ChannelKind::ThetaG => (row[i + U], row[i + W]) = (-h.reduced_p / sum / model.radius_g, 1.0 / model.radius_g),
+            ChannelKind::ThetaP => {
+                (row[i + U], row[i + W]) = (h.reduced_g / sum / model.radius_p, 1.0 / model.radius_p)
+            }
+            ChannelKind::ThetaG => {
+                (row[i + U], row[i + W]) = (-h.reduced_p / sum / model.radius_g, 1.0 / model.radius_g)
+            }
             ChannelKind::NormalForce => return ChannelEvaluator::Force { half: j, factor: 1.0 },
             ChannelKind::TangentialForce => return ChannelEvaluator::Force { half: j, factor: model.cos },
             ChannelKind::AxialForce => return ChannelEvaluator::Force { half: j, factor: mirrored * h.sin },

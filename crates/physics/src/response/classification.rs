@@ -10,9 +10,11 @@ use super::channel::ChannelId;
 use super::recorder::ChannelRecorder;
 use super::recording::FinishedRun;
 use super::regime::{CHAOS_PER_MESH_PERIOD, PoincareSection, lyapunov_exponent_with};
-use super::report::{MotionAssessment, report, solved_halves};
+use super::report::{MotionAssessment, assemble_response, solved_halves};
 use super::solve::{OperatingPoint, REPEATS};
-use crate::dynamics::{DynamicsError, Integrator, IntegrationLimits, DynamicModel, Motion, StepCounts, Shooting, MotionState};
+use crate::dynamics::{
+    DynamicModel, DynamicsError, IntegrationLimits, Integrator, Motion, MotionState, Shooting, StepCounts,
+};
 
 /// Mesh periods over which a Lyapunov exponent is averaged.
 const FOLLOWED_MESH_PERIODS: u64 = 300;
@@ -78,9 +80,15 @@ impl OperatingPoint<'_> {
         let grows = modulus > 1.0 + UNIT_MODULUS_TOLERANCE;
         let (continued, diverged) = match continued {
             Ok(continued) => (continued, false),
-            Err(DynamicsError::Diverged { .. }) if grows => {
-                (ContinuedMotion { exponent: modulus.ln(), repeats: false, decays: false, counts: StepCounts::default() }, true)
-            }
+            Err(DynamicsError::Diverged { .. }) if grows => (
+                ContinuedMotion {
+                    exponent: modulus.ln(),
+                    repeats: false,
+                    decays: false,
+                    counts: StepCounts::default(),
+                },
+                true,
+            ),
             Err(other) => return Err(other),
         };
         let regime = if linear && !diverged {
@@ -120,12 +128,21 @@ impl OperatingPoint<'_> {
             section.push(*state);
         })?;
         let decays = exponent == f64::NEG_INFINITY || decays(&growth[growth.len() / 10..]);
-        Ok(ContinuedMotion { exponent, repeats: section.settled_period(REPEATS).is_some(), decays, counts: motion.counts })
+        Ok(ContinuedMotion {
+            exponent,
+            repeats: section.settled_period(REPEATS).is_some(),
+            decays,
+            counts: motion.counts,
+        })
     }
 
     /// Largest modulus of the Floquet multipliers over one mesh period with contact held, free motions apart: what the vibration of a pair
     /// that keeps contact, or is far beyond its backlash, is multiplied by.
-    fn fixed_contact_modulus<const D: usize>(&self, model: &DynamicModel<D>, near: &MotionState<D>) -> Result<f64, DynamicsError> {
+    fn fixed_contact_modulus<const D: usize>(
+        &self,
+        model: &DynamicModel<D>,
+        near: &MotionState<D>,
+    ) -> Result<f64, DynamicsError> {
         const TOLERANCE: f64 = 1e-12;
         let limits = IntegrationLimits { tolerance: TOLERANCE, max_steps: self.analysis.max_steps, watch: self.watch };
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), limits)?;
@@ -283,8 +300,11 @@ mod tests {
                 assert!(!settled || s.period_mesh_periods.is_some());
                 assert_eq!(s.rms_interval_95, None);
                 if s.regime == Regime::NotSettled && factor >= 0.1 {
-                    let long =
-                        summary(&p, SolutionMethod::Integrate { mesh_periods: 4000, record_mesh_periods: 40 }, initial_state);
+                    let long = summary(
+                        &p,
+                        SolutionMethod::Integrate { mesh_periods: 4000, record_mesh_periods: 40 },
+                        initial_state,
+                    );
                     assert!(
                         matches!(long.regime, Regime::Period1 | Regime::PeriodN),
                         "{case}, {factor}: {:?}",
@@ -373,7 +393,11 @@ mod tests {
             if !pulse {
                 p.halves.iter_mut().for_each(|h| h.impact = None::<ImpactExcitation>);
             }
-            let s = summary(&p, SolutionMethod::Integrate { mesh_periods: 300, record_mesh_periods: 200 }, Some(start("B")));
+            let s = summary(
+                &p,
+                SolutionMethod::Integrate { mesh_periods: 300, record_mesh_periods: 200 },
+                Some(start("B")),
+            );
             println!("pulse {pulse}: {:?}, {:?}", s.regime, s.lyapunov_per_mesh_period);
             assert!(!pulse || s.regime == Regime::Chaotic);
             assert_ne!(s.regime, Regime::Unstable);

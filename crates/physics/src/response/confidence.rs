@@ -109,8 +109,8 @@ fn correlation_time(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::dynamics::tests::reference::{parameters, reference};
-    use crate::dynamics::{Integrator, DynamicModel, Motion, Unobserved};
-    use crate::response::{Analysis, SolutionMethod, Regime, solve};
+    use crate::dynamics::{DynamicModel, Integrator, Motion, Unobserved};
+    use crate::response::{Analysis, Regime, SolutionMethod, solve};
     use crate::watch::Watch;
     use rayon::prelude::*;
 

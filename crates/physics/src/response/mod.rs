@@ -6,6 +6,7 @@
 mod analysis;
 mod budget;
 mod channel;
+mod classification;
 mod confidence;
 mod energy;
 mod quadrature;
@@ -14,15 +15,14 @@ mod recording;
 mod regime;
 mod report;
 mod rest;
-mod classification;
 mod solve;
 mod spectrum;
 mod statistics;
 mod steady;
 
 pub use analysis::{
-    Analysis, ContactState, Halves, SolutionMethod, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals, Summary,
-    ToothForce,
+    Analysis, ContactState, Halves, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals, SolutionMethod,
+    Summary, ToothForce,
 };
 pub use channel::{Channel, ChannelId, Quantity};
 pub use confidence::ConfidenceInterval;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::regime::lyapunov_exponent;
 use super::*;
 use crate::dynamics::tests::reference::{parameters, reference};
-use crate::dynamics::{DynamicsError, Integrator, DynamicModel, Motion, Parameters, Spring, Stiffness, Unobserved};
+use crate::dynamics::{DynamicModel, DynamicsError, Integrator, Motion, Parameters, Spring, Stiffness, Unobserved};
 use crate::watch::Watch;
 use herringbone_oracle::Tolerance::Absolute;
 use herringbone_oracle::{check, check_worst};

@@ -1,8 +1,8 @@
 //! Gathers what is asked of a motion while it runs: statistics, series, contact.
 
-use super::channel::{ChannelId, ChannelEvaluator};
+use super::channel::{ChannelEvaluator, ChannelId};
 use super::statistics::{MomentAccumulator, horner};
-use crate::dynamics::{MAX_ORDER, DynamicModel, Observer, PER_HALF, Segment};
+use crate::dynamics::{DynamicModel, MAX_ORDER, Observer, PER_HALF, Segment};
 use crate::simd::vectorised;
 
 /// What to record of one channel.

@@ -8,7 +8,9 @@ use super::recorder::ChannelRecorder;
 use super::regime::PoincareSection;
 use super::report::RecordedMotion;
 use super::statistics::MomentAccumulator;
-use crate::dynamics::{DynamicsError, DynamicModel, StepCounts, Observer, TrajectoryObserver, Segment, MotionState, U, YG, YP};
+use crate::dynamics::{
+    DynamicModel, DynamicsError, MotionState, Observer, Segment, StepCounts, TrajectoryObserver, U, YG, YP,
+};
 
 /// Parts of a record whose scatter gives its standard error.
 const BATCHES: u64 = 10;
@@ -62,7 +64,11 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
             from: start,
             recorder,
             energy: None,
-            recent: if recorded > SHORT_RECORD_MESH_PERIODS { PoincareSection::without_rigid_body(model)? } else { PoincareSection::new() },
+            recent: if recorded > SHORT_RECORD_MESH_PERIODS {
+                PoincareSection::without_rigid_body(model)?
+            } else {
+                PoincareSection::new()
+            },
             points: Vec::with_capacity(recorded.min(1 << 20) as usize),
             batch: (recorded / BATCHES).max(1),
             batches: Vec::new(),

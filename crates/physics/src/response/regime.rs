@@ -3,7 +3,8 @@
 use std::collections::VecDeque;
 
 use crate::dynamics::{
-    ObserverPair, Perturbation, DynamicsError, RigidBodyModes, DynamicModel, Motion, PER_HALF, MotionState, Unobserved, Variation, W, state_difference,
+    DynamicModel, DynamicsError, Motion, MotionState, ObserverPair, PER_HALF, Perturbation, RigidBodyModes, Unobserved,
+    Variation, W, state_difference,
 };
 use crate::watch::Watch;
 

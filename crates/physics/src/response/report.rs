@@ -9,7 +9,7 @@ use super::channel::{Channel, ChannelId};
 use super::confidence::rms_interval_95;
 use super::recorder::ChannelRecorder;
 use super::regime::PoincareSection;
-use crate::dynamics::{DynamicModel, NaturalModes, StepCounts, PER_HALF, Parameters, MotionState};
+use crate::dynamics::{DynamicModel, MotionState, NaturalModes, PER_HALF, Parameters, StepCounts};
 
 /// The question.
 pub(super) struct ReportInput<'a> {
@@ -65,7 +65,7 @@ pub(super) fn assemble_response<const D: usize>(
         channels.insert(ChannelId::mesh_acceleration(half).name(), m);
         channels.insert(ChannelId::pinion_axial_acceleration(half).name(), a);
     }
-    let statistics = asked
+    let statistics = input
         .analysis
         .channels
         .iter()
@@ -89,7 +89,7 @@ pub(super) fn assemble_response<const D: usize>(
     let shares = recorder.contact_shares();
     let dt_s = input.p.mesh_period_s() / input.analysis.samples_per_mesh_period.max(1) as f64;
     let mut samples = recorder.take_samples();
-    let series = asked
+    let series = input
         .analysis
         .channels
         .iter()
@@ -97,7 +97,14 @@ pub(super) fn assemble_response<const D: usize>(
             let at = samples.iter().position(|(other, _)| other == id)?;
             let (id, values) = samples.swap_remove(at);
             let quantity = id.quantity();
-            Some(Channel { name: id.name(), quantity, unit: quantity.unit().into(), t0_s: assessment.t0_s, dt_s, values })
+            Some(Channel {
+                name: id.name(),
+                quantity,
+                unit: quantity.unit().into(),
+                t0_s: assessment.t0_s,
+                dt_s,
+                values,
+            })
         })
         .collect();
     let final_state = model.source_state(&last);
@@ -170,7 +177,7 @@ fn contact_state(shares: &[[f64; 3]; 2]) -> ContactState {
 mod tests {
     use super::*;
     use crate::dynamics::tests::reference::parameters;
-    use crate::dynamics::{ImpactExcitation, ImpactActsOn, Integrator, Spring};
+    use crate::dynamics::{ImpactActsOn, ImpactExcitation, Integrator, Spring};
     use crate::response::{SolutionMethod, solve};
     use crate::watch::Watch;
     use herringbone_oracle::Tolerance::Relative;

@@ -1,18 +1,22 @@
 //! A pair that nothing moves: no load, no impact, and a start at rest. Its answer is exact, where a search would ask rounding.
 
-use super::analysis::{ContactState, Halves, SolutionMethod, Regime, Response};
+use super::analysis::{ContactState, Halves, Regime, Response, SolutionMethod};
 use super::recording::RecordedRun;
-use super::report::{MotionAssessment, report};
+use super::report::{MotionAssessment, assemble_response};
 use super::solve::OperatingPoint;
-use crate::dynamics::{DynamicsError, ImpactExcitation, Integrator, DynamicModel, StepCounts, PER_HALF, Spring, MotionState, U, integrate_trajectory};
+use crate::dynamics::{
+    DynamicModel, DynamicsError, ImpactExcitation, Integrator, MotionState, PER_HALF, Spring, StepCounts, U,
+    integrate_trajectory,
+};
 
 impl OperatingPoint<'_> {
     /// Whether the pair stays where it starts: without load and impact, set out at rest in the middle of its backlash (all zero) or, where
     /// no start is given, with the driving flanks just touching, which is where ever smaller loads leave it.
     pub(super) fn stays_at_rest(&self) -> bool {
         let [left, right] = &self.p.halves;
-        let unloaded =
-            [left, right].iter().all(|h| h.pinion_torque_nm == 0.0 && h.impact.as_ref().is_none_or(ImpactExcitation::is_zero));
+        let unloaded = [left, right]
+            .iter()
+            .all(|h| h.pinion_torque_nm == 0.0 && h.impact.as_ref().is_none_or(ImpactExcitation::is_zero));
         // A torsional spring between unlike halves would be strained where both touch.
         let c = &self.p.couplings;
         let uncoupled = c.pinion_torsion == Spring::default() && c.gear_torsion == Spring::default();
@@ -44,7 +48,8 @@ impl OperatingPoint<'_> {
         let side = if model.b == 0.0 { 1 } else { 0 };
         let mut start = MotionState { period: from, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [side; 2] };
         if touching {
-            (0..DynamicModel::<D>::HALVES).for_each(|j| start.x[j * PER_HALF + U] = model.first_contact_displacement_m(j) / model.cos);
+            (0..DynamicModel::<D>::HALVES)
+                .for_each(|j| start.x[j * PER_HALF + U] = model.first_contact_displacement_m(j) / model.cos);
         }
         let held = model.with_fixed_contact();
         let span = (from, from + periods);
@@ -63,7 +68,8 @@ impl OperatingPoint<'_> {
             t0_s: from as f64 * self.p.mesh_period_s(),
             counts: StepCounts::default(),
         };
-        let mut response = assemble_response(&self.report_input(), &held, finished.recorder, finished.record, assessment);
+        let mut response =
+            assemble_response(&self.report_input(), &held, finished.recorder, finished.record, assessment);
         if touching {
             response.summary.contact = ContactState::Continuous;
             response.summary.contact_share = Halves { left: 1.0, right: 1.0 };
@@ -76,7 +82,7 @@ impl OperatingPoint<'_> {
 mod tests {
     use crate::dynamics::tests::reference::parameters;
     use crate::dynamics::{ImpactExcitation, Stiffness};
-    use crate::response::{Analysis, ContactState, SolutionMethod, Regime, solve, solve_many};
+    use crate::response::{Analysis, ContactState, Regime, SolutionMethod, solve, solve_many};
     use crate::watch::Watch;
 
     /// Without load and impact: exactly at rest, whatever the stiffness, the play and the method.

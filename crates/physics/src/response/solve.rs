@@ -1,15 +1,15 @@
 //! One operating point: from parameters to a response.
 
-use super::analysis::{Analysis, SolutionMethod, Multiplier, Regime, Response};
+use super::analysis::{Analysis, Multiplier, Regime, Response, SolutionMethod};
 use super::channel::ChannelId;
 use super::energy::EnergyBalance;
 use super::recorder::ChannelRecorder;
 use super::recording::{FinishedRun, RecordedRun};
-use super::report::{ReportInput, MotionAssessment, report, solved_halves};
+use super::report::{MotionAssessment, ReportInput, assemble_response, solved_halves};
 use super::steady::{SteadyMotion, SteadyStateSearch, displaced};
 use crate::dynamics::{
-    Perturbation, DynamicsError, Integrator, IntegrationLimits, DynamicModel, NaturalModes, PER_HALF, Parameters, Shooting, MotionState, integrate_trajectories,
-    integrate_trajectory, state_difference, is_mirrored,
+    DynamicModel, DynamicsError, IntegrationLimits, Integrator, MotionState, NaturalModes, PER_HALF, Parameters,
+    Perturbation, Shooting, integrate_trajectories, integrate_trajectory, is_mirrored, state_difference,
 };
 use crate::watch::{Canceled, Watch};
 use rayon::prelude::*;
@@ -80,7 +80,8 @@ fn solve_group(
     // Their own progress would run back and forth.
     let canceled = || watch.checkpoint_quietly().is_err();
     let watch = &Watch::new(&|_| {}, &canceled);
-    let lanes = matches!(analysis.method, SolutionMethod::Integrate { .. }) && analysis.integrator == Integrator::Taylor;
+    let lanes =
+        matches!(analysis.method, SolutionMethod::Integrate { .. }) && analysis.integrator == Integrator::Taylor;
     if !lanes {
         let solved = group.iter().map(|p| match solve(p, analysis, watch) {
             Err(DynamicsError::Canceled(canceled)) => Err(canceled),
@@ -159,7 +160,7 @@ impl OperatingPoint<'_> {
         self.p.is_symmetric() && (self.analysis.initial_state.is_none() || is_mirrored(start))
     }
 
-    pub(super) fn asked(&self) -> ReportInput<'_> {
+    pub(super) fn report_input(&self) -> ReportInput<'_> {
         ReportInput { p: self.p, analysis: self.analysis, modes: self.modes }
     }
 
@@ -172,7 +173,11 @@ impl OperatingPoint<'_> {
     }
 
     /// The steady state; None when six coordinates do not tell the whole story.
-    fn solve_steady<const D: usize>(&self, start: &[f64; 24], off_symmetry: bool) -> Result<Option<Response>, DynamicsError> {
+    fn solve_steady<const D: usize>(
+        &self,
+        start: &[f64; 24],
+        off_symmetry: bool,
+    ) -> Result<Option<Response>, DynamicsError> {
         let model = DynamicModel::<D>::new(self.p)?;
         let search = SteadyStateSearch {
             model: &model,
@@ -193,7 +198,8 @@ impl OperatingPoint<'_> {
             state = displaced(&model, state, &push);
         }
         let bounded = |error: DynamicsError| {
-            let diverged = matches!(error, DynamicsError::Diverged { .. }) && self.analysis.method == SolutionMethod::Auto;
+            let diverged =
+                matches!(error, DynamicsError::Diverged { .. }) && self.analysis.method == SolutionMethod::Auto;
             if diverged { self.unstable_response(&model, state, error).map(Some) } else { Err(error) }
         };
         let found = match search.run(state) {
@@ -240,7 +246,9 @@ impl OperatingPoint<'_> {
             regime: match (&found.orbit, classification) {
                 (Some((1, _)), _) => Regime::Period1,
                 (Some(_), _) => Regime::PeriodN,
-                (None, classification) => classification.map_or(Regime::QuasiPeriodic, |classification| classification.regime),
+                (None, classification) => {
+                    classification.map_or(Regime::QuasiPeriodic, |classification| classification.regime)
+                }
             },
             period: found.orbit.as_ref().map(|(n, _)| *n),
             floquet: found.floquet,
@@ -347,7 +355,13 @@ impl OperatingPoint<'_> {
             statistics.push((ChannelId::normal_force(half), false));
             statistics.push((ChannelId::tooth_force(half), true));
         }
-        ChannelRecorder::new(model, &statistics, &self.analysis.channels, self.analysis.samples_per_mesh_period, periods)
+        ChannelRecorder::new(
+            model,
+            &statistics,
+            &self.analysis.channels,
+            self.analysis.samples_per_mesh_period,
+            periods,
+        )
     }
 
     /// The accelerations alone.
@@ -400,7 +414,9 @@ fn integrate<const D: usize>(
     lane_use: LaneUse,
 ) -> Result<Vec<Result<Response, DynamicsError>>, Canceled> {
     let Some(OperatingPoint { analysis, watch, .. }) = points.first() else { return Ok(Vec::new()) };
-    let SolutionMethod::Integrate { mesh_periods, record_mesh_periods } = analysis.method else { return Ok(Vec::new()) };
+    let SolutionMethod::Integrate { mesh_periods, record_mesh_periods } = analysis.method else {
+        return Ok(Vec::new());
+    };
     let end = mesh_periods.max(1);
     let record_from = end - record_mesh_periods.clamp(1, end);
     // Measured on the reference cases: RMS error over tolerance is up to 10 for Taylor series, up to 300 for Runge–Kutta.
@@ -445,8 +461,9 @@ fn integrate<const D: usize>(
         let point = &points[i];
         let next = run.finish().and_then(|finished| {
             let (assessment, compare) = point.assess(model, &finished, tolerance)?;
-            let finely = compare
-                .then(|| RecordedRun::new(model, finished.stored, tight, (record_from, end), point.rms_recorder(model)));
+            let finely = compare.then(|| {
+                RecordedRun::new(model, finished.stored, tight, (record_from, end), point.rms_recorder(model))
+            });
             Ok((finished, assessment, finely.transpose()?))
         });
         match next {
@@ -456,7 +473,8 @@ fn integrate<const D: usize>(
             }
             Err(error) => out[i] = Err(error),
             Ok((finished, assessment, None)) => {
-                out[i] = Ok(assemble_response(&point.report_input(), model, finished.recorder, finished.record, assessment));
+                out[i] =
+                    Ok(assemble_response(&point.report_input(), model, finished.recorder, finished.record, assessment));
             }
             Ok((finished, assessment, Some(finely))) => {
                 compared.push(finely);
@@ -489,7 +507,8 @@ const ROUNDING: f64 = 1e-13;
 /// An acceleration that is nothing but rounding: 1e-12 of what the load would give the free mesh, m/s².
 fn acceleration_floor<const D: usize>(model: &DynamicModel<D>) -> f64 {
     let square = model.omega_ref * model.omega_ref;
-    (0..DynamicModel::<D>::HALVES).fold(0.0f64, |m, j| m.max(model.max_excitation_force_n(j) * model.halves[j].inv_me * square))
+    (0..DynamicModel::<D>::HALVES)
+        .fold(0.0f64, |m, j| m.max(model.max_excitation_force_n(j) * model.halves[j].inv_me * square))
         * 1e-12
 }
 

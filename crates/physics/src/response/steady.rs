@@ -3,10 +3,10 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::budget::{Budget, budget_exhausted, steps_per_period};
-use super::regime::{CHAOS_PER_MESH_PERIOD, PoincareSection, perturbation_decay, largest_component, lyapunov_exponent};
+use super::regime::{CHAOS_PER_MESH_PERIOD, PoincareSection, largest_component, lyapunov_exponent, perturbation_decay};
 use crate::dynamics::{
-    Perturbation, DynamicsError, RigidBodyModes, Integrator, IntegrationLimits, DynamicModel, Motion, StepCounts, PER_HALF, Shooting, MotionState, U,
-    Unobserved, state_difference,
+    DynamicModel, DynamicsError, IntegrationLimits, Integrator, Motion, MotionState, PER_HALF, Perturbation,
+    RigidBodyModes, Shooting, StepCounts, U, Unobserved, state_difference,
 };
 
 /// Mesh periods after which a motion that has not come near to repeating is taken not to repeat.
@@ -313,7 +313,10 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             monodromy_is_current = false;
         }
         let size = period_map.size.max(1e-9 * largest_component(&(at.x, [0.0; D])));
-        if !monodromy_is_current || period_map.separated || largest_component(&defect) / size > 1e-9f64.max(10.0 * self.limits.tolerance) {
+        if !monodromy_is_current
+            || period_map.separated
+            || largest_component(&defect) / size > 1e-9f64.max(10.0 * self.limits.tolerance)
+        {
             return Ok(None);
         }
         self.stable_orbit(&shooting, at, 1, period_map.monodromy, budget, counts)
@@ -451,7 +454,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         let mut motion = self.motion(found.start, budget);
         for period in 1..=n / 2 {
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.9)?;
-            let change = largest_component(&rigid_body.project_out(&state_difference(&motion.state, &found.start))) / size;
+            let change =
+                largest_component(&rigid_body.project_out(&state_difference(&motion.state, &found.start))) / size;
             if n.is_multiple_of(period) && change < SAME_PERIOD_CHANGE {
                 budget.spend(&motion.counts, 0);
                 return Ok(Some(period));
@@ -545,7 +549,11 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
 }
 
 /// A state with a perturbation added, its contact found anew.
-pub(super) fn moved<const D: usize>(model: &DynamicModel<D>, mut state: MotionState<D>, by: &Perturbation<D>) -> MotionState<D> {
+pub(super) fn displaced<const D: usize>(
+    model: &DynamicModel<D>,
+    mut state: MotionState<D>,
+    by: &Perturbation<D>,
+) -> MotionState<D> {
     for c in 0..D {
         state.x[c] += by.0[c];
         state.v[c] += by.1[c];

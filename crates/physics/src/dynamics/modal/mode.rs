@@ -136,7 +136,7 @@ fn rigid_body_mode_name(mode: &Mode) -> String {
 mod tests {
     use super::*;
     use crate::dynamics::tests::reference::parameters;
-    use crate::dynamics::{HalfParameters, IntegrationLimits, DynamicModel, Shooting, Stiffness};
+    use crate::dynamics::{DynamicModel, HalfParameters, IntegrationLimits, Shooting, Stiffness};
     use crate::watch::Watch;
     use herringbone_oracle::Tolerance::Relative;
     use herringbone_oracle::{check, check_worst};
@@ -189,7 +189,7 @@ mod tests {
                 let strain: f64 = spring_elements(&p)
                     .iter()
                     .map(|m| {
-                        let deflection = |shape: &Row| (0..12).map(|c| m.row[c] * shape[c]).sum::<f64>();
+                        let deflection = |shape: &SourceVector| (0..12).map(|c| m.row[c] * shape[c]).sum::<f64>();
                         m.spring.stiffness * deflection(first) * deflection(second)
                     })
                     .sum();

@@ -31,7 +31,9 @@ fn points() -> (Vec<Parameters>, Vec<[f64; 24]>) {
         }
         if i % 5 == 4 {
             let harmonics = vec![Harmonic { amplitude: 900.0, phase_rad: 0.4 }];
-            p.halves.iter_mut().for_each(|h| h.impact = Some(ImpactExcitation::Harmonics { harmonics: harmonics.clone() }));
+            p.halves
+                .iter_mut()
+                .for_each(|h| h.impact = Some(ImpactExcitation::Harmonics { harmonics: harmonics.clone() }));
         }
         all.push((p, start(name)));
     }
