@@ -14,10 +14,10 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use herringbone_physics::dynamics::{
-    ContactForce, Couplings, DynamicsError, FlankForce, HalfParameters, Harmonic, ImpactExcitation, ImpactActsOn, Integrator,
-    Parameters, Spring, Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m,
+    ContactForce, Couplings, DynamicsError, FlankForce, HalfParameters, Harmonic, ImpactActsOn, ImpactExcitation,
+    Integrator, Parameters, Spring, Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m,
 };
-use herringbone_physics::response::{Analysis, SolutionMethod, Response, solve};
+use herringbone_physics::response::{Analysis, Response, SolutionMethod, solve};
 use herringbone_physics::watch::Watch;
 
 /// Splitmix64: a fixed sequence, so that a failure can be repeated.

@@ -155,7 +155,11 @@ pub fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
 }
 
 /// What the pulse of a half does to the equations: longer than the mesh period, or of more than the load.
-pub fn of_pulses(document: &JobDocument, plane: &MotionPlane, pulses: &[Option<dynamics::ImpactExcitation>; 2]) -> Vec<Warning> {
+pub fn of_pulses(
+    document: &JobDocument,
+    plane: &MotionPlane,
+    pulses: &[Option<dynamics::ImpactExcitation>; 2],
+) -> Vec<Warning> {
     let mut found = Vec::new();
     let longest = pulses.iter().flatten().filter_map(|pulse| match pulse {
         dynamics::ImpactExcitation::HalfSine { duration_mesh_periods, .. } => Some(*duration_mesh_periods),

@@ -1,7 +1,7 @@
 //! What a mesh period costs: allocations (none) and time (printed).
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::ForceCell;
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 use super::reference::{parameters, reference};
