@@ -1,4 +1,4 @@
-//! The two excitations of the equations: mesh stiffness and mesh-in impact, as periodic functions of the mesh phase.
+//! Excitations of the equations as periodic functions of the mesh phase: mesh stiffness and mesh-in impact.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 use super::error::DynamicsError;
 use super::lanes::Real;
 
-/// One harmonic of a Fourier series: `amplitude · cos(2π i φ + phase_rad)` for the i-th entry (i from 1).
+/// One harmonic of a Fourier series: `amplitude · cos(2π i φ + phase_rad)` for entry i, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Harmonic {
-    /// Relative to the mean for stiffnesses, in N for forces.
+    /// Relative to the mean for a stiffness, N for a force.
     pub amplitude: f64,
+    /// Phase angle, rad.
     pub phase_rad: f64,
 }
 
@@ -19,13 +20,14 @@ pub struct Harmonic {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stiffness {
-    /// The same at every phase.
+    /// Constant stiffness.
     Constant { mean_n_per_m: f64 },
     /// k(φ) = mean (1 + Σ_i amplitude_i cos(2π i φ + phase_i)).
     Fourier { mean_n_per_m: f64, harmonics: Vec<Harmonic> },
-    /// Equally spaced over one period, the first at φ = 0. Between samples: the periodic monotone cubic of Fritsch and
-    /// Carlson (SIAM J. Numer. Anal. 17 (1980) 238) with Brodlie's harmonic-mean slopes. It passes through every sample, has no
-    /// extremum between samples and so keeps a kink as sharp as the sampling does. The methods use the cubics exactly.
+    /// Samples, equally spaced over one period, the first at φ = 0. Interpolation: periodic monotone cubic (F. N.
+    /// Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238–246, doi:10.1137/0717021) with the harmonic-mean
+    /// slopes of Brodlie. It passes through all samples and has no extremum between them. The integrators use the
+    /// cubics exactly.
     Samples { values_n_per_m: Vec<f64> },
 }
 
@@ -42,7 +44,7 @@ impl Stiffness {
         }
     }
 
-    /// Value at the phase `phase` (any real number), N/m.
+    /// Value at any phase, N/m.
     pub fn at(&self, phase: f64) -> f64 {
         let waveform = StiffnessWaveform::new(self, 0.0, 1.0);
         let phase = phase.rem_euclid(1.0);
@@ -73,18 +75,18 @@ impl Stiffness {
     }
 }
 
-/// Periodic force F_s along the mesh of one half in the transverse plane, N.
+/// Periodic impact force F_s of one half, tangential in the transverse plane, N.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ImpactExcitation {
-    /// F_s(φ) = force · sin(π (φ − start) / duration) while 0 ≤ φ − start < duration, once per mesh period. Pulses longer than
-    /// a mesh period overlap and add up.
+    /// F_s(φ) = force · sin(π (φ − start) / duration) for 0 ≤ φ − start < duration, once per mesh period. Pulses longer
+    /// than a mesh period overlap and add up.
     HalfSine { force_n: f64, duration_mesh_periods: f64, start_mesh_periods: f64 },
-    /// F_s(φ) = Σ_i amplitude_i cos(2π i φ + phase_i), amplitudes in N: any smooth periodic force along the mesh.
+    /// F_s(φ) = Σ_i amplitude_i cos(2π i φ + phase_i), amplitudes in N.
     Harmonics { harmonics: Vec<Harmonic> },
 }
 
-/// The longest half sine, in mesh periods: beyond it the pulses of a dozen tooth pairs would overlap.
+/// Longest half sine, in mesh periods; up to 16 pulses then overlap.
 const MAX_PULSE_MESH_PERIODS: f64 = 16.0;
 
 impl ImpactExcitation {
@@ -98,7 +100,7 @@ impl ImpactExcitation {
         }
     }
 
-    /// Whether there is no force at any phase.
+    /// Whether the force is zero at all phases.
     pub fn is_zero(&self) -> bool {
         match self {
             ImpactExcitation::HalfSine { force_n, .. } => *force_n == 0.0,
@@ -139,10 +141,10 @@ fn monotone_cubics(values: &[f64]) -> Vec<[f64; 4]> {
         .collect()
 }
 
-/// Taylor coefficients of one parity: 0, 2, 4 … or 1, 3, 5 ….
+/// Number of Taylor coefficients of one parity (orders 0, 2, 4 … or 1, 3, 5 …).
 const PER_PARITY: usize = MAX_ORDER / 2 + 1;
 
-/// Truncated Fourier series with the tables that give its Taylor coefficients in scaled time.
+/// Truncated Fourier series with the tables of its Taylor coefficients in scaled time.
 #[derive(Debug, Clone)]
 pub(crate) struct FourierSeries<R> {
     constant: R,
@@ -155,8 +157,8 @@ struct HarmonicTerm<R> {
     /// a cosφ and a sinφ.
     cos: R,
     sin: R,
-    /// (i ω/ω_ref)^n / n! with the signs of the derivatives of the cosine: n even, multiplying a cos(iθ + φ), and n odd, multiplying
-    /// a sin(iθ + φ).
+    /// (i ω/ω_ref)^n / n! with the signs of the derivatives of the cosine: n even, factor of a cos(iθ + φ); n odd,
+    /// factor of a sin(iθ + φ).
     even: [R; PER_PARITY],
     odd: [R; PER_PARITY],
 }
@@ -195,7 +197,7 @@ impl<R: Real> FourierSeries<R> {
         Self { constant: R::splat(0.0), terms: Vec::new() }
     }
 
-    /// Puts one motion's series into a lane. Shorter series have zero terms.
+    /// Sets the series of one lane. Shorter series are padded with zero terms.
     pub fn put(&mut self, lane: usize, one: &FourierSeries<f64>) {
         let zero = R::splat(0.0);
         while self.terms.len() < one.terms.len() {
@@ -213,7 +215,7 @@ impl<R: Real> FourierSeries<R> {
         }
     }
 
-    /// No lane has harmonics.
+    /// Whether no lane has harmonics.
     #[inline(always)]
     pub fn is_constant(&self) -> bool {
         self.terms.is_empty()
@@ -257,8 +259,7 @@ pub(crate) const MAX_ORDER: usize = 24;
 /// Taylor coefficients of one quantity.
 pub(crate) type Coefficients = [f64; MAX_ORDER + 1];
 
-/// A stiffness made ready for the methods. Scaled time τ is time times a reference frequency; `period_tau` is one mesh
-/// period in it.
+/// Stiffness waveform in the form the integrators use. `period_tau` is one mesh period in scaled time.
 #[derive(Debug, Clone)]
 pub(crate) struct StiffnessWaveform {
     kind: StiffnessKind,
@@ -286,7 +287,7 @@ impl StiffnessWaveform {
         Self { kind, shift, period_tau }
     }
 
-    /// Phases at which the course is not smooth.
+    /// Appends the phases at which the waveform is not smooth.
     pub fn breakpoints(&self, out: &mut Vec<f64>) {
         if let StiffnessKind::Pieces(pieces) = &self.kind
             && pieces.len() > 1
@@ -295,12 +296,12 @@ impl StiffnessWaveform {
         }
     }
 
-    /// Index of the cubic that holds around `interior`, and the position of `phase` in it.
+    /// Index of the cubic that contains `interior`, and the position of `phase` in it.
     fn piece(&self, count: usize, phase: f64, interior: f64) -> (usize, f64) {
         let n = count as f64;
         let index = (((interior - self.shift).rem_euclid(1.0) * n) as usize).min(count - 1);
         let mut u = (phase - self.shift).rem_euclid(1.0) * n - index as f64;
-        // The start of a piece may be its neighbour's end, one period away.
+        // The start of a piece can be the end of its neighbour, one period away.
         if u > 0.5 * n + 0.5 {
             u -= n;
         } else if u < 0.5 - 0.5 * n {
@@ -309,7 +310,7 @@ impl StiffnessWaveform {
         (index, u)
     }
 
-    /// Value at `phase`; `interior` is a phase in the interior of the smooth stretch that is meant.
+    /// Value at `phase`, on the smooth interval that contains `interior`, N/m.
     pub fn value(&self, phase: f64, interior: f64) -> f64 {
         match &self.kind {
             StiffnessKind::Fourier(series) => series.value(phase),
@@ -321,7 +322,7 @@ impl StiffnessWaveform {
         }
     }
 
-    /// The series, where the course is one (a constant is a series without terms).
+    /// The Fourier series, if the waveform is one (a constant is a series without terms).
     pub fn series(&self) -> Option<&FourierSeries<f64>> {
         match &self.kind {
             StiffnessKind::Fourier(series) => Some(series),
@@ -329,7 +330,7 @@ impl StiffnessWaveform {
         }
     }
 
-    /// Taylor coefficients about `phase`, those above the third zero; None where the course is a series.
+    /// Taylor coefficients about `phase`, orders 0 to 3; the higher ones are zero. None for a Fourier series.
     #[inline(always)]
     pub fn cubic(&self, phase: f64, interior: f64) -> Option<[f64; 4]> {
         let StiffnessKind::Pieces(pieces) = &self.kind else { return None };
@@ -345,7 +346,7 @@ impl StiffnessWaveform {
     }
 }
 
-/// An impact made ready for the methods.
+/// Impact waveform in the form the integrators use.
 #[derive(Debug, Clone)]
 pub(crate) enum ImpactWaveform {
     None,
@@ -372,7 +373,7 @@ impl ImpactWaveform {
         }
     }
 
-    /// An upper estimate of the force's size, N.
+    /// Upper bound of the magnitude of the force, N.
     pub fn largest_n(&self) -> f64 {
         match self {
             ImpactWaveform::None => 0.0,
@@ -388,11 +389,11 @@ impl ImpactWaveform {
         }
     }
 
-    /// Sine and cosine parts of the pulses under way at `phase` (those that are under way at `interior`).
+    /// Sine and cosine of the pulses that are active at `interior`, at `phase`, summed.
     fn sine(phase: f64, interior: f64, duration: f64, start: f64) -> (f64, f64) {
         let mut offset = interior - start;
         offset -= offset.floor();
-        // offset is the age of the youngest pulse at `interior`; older ones are whole periods older.
+        // `offset` is the age of the youngest pulse at `interior`; the others are older by whole periods.
         let age = offset + (phase - interior);
         let (mut sin, mut cos, mut older) = (0.0, 0.0, 0.0);
         while offset + older < duration {
@@ -414,7 +415,7 @@ impl ImpactWaveform {
         }
     }
 
-    /// F sin and F cos of the pulses under way at `phase` (those that are under way at `interior`); None where the force is no pulse.
+    /// F sin and F cos of the active pulses at `phase` (those that are active at `interior`), N; None for harmonics.
     #[inline(always)]
     pub fn pulse(&self, phase: f64, interior: f64) -> Option<(f64, f64)> {
         let ImpactWaveform::HalfSine { force_n, duration, start, .. } = self else { return None };

@@ -1,4 +1,4 @@
-//! Taylor coefficients of the excitations about a phase: of one motion, or of the motions in all lanes.
+//! Taylor coefficients of the excitations about a phase, for one motion or for the motions in all lanes.
 
 use super::contact_force::ForceCells;
 use super::excitation::{Coefficients, FourierSeries, ImpactWaveform, MAX_ORDER, StiffnessWaveform};
@@ -10,14 +10,14 @@ use super::segment::Segment;
 /// Taylor coefficients of the excitations of both halves over one step.
 pub(crate) struct ExcitationTerms<R> {
     pub stiffness: [[R; MAX_ORDER + 1]; 2],
-    /// The stiffness again, highest order first, so that a convolution is a product of two rows.
+    /// The stiffness in descending order, for convolutions.
     pub reversed: [[R; MAX_ORDER + 1]; 2],
     /// Highest order of the stiffness that is not zero.
     pub degree: [usize; 2],
     pub impact: [[R; MAX_ORDER + 1]; 2],
-    /// The impact is not zero.
+    /// Whether the impact is not zero.
     pub impact_active: [bool; 2],
-    /// Where the mesh force is that of the loaded contact: the cell of each half.
+    /// Cells of a tabulated contact force, one per half.
     pub cells: [ForceCells<R>; 2],
 }
 
@@ -63,14 +63,14 @@ impl<R: Real> ExcitationTerms<R> {
     }
 }
 
-/// Gives the excitations' Taylor coefficients in scaled time, orders 0 to `order`, about `phase`; `interior` is a phase in the
-/// interior of the smooth stretch that is meant, `contact` the sides and levels the halves are on.
+/// Taylor coefficients of the excitations in scaled time, orders 0 to `order`, about `phase`, on the smooth interval
+/// that contains `interior`, with the given contact of both halves.
 pub(crate) trait ExcitationExpansion<R> {
     fn expand(&self, phase: R, interior: R, contact: [R; 2], order: usize, terms: &mut ExcitationTerms<R>);
 }
 
 impl ContactForceWaveform {
-    /// Puts the cell that a half is in into a lane.
+    /// Sets the cell of a half in one lane.
     #[inline(always)]
     fn put<R: Real>(&self, phase: f64, interior: f64, contact: ContactSide, lane: usize, cells: &mut ForceCells<R>) {
         let Self { force, shift, b, period_tau } = self;
@@ -115,8 +115,8 @@ impl<const D: usize> ExcitationExpansion<f64> for DynamicModel<D> {
 }
 
 impl<const D: usize> DynamicModel<D> {
-    /// The excitations that perturbations from a motion feel, about the scaled time `at` of one of its segments: where the mesh force is that of the
-    /// loaded contact, its stiffness along the motion.
+    /// Excitations of the variational equations about the scaled time `at` of a segment: for a tabulated contact force
+    /// its stiffness along the motion.
     #[inline(always)]
     pub fn expand_for_perturbations(
         &self,
@@ -151,7 +151,7 @@ impl<const D: usize> DynamicModel<D> {
     }
 }
 
-/// The polynomial about `at` instead of 0.
+/// Re-expands the polynomial about `at`.
 fn recentre(c: &mut [f64], at: f64) {
     if at == 0.0 {
         return;
@@ -164,7 +164,7 @@ fn recentre(c: &mut [f64], at: f64) {
     }
 }
 
-/// Taylor coefficients of half sines: their derivatives are sine, cosine, −sine, −cosine in turn.
+/// Taylor coefficients of half sines, whose derivatives are sine, cosine, −sine, −cosine in turn.
 #[inline(always)]
 fn pulse<R: Real>(sin: R, cos: R, powers: &[R; MAX_ORDER + 1], order: usize, out: &mut [R; MAX_ORDER + 1]) {
     let signed = [sin, cos, -sin, -cos];
@@ -173,20 +173,20 @@ fn pulse<R: Real>(sin: R, cos: R, powers: &[R; MAX_ORDER + 1], order: usize, out
     }
 }
 
-/// The excitations of one half in all lanes.
+/// Excitations of one half in all lanes.
 struct LaneExcitation<'m, const L: usize> {
     /// Stiffnesses that are Fourier series; zero in the other lanes.
     stiffness: FourierSeries<Lanes<L>>,
-    /// Stiffnesses that are cubics.
+    /// Stiffnesses that are piecewise cubic.
     cubics: [Option<&'m StiffnessWaveform>; L],
-    /// Contact forces: in all lanes in use, or in none.
+    /// Tabulated contact forces: in all lanes in use, or in none.
     contacts: [Option<&'m ContactForceWaveform>; L],
     pulses: [Option<&'m ImpactWaveform>; L],
     powers: [Lanes<L>; MAX_ORDER + 1],
     impact: FourierSeries<Lanes<L>>,
 }
 
-/// The excitations of the motions in all lanes.
+/// Excitations of the motions in all lanes.
 pub(crate) struct LaneExcitations<'m, const L: usize> {
     halves: [LaneExcitation<'m, L>; 2],
 }
@@ -204,7 +204,7 @@ impl<'m, const L: usize> LaneExcitations<'m, L> {
         Self { halves: [half(), half()] }
     }
 
-    /// Puts the excitations of one motion into a lane.
+    /// Sets the excitations of one lane.
     pub fn put(&mut self, lane: usize, one: &'m [Excitation]) {
         const NONE: Coefficients = [0.0; MAX_ORDER + 1];
         for (to, from) in self.halves.iter_mut().zip(one) {

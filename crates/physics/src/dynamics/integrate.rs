@@ -1,4 +1,4 @@
-//! Drives a method through mesh periods.
+//! Integration of a motion over mesh periods by either method.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,23 +10,25 @@ use super::segment::Observer;
 use super::taylor::{Taylor, order_for};
 use crate::watch::Watch;
 
-/// How the equations are stepped through time.
+/// Method of numerical integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Integrator {
-    /// Taylor series of high order, restarted exactly at every event.
+    /// Taylor series of high order with event location at every change of contact.
     #[default]
     Taylor,
-    /// Embedded Runge–Kutta 4(5) with variable step, blind to changes of contact: what the source used.
+    /// Embedded Runge–Kutta 4(5) with variable step, without event location, as in the source paper.
     RungeKutta,
 }
 
-/// What a solution took.
+/// Work of an integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct StepCounts {
+    /// Accepted steps.
     pub steps: u64,
+    /// Rejected steps (Runge–Kutta only).
     pub rejected_steps: u64,
-    /// Evaluations of the mesh forces; for the Taylor method, of their derivatives of each order.
+    /// Evaluations of the mesh forces; for the Taylor method of their derivatives of each order.
     pub force_evaluations: u64,
 }
 
@@ -38,10 +40,10 @@ impl std::ops::AddAssign for StepCounts {
     }
 }
 
-/// Steps between two looks at the watch: well below 50 ms of work for either method.
+/// Steps between two calls of [`Watch::checkpoint`]: well below 50 ms of work for either method.
 const STEPS_PER_CHECKPOINT: u64 = 1024;
 
-/// A displacement (or velocity in scaled time) beyond which a motion has diverged, m.
+/// Displacement (or velocity in scaled time) beyond which a motion counts as diverged, m.
 const DIVERGENCE_LIMIT_M: f64 = 1e3;
 
 enum Stepper<const D: usize> {
@@ -49,12 +51,12 @@ enum Stepper<const D: usize> {
     RungeKutta(RungeKutta<D>),
 }
 
-/// A motion under way.
+/// Numerical integration of one motion.
 pub(crate) struct Motion<'a, const D: usize> {
     pub model: &'a DynamicModel<D>,
     pub state: MotionState<D>,
     pub counts: StepCounts,
-    /// A tooth has changed the side of its backlash since the start.
+    /// Whether the contact of a half has changed since the start.
     pub contact_changed: bool,
     stepper: Stepper<D>,
     max_steps: u64,
@@ -62,7 +64,7 @@ pub(crate) struct Motion<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Motion<'a, D> {
-    /// `tolerance`: local error of a step relative to the size of the motion; `max_steps`: budget over the life of the motion.
+    /// `tolerance`: local error of a step relative to the size of the motion. `max_steps`: limit over all mesh periods.
     pub fn new(
         model: &'a DynamicModel<D>,
         state: MotionState<D>,
@@ -97,7 +99,10 @@ impl<'a, const D: usize> Motion<'a, D> {
         self
     }
 
-    /// Goes to the end of the current mesh period. `fraction`: progress reported to the watch.
+    /// Integrates to the end of the current mesh period. `fraction`: completed fraction reported to the watch.
+    ///
+    /// # Errors
+    /// [`DynamicsError`].
     pub fn advance_period(
         &mut self,
         observer: &mut impl Observer<D>,
@@ -137,12 +142,13 @@ impl<'a, const D: usize> Motion<'a, D> {
         Ok(())
     }
 
+    /// Time since the start of the integration, s.
     pub fn time_s(&self) -> f64 {
         (self.state.period as f64 + self.state.phase) * self.model.period_tau / self.model.omega_ref
     }
 }
 
-/// A state beyond all reason: free rotation may go on for ever, everything else is a few micrometres.
+/// Whether a component exceeds the limit or is not finite. Rigid rotation is not limited.
 pub(super) fn has_diverged<const D: usize>(state: &MotionState<D>) -> bool {
     [&state.x, &state.v].iter().any(|row| {
         row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > DIVERGENCE_LIMIT_M))

@@ -1,4 +1,4 @@
-//! Several motions side by side in lanes, each on its own clock.
+//! Integration of several trajectories side by side, one per vector lane, each with its own time.
 
 use super::equations::Equations;
 use super::error::DynamicsError;
@@ -13,49 +13,52 @@ use super::taylor::{ChatterGuard, SmoothInterval, StepOutcome, evaluate_rows, or
 use crate::simd::vectorised;
 use crate::watch::{Canceled, Watch};
 
-/// Motions that go side by side.
+/// Number of lanes of a batch.
 pub(crate) const BATCH_LANES: usize = 8;
 
-/// One motion of a batch: where it starts, what looks at it, and when it has got where it was to go.
+/// One trajectory to be integrated: its model, start and tolerance, and the observer of its steps.
 pub(crate) trait TrajectoryObserver<'m, const D: usize> {
+    /// Equations of motion of the trajectory.
     fn model(&self) -> &'m DynamicModel<D>;
 
-    /// State at the start of a mesh period.
+    /// Initial state, at the start of a mesh period.
     fn start(&self) -> MotionState<D>;
 
     /// Local error of a step relative to the size of the motion.
     fn tolerance(&self) -> f64;
 
-    /// How far it has got, 0 … 1: for progress.
+    /// Completed fraction of the trajectory, 0 … 1, for the progress report.
     fn fraction_done(&self) -> f64;
 
-    /// Whether [`TrajectoryObserver::segment`] wants to see the present mesh period.
+    /// Whether [`TrajectoryObserver::segment`] is to be called for the steps of the current mesh period.
     fn wants_segments(&self) -> bool;
 
+    /// Receives one step; called only while [`TrajectoryObserver::wants_segments`].
     fn segment(&mut self, segment: &Segment<'_, D>);
 
-    /// A mesh period has ended in `state`. Returns whether the motion goes on.
+    /// Receives the state at the end of a mesh period. Returns whether the integration continues.
     fn finish_period(&mut self, state: &MotionState<D>) -> bool;
 
-    /// The motion has ended, by itself or with an error.
+    /// Receives the step counts of the whole trajectory and the error that ended it, if any.
     fn finished(&mut self, counts: StepCounts, error: Option<DynamicsError>);
 }
 
-/// Steps between two looks at the watch.
+/// Steps of a batch between two calls of [`Watch::checkpoint`].
 const BATCH_STEPS_PER_CHECKPOINT: u32 = 2048;
 
-/// Takes all observers to where they are going, [`BATCH_LANES`] at a time; as soon as one has finished the next takes its lane. Each
-/// moves exactly as it would alone at the order of `tolerance`. `max_steps`: budget of each.
+/// Integrates all trajectories, [`BATCH_LANES`] at a time; a lane whose trajectory is finished takes the next one of
+/// the queue. Each result is bit-identical to that of the trajectory alone at the Taylor order of `order_tolerance`.
+/// `max_steps` limits the steps of each trajectory.
 ///
 /// # Errors
-/// [`Canceled`] by the watch; observers' own errors go to the observers.
+/// [`Canceled`] by the watch. An error of a trajectory is passed to its observer.
 pub(crate) fn integrate_trajectories<'m, const D: usize, P: TrajectoryObserver<'m, D>>(
     observers: &mut [P],
     order_tolerance: f64,
     max_steps: u64,
     watch: &Watch<'_>,
 ) -> Result<(), Canceled> {
-    // Lanes share one law of the mesh force.
+    // All lanes of a batch have the same kind of mesh force.
     let (by_contact, by_stiffness): (Vec<usize>, Vec<usize>) =
         (0..observers.len()).partition(|&i| observers[i].model().uses_contact_force());
     for queue in [by_stiffness, by_contact] {
@@ -64,7 +67,7 @@ pub(crate) fn integrate_trajectories<'m, const D: usize, P: TrajectoryObserver<'
     Ok(())
 }
 
-/// Takes the observers of these indices, whose mesh forces follow the same law.
+/// Integrates the trajectories with the indices `queue`, whose mesh forces are of one kind.
 fn integrate_lanes<'m, const D: usize, P: TrajectoryObserver<'m, D>>(
     observers: &mut [P],
     queue: &[usize],
@@ -87,7 +90,7 @@ fn integrate_lanes<'m, const D: usize, P: TrajectoryObserver<'m, D>>(
         if batch.slots.iter().all(Option::is_none) {
             return Ok(());
         }
-        // Lanes are looked at for new observers only after one has finished.
+        // Lanes are refilled only after a trajectory has finished.
         loop {
             let before = finished;
             let stepped = batch.step();
@@ -104,10 +107,10 @@ fn integrate_lanes<'m, const D: usize, P: TrajectoryObserver<'m, D>>(
     }
 }
 
-/// Takes one observer where it is going, by any method.
+/// Integrates one trajectory by the given method.
 ///
 /// # Errors
-/// [`Canceled`] by the watch; the observer's own errors go to the observer.
+/// [`Canceled`] by the watch. An error of the trajectory is passed to its observer.
 pub(crate) fn integrate_trajectory<'m, const D: usize, P: TrajectoryObserver<'m, D>>(
     observer: &mut P,
     integrator: Integrator,
@@ -133,7 +136,7 @@ pub(crate) fn integrate_trajectory<'m, const D: usize, P: TrajectoryObserver<'m,
     Ok(())
 }
 
-/// Shows a motion to the observer that wants to see it.
+/// Passes the segments of a motion to a trajectory observer that wants them.
 struct SegmentForwarder<'a, P>(&'a mut P);
 
 impl<'m, const D: usize, P: TrajectoryObserver<'m, D>> Observer<D> for SegmentForwarder<'_, P> {
@@ -144,19 +147,19 @@ impl<'m, const D: usize, P: TrajectoryObserver<'m, D>> Observer<D> for SegmentFo
     }
 }
 
-/// Who is in a lane.
+/// Trajectory that occupies a lane.
 #[derive(Clone, Copy)]
 struct LaneSlot {
     observer: usize,
     period: u64,
-    /// Index of the breakpoint at which the present smooth stretch ends.
+    /// Index of the breakpoint at which the current smooth interval ends.
     breakpoint: usize,
     steps: u64,
     evaluations: u64,
     chatter: ChatterGuard,
 }
 
-/// The lanes.
+/// State of all lanes of a batch.
 struct LaneBatch<'m, const D: usize, const L: usize> {
     order: usize,
     max_steps: u64,
@@ -169,7 +172,7 @@ struct LaneBatch<'m, const D: usize, const L: usize> {
     work: Box<TaylorWork<D, Lanes<L>>>,
     /// Displacements and velocities at the end of the step.
     end: ([Lanes<L>; D], [Lanes<L>; D]),
-    /// Polynomials of one lane, for those that look.
+    /// Polynomials of one lane, for its observer.
     rows: Box<[[f64; D]; MAX_ORDER + 1]>,
     force: Box<[[f64; MAX_ORDER + 1]; 2]>,
 }
@@ -223,7 +226,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         self.set_smooth_interval(lane, model, 0.0, 0);
     }
 
-    /// Puts a state into a lane.
+    /// Sets the state of a lane.
     fn set_state(&mut self, lane: usize, state: &MotionState<D>) {
         for c in 0..D {
             self.end.0[c].set(lane, state.x[c]);
@@ -235,7 +238,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         self.interval.phase.set(lane, state.phase);
     }
 
-    /// The smooth stretch from `from` to the breakpoint of this index.
+    /// Sets the smooth interval of a lane: from the phase `from` to the breakpoint of this index.
     fn set_smooth_interval(&mut self, lane: usize, model: &DynamicModel<D>, from: f64, breakpoint: usize) {
         let end = model.breakpoints[breakpoint];
         self.interval.end.set(lane, end);
@@ -252,7 +255,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         }
     }
 
-    /// One step of every lane.
+    /// Takes one step in every lane.
     fn step(&mut self) -> StepOutcome<Lanes<L>> {
         let Self { order, equations, excitations, interval, contact, size, work, end, .. } = self;
         vectorised(
@@ -266,7 +269,8 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         )
     }
 
-    /// What the step means to each lane's slot; returns how many have finished.
+    /// Evaluates the step in every lane: events, ends of mesh periods, errors. Returns the number of finished
+    /// trajectories.
     fn finish_step<P: TrajectoryObserver<'m, D>>(
         &mut self,
         stepped: &StepOutcome<Lanes<L>>,
@@ -331,7 +335,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         finished
     }
 
-    /// Shows the step of a lane to its observer.
+    /// Passes the step of a lane to its observer.
     fn emit_segment(
         &mut self,
         lane: usize,
@@ -363,7 +367,7 @@ impl<'m, const D: usize, const L: usize> LaneBatch<'m, D, L> {
         });
     }
 
-    /// Empties a lane: what is left in it stands still.
+    /// Empties a lane. Its equations stay, at rest over an interval of length zero.
     fn unload_lane(
         &mut self,
         lane: usize,

@@ -1,4 +1,4 @@
-//! Natural frequencies and static deflection with the mean mesh stiffness, in the source's twelve displacements.
+//! Natural frequencies, mode shapes and static deflection with the mean mesh stiffness.
 
 mod mode;
 mod springs;
@@ -14,23 +14,26 @@ use super::parameters::Parameters;
 /// Natural frequencies and mode shapes of the undamped system with mean mesh stiffness and closed contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NaturalModes {
-    /// Ascending, Hz; motions that nothing holds have 0.
+    /// Ascending, Hz; 0 for rigid-body modes.
     pub frequencies_hz: Vec<f64>,
-    /// One per frequency, in the source's order of displacements, normalised to φᵀ M φ = 1, with the largest displacement (of
-    /// rotations: the arc) positive. Of several modes with one frequency, which may be any mixture, those that are as plain as they can be:
-    /// free rotation first, then what moves both halves alike or against each other.
+    /// One shape per frequency, in the order of displacements of [the module](crate::dynamics) (m, rad), normalised to
+    /// φᵀ M φ = 1, with the largest displacement (of rotations: the arc) positive. For equal frequencies the basis is
+    /// unique: rigid rotation first, then the directions of `preferred_directions` in turn.
     pub shapes: Vec<[f64; 12]>,
 }
 
-/// Squared frequencies below this fraction of the largest are motions that nothing holds, and those closer than this are equal: far
-/// above rounding (1e-15), far below any spring that matters.
+/// Squared frequency, relative to the largest, below which a mode is a rigid-body mode and within which frequencies are
+/// equal: far above rounding (1e-15), far below any spring of practical stiffness.
 const RIGID_BODY_EIGENVALUE: f64 = 1e-12;
 
-/// Values over the source's twelve displacements.
+/// One value per displacement.
 type SourceVector = [f64; 12];
 
 impl NaturalModes {
     /// Solves K φ = ω² M φ by the eigenvalues of M^-½ K M^-½.
+    ///
+    /// # Errors
+    /// [`DynamicsError::InvalidParameter`].
     pub fn new(p: &Parameters) -> Result<Self, DynamicsError> {
         p.validate()?;
         let k = stiffness_matrix(p);
@@ -44,7 +47,7 @@ impl NaturalModes {
         let mut order: Vec<usize> = (0..12).collect();
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
         let largest = eigen.eigenvalues.amax();
-        // What nothing holds is one group of equal frequencies.
+        // All rigid-body modes form one group of equal frequencies.
         let squares: Vec<f64> = order
             .iter()
             .map(|&i| eigen.eigenvalues[i])
@@ -67,13 +70,13 @@ impl NaturalModes {
         Ok(Self { frequencies_hz, shapes })
     }
 
-    /// The shapes of the motions that nothing holds.
+    /// Shapes of the rigid-body modes.
     pub fn rigid_body_modes(&self) -> impl Iterator<Item = &[f64; 12]> {
         self.shapes.iter().zip(&self.frequencies_hz).filter(|(_, f)| **f == 0.0).map(|(shape, _)| shape)
     }
 
-    /// Deflection under the mean torques with the mean mesh stiffness, no impact, each half pressed to the flank its torque asks
-    /// for; nothing moved along free motions.
+    /// Deflection (m, rad) under the mean torques with the mean mesh stiffness, without impact, each half in contact on
+    /// the flank loaded by its torque; no component along rigid-body modes.
     pub fn static_deflection(&self, p: &Parameters) -> [f64; 12] {
         let mut force = torques(p);
         for j in 0..2 {
@@ -104,8 +107,8 @@ fn torques(p: &Parameters) -> DVector<f64> {
     f
 }
 
-/// The directions that modes of one frequency are turned to, in this order: free rotation of both halves alike and against each
-/// other, then every displacement alike (as mirror images) and against each other.
+/// Directions for the basis of equal frequencies, in this order: rigid rotation of both halves alike and opposed, then
+/// each displacement alike (as a mirror image) and opposed.
 fn preferred_directions(p: &Parameters) -> [SourceVector; 14] {
     let rotation = |c: usize| match c {
         2 => 1.0 / p.pinion_radius_m,
@@ -119,15 +122,16 @@ fn preferred_directions(p: &Parameters) -> [SourceVector; 14] {
     })
 }
 
-/// −1 for the axial displacements, which a mirror between the halves turns over.
+/// −1 for the axial displacements, which change sign in the mirror image.
 fn mirrored(c: usize) -> f64 {
     if c % 6 == 1 || c % 6 == 4 { -1.0 } else { 1.0 }
 }
 
-/// An orthonormal basis of the space of the orthonormal `vectors` that depends on that space alone: the directions of `directions` in
-/// turn, as far as they lie in it and are new.
+/// Orthonormal basis of the span of the orthonormal `vectors` that depends on that span alone: projections of
+/// `directions` in turn, orthogonalised, dependent ones skipped.
 fn canonical_basis(vectors: &[SourceVector], directions: &[SourceVector]) -> Vec<SourceVector> {
-    // As the directions span everything, one of those left always has a twelfth of its square in what is left of the space.
+    // The directions span the whole space, so one of those left has at least a twelfth of its square in the rest of the
+    // span.
     const INDEPENDENT: f64 = 1e-2;
     if vectors.len() == 1 {
         return vectors.to_vec();
@@ -156,12 +160,13 @@ fn canonical_basis(vectors: &[SourceVector], directions: &[SourceVector]) -> Vec
             }
         }
     }
-    // Only numbers that are not finite lead here.
+    // Reached only with numbers that are not finite.
     basis.extend_from_slice(&vectors[basis.len()..]);
     basis
 }
 
-/// The shape with its largest displacement (of rotations: the arc at the radius) positive; of equal ones the first counts.
+/// Shape with the sign that makes its largest displacement (of rotations: the arc at the radius) positive; of equal
+/// ones the first counts.
 fn with_positive_largest(p: &Parameters, shape: SourceVector) -> SourceVector {
     const EQUAL: f64 = 1.0 - 1e-6;
     let arcs = arcs(p, &shape);
@@ -170,7 +175,7 @@ fn with_positive_largest(p: &Parameters, shape: SourceVector) -> SourceVector {
     shape.map(|value| sign * value)
 }
 
-/// The displacements with rotations as arcs at the radii of the plane in use.
+/// Displacements with rotations as arcs at the radii of the reference plane, m.
 fn arcs(p: &Parameters, shape: &SourceVector) -> SourceVector {
     std::array::from_fn(|c| match c % 6 {
         2 => shape[c] * p.pinion_radius_m,

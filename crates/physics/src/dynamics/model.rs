@@ -1,4 +1,5 @@
-//! One pair's equations with their excitations, and the way between solver coordinates and the source's displacements.
+//! The equations of one pair with their excitations, and the transformation between solver coordinates and physical
+//! displacements.
 
 use std::ops::Deref;
 use std::sync::Arc;
@@ -9,24 +10,26 @@ use super::error::DynamicsError;
 use super::excitation::{ImpactWaveform, MAX_ORDER, Stiffness, StiffnessWaveform};
 use super::parameters::{HalfParameters, Parameters};
 
-/// Which side of the backlash a half is on: positive driving flanks, 0 apart, negative back flanks. 1 and −1; where the mesh force is that of
-/// the loaded contact, 1 + the level of displacement with the side's sign.
+/// Contact of a half: positive on the driving flanks, 0 apart, negative on the back flanks. The magnitude is 1 for a
+/// mesh stiffness, and 1 + the level of the displacement for a tabulated contact force.
 pub type ContactSide = i8;
 
 /// State in solver coordinates at a mesh phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotionState<const D: usize> {
-    /// Whole mesh periods since the start.
+    /// Whole mesh periods since the start of the integration.
     pub period: u64,
     /// Phase within the mesh period, 0 … 1.
     pub phase: f64,
+    /// Displacements, m.
     pub x: [f64; D],
-    /// dx/dτ.
+    /// dx/dτ, m.
     pub v: [f64; D],
+    /// Contact of each half.
     pub contact: [ContactSide; 2],
 }
 
-/// The two excitations of one half.
+/// Excitations of one half.
 #[derive(Debug, Clone)]
 pub(crate) struct Excitation {
     pub stiffness: StiffnessWaveform,
@@ -34,30 +37,32 @@ pub(crate) struct Excitation {
     pub impact: ImpactWaveform,
 }
 
-/// The loaded contact's force, coming a fraction of a mesh period later than tabulated.
+/// Tabulated contact force with a phase shift.
 #[derive(Debug, Clone)]
 pub(crate) struct ContactForceWaveform {
     pub force: Arc<ContactForce>,
+    /// Delay of the force, in mesh periods.
     pub shift: f64,
-    /// Half the backlash, and one mesh period in scaled time.
+    /// Half the backlash in m, and one mesh period in scaled time.
     pub b: f64,
     pub period_tau: f64,
 }
 
-/// The equations of one half (D = 6, mirror symmetric) or both (D = 12) with their excitations.
+/// Equations of one half (D = 6, mirror-symmetric pair) or of both (D = 12), with their excitations.
 #[derive(Debug, Clone)]
 pub(crate) struct DynamicModel<const D: usize> {
     equations: Equations<D, f64>,
-    /// Of each half that is solved.
+    /// One per solved half.
     pub excitations: Vec<Excitation>,
-    /// Contact is taken to stay as it is: the linear system with periodic coefficients.
+    /// Contact is fixed: the equations are linear with periodic coefficients.
     pub fixed_contact: bool,
+    /// Reference frequency of the scaled time τ = ω_ref t, rad/s.
     pub omega_ref: f64,
     /// One mesh period in scaled time.
     pub period_tau: f64,
     /// Phases in (0, 1], ascending, at which an excitation is not smooth; the last is 1.
     pub breakpoints: Vec<f64>,
-    /// Radii, for the source's displacements.
+    /// Radii of pinion and gear in the reference plane, m.
     pub radius_p: f64,
     pub radius_g: f64,
 }
@@ -70,12 +75,17 @@ impl<const D: usize> Deref for DynamicModel<D> {
     }
 }
 
-/// Breakpoints closer than this are one, in mesh periods.
+/// Distance below which two breakpoints count as one, in mesh periods.
 const SAME_PHASE: f64 = 1e-12;
 
 impl<const D: usize> DynamicModel<D> {
+    /// Number of solved halves.
     pub const HALVES: usize = D / PER_HALF;
 
+    /// Scales the equations by the highest of the mesh frequency and the estimated natural frequencies.
+    ///
+    /// # Errors
+    /// [`DynamicsError::InvalidParameter`].
     pub fn new(p: &Parameters) -> Result<Self, DynamicsError> {
         p.validate()?;
         let mesh_omega = std::f64::consts::TAU * p.mesh_frequency_hz;
@@ -94,7 +104,7 @@ impl<const D: usize> DynamicModel<D> {
         }
         breakpoints.retain(|&phase| phase > SAME_PHASE && phase <= 1.0);
         breakpoints.sort_by(f64::total_cmp);
-        // Of two that coincide the later one stays, so that the end of the period is met exactly.
+        // Of two breakpoints that coincide the later one is kept, so that the end of the period is reached exactly.
         breakpoints.reverse();
         breakpoints.dedup_by(|earlier, later| *later - *earlier < SAME_PHASE);
         breakpoints.reverse();
@@ -118,32 +128,33 @@ impl<const D: usize> DynamicModel<D> {
         })
     }
 
-    /// The same equations with the contact held as it is.
+    /// The same model with fixed contact.
     pub fn with_fixed_contact(&self) -> Self {
         Self { fixed_contact: true, ..self.clone() }
     }
 
-    /// The same with the equations that variations against the mirror symmetry obey (D = 6).
+    /// The same model with the equations of antisymmetric perturbations (D = 6), see [`Equations::antisymmetric`].
     pub fn antisymmetric(&self) -> Self {
         Self { equations: self.equations.antisymmetric(), ..self.clone() }
     }
 
-    /// The diagonal mass matrix of the solver coordinates, kg.
+    /// Diagonal of the mass matrix in solver coordinates, kg.
     pub fn masses_kg(&self) -> [f64; D] {
         self.equations.masses_kg(self.omega_ref)
     }
 
-    /// Contact can change.
+    /// Whether contact can change.
     pub fn contact_can_change(&self) -> bool {
         self.uses_contact_force() || (self.b > 0.0 && !self.fixed_contact)
     }
 
-    /// The mesh force is that of the loaded contact, on all halves.
+    /// Whether the mesh force is a tabulated contact force, on all halves.
     pub fn uses_contact_force(&self) -> bool {
         self.excitations.iter().any(|e| e.contact.is_some())
     }
 
-    /// The side of the backlash the s of a half is on. Without backlash the mesh law of a stiffness is linear: always driving.
+    /// Contact of half `j` at the displacement `s`. Without backlash the law of a mesh stiffness is linear: always
+    /// driving.
     pub fn contact_of(&self, j: usize, s: f64, phase: f64) -> ContactSide {
         if let Some(contact) = &self.excitations[j].contact {
             return contact.force.contact_of(s, self.b, phase - contact.shift);
@@ -157,13 +168,14 @@ impl<const D: usize> DynamicModel<D> {
         }
     }
 
-    /// The largest s of a half at which its driving flanks carry nothing at any phase, m.
+    /// Largest s of a half without force on its driving flanks at any phase, m.
     pub fn first_contact_displacement_m(&self, j: usize) -> f64 {
         let contact = self.excitations[j].contact.as_ref();
         self.b + contact.map_or(0.0, |c| c.force.min_free_m(1))
     }
 
-    /// Scaled rate at which the distance from mid-gap to where contact of a side (1 driving, −1 back) begins grows: 0 but for contact forces.
+    /// Rate in scaled time of the displacement at which contact of a side (1 driving, −1 back) begins, measured from
+    /// mid-gap; 0 for a mesh stiffness.
     pub fn contact_onset_rate(&self, j: usize, side: ContactSide, phase: f64) -> f64 {
         let contact = self.excitations[j].contact.as_ref();
         contact.map_or(0.0, |c| c.force.free_rate_m(side, phase - c.shift) / self.period_tau)
@@ -183,7 +195,7 @@ impl<const D: usize> DynamicModel<D> {
         damper(contact != 0) + if contact != 0 { spring } else { 0.0 }
     }
 
-    /// Scaled accelerations at a phase: the right-hand side for Runge–Kutta methods.
+    /// Accelerations in scaled time at a phase: right-hand side for Runge–Kutta methods.
     pub fn acceleration(&self, phase: f64, interior: f64, x: &[f64; D], v: &[f64; D]) -> [f64; D] {
         let mut a = [0.0; D];
         for j in 0..Self::HALVES {
@@ -196,19 +208,19 @@ impl<const D: usize> DynamicModel<D> {
         a
     }
 
-    /// An upper estimate of the forces that load and impact put on the mesh of a half, N.
+    /// Upper bound of load and impact on the mesh of a half, N.
     pub fn max_excitation_force_n(&self, j: usize) -> f64 {
         self.halves[j].load.abs() + self.excitations[j].impact.largest_n()
     }
 
-    /// Scaled accelerations that a normal mesh force `force` of half `j` causes by itself.
+    /// Accelerations in scaled time due to a normal mesh force (N) of half `j` alone.
     pub fn acceleration_of_mesh_force(&self, j: usize, force: f64) -> [f64; D] {
         let mut out = [0.0; D];
         out[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, &[0.0; D], &[0.0; D], force, 0.0));
         out
     }
 
-    /// Scaled accelerations of the springs outside the mesh.
+    /// Accelerations in scaled time due to the springs other than the mesh.
     pub fn acceleration_of_springs(&self, x: &[f64; D]) -> [f64; D] {
         let mut out = [0.0; D];
         for j in 0..Self::HALVES {
@@ -217,9 +229,10 @@ impl<const D: usize> DynamicModel<D> {
         out
     }
 
-    /// Coefficient `n` of the whole normal force on the teeth of a half, mesh force and impact F_s/cosβ, N: what turns the gears as the
-    /// polynomials `rows` say, whatever law the mesh force has. Over a motion that repeats its mean is that of the load, T_p/(R_p cosβ),
-    /// as far as no torsional spring carries torque from half to half; over both halves together always.
+    /// Taylor coefficient `n` of the total normal tooth force of a half, mesh force plus F_s/cosβ, N, from the
+    /// rotational equation of motion and the polynomials `rows`; it does not depend on the law of the mesh force. Over
+    /// a periodic motion its mean is T_p/(R_p cosβ) if no torsional spring couples the halves, and always in the sum of
+    /// both halves.
     pub fn tooth_force_coefficient(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
         let n1 = (n + 1) as f64;
         let free = self.half_acceleration(j, &rows[n], &rows[n + 1].map(|c| c * n1), 0.0, 0.0);
@@ -228,8 +241,8 @@ impl<const D: usize> DynamicModel<D> {
         (load - (a - free[U]) / self.halves[j].inv_me) / self.cos
     }
 
-    /// The part of the normal force that moves the gear along y and z which is the impact, as a cubic through four phases of a step: powers of
-    /// the step's fraction.
+    /// The impact's contribution to the normal force in the lateral and axial equations, N: interpolating cubic through
+    /// four phases of a step, in powers of the fraction of the step.
     pub fn impact_in_normal(&self, j: usize, phase: f64, step: f64, interior: f64) -> [f64; 4] {
         if self.impact_normal == 0.0 {
             return [0.0; 4];
@@ -244,8 +257,8 @@ impl<const D: usize> DynamicModel<D> {
         ]
     }
 
-    /// Coefficient `n` of the normal force (mesh force, and an impact that acts on all motions) that moves the gear along y as the
-    /// polynomials `rows` say.
+    /// Taylor coefficient `n` of the normal force (mesh force, and an impact that acts on all motions), N, from the
+    /// lateral equation of motion of the gear and the polynomials `rows`.
     pub fn mesh_force_coefficient(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
         let n1 = (n + 1) as f64;
         let free = self.half_acceleration(j, &rows[n], &rows[n + 1].map(|c| c * n1), 0.0, 0.0);
@@ -253,7 +266,7 @@ impl<const D: usize> DynamicModel<D> {
         (a - free[YG]) / (self.halves[j].inv_mg * self.cos)
     }
 
-    /// State from the source's 12 displacements and 12 velocities.
+    /// State from 12 displacements and 12 velocities.
     pub fn state_from(&self, source: &[f64; 24]) -> MotionState<D> {
         let mut state = MotionState { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [1; 2] };
         for j in 0..Self::HALVES {
@@ -276,8 +289,8 @@ impl<const D: usize> DynamicModel<D> {
         state
     }
 
-    /// Where the mesh force is that of the loaded contact: turns the teeth together until each half carries its load at the state's phase, halves
-    /// that are coupled in torsion by the mean of what each needs.
+    /// For a tabulated contact force: rotates the gears until each half carries its load at the phase of the state.
+    /// Halves coupled in torsion rotate by the mean of their angles.
     pub fn close_contact(&self, state: &mut MotionState<D>) {
         let mut turns = [0.0; 2];
         for (j, e) in self.excitations.iter().enumerate() {
@@ -295,7 +308,7 @@ impl<const D: usize> DynamicModel<D> {
         }
     }
 
-    /// The source's 12 displacements and 12 velocities of a state.
+    /// 12 displacements (m, rad) and 12 velocities (m/s, rad/s) of a state.
     pub fn source_state(&self, state: &MotionState<D>) -> [f64; 24] {
         let mut out = [0.0; 24];
         out[..12].copy_from_slice(&self.source_displacements(&state.x));
@@ -303,7 +316,7 @@ impl<const D: usize> DynamicModel<D> {
         out
     }
 
-    /// The source's 12 displacements (or velocities, accelerations when `row` holds those) of solver coordinates.
+    /// 12 displacements of solver coordinates; of velocities or accelerations when `row` holds those.
     pub fn source_displacements(&self, row: &[f64; D]) -> [f64; 12] {
         let mut out = [0.0; 12];
         for j in 0..2 {
@@ -324,7 +337,7 @@ impl<const D: usize> DynamicModel<D> {
     }
 }
 
-/// Upper estimate of the fastest natural frequency of a half, rad/s: every spring on every mass.
+/// Upper estimate of the highest natural frequency of a half, rad/s: all springs acting on each mass.
 fn fastest(p: &Parameters, h: &HalfParameters, equivalent_mass: f64) -> f64 {
     let c = &p.couplings;
     let k_m = match &h.mesh_stiffness {
@@ -349,7 +362,7 @@ fn excitation(h: &HalfParameters, b: f64, period_tau: f64) -> Excitation {
     let shift = h.phase_shift_mesh_periods.rem_euclid(1.0);
     let contact =
         h.contact_force.as_ref().map(|force| ContactForceWaveform { force: force.clone(), shift, b, period_tau });
-    // Where the contact gives the force, the stiffness has no say and no knots.
+    // With a tabulated contact force the stiffness is not used and adds no breakpoints.
     let stiffness = match &contact {
         None => StiffnessWaveform::new(&h.mesh_stiffness, shift, period_tau),
         Some(_) => {

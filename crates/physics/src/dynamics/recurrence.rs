@@ -1,4 +1,4 @@
-//! The recurrence that gives the Taylor coefficients of the motion between two events.
+//! Recurrence for the Taylor coefficients of the motion between two events.
 
 use super::contact_force::ForceCells;
 use super::equations::{Equations, PER_HALF, W};
@@ -6,7 +6,7 @@ use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
 use super::lanes::Real;
 
-/// Working memory of a Taylor step: coefficients of every coordinate, of s and of F_n.
+/// Working memory of a Taylor step: coefficients of all coordinates, of s and of F_n.
 #[repr(align(64))]
 pub(crate) struct TaylorWork<const D: usize, R> {
     pub rows: [[R; D]; MAX_ORDER + 1],
@@ -16,10 +16,10 @@ pub(crate) struct TaylorWork<const D: usize, R> {
     contact: [ContactSeries<R>; 2],
 }
 
-/// Powers of a displacement within a cell of the contact force.
+/// Taylor coefficients of the powers of e within a cell of the contact force.
 #[derive(Clone, Copy)]
 pub(super) struct ContactSeries<R> {
-    /// e, and e again with the highest order first.
+    /// e, and e in descending order.
     e: [R; MAX_ORDER + 1],
     reversed: [R; MAX_ORDER + 1],
     square: [R; MAX_ORDER + 1],
@@ -32,7 +32,7 @@ impl<R: Real> ContactSeries<R> {
         Self { e: zero, reversed: zero, square: zero, cube: zero }
     }
 
-    /// Adds coefficient `n` of s to the series, and returns coefficient `n` of Σ_a coefficients[a] e^a.
+    /// Adds coefficient `n` of s, and returns coefficient `n` of Σ_a coefficients[a] e^a.
     #[inline(always)]
     fn force(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
         self.push(cells, n, s);
@@ -46,7 +46,7 @@ impl<R: Real> ContactSeries<R> {
         if n < 4 { sum + cells.coefficients[0][n] } else { sum }
     }
 
-    /// The same of the stiffness, Σ_a a coefficients[a] e^(a-1).
+    /// Adds coefficient `n` of s, and returns coefficient `n` of the stiffness Σ_a a coefficients[a] e^(a−1).
     #[inline(always)]
     pub fn stiffness(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
         self.push(cells, n, s);
@@ -85,8 +85,8 @@ impl<const D: usize, R: Real> TaylorWork<D, R> {
     }
 }
 
-/// When a series need not be carried to its full order: a stretch of `remaining` scaled time is all that is wanted of it, and
-/// its last two terms there are below `tolerance` times the size of the motion.
+/// Condition for ending a series below its full order: over `remaining` scaled time its last two terms are below
+/// `tolerance` times the size of the motion.
 #[derive(Clone, Copy)]
 pub(crate) struct EarlyTermination<R> {
     pub remaining: R,
@@ -95,14 +95,15 @@ pub(crate) struct EarlyTermination<R> {
     pub size: R,
 }
 
-/// The lowest order at which a series is looked at, and the longest stretch (in scaled time, about an angle of the fastest
-/// natural motion) for which it can end below the orders in use.
+/// Lowest order at which the condition is tested, and the longest `remaining` (scaled time, about the phase angle of
+/// the fastest natural mode) for which it can hold below the orders in use.
 const MIN_ORDER: usize = 6;
 const MAX_EARLY_TERMINATION_SPAN: f64 = 2.0;
 
 /// Taylor coefficients of the motion up to `order` in scaled time, from `rows[0]`, `rows[1]` (x and dx/dτ) and the
-/// excitation in `work`. `loads` 0 gives the variation about a motion with the same contacts, 1 the motion itself. With `early_end`, lanes whose
-/// series are good enough stop early (their higher coefficients are 0). Returns which lanes have (1) and the highest order computed.
+/// excitation in `work`. `loads` is 1 for a motion and 0 for the variational equations with the same contact. With
+/// `early_end`, lanes that satisfy the condition end early (their higher coefficients are 0). Returns these lanes (1)
+/// and the highest order computed.
 #[inline(always)]
 pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
     equations: &Equations<D, R>,
@@ -199,8 +200,8 @@ pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
     (one - alive, order)
 }
 
-/// Σ a_i b_i from `from` on, in four partial sums, which the processor adds side by side. Which sum a product goes to depends on its
-/// distance from the end alone, so that leading zeros change nothing.
+/// Σ a_i b_i from `from` on, in four partial sums for parallel execution. The partial sum of a product depends only on
+/// its distance from the end, so that leading zeros do not change the result.
 #[inline(always)]
 fn convolution<R: Real>(a: &[R], b: &[R], from: usize) -> R {
     let mut sums = [R::splat(0.0); 4];
@@ -219,19 +220,19 @@ fn convolution<R: Real>(a: &[R], b: &[R], from: usize) -> R {
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The larger of two sizes; NaN when one is.
+/// Maximum; NaN if either is NaN.
 #[inline(always)]
 pub(super) fn larger<R: Real>(a: R, b: R) -> R {
     a.zip(b, |a, b| if a <= b || b.is_nan() { b } else { a })
 }
 
-/// Largest coordinate, free rotation apart.
+/// Largest coordinate, rigid rotation excluded.
 #[inline(always)]
 pub(super) fn norm<const D: usize, R: Real>(row: &[R; D]) -> R {
     let mut largest = R::splat(0.0);
     for (c, value) in row.iter().enumerate() {
         if c % PER_HALF != W {
-            // Keeps a NaN, which f64::max would drop.
+            // `f64::max` would drop a NaN.
             largest = largest.zip(*value, |m, v| if v.abs() <= m { m } else { v.abs() });
         }
     }

@@ -1,8 +1,8 @@
-//! Motions that nothing holds, set apart from the rest: the free rotations, and the screw motion of a floating pinion.
+//! Rigid-body modes: rotation of each half, and the screw motion of a floating pinion.
 //!
-//! They neither decay nor grow nor act on anything: their momentum is conserved, so a motion that is not started with just
-//! the right share of it drifts at a constant speed for ever, and a perturbation along them stays or grows in proportion to time. Whether
-//! a motion repeats and whether its neighbours leave it is a question to what remains when they are taken out.
+//! No spring acts along them and their momentum is conserved, so a motion drifts along them at a constant velocity and
+//! a perturbation along them stays constant or grows linearly in time. They are removed before a motion is tested for
+//! periodicity or stability.
 
 use super::equations::{PER_HALF, U, YG, YP};
 use super::error::DynamicsError;
@@ -10,7 +10,7 @@ use super::model::DynamicModel;
 use super::shooting::rigid_body_modes;
 use super::variation::Perturbation;
 
-/// The free motions of a model, normalised to nᵀ M n = 1.
+/// Rigid-body modes of a model, normalised to nᵀ M n = 1.
 #[derive(Debug, Clone)]
 pub(crate) struct RigidBodyModes<const D: usize> {
     shapes: Vec<[f64; D]>,
@@ -18,11 +18,11 @@ pub(crate) struct RigidBodyModes<const D: usize> {
 }
 
 impl<const D: usize> RigidBodyModes<D> {
-    /// Which motions nothing holds does not depend on how stiff the mesh is, only on that it is stiff: it is taken so stiff that it
-    /// is no slower than the fastest spring.
+    /// The modes do not depend on the value of the mesh stiffness. It is set such that the mesh is no slower than the
+    /// fastest spring.
     ///
     /// # Errors
-    /// [`DynamicsError::InvalidParameter`] when the stiffness matrix has no eigenvalues that can be computed.
+    /// [`DynamicsError::InvalidParameter`] when the eigenvalues of the stiffness matrix cannot be computed.
     pub fn new(model: &DynamicModel<D>) -> Result<Self, DynamicsError> {
         let active: Vec<usize> = model.active().collect();
         let masses = model.masses_kg();
@@ -33,12 +33,12 @@ impl<const D: usize> RigidBodyModes<D> {
         Ok(Self { shapes: rigid_body_modes(model, &active, &masses, [mesh(0), mesh(1)])?, masses })
     }
 
-    /// No free motion is taken out.
+    /// No modes: projections are the identity.
     pub fn none() -> Self {
         Self { shapes: Vec::new(), masses: [0.0; D] }
     }
 
-    /// What remains of a displacement or velocity without its part along free motions.
+    /// Projection of a displacement or velocity onto the complement of the rigid-body modes.
     pub fn project_out_of(&self, mut q: [f64; D]) -> [f64; D] {
         for n in &self.shapes {
             let along: f64 = (0..D).map(|c| n[c] * self.masses[c] * q[c]).sum();
@@ -49,7 +49,7 @@ impl<const D: usize> RigidBodyModes<D> {
         q
     }
 
-    /// The same of displacements and velocities.
+    /// The same projection of displacements and velocities.
     pub fn project_out(&self, d: &Perturbation<D>) -> Perturbation<D> {
         (self.project_out_of(d.0), self.project_out_of(d.1))
     }

@@ -1,7 +1,9 @@
-//! Runge–Kutta of fourth order with variable step: Fehlberg's embedded 4(5) pair, the kind of method the source used.
+//! Embedded Runge–Kutta 4(5) method of Fehlberg with variable step, advancing the fourth-order result as the source
+//! paper's method does.
 //!
-//! It runs blindly over changes of contact, as the source's did; only edges of pulses, knots of the stiffness and the ends of mesh periods
-//! are step ends. Tableau: E. Fehlberg, NASA TR R-315 (1969), table III.
+//! Changes of contact are not located. Edges of pulses, knots of the stiffness and ends of mesh periods are ends of
+//! steps. Tableau: E. Fehlberg, Low-order classical Runge-Kutta formulas with stepsize control, NASA TR R-315 (1969),
+//! table III.
 
 use super::equations::{PER_HALF, W};
 use super::error::DynamicsError;
@@ -22,10 +24,10 @@ const A: [[f64; 5]; 6] = [
 const B4: [f64; 6] = [25.0 / 216.0, 0.0, 1408.0 / 2565.0, 2197.0 / 4104.0, -1.0 / 5.0, 0.0];
 const B5: [f64; 6] = [16.0 / 135.0, 0.0, 6656.0 / 12825.0, 28561.0 / 56430.0, -9.0 / 50.0, 2.0 / 55.0];
 
-/// Working memory of the Runge–Kutta method.
+/// Runge–Kutta method for one motion, with its working memory.
 pub(super) struct RungeKutta<const D: usize> {
     tolerance: f64,
-    /// None: step chosen from the error; Some: fixed step in scaled time (for measuring the order).
+    /// None: the step follows from the error estimate. Some: fixed step in scaled time, to measure the order.
     fixed: Option<f64>,
     next: f64,
     size: f64,
@@ -90,7 +92,7 @@ impl<const D: usize> RungeKutta<D> {
                     ev += h * (B5[i] - B4[i]) * k[i].1[c];
                 }
                 if c % PER_HALF != W {
-                    // `max` would lose a NaN.
+                    // `max` would drop a NaN.
                     let both = ex.abs() + ev.abs();
                     error = if both > error || both.is_nan() { both } else { error };
                     moving = moving.max(state.v[c].abs()).max(k[0].1[c].abs());
@@ -104,7 +106,7 @@ impl<const D: usize> RungeKutta<D> {
             // Error per step of the fourth-order result: order 5 in h.
             let factor = if error == 0.0 { 4.0 } else { (0.9 * (allowed / error).powf(0.2)).clamp(0.2, 4.0) };
             if self.fixed.is_none() {
-                // After a last, shortened step the next one need not be short.
+                // The step after a last, shortened one is not limited by it.
                 self.next = if to_end && factor >= 1.0 { (h * factor).max(self.next.min(4.0 * h)) } else { h * factor };
                 if error > allowed {
                     counts.rejected_steps += 1;
@@ -144,8 +146,8 @@ impl<const D: usize> RungeKutta<D> {
         }
     }
 
-    /// Dense output: the quintic with the positions, velocities and accelerations of both ends (Hermite). The mesh
-    /// force is the one that moves the gear as the quintic says.
+    /// Dense output: quintic Hermite interpolant of positions, velocities and accelerations at both ends. The mesh
+    /// force is that of the gear's lateral equation of motion along the quintic.
     fn quintic(&mut self, model: &DynamicModel<D>, start: Ends<'_, D>, end: Ends<'_, D>, h: f64) {
         let r = &mut self.rows;
         for c in 0..D {
@@ -169,5 +171,5 @@ impl<const D: usize> RungeKutta<D> {
     }
 }
 
-/// Position, velocity and acceleration of one end of a step.
+/// Position, velocity and acceleration at one end of a step.
 type Ends<'a, const D: usize> = (&'a [f64; D], &'a [f64; D], &'a [f64; D]);

@@ -1,4 +1,4 @@
-//! Periodic motions by the period map: where a motion comes back to itself, and whether it stays there.
+//! Shooting method for periodic motions: period map, monodromy matrix, Newton correction, Floquet multipliers.
 
 use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
 
@@ -11,10 +11,11 @@ use super::segment::{Observer, Segment};
 use super::variation::{ObserverPair, Perturbation, Variation};
 use crate::watch::Watch;
 
-/// Motions held by nothing move this little, in squared frequency relative to the largest (see `modal`).
+/// Squared natural frequency, relative to the largest, up to which a mode is a rigid-body mode: far above rounding
+/// (1e-15), far below any spring of practical stiffness.
 const RIGID_BODY_EIGENVALUE: f64 = 1e-12;
 
-/// How far and how well the motions of a search may go.
+/// Accuracy and limits of the integrations of a search.
 #[derive(Clone, Copy)]
 pub(crate) struct IntegrationLimits<'a> {
     /// Local error of a step relative to the size of the motion.
@@ -23,29 +24,29 @@ pub(crate) struct IntegrationLimits<'a> {
     pub watch: &'a Watch<'a>,
 }
 
-/// The period map of a model with its free motions (no spring holds them) set apart.
+/// Shooting method for a model, with its rigid-body modes separated.
 pub(crate) struct Shooting<'m, const D: usize> {
     model: &'m DynamicModel<D>,
     active: Vec<usize>,
     masses: [f64; D],
-    /// Free motions, normalised to nᵀ M n = 1.
+    /// Rigid-body modes, normalised to nᵀ M n = 1.
     rigid_body: Vec<[f64; D]>,
     limits: IntegrationLimits<'m>,
 }
 
-/// A motion over whole periods, and the linear map of perturbations over the same time.
+/// Motion over whole mesh periods, with its monodromy matrix.
 pub(crate) struct PeriodMap<const D: usize> {
     pub end: MotionState<D>,
-    /// Over (active displacements, active velocities).
+    /// Derivative of the end by the start, over (active displacements, active velocities).
     pub monodromy: DMatrix<f64>,
-    /// Largest scaled velocity at the start of a step.
+    /// Largest velocity in scaled time at the start of a step.
     pub size: f64,
-    /// A half has left its flank.
+    /// Whether a half has left its flank.
     pub separated: bool,
     pub counts: StepCounts,
 }
 
-/// Watches how large a motion is and whether it keeps to its flanks.
+/// Records the largest velocity and any loss of contact.
 struct AmplitudeMonitor {
     size: f64,
     separated: bool,
@@ -72,8 +73,11 @@ impl<'m, const D: usize> Shooting<'m, D> {
         Ok(Self { model, active, masses, rigid_body, limits })
     }
 
-    /// Goes through `periods` mesh periods of the motion of `motion_model` from `start` with the unit perturbations of this model
-    /// (another one than the motion's to look against the symmetry).
+    /// Integrates the motion of `motion_model` from `start` over `periods` mesh periods, with the unit perturbations of
+    /// this model (that of antisymmetric perturbations, or the motion's own).
+    ///
+    /// # Errors
+    /// [`DynamicsError`].
     pub fn period_map(
         &self,
         motion_model: &DynamicModel<D>,
@@ -100,12 +104,12 @@ impl<'m, const D: usize> Shooting<'m, D> {
         Ok(PeriodMap { end: motion.state, monodromy, size, separated, counts: motion.counts })
     }
 
-    /// Along a free motion: nᵀ M q.
+    /// Component along a rigid-body mode: nᵀ M q.
     fn along(&self, n: &[f64; D], q: &[f64; D]) -> f64 {
         (0..D).map(|c| n[c] * self.masses[c] * q[c]).sum()
     }
 
-    /// Projector that takes the free motions out of (active displacements, active velocities).
+    /// Projector onto the complement of the rigid-body modes, over (active displacements, active velocities).
     fn rigid_body_projector(&self) -> DMatrix<f64> {
         let n = self.active.len();
         let mut q = DMatrix::identity(2 * n, 2 * n);
@@ -121,8 +125,8 @@ impl<'m, const D: usize> Shooting<'m, D> {
         q
     }
 
-    /// What to add to the start so that the motion closes after `periods` mesh periods, to first order. Free motions get
-    /// the velocity with which they close.
+    /// Newton correction of the start for a motion that is to repeat after `periods` mesh periods; `defect` is end −
+    /// start. Rigid-body modes get the velocity that cancels their drift. None if the linear system is singular.
     pub fn correction(
         &self,
         defect: &Perturbation<D>,
@@ -150,7 +154,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
         x.iter().chain(&v).all(|c| c.is_finite()).then_some((x, v))
     }
 
-    /// Largest mean force along a free motion over a motion of `periods`, N.
+    /// Largest mean force along a rigid-body mode over `periods`, N.
     pub fn unbalanced_force_n(&self, defect: &Perturbation<D>, periods: u64) -> f64 {
         let omega = self.model.omega_ref;
         let time = periods as f64 * self.model.period_tau;
@@ -160,7 +164,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
         })
     }
 
-    /// Floquet multipliers, free motions left out, largest first.
+    /// Floquet multipliers, rigid-body modes excluded, largest first.
     pub fn multipliers(&self, monodromy: &DMatrix<f64>) -> Vec<Complex<f64>> {
         let projector = self.rigid_body_projector();
         let Some(schur) = Schur::try_new(&projector * monodromy * &projector, f64::EPSILON, 10_000) else {
@@ -168,13 +172,13 @@ impl<'m, const D: usize> Shooting<'m, D> {
         };
         let mut all: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
         all.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
-        // What was projected out is the zeros at the end.
+        // The eigenvalues of the removed modes are the zeros at the end.
         all.truncate((all.len() - 2 * self.rigid_body.len()).max(1));
         all
     }
 }
 
-/// Displacements along which no spring acts, from the eigenvectors of M^-½ K M^-½ in solver coordinates.
+/// Rigid-body modes: eigenvectors of M^-½ K M^-½ with eigenvalue zero, in solver coordinates.
 pub(super) fn rigid_body_modes<const D: usize>(
     model: &DynamicModel<D>,
     active: &[usize],

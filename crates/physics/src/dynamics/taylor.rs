@@ -1,9 +1,9 @@
-//! Taylor series of high order on the piecewise-linear equations, restarted exactly where they change.
+//! Taylor series of high order for the piecewise analytic equations, restarted at every event.
 //!
-//! Between two events (an edge of a pulse, a knot of the stiffness, a change of contact) the equations are linear with analytic
-//! coefficients, so the Taylor coefficients of the motion follow from a recurrence and the step may be as long as the desired
-//! accuracy allows. Changes of contact are zeros of the polynomial s(τ) ∓ b and are located to rounding. Step length after Jorba
-//! and Zou (Experimental Mathematics 14 (2005) 99), from the last two coefficients.
+//! Between two events (an edge of a pulse, a knot of the stiffness, a change of contact) the equations are linear with
+//! analytic coefficients, so the Taylor coefficients of the motion follow from a recurrence. Changes of contact are
+//! zeros of the polynomial s(τ) ∓ b and are located to rounding. Step length after À. Jorba and M. Zou, Experimental
+//! Mathematics 14 (2005) 99–117, doi:10.1080/10586458.2005.10128904, from the last two coefficients.
 
 use super::contact_force::{ContactForce, ForceCells};
 use super::crossing::first_crossing;
@@ -18,10 +18,10 @@ use super::recurrence::{EarlyTermination, TaylorWork, larger, norm, taylor_coeff
 use super::segment::{Observer, Segment};
 use crate::simd::vectorised;
 
-/// Changes of contact per mesh period beyond which they are no longer located but left to short steps.
+/// Changes of contact per mesh period beyond which they are no longer located.
 const MAX_CONTACT_CHANGES_PER_PERIOD: u32 = 20_000;
 
-/// The order that costs least at a tolerance (measured on the reference cases).
+/// Order with the lowest cost at a tolerance, measured on the reference cases.
 pub(super) fn order_for(tolerance: f64) -> usize {
     match tolerance {
         t if t >= 1e-6 => 14,
@@ -31,39 +31,39 @@ pub(super) fn order_for(tolerance: f64) -> usize {
     }
 }
 
-/// What a step sets out from and how far it may go.
+/// An interval of the phase in which the excitations are smooth, and the step control within it.
 #[derive(Clone, Copy)]
 pub(super) struct SmoothInterval<R> {
     pub phase: R,
-    /// Phase at which the smooth stretch ends, and a phase interior it.
+    /// Phase at which the interval ends, and a phase in its interior.
     pub end: R,
     pub interior: R,
     /// One mesh period in scaled time.
     pub period_tau: R,
     /// Local error of a step relative to the size of the motion.
     pub tolerance: R,
-    /// Step to take; not finite: chosen from the coefficients.
+    /// Fixed step in scaled time; not finite: the step follows from the coefficients.
     pub fixed: R,
-    /// 1 where contact may change, 0 where it is held.
+    /// 1 where contact can change, 0 where it is fixed.
     pub switching: R,
 }
 
-/// What a step came to.
+/// Result of a step.
 #[derive(Clone, Copy)]
 pub(super) struct StepOutcome<R> {
     /// Length in scaled time. NaN where the motion has diverged; not positive where no step is possible.
     pub h: R,
-    /// 1 where the step ends the stretch.
+    /// 1 where the step reaches the end of the smooth interval.
     pub to_end: R,
-    /// The half whose contact changed (0 or 1) and to what; −1: none.
+    /// Half whose contact changes at the end of the step (0 or 1; −1: none), and its new contact.
     pub changed: R,
     pub contact: R,
     /// Highest power of the polynomials.
     pub degree: usize,
 }
 
-/// Computes the polynomials of a step from `work.rows[0]` and `[1]`, and how far they are followed. `size`: size of the recent
-/// motion, kept from step to step.
+/// Computes the polynomials of a step from `work.rows[0]` and `[1]` and the length over which they are used. `size` is
+/// the size of the recent motion, kept from step to step.
 #[inline(always)]
 pub(super) fn step<const D: usize, R: Real>(
     equations: &Equations<D, R>,
@@ -94,7 +94,7 @@ pub(super) fn step<const D: usize, R: Real>(
     let mut to_end = R::from_fn(|l| if remaining.get(l) <= desired.get(l) * (1.0 + 1e-9) { 1.0 } else { 0.0 });
     let mut h = R::from_fn(|l| {
         let (remaining, desired) = (remaining.get(l), desired.get(l));
-        // Two equal steps rather than a long one and a stub.
+        // Two equal steps rather than a long and a very short one.
         if to_end.get(l) != 0.0 { remaining } else { remaining / (remaining / desired - 1e-9).ceil() }
     });
     let mut changed = R::splat(-1.0);
@@ -120,12 +120,12 @@ pub(super) fn step<const D: usize, R: Real>(
     StepOutcome { h, to_end, changed, contact: to, degree }
 }
 
-/// The first change of contact of a half within `h`: when (infinite: none), and to what.
+/// First change of contact of a half within `h`: its time (infinite: none) and the new contact.
 #[inline(always)]
 fn next_contact<R: Real>(s: &[R], b: R, contact: R, h: R, switching: R) -> (R, R) {
     let mut g = [R::splat(0.0); MAX_ORDER + 1];
     let g = &mut g[..s.len()];
-    // On a flank: side·s − b falls to 0. In the gap: b − s does, or s + b.
+    // On a flank the zero of side·s − b, in the gap the zero of b − s or s + b.
     let first = contact.map(|c| if c == 0.0 { -1.0 } else { c });
     for (g, s) in g.iter_mut().zip(s) {
         *g = first * *s;
@@ -144,7 +144,7 @@ fn next_contact<R: Real>(s: &[R], b: R, contact: R, h: R, switching: R) -> (R, R
     (at, to)
 }
 
-/// The first change of the cell of a half's contact force within `h`: when (infinite: none), and to what.
+/// First change of the cell of a half's contact force within `h`: its time (infinite: none) and the new contact.
 #[inline(always)]
 fn next_cell<R: Real>(s: &[R], cells: &ForceCells<R>, contact: R, h: R, switching: R) -> (R, R) {
     let mut g = [R::splat(0.0); MAX_ORDER + 1];
@@ -165,14 +165,14 @@ fn next_cell<R: Real>(s: &[R], cells: &ForceCells<R>, contact: R, h: R, switchin
     (lower.zip(upper, f64::min), to)
 }
 
-/// The step at which the last two terms are as large as `allowed`.
+/// Step at which the larger of the last two terms equals `allowed`.
 #[inline(always)]
 fn step_of_last_terms<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, allowed: R) -> R {
     let before = step_of_term(norm(&rows[order - 1]), order - 1, allowed);
     before.zip(step_of_term(norm(&rows[order]), order, allowed), |a, b| if a < b || a.is_nan() { a } else { b })
 }
 
-/// The step at which a term of size `last` and power `k` is as large as `allowed`.
+/// Step at which a term of size `last` and power `k` equals `allowed`.
 #[inline(always)]
 fn step_of_term<R: Real>(last: R, k: usize, allowed: R) -> R {
     allowed.zip(last, |allowed, last| {
@@ -182,7 +182,7 @@ fn step_of_term<R: Real>(last: R, k: usize, allowed: R) -> R {
     })
 }
 
-/// The step that keeps the local error at `tolerance` times the size of the polynomials' own motion.
+/// Step with a local error of `tolerance` times the size of the polynomials' own motion.
 #[inline(always)]
 pub(super) fn step_for_tolerance<const D: usize, R: Real>(
     rows: &[[R; D]; MAX_ORDER + 1],
@@ -206,7 +206,7 @@ pub(super) fn evaluate_rows<const D: usize, R: Real>(rows: &[[R; D]], t: R) -> (
     (x, v)
 }
 
-/// Counts the changes of contact of a motion, and goes on when there are too many.
+/// Limits the number of located changes of contact per mesh period (chatter, Zeno behaviour).
 #[derive(Clone, Copy, Default)]
 pub(super) struct ChatterGuard {
     period: u64,
@@ -214,8 +214,8 @@ pub(super) struct ChatterGuard {
 }
 
 impl ChatterGuard {
-    /// To be told of each change. ChatterGuard faster than can be followed goes on by a short free step and takes the contact it
-    /// finds; returns whether it did.
+    /// Counts a change of contact. Beyond the limit it takes a short step without event location, sets the contact from
+    /// the new displacement and returns true.
     pub fn contact_changed<const D: usize>(
         &mut self,
         model: &DynamicModel<D>,
@@ -244,7 +244,7 @@ impl ChatterGuard {
     }
 }
 
-/// Why a step of length `h` cannot be taken, if it cannot. `advances`: it changes the phase or the contact.
+/// Error of a step of length `h`, if it cannot be taken. `advances`: the step changes the phase or the contact.
 #[inline(always)]
 pub(super) fn step_error<const D: usize>(
     model: &DynamicModel<D>,
@@ -264,11 +264,11 @@ pub(super) fn step_error<const D: usize>(
     })
 }
 
-/// The method for one motion.
+/// Taylor method for one motion.
 pub(super) struct Taylor<const D: usize> {
     order: usize,
     tolerance: f64,
-    /// Not finite: step chosen from the coefficients; else fixed step in scaled time (for measuring the order).
+    /// Not finite: the step follows from the coefficients; else a fixed step in scaled time, to measure the order.
     fixed: f64,
     work: Box<TaylorWork<D, f64>>,
     /// Size of the recent motion: scaled velocity and acceleration, as lengths.
@@ -289,7 +289,7 @@ impl<const D: usize> Taylor<D> {
         }
     }
 
-    /// Advances by one step, at most to the phase `end`; `interior` is a phase in the smooth stretch.
+    /// Advances by one step, at most to the phase `end`; `interior` is a phase inside the smooth interval.
     pub fn step(
         &mut self,
         model: &DynamicModel<D>,

@@ -1,4 +1,4 @@
-//! A motion from a start through a number of mesh periods, without statistics or series: what work is measured on.
+//! Trajectories from an initial state through a number of mesh periods, without statistics or time series.
 
 use rayon::prelude::*;
 
@@ -10,19 +10,22 @@ use super::parameters::Parameters;
 use super::segment::Segment;
 use crate::watch::{Canceled, Watch};
 
-/// Where a motion has got to.
+/// End of a trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FinalState {
-    /// 12 displacements in the source's order (m, rad), then 12 velocities (m/s, rad/s).
+    /// 12 displacements in the order of [the module](crate::dynamics) (m, rad), then 12 velocities (m/s, rad/s).
     pub state: [f64; 24],
+    /// Steps and force evaluations of the trajectory.
     pub counts: StepCounts,
 }
 
-/// Follows the motion from `start` (12 displacements, then 12 velocities, in the source's order, SI) through `mesh_periods`. `tolerance`:
-/// local error of a step relative to the size of the motion. Mirrored motions of equal halves are solved in six coordinates.
+/// Integrates the equations of motion of `p` from `start` (12 displacements in m and rad, then 12 velocities in m/s and
+/// rad/s, in the order of [the module](crate::dynamics)) through `mesh_periods`. `tolerance` is the local error of a
+/// step relative to the size of the motion. Equal halves with a mirror-symmetric start are integrated in six
+/// coordinates.
 ///
 /// # Errors
-/// [`DynamicsError`] for parameters the equations cannot use and motions that cannot be followed.
+/// [`DynamicsError`] for invalid parameters, for a motion that diverges and for steps below the resolution of time.
 pub fn advance(
     p: &Parameters,
     start: &[f64; 24],
@@ -52,11 +55,12 @@ pub fn advance(
     }
 }
 
-/// Follows several motions as [`advance`] does by Taylor series, eight side by side in vector instructions and on all threads of the
-/// pool. `starts`: one state per point. The results are those of [`advance`] to the last bit.
+/// Integrates several trajectories by Taylor series as [`advance`] does, eight per thread in vector lanes and on all
+/// threads of the pool. `starts` holds one state per entry of `points`. The results are bit-identical to those of
+/// [`advance`].
 ///
 /// # Errors
-/// Per point as [`advance`]; cancellation for all.
+/// [`Canceled`] for all; [`DynamicsError`] per point as [`advance`].
 pub fn advance_many(
     points: &[Parameters],
     starts: &[[f64; 24]],
@@ -79,10 +83,10 @@ pub fn advance_many(
     Ok(groups?.into_iter().flatten().collect())
 }
 
-/// Points that one thread takes at a time.
+/// Operating points per task of the thread pool.
 const POINTS_PER_GROUP: usize = 32;
 
-/// A motion that only wants to get there.
+/// Observer that keeps only the final state.
 struct FinalStateObserver<'m, const D: usize> {
     model: &'m DynamicModel<D>,
     state: MotionState<D>,
@@ -161,7 +165,7 @@ impl<'m, const D: usize> TrajectoryObserver<'m, D> for FinalStateObserver<'m, D>
     }
 }
 
-/// z of one half the antisymmetric of the other's, the rest equal, displacements and velocities.
+/// Whether z of one half is the opposite of the other's and all else is equal, for displacements and velocities.
 pub(crate) fn is_mirrored(state: &[f64; 24]) -> bool {
     [0, 12].iter().all(|&at| {
         (0..6).all(|c| {

@@ -1,4 +1,4 @@
-//! Small perturbations from a motion: the linear map over mesh periods, and how fast they grow.
+//! Variational equations: small perturbations of a motion over mesh periods.
 
 use super::equations::Equations;
 use super::excitation::MAX_ORDER;
@@ -10,31 +10,33 @@ use super::segment::{Observer, Segment};
 use super::taylor::{evaluate_rows, step_for_tolerance};
 use crate::simd::vectorised;
 
-/// Perturbations carried side by side.
+/// Perturbations integrated side by side.
 const PERTURBATION_LANES: usize = 12;
 
-/// What has died away as far as this is nothing: below the normal range of numbers it would have no digits left to choose a step by, and
-/// the steps would shrink for ever.
+/// Magnitude below which a component of a perturbation is set to zero. In the subnormal range it would have too few
+/// digits to choose a step by, and steps would become ever shorter.
 const NEGLIGIBLE: f64 = 1e-200;
 
-/// A perturbation: displacements and scaled velocities.
+/// A perturbation: displacements, and velocities in scaled time.
 pub(crate) type Perturbation<const D: usize> = ([f64; D], [f64; D]);
 
-/// Carries perturbations along a motion, as the observer of that motion. `model` holds the equations the perturbations obey:
-/// the motion's own, or those against its mirror symmetry.
+/// Integrates the variational equations along a motion, as the observer of that motion. `model` holds the equations of
+/// the perturbations: the motion's own, or those of antisymmetric perturbations ([`DynamicModel::antisymmetric`]).
 ///
-/// With damping in the gap the mesh force is continuous in the state, so perturbations pass a change of contact unchanged; without,
-/// the force jumps by c_m ds/dt and the perturbation of the velocity by (a₊ − a₋) δs/(ds/dt).
+/// With damping in the gap the mesh force is continuous in the state, so a perturbation passes a change of contact
+/// unchanged. Without it the force jumps by c_m ds/dt and the velocity of the perturbation by the saltation term (a₊ −
+/// a₋) δs/(ds/dt) (R. I. Leine, H. Nijmeijer: Dynamics and Bifurcations of Non-Smooth Mechanical Systems, Springer
+/// 2004, doi:10.1007/978-3-540-44398-8).
 pub(crate) struct Variation<'m, const D: usize> {
     model: &'m DynamicModel<D>,
     pub columns: Vec<Perturbation<D>>,
     tolerance: f64,
     last_contact: Option<[ContactSide; 2]>,
-    /// Taken out while in use.
+    /// `None` only during [`Observer::segment`].
     workspace: Option<Box<Workspace<D>>>,
 }
 
-/// Working workspace for one perturbation and for several.
+/// Working memory for one perturbation and for several.
 struct Workspace<const D: usize> {
     one: Box<TaylorWork<D, f64>>,
     several: Box<TaylorWork<D, Lanes<PERTURBATION_LANES>>>,
@@ -53,7 +55,7 @@ impl<'m, const D: usize> Variation<'m, D> {
         Self { model, columns, tolerance, last_contact: None, workspace: Some(Box::new(workspace)) }
     }
 
-    /// One unit perturbation per active displacement, then one per active velocity.
+    /// The unit perturbations: one per active displacement, then one per active velocity.
     pub fn unit_perturbations(model: &DynamicModel<D>) -> Vec<Perturbation<D>> {
         let unit = |c: usize| {
             let mut row = [0.0; D];
@@ -70,14 +72,14 @@ impl<'m, const D: usize> Variation<'m, D> {
             let (was, is) = (before[j], segment.contact[j]);
             let speed = self.model.s(j, &segment.rows[1]);
             let h = &self.model.halves[j];
-            // Passing from one level of a contact force to the next changes nothing.
+            // A change from one level of a contact force to the next leaves the force continuous.
             if (was == 0) == (is == 0) || speed == 0.0 || h.cm == h.cm_in_gap {
                 continue;
             }
             let damper = (h.cm - h.cm_in_gap) * speed;
             let change = f64::from(i8::from(is != 0) - i8::from(was != 0)) * damper;
             let push = self.model.acceleration_of_mesh_force(j, change);
-            // How fast s passes the place where contact begins, which may move itself.
+            // Velocity of s relative to the displacement at which contact begins, which may depend on time.
             let side = if is != 0 { is.signum() } else { was.signum() };
             let passing = speed - f64::from(side) * self.model.contact_onset_rate(j, side, segment.phase);
             if passing == 0.0 {
@@ -92,7 +94,7 @@ impl<'m, const D: usize> Variation<'m, D> {
         }
     }
 
-    /// Carries the columns from `first` on, one per lane, over a segment.
+    /// Integrates the columns from `first` on, one per lane, over a segment.
     #[inline(always)]
     fn propagate<R: Real>(
         &mut self,
@@ -121,7 +123,7 @@ impl<'m, const D: usize> Variation<'m, D> {
             let left = segment.h - at;
             let reaches: R = step_for_tolerance(&work.rows, order, self.tolerance);
             let reach = (0..R::LANES).fold(f64::INFINITY, |least, lane| least.min(reaches.get(lane)));
-            // A NaN reach takes the whole step: the motion itself has diverged and says so.
+            // A NaN step takes the whole segment: the motion itself has diverged and reports it.
             let h = if reach < left { left / (left / reach).ceil().min(1e4) } else { left };
             (x, v) = evaluate_rows(&work.rows[..=order], R::splat(h));
             if h >= left {
@@ -165,7 +167,7 @@ impl<const D: usize> Observer<D> for Variation<'_, D> {
     }
 }
 
-/// Looks through two observers at once.
+/// Passes segments to two observers.
 pub(crate) struct ObserverPair<'a, A, B>(pub &'a mut A, pub &'a mut B);
 
 impl<const D: usize, A: Observer<D>, B: Observer<D>> Observer<D> for ObserverPair<'_, A, B> {
@@ -175,7 +177,7 @@ impl<const D: usize, A: Observer<D>, B: Observer<D>> Observer<D> for ObserverPai
     }
 }
 
-/// Perturbation of one state from another.
+/// Difference of two states, `a` − `b`.
 pub(crate) fn state_difference<const D: usize>(a: &MotionState<D>, b: &MotionState<D>) -> Perturbation<D> {
     (std::array::from_fn(|c| a.x[c] - b.x[c]), std::array::from_fn(|c| a.v[c] - b.v[c]))
 }

@@ -1,24 +1,31 @@
-//! The channels a response can record: their names, and how each follows from the solver's coordinates.
+//! Recordable channels: names, quantities, and their evaluation from solver coordinates.
 
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::{DynamicModel, MAX_ORDER, PER_HALF, Segment, U, W, YG, YP, ZG, ZP};
 
-/// What a channel is a course of.
+/// Physical quantity of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
+    /// m.
     Displacement,
+    /// m/s.
     Velocity,
+    /// m/s².
     Acceleration,
+    /// rad.
     Rotation,
+    /// rad/s.
     AngularVelocity,
+    /// rad/s².
     AngularAcceleration,
+    /// N.
     Force,
 }
 
 impl Quantity {
-    /// The unit of the channel's values.
+    /// Unit of the channel's values.
     pub fn unit(self) -> &'static str {
         match self {
             Quantity::Displacement => "m",
@@ -32,19 +39,24 @@ impl Quantity {
     }
 }
 
-/// A recorded course, uniformly sampled.
+/// Uniformly sampled time series.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Channel {
+    /// Name of the channel, see [`ChannelId`].
     pub name: String,
+    /// Physical quantity.
     pub quantity: Quantity,
+    /// Unit of the values.
     pub unit: String,
-    /// Time of the first value, counted from the start of the integration (0 for a periodic solution: phase 0).
+    /// Time of the first value from the start of the integration, s (0 for a periodic solution: phase 0).
     pub t0_s: f64,
+    /// Sampling interval, s.
     pub dt_s: f64,
+    /// Values in `unit`.
     pub values: Vec<f64>,
 }
 
-/// One of the displacements, or a mesh force.
+/// A displacement, or a force of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ChannelKind {
     X,
@@ -85,9 +97,10 @@ const CHANNEL_KINDS: [(&str, ChannelKind); 12] = [
     ("tooth_force", ChannelKind::ToothForce),
 ];
 
-/// The name of a channel, understood. Names: `x_left` (mesh displacement along the circumference), `s_right` (along the tooth normal), `y_p_left`,
-/// `z_p_…`, `theta_p_…`, `y_g_…`, `z_g_…`, `theta_g_…`, each also with `v_` or `a_` in front; `f_n_…`, `f_y_…`, `f_z_…` (mesh force);
-/// `tooth_force_…` (the whole normal force on the teeth: mesh force and impact).
+/// Identifier of a channel. Names: `x_left` (tangential mesh displacement), `s_right` (along the tooth normal),
+/// `y_p_left`, `z_p_…`, `theta_p_…`, `y_g_…`, `z_g_…`, `theta_g_…`, each also with the prefix `v_` (velocity) or `a_`
+/// (acceleration); `f_n_…`, `f_y_…`, `f_z_…` (mesh force); `tooth_force_…` (total normal tooth force: mesh force and
+/// impact).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ChannelId {
     kind: ChannelKind,
@@ -103,7 +116,7 @@ impl ChannelId {
         Self { kind: ChannelKind::X, derivative: 2, half }
     }
 
-    /// z_p'' of a half: the pinion's axial acceleration.
+    /// z_p'' of a half: the axial acceleration of the pinion.
     pub(super) fn pinion_axial_acceleration(half: u8) -> Self {
         Self { kind: ChannelKind::Zp, derivative: 2, half }
     }
@@ -116,17 +129,17 @@ impl ChannelId {
         Self { kind: ChannelKind::NormalForce, derivative: 0, half }
     }
 
-    /// The normal force on the teeth of a half, impact included.
+    /// Normal tooth force of a half, impact included.
     pub(super) fn tooth_force(half: u8) -> Self {
         Self { kind: ChannelKind::ToothForce, derivative: 0, half }
     }
 
-    /// Reads a name; None when there is no such channel.
+    /// The channel of this name, if there is one.
     pub fn parse(name: &str) -> Option<Self> {
         Self::all().into_iter().find(|id| id.name() == name)
     }
 
-    /// Every channel there is.
+    /// All channels.
     pub fn all() -> Vec<Self> {
         let mut out = Vec::new();
         for half in 0..2 {
@@ -139,6 +152,7 @@ impl ChannelId {
         out
     }
 
+    /// Name of the channel.
     pub fn name(self) -> String {
         let prefix = ["", "v_", "a_"][usize::from(self.derivative)];
         let base = CHANNEL_KINDS.iter().find(|(_, s)| *s == self.kind).map_or("", |(name, _)| name);
@@ -146,6 +160,7 @@ impl ChannelId {
         format!("{prefix}{base}_{half}")
     }
 
+    /// Physical quantity of the channel.
     pub fn quantity(self) -> Quantity {
         let linear = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
         let angular = [Quantity::Rotation, Quantity::AngularVelocity, Quantity::AngularAcceleration];
@@ -160,10 +175,10 @@ impl ChannelId {
         self.derivative == 2
     }
 
-    /// How the channel follows from the solver's coordinates.
+    /// Evaluator of the channel from solver coordinates.
     pub(super) fn evaluator<const D: usize>(self, model: &DynamicModel<D>) -> ChannelEvaluator<D> {
         let half = usize::from(self.half);
-        // With one half solved, the other is its mirror image.
+        // Where one half is solved, the other is its mirror image.
         let (j, mirrored) = if D > PER_HALF { (half, 1.0) } else { (0, if half == 0 { 1.0 } else { -1.0 }) };
         let mut row = [0.0; D];
         let i = j * PER_HALF;
@@ -196,7 +211,7 @@ impl ChannelId {
     }
 }
 
-/// How a channel is read off a segment.
+/// Evaluation of a channel on a segment.
 #[derive(Debug, Clone)]
 pub(super) enum ChannelEvaluator<const D: usize> {
     Linear { row: [f64; D], positions: Vec<usize>, derivative: usize },
@@ -205,7 +220,7 @@ pub(super) enum ChannelEvaluator<const D: usize> {
 }
 
 impl<const D: usize> ChannelEvaluator<D> {
-    /// The channel's polynomial in scaled time since the segment's start; returns its degree.
+    /// Polynomial of the channel in scaled time since the start of the segment; returns its degree.
     #[inline(always)]
     pub fn polynomial(&self, segment: &Segment<'_, D>, out: &mut [f64; MAX_ORDER + 1]) -> usize {
         match self {

@@ -1,9 +1,8 @@
-//! What a motion is that was followed and did not come to repeat: on its way to another motion, growing without bound, or one that
-//! never repeats.
+//! Classification of a motion whose record did not repeat: transient, unstable, quasi-periodic or chaotic.
 //!
-//! A motion that never repeats is stationary: a quasi-periodic one moves on a torus, along which perturbations neither grow nor decay, and
-//! of a chaotic one the statistics stay. One that still decays is told from a quasi-periodic one by its perturbations, which decay as it
-//! does. While contact does not change the equations are linear with periodic coefficients, and the Floquet multipliers decide exactly.
+//! Quasi-periodic and chaotic motions are stationary. On the torus of a quasi-periodic motion perturbations neither
+//! grow nor decay; the perturbations of a transient decay as it does. As long as contact does not change the equations
+//! are linear with periodic coefficients, and the Floquet multipliers decide exactly.
 
 use super::analysis::{Regime, Response};
 use super::channel::ChannelId;
@@ -18,42 +17,42 @@ use crate::dynamics::{
 
 /// Mesh periods over which a Lyapunov exponent is averaged.
 const FOLLOWED_MESH_PERIODS: u64 = 300;
-/// A multiplier this close to one is one: of an undamped motion, computed.
+/// Distance from one within which the modulus of a multiplier counts as one (undamped motion).
 const UNIT_MODULUS_TOLERANCE: f64 = 1e-7;
-/// A trend of the logarithm of a perturbation per mesh period below which it decays. Along a torus a perturbation swings about what it was; the
-/// trend of that over the mesh periods followed stays well below this.
+/// Slope of the logarithm of a perturbation per mesh period below which it decays. On a torus a perturbation
+/// oscillates, and its slope over the mesh periods of the average stays well below this.
 const DECAY_PER_MESH_PERIOD: f64 = 1e-3;
-/// A motion this many times as far as the backlash is wide is ruled by the stiffness of both flanks alone.
+/// Displacement in multiples of the backlash beyond which the stiffness of both flanks alone determines the motion.
 const BACKLASH_MULTIPLE: f64 = 100.0;
-/// Parts of a record whose RMS values rise from each to the next, to at least twice in all, when it grows.
+/// Parts of a growing record; their RMS values rise from each to the next, and at least twofold in all.
 const RECORD_PARTS: usize = 6;
-/// Of a motion that grows without bound so many mesh periods are recorded, or as many as it takes to grow this much.
+/// Recorded mesh periods of an unstable motion, at most, and the growth after which the record ends before that.
 const UNSTABLE_MESH_PERIODS: f64 = 40.0;
 const UNSTABLE_GROWTH: f64 = 1e3;
 
-/// What became of a motion.
+/// Result of the classification.
 pub(super) struct Classification {
     pub regime: Regime,
-    /// Largest Lyapunov exponent per mesh period; of a motion that grows without bound its growth rate.
+    /// Largest Lyapunov exponent per mesh period; of an unstable motion its growth rate.
     pub lyapunov: f64,
     pub counts: StepCounts,
 }
 
-/// A motion followed on with a perturbation beside it.
+/// A motion continued after its record, with a perturbation.
 struct ContinuedMotion {
     exponent: f64,
-    /// The motion has come to repeat.
+    /// Whether the motion has become periodic.
     repeats: bool,
-    /// The perturbation decays.
+    /// Whether the perturbation decays.
     decays: bool,
     counts: StepCounts,
 }
 
 impl OperatingPoint<'_> {
-    /// What a motion is whose record did not repeat. `known`: its largest Lyapunov exponent, where that was found already.
+    /// Classifies a motion whose record did not repeat. `known`: its largest Lyapunov exponent, if computed already.
     ///
     /// # Errors
-    /// [`DynamicsError`] where the motion cannot be followed.
+    /// [`DynamicsError`] where the motion cannot be integrated.
     pub(super) fn classify<const D: usize>(
         &self,
         model: &DynamicModel<D>,
@@ -62,7 +61,7 @@ impl OperatingPoint<'_> {
         known: Option<f64>,
     ) -> Result<Classification, DynamicsError> {
         let last = finished.record.last;
-        // A motion on a torus may come near to itself again and again; one that settles does what it did not do before.
+        // A motion on a torus nearly repeats again and again; a transient begins to repeat only at its end.
         let nearly_repeated = finished.record.recent.settled_period(REPEATS).is_some();
         let continued = match known {
             Some(exponent) if exponent > CHAOS_PER_MESH_PERIOD => {
@@ -70,7 +69,7 @@ impl OperatingPoint<'_> {
             }
             _ => self.continue_motion(model, last, integrator, tolerance),
         };
-        // Under a contact force the equations are not linear in contact either.
+        // A tabulated contact force is not linear in contact either.
         let linear = !model.uses_contact_force() && contact_never_changes(&finished.recorder);
         let modulus = if linear || continued.is_err() || grows_beyond_backlash(model, finished) {
             self.fixed_contact_modulus(model, &last)?
@@ -112,7 +111,7 @@ impl OperatingPoint<'_> {
         Ok(Classification { regime, lyapunov, counts: continued.counts })
     }
 
-    /// Follows a motion on from where its record ended.
+    /// Continues the motion from the end of its record, with a perturbation.
     fn continue_motion<const D: usize>(
         &self,
         model: &DynamicModel<D>,
@@ -136,8 +135,8 @@ impl OperatingPoint<'_> {
         })
     }
 
-    /// Largest modulus of the Floquet multipliers over one mesh period with contact held, free motions apart: what the vibration of a pair
-    /// that keeps contact, or is far beyond its backlash, is multiplied by.
+    /// Largest modulus of the Floquet multipliers over one mesh period with fixed contact, rigid-body modes excluded.
+    /// It is the growth of the vibration of a pair that keeps contact, or is far beyond its backlash.
     fn fixed_contact_modulus<const D: usize>(
         &self,
         model: &DynamicModel<D>,
@@ -158,10 +157,11 @@ impl OperatingPoint<'_> {
         Ok(shooting.multipliers(&period_map.monodromy).first().map_or(0.0, |m| m.norm()))
     }
 
-    /// The answer where the motion from `start` grows without bound: its first mesh periods, told as such.
+    /// Response of an unstable motion: the record of its first mesh periods.
     ///
     /// # Errors
-    /// `error` where the growth is none of the mesh's own; [`DynamicsError`] where not even a mesh period can be followed.
+    /// `error` where the linear equations with fixed contact are not unstable; [`DynamicsError`] where not even one
+    /// mesh period can be integrated.
     pub(super) fn unstable_response<const D: usize>(
         &self,
         model: &DynamicModel<D>,
@@ -184,7 +184,7 @@ impl OperatingPoint<'_> {
             multipliers: None,
             lyapunov: Some(modulus.ln()),
             method: "integrate",
-            // No digit of an RMS of what grows for ever means anything.
+            // An RMS value of a growing motion has no accuracy.
             error_estimate: 1.0,
             energy_residual: finished.energy.and_then(|e| e.residual()),
             t0_s: 0.0,
@@ -194,12 +194,12 @@ impl OperatingPoint<'_> {
     }
 }
 
-/// No half changed its contact over the record, and each touched.
+/// Whether every half stays on one flank over the whole record.
 fn contact_never_changes<const D: usize>(recorder: &ChannelRecorder<D>) -> bool {
     recorder.contact_shares().iter().all(|share| share[0] == 1.0 || share[2] == 1.0)
 }
 
-/// The record grows from each of its parts to the next, and is far beyond the backlash.
+/// Whether the record grows from each of its parts to the next and is far beyond the backlash.
 fn grows_beyond_backlash<const D: usize>(model: &DynamicModel<D>, finished: &FinishedRun<'_, D>) -> bool {
     let far = solved_halves::<D>().any(|half| {
         finished.recorder.accumulator(ChannelId::s(half)).is_some_and(|s| {
@@ -214,7 +214,7 @@ fn grows_beyond_backlash<const D: usize>(model: &DynamicModel<D>, finished: &Fin
     means.windows(2).all(|two| two[1] > two[0]) && means[means.len() - 1] > 4.0 * means[0]
 }
 
-/// Whether the sum of the logarithmic growths falls steadily: over the whole and over each half of it.
+/// Whether the sum of the logarithmic growths falls steadily, over the whole and over each half of it.
 fn decays(growth: &[f64]) -> bool {
     let half = growth.len() / 2;
     half > 2
@@ -223,7 +223,7 @@ fn decays(growth: &[f64]) -> bool {
         && trend(&growth[half..]) < -0.5 * DECAY_PER_MESH_PERIOD
 }
 
-/// Slope of the line through the running sums, by least squares.
+/// Slope of the least-squares line through the running sums.
 fn trend(growth: &[f64]) -> f64 {
     let n = growth.len() as f64;
     let centre = (n - 1.0) / 2.0;
@@ -254,7 +254,7 @@ mod tests {
         reference().cases[name].initial_state.as_slice().try_into().unwrap()
     }
 
-    /// Every damper times `factor`.
+    /// Multiplies every damper by `factor`.
     fn damped(mut p: Parameters, factor: f64) -> Parameters {
         let mut dampers = Vec::new();
         for h in &mut p.halves {
@@ -267,7 +267,7 @@ mod tests {
         p
     }
 
-    /// A record that ends while the start still decays is not settled; the same motion followed for long repeats.
+    /// A record that ends within the transient is not settled; the same motion integrated for long repeats.
     #[test]
     fn a_record_that_ends_too_soon_is_not_settled() {
         let begin = start("A").map(|c| 0.3 * c);
@@ -315,7 +315,8 @@ mod tests {
         }
     }
 
-    /// Without dampers nothing of the start decays: what never repeats and stays is quasi-periodic, however long the record.
+    /// Without dampers the transient does not decay: a motion that does not repeat is quasi-periodic, at any length of
+    /// the record.
     #[test]
     fn an_undamped_vibration_is_quasi_periodic() {
         for (case, periods) in [("A", 45), ("A", 400), ("C", 100)] {
@@ -344,7 +345,7 @@ mod tests {
         p
     }
 
-    /// Growth without bound is told as such by every method, with its rate, which is that of the motion.
+    /// Every method reports growth without bound as unstable, with the growth rate of the motion.
     #[test]
     fn parametric_instability_is_unstable() {
         for (factor, half_backlash_m) in [(0.0, 0.0), (0.02, 0.0), (0.1, 0.0), (0.0, 1e-6), (0.1, 1e-6)] {
@@ -373,7 +374,7 @@ mod tests {
                 assert!(told || s.regime != Regime::Unstable, "{factor}, {method:?}");
             }
         }
-        // The rate is the motion's: from one part of a record to another.
+        // The rate is that of the motion, from one part of a record to another.
         let p = resonant(0.02, 0.0);
         let at = |periods: u64| {
             let s = summary(&p, SolutionMethod::Integrate { mesh_periods: periods, record_mesh_periods: 1 }, None);
@@ -381,11 +382,11 @@ mod tests {
         };
         let ((early, _), (late, rate)) = (at(60), at(100));
         assert!(((late - early) / 40.0 / rate.unwrap() - 1.0).abs() < 1e-2, "{early} {late} {rate:?}");
-        // EarlyEnd damping holds it.
+        // Enough damping makes it stable.
         assert_eq!(summary(&resonant(10.0, 0.0), SolutionMethod::Auto, None).regime, Regime::Period1);
     }
 
-    /// Case B stays chaotic, and an impact changes nothing of that.
+    /// Case B is chaotic with its impact, and not unstable without it.
     #[test]
     fn a_chaotic_motion_is_classified_as_chaotic() {
         let mut p = parameters("B");

@@ -1,23 +1,23 @@
-//! The work–energy theorem over a record: a check of the solution that knows nothing of the method that made it.
+//! Energy balance of a recorded motion by the work–energy theorem, a check that is independent of the integrator.
 
 use super::quadrature::GAUSS;
 use crate::dynamics::{DynamicModel, Observer, PER_HALF, Segment, W};
 
-/// Of longer records the first mesh periods are balanced, which says as much at a bounded cost.
+/// Longest record that is balanced; of longer ones the first mesh periods are.
 const MAX_MESH_PERIODS: u64 = 200;
 
-/// A motion whose velocities stay below this part of its displacements (scaled time) does not move: what it shows is rounding.
+/// Ratio of velocities to displacements (scaled time) below which a motion counts as at rest.
 const REST_VELOCITY_RATIO: f64 = 1e-9;
 
-/// Change of the kinetic energy of a motion against the work of all forces on it, ∫ Σ_c F_c v_c dt with the forces of `model` (springs,
-/// dampers, mesh, impacts, torques) at the displacements and velocities of the solution, by quadrature on every segment. The free
-/// rotation of each half (w) is left out, as it is from every measure of the motion's size.
+/// Change of the kinetic energy of a motion against the work of all forces, ∫ Σ_c F_c v_c dt with the forces of `model`
+/// (springs, dampers, mesh, impacts, torques) along the solution, by Gauss–Legendre quadrature on every segment. The
+/// rigid rotation of each half (w) is excluded.
 pub(super) struct EnergyBalance<'m, const D: usize> {
     model: &'m DynamicModel<D>,
     masses: [f64; D],
-    /// Over ω_ref², J s².
+    /// Kinetic energy at the start over ω_ref², J s².
     initial_energy: Option<f64>,
-    /// The mesh period before which the balance ends.
+    /// Mesh period at which the balance ends.
     until: u64,
     final_energy: f64,
     work: f64,
@@ -44,8 +44,7 @@ impl<'m, const D: usize> EnergyBalance<'m, D> {
         }
     }
 
-    /// What the forces' work does not explain of the change of kinetic energy, over the integral of the absolute power of the
-    /// forces on each coordinate. None where nothing moved.
+    /// ΔE − work| over the integral of the absolute power of the forces on each coordinate. None where nothing moved.
     pub fn residual(&self) -> Option<f64> {
         let change = self.final_energy - self.initial_energy?;
         let moves = self.largest_v > REST_VELOCITY_RATIO * self.largest_x && self.absolute_work > 0.0;
@@ -86,7 +85,7 @@ impl<const D: usize> Observer<D> for EnergyBalance<'_, D> {
     }
 }
 
-/// Only where it is asked for.
+/// For an optional balance.
 impl<const D: usize> Observer<D> for Option<EnergyBalance<'_, D>> {
     fn segment(&mut self, segment: &Segment<'_, D>) {
         if let Some(balance) = self {
@@ -106,7 +105,7 @@ mod tests {
 
     const TOPIC: &str = "Response: energy balance";
 
-    /// Residual over `periods` of the motion of `motion` from the case's start, by the forces of `judge`.
+    /// Residual over `periods` of the motion `motion` from the case's start, by the forces of `judge`.
     fn residual<'m, const D: usize>(judge: &'m DynamicModel<D>, mut motion: Motion<'m, D>, periods: u64) -> f64 {
         let mut balance = EnergyBalance::new(judge);
         for _ in 0..periods {
@@ -137,8 +136,8 @@ mod tests {
         }
     }
 
-    /// Contact kept, constant step: the residual falls with the step at least as fast as the method's error does, whose order is four (what
-    /// shifts a vibration in time carries no energy, so it falls faster).
+    /// Contact kept, constant step: the residual falls with the step at least with the order of the method, four.
+    /// (Phase errors do not change the energy, so it can fall faster.)
     #[test]
     fn a_coarse_method_is_seen_with_its_order() {
         let mut p: Parameters = parameters("A");
@@ -154,7 +153,7 @@ mod tests {
         check(TOPIC, "order of the residual, Runge–Kutta on case A (at least 4)", order, 5.0, Absolute(1.0));
     }
 
-    /// The same motion judged by forces that are off by one part in a thousand in one place.
+    /// The same motion with forces that differ by one part in a thousand in one place.
     #[test]
     fn a_wrong_force_is_caught() {
         for case in ["A", "B", "C"] {

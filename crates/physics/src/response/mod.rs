@@ -1,6 +1,10 @@
-//! From a motion to what is reported of it: RMS values, extremes, contact, regime, series, spectra.
+//! Response of a pair at an operating point: steady-state search, RMS values, extremes, contact state, regime, time
+//! series, spectra.
+//!
+//! [`solve`] integrates the [equations of motion](crate::dynamics) by the chosen [`SolutionMethod`] and returns a
+//! [`Response`]; [`solve_many`] does so for many operating points in parallel.
 
-// Loops over coordinates and Taylor orders read as the formulas do with an index.
+// Loops over coordinates and Taylor orders are written with an index, as the formulas are.
 #![allow(clippy::needless_range_loop)]
 
 mod analysis;

@@ -1,11 +1,11 @@
-//! Gathers what is asked of a motion while it runs: statistics, series, contact.
+//! Recording of channels during an integration: statistics, time series, contact times.
 
 use super::channel::{ChannelEvaluator, ChannelId};
 use super::statistics::{MomentAccumulator, horner};
 use crate::dynamics::{DynamicModel, MAX_ORDER, Observer, PER_HALF, Segment};
 use crate::simd::vectorised;
 
-/// What to record of one channel.
+/// Recording of one channel.
 struct ChannelTrack<const D: usize> {
     id: ChannelId,
     evaluator: ChannelEvaluator<D>,
@@ -14,20 +14,21 @@ struct ChannelTrack<const D: usize> {
     samples: Option<Vec<f64>>,
 }
 
-/// The observer of the recorded periods.
+/// Observer of the recorded mesh periods.
 pub(super) struct ChannelRecorder<const D: usize> {
     tracks: Vec<ChannelTrack<D>>,
     samples_per_mesh_period: usize,
-    /// The mesh period of the last segment, and the index of the next sample within it.
+    /// Mesh period of the last segment, and the index of the next sample within it.
     period: u64,
     next_sample: usize,
     sampling: bool,
-    /// Scaled time on driving flank, apart, on back flank, per half solved.
+    /// Scaled time on driving flank, apart, and on back flank, per solved half.
     contact: [[f64; 3]; 2],
 }
 
 impl<const D: usize> ChannelRecorder<D> {
-    /// Statistics of `statistics` (with extremes where the flag says so); samples of `series`, for `periods` mesh periods.
+    /// `statistics`: channels with statistics, and whether extremes are needed. `series`: channels that are sampled,
+    /// over `periods` mesh periods.
     pub fn new(
         model: &DynamicModel<D>,
         statistics: &[(ChannelId, bool)],
@@ -35,7 +36,7 @@ impl<const D: usize> ChannelRecorder<D> {
         samples_per_mesh_period: usize,
         periods: u64,
     ) -> Self {
-        // Long records grow as they go.
+        // Limited: long records grow during recording.
         let capacity = samples_per_mesh_period.saturating_mul(periods as usize).min(1 << 20);
         let mut tracks: Vec<ChannelTrack<D>> = Vec::new();
         let mut add = |id: ChannelId, extremes: bool, sampled: bool| {
@@ -82,7 +83,7 @@ impl<const D: usize> ChannelRecorder<D> {
         self.tracks.iter_mut().filter_map(|t| t.samples.take().map(|s| (t.id, s))).collect()
     }
 
-    /// Shares of time on driving flank, apart and on back flank, left and right.
+    /// Fractions of time on driving flank, apart and on back flank, left and right.
     pub fn contact_shares(&self) -> [[f64; 3]; 2] {
         let share = |j: usize| {
             let total: f64 = self.contact[j].iter().sum();
@@ -108,7 +109,7 @@ impl<const D: usize> Observer<D> for ChannelRecorder<D> {
         let first = self.next_sample;
         let mut last = first;
         if self.sampling {
-            // A sample on the end of the segment belongs to the next one.
+            // A sample at the end of the segment belongs to the next one.
             while last < per_period && (last as f64 / per_period as f64) < end {
                 last += 1;
             }

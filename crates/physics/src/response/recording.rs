@@ -1,4 +1,4 @@
-//! A run from a start: followed through its mesh periods, recorded over the last of them.
+//! Integration of a trajectory whose last mesh periods are recorded.
 
 use super::analysis::PoincarePoint;
 use super::channel::ChannelId;
@@ -12,12 +12,12 @@ use crate::dynamics::{
     DynamicModel, DynamicsError, MotionState, Observer, Segment, StepCounts, TrajectoryObserver, U, YG, YP,
 };
 
-/// Parts of a record whose scatter gives its standard error.
+/// Number of parts of a record from which its standard error is estimated.
 const BATCHES: u64 = 10;
-/// Up to this many recorded mesh periods it is known that the motion repeats, and not input.
+/// Up to this many recorded mesh periods the record is one of a known period, and periodicity is not tested.
 const SHORT_RECORD_MESH_PERIODS: u64 = 8;
 
-/// The run, and what has been gathered of it. Mesh periods are counted as the start's are.
+/// A trajectory with its record. Mesh periods are counted as those of the start.
 pub(super) struct RecordedRun<'m, const D: usize> {
     model: &'m DynamicModel<D>,
     state: MotionState<D>,
@@ -25,10 +25,10 @@ pub(super) struct RecordedRun<'m, const D: usize> {
     first_period: u64,
     record_from: u64,
     end: u64,
-    /// The state at the start of this mesh period is kept.
+    /// The state at the start of this mesh period is stored.
     store_at: u64,
     pub stored: MotionState<D>,
-    /// The state from which the record starts.
+    /// State at the start of the record.
     pub from: MotionState<D>,
     pub recorder: ChannelRecorder<D>,
     pub energy: Option<EnergyBalance<'m, D>>,
@@ -43,7 +43,10 @@ pub(super) struct RecordedRun<'m, const D: usize> {
 }
 
 impl<'m, const D: usize> RecordedRun<'m, D> {
-    /// From `start` to the mesh period `end`, recorded from `record_from` on.
+    /// Trajectory from `start` to the mesh period `end`, recorded from the mesh period `record_from` on.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] of [`RigidBodyModes::new`](crate::dynamics).
     pub fn new(
         model: &'m DynamicModel<D>,
         start: MotionState<D>,
@@ -81,12 +84,12 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
         Ok(run)
     }
 
-    /// With the energy balance of what is recorded.
+    /// Adds an energy balance of the record.
     pub fn with_energy(self, energy: Option<EnergyBalance<'m, D>>) -> Self {
         Self { energy, ..self }
     }
 
-    /// Keeps the state at the start of the mesh period `store_at`.
+    /// Stores the state at the start of the mesh period `store_at`.
     pub fn storing_state_at(self, store_at: u64) -> Self {
         Self { store_at, ..self }
     }
@@ -105,7 +108,10 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
         }
     }
 
-    /// What was recorded; fails where the run did.
+    /// The finished run.
+    ///
+    /// # Errors
+    /// The error that ended the integration.
     pub fn finish(self) -> Result<FinishedRun<'m, D>, DynamicsError> {
         if let Some(error) = self.error {
             return Err(error);
@@ -124,7 +130,7 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
     }
 }
 
-/// What a run leaves.
+/// Result of a recorded run.
 pub(super) struct FinishedRun<'m, const D: usize> {
     pub record: RecordedMotion<D>,
     pub recorder: ChannelRecorder<D>,

@@ -1,4 +1,4 @@
-//! Does a motion repeat, and how fast do neighbours leave it?
+//! Poincaré section of a motion, its periodicity, and Lyapunov exponents.
 
 use std::collections::VecDeque;
 
@@ -8,11 +8,11 @@ use crate::dynamics::{
 };
 use crate::watch::Watch;
 
-/// The longest period that is looked for, in mesh periods.
+/// Longest period that is searched for, in mesh periods.
 pub(super) const LONGEST_PERIOD: usize = 32;
 
-/// A Lyapunov exponent above this, per mesh period, is taken for chaos: the exponent of a motion that does not grow
-/// scatters around zero by a few thousandths over the mesh periods it is averaged.
+/// Lyapunov exponent per mesh period above which a motion counts as chaotic. The computed exponent of a regular motion
+/// scatters around zero by a few thousandths.
 pub(super) const CHAOS_PER_MESH_PERIOD: f64 = 0.01;
 
 /// States at the starts of the last mesh periods.
@@ -22,12 +22,15 @@ pub(super) struct PoincareSection<const D: usize> {
 }
 
 impl<const D: usize> PoincareSection<D> {
-    /// States as they are: for motions of which it is not asked whether they repeat.
+    /// Section of the complete states, for motions whose periodicity is not tested.
     pub fn new() -> Self {
         Self { states: VecDeque::with_capacity(LONGEST_PERIOD + 1), rigid_body: RigidBodyModes::none() }
     }
 
-    /// States without their free motions, whose drift keeps no motion from repeating.
+    /// Section without rigid-body modes, whose drift does not prevent periodicity.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] of [`RigidBodyModes::new`].
     pub fn without_rigid_body(model: &DynamicModel<D>) -> Result<Self, DynamicsError> {
         Ok(Self { rigid_body: RigidBodyModes::new(model)?, ..Self::new() })
     }
@@ -40,8 +43,8 @@ impl<const D: usize> PoincareSection<D> {
         self.states.push_back(state);
     }
 
-    /// Size of the motion: its largest scaled velocity, or a billionth of the deflection when it hardly moves (what is
-    /// smaller is rounding).
+    /// Size of the motion: its largest velocity in scaled time, or 1e-9 of the largest displacement if that is larger
+    /// (below it is rounding).
     pub fn size(&self) -> f64 {
         let parts = |row: &[f64; D]| (0..D).filter(|c| c % PER_HALF != W).fold(0.0f64, |m, c| m.max(row[c].abs()));
         self.states.iter().fold(f64::MIN_POSITIVE, |m, s| m.max(parts(&s.v)).max(1e-9 * parts(&s.x)))
@@ -54,21 +57,21 @@ impl<const D: usize> PoincareSection<D> {
         Some(largest_component(&state_difference(&self.states[last], before)) / self.size())
     }
 
-    /// The shortest period over which the state changes by less than `limit`, and by how much. A multiple of a shorter
-    /// period that repeats nearly as well is not taken.
+    /// Shortest period, in mesh periods, over which the relative change is below `limit`, and that change. A multiple
+    /// of a shorter period with a similar change is not taken.
     pub fn repeats(&self, limit: f64) -> Option<(usize, f64)> {
         let best = (1..=LONGEST_PERIOD).filter_map(|n| self.change(n)).fold(f64::INFINITY, f64::min);
         if best > limit {
             return None;
         }
-        // Within ten times the best or far below the limit counts as repeating.
+        // Within ten times the smallest change, or far below the limit, counts as repeating.
         let accepted = (10.0 * best).max(1e-3 * limit).min(limit);
         (1..=LONGEST_PERIOD).find_map(|n| self.change(n).filter(|c| *c <= accepted).map(|c| (n, c)))
     }
 
-    /// The period of a motion that is followed without being made exact: the shortest over which the state changes by no
-    /// more than `limit`. A longer one than a mesh period has to stand out from the shorter ones: what is left of a
-    /// transient turns and decays, and comes closer to itself after some numbers of periods than after others.
+    /// Period of a motion that is not refined to a periodic orbit: the shortest one over which the relative change is
+    /// at most `limit`. A period of more than one mesh period must have a much smaller change than all shorter ones,
+    /// because a decaying oscillation returns closer to itself after some numbers of mesh periods than after others.
     pub fn settled_period(&self, limit: f64) -> Option<usize> {
         const STANDS_OUT: f64 = 0.03;
         let mut least = f64::INFINITY;
@@ -87,17 +90,19 @@ impl<const D: usize> PoincareSection<D> {
     }
 }
 
-/// Largest component of a perturbation, free rotation apart.
+/// Largest component of a perturbation, rigid rotation excluded.
 pub(super) fn largest_component<const D: usize>(d: &Perturbation<D>) -> f64 {
     (0..D).filter(|c| c % PER_HALF != W).fold(0.0, |m, c| m.max(d.0[c].abs()).max(d.1[c].abs()))
 }
 
-/// Largest Lyapunov exponent per mesh period, from one perturbation carried along `periods` mesh periods of the motion (the first
-/// tenth only turns it into the fastest direction).
+/// Largest Lyapunov exponent per mesh period, from one perturbation integrated over `periods` mesh periods of the
+/// motion. The first tenth is not averaged; it aligns the perturbation with the direction of fastest growth.
 ///
-/// Perturbations along free motions are taken out after every mesh period: they stay for ever (or grow with time, not
-/// exponentially), so over any finite time they would hide every exponent below zero: a mean that tends to 0 like
-/// ln(t)/t from whatever the motion's own is.
+/// Rigid-body modes are projected out of the perturbation after every mesh period. Along them it stays constant or
+/// grows linearly, so that over any finite time the average would tend to 0 like ln(t)/t and hide negative exponents.
+///
+/// # Errors
+/// [`DynamicsError`].
 pub(super) fn lyapunov_exponent<const D: usize>(
     motion: &mut Motion<'_, D>,
     variation_model: &DynamicModel<D>,
@@ -107,7 +112,8 @@ pub(super) fn lyapunov_exponent<const D: usize>(
     lyapunov_exponent_with(motion, variation_model, periods, watch, |_, _| ())
 }
 
-/// The same; `on_period` is told the logarithm of the perturbation's growth over each mesh period and the state at its end.
+/// As [`lyapunov_exponent`]; `on_period` receives the logarithmic growth of the perturbation over each mesh period and
+/// the state at its end.
 pub(super) fn lyapunov_exponent_with<const D: usize>(
     motion: &mut Motion<'_, D>,
     variation_model: &DynamicModel<D>,
@@ -138,7 +144,8 @@ pub(super) fn lyapunov_exponent_with<const D: usize>(
     Ok(sum / counted.max(1) as f64)
 }
 
-/// What is left of a perturbation after one mesh period of the motion, free motions apart: its largest component over what it was.
+/// Ratio of a perturbation after and before one mesh period of the motion, rigid-body modes excluded, by its largest
+/// component.
 pub(super) fn perturbation_decay<const D: usize>(
     motion: &mut Motion<'_, D>,
     variation_model: &DynamicModel<D>,
@@ -149,11 +156,11 @@ pub(super) fn perturbation_decay<const D: usize>(
     let mut variation = Variation::new(variation_model, vec![start], 1e-6);
     motion.advance_period(&mut ObserverPair(&mut Unobserved, &mut variation), watch, 0.0)?;
     let left = largest_component(&rigid_body.project_out(&variation.columns[0])) / largest_component(&start);
-    // An infinite or undefined answer is no sign of fading.
+    // NaN: the perturbation does not decay.
     Ok(if left.is_nan() { f64::INFINITY } else { left })
 }
 
-/// A perturbation that prefers no direction and leaves none out.
+/// A perturbation with a component along every active displacement.
 fn generic_perturbation<const D: usize>(model: &DynamicModel<D>) -> Perturbation<D> {
     let mut start = ([0.0; D], [0.0; D]);
     for (i, c) in model.active().enumerate() {

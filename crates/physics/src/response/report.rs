@@ -1,4 +1,4 @@
-//! From what was gathered to what is reported.
+//! Assembly of a response from a recorded motion.
 
 use std::collections::BTreeMap;
 
@@ -11,41 +11,41 @@ use super::recorder::ChannelRecorder;
 use super::regime::PoincareSection;
 use crate::dynamics::{DynamicModel, MotionState, NaturalModes, PER_HALF, Parameters, StepCounts};
 
-/// The question.
+/// Parameters, settings and natural modes of the analysis.
 pub(super) struct ReportInput<'a> {
     pub p: &'a Parameters,
     pub analysis: &'a Analysis,
     pub modes: &'a NaturalModes,
 }
 
-/// What is known of the motion beside what the recorder gathered.
+/// Properties of the recorded motion that are not in its record.
 pub(super) struct MotionAssessment {
     pub regime: Regime,
     pub period: Option<u64>,
     pub floquet: Option<f64>,
-    /// Over the motion's period, largest first.
+    /// Over the period of the motion, largest first.
     pub multipliers: Option<Vec<Multiplier>>,
     pub lyapunov: Option<f64>,
     pub method: &'static str,
     pub error_estimate: f64,
     pub energy_residual: Option<f64>,
-    /// Time of the first recorded value.
+    /// Time of the first recorded value, s.
     pub t0_s: f64,
     pub counts: StepCounts,
 }
 
-/// What `record` leaves beside the recorder's own.
+/// Record of a motion without its channels.
 pub(super) struct RecordedMotion<const D: usize> {
     pub recent: PoincareSection<D>,
     pub points: Vec<PoincarePoint>,
     pub last: MotionState<D>,
     pub counts: StepCounts,
     pub batch_error: f64,
-    /// Mean squares of the accelerations of every response, mesh period by mesh period.
+    /// Mean squares of the accelerations of every response, by mesh period.
     pub mean_squares: Vec<(ChannelId, Vec<f64>)>,
 }
 
-/// Puts a response together from what was gathered.
+/// Assembles the response.
 pub(super) fn assemble_response<const D: usize>(
     input: &ReportInput<'_>,
     model: &DynamicModel<D>,
@@ -155,7 +155,7 @@ fn dynamic_factor(tooth_force: &Halves<ToothForce>) -> Option<f64> {
     [tooth_force.left, tooth_force.right].into_iter().filter_map(of).reduce(f64::max).map(|factor| factor.max(1.0))
 }
 
-/// The halves that are solved: the left one alone when the other is its mirror image.
+/// Indices of the solved halves: the left one alone when the other is its mirror image.
 pub(super) fn solved_halves<const D: usize>() -> std::ops::Range<u8> {
     0..(D / PER_HALF) as u8
 }
@@ -188,8 +188,8 @@ mod tests {
         solve(p, &analysis, &Watch::none()).unwrap().summary.floquet_multipliers.unwrap()
     }
 
-    /// Liouville: the product of all multipliers is what the dampers take from a volume of states, exp(−T tr(M⁻¹ C)); the
-    /// free screw motion, which no damper feels, has a factor of one and is left out.
+    /// Liouville's formula: the product of all multipliers is exp(−T tr(M⁻¹ C)). The undamped screw mode has the
+    /// multiplier 1 and is left out.
     #[test]
     fn the_product_of_the_multipliers_is_that_of_the_dampers() {
         for (case, periods) in [("A", 1.0), ("C", 2.0)] {
@@ -216,7 +216,7 @@ mod tests {
         }
     }
 
-    /// Reference motions at other speeds, loads, pulses, staggered, with an impact on torsion or on all motions.
+    /// Reference motions at other speeds, loads and pulses, staggered, with an impact on torsion or on all motions.
     fn various() -> Vec<Parameters> {
         let mut out = Vec::new();
         for (i, case) in ["A", "C"].into_iter().cycle().take(40).enumerate() {
@@ -245,7 +245,7 @@ mod tests {
         out
     }
 
-    /// The mean of the tooth force is the static one, so the largest is never below it.
+    /// The mean tooth force is the static one, so the largest is not below it.
     #[test]
     fn the_mean_tooth_force_is_the_static_one() {
         let ids = ["tooth_force_left", "tooth_force_right"].map(|name| ChannelId::parse(name).unwrap()).to_vec();
@@ -271,7 +271,7 @@ mod tests {
         check_worst("Response: tooth force", "mean over static one, motions off the reference cases", errors, 1e-7);
     }
 
-    /// Mesh force plus pulse at every sample, by both integrators, and extremes no sample is beyond.
+    /// Tooth force = mesh force + pulse at every sample, by both integrators, and no sample beyond the extremes.
     #[test]
     fn the_tooth_force_is_mesh_force_and_impact() {
         let names = ["tooth_force_left", "f_n_left"];
@@ -312,7 +312,8 @@ mod tests {
         }
     }
 
-    /// What an impact on all motions puts on the shafts: the mean axial force on the gear is the load's, not what the impact leaves of it.
+    /// An impact on all motions loads the shafts axially: the mean axial force on the gear is that of the load, not the
+    /// load less the mean impact.
     #[test]
     fn an_impact_on_all_motions_pushes_along_the_axis_too() {
         for (force_n, duration_mesh_periods) in [(3000.0, 0.08), (9000.0, 0.3)] {
@@ -350,7 +351,7 @@ mod tests {
         }
     }
 
-    /// Multipliers within and against the mirror symmetry of six coordinates are those of twelve.
+    /// The symmetric and antisymmetric multipliers of six coordinates are those of twelve.
     #[test]
     fn six_coordinates_have_the_multipliers_of_twelve() {
         for case in ["A", "C"] {

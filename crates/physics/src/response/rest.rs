@@ -1,4 +1,4 @@
-//! A pair that nothing moves: no load, no impact, and a start at rest. Its answer is exact, where a search would ask rounding.
+//! Exact response of a pair at rest: no load, no impact, and a start at rest.
 
 use super::analysis::{ContactState, Halves, Regime, Response, SolutionMethod};
 use super::recording::RecordedRun;
@@ -10,14 +10,15 @@ use crate::dynamics::{
 };
 
 impl OperatingPoint<'_> {
-    /// Whether the pair stays where it starts: without load and impact, set out at rest in the middle of its backlash (all zero) or, where
-    /// no start is given, with the driving flanks just touching, which is where ever smaller loads leave it.
+    /// Whether the pair stays at its start: without load and impact, at rest in the middle of its backlash (initial
+    /// state zero) or, without an initial state, with the driving flanks in contact without force, the limit of
+    /// vanishing load.
     pub(super) fn stays_at_rest(&self) -> bool {
         let [left, right] = &self.p.halves;
         let unloaded = [left, right]
             .iter()
             .all(|h| h.pinion_torque_nm == 0.0 && h.impact.as_ref().is_none_or(ImpactExcitation::is_zero));
-        // A torsional spring between unlike halves would be strained where both touch.
+        // A torsional coupling of unequal halves would be strained where both are in contact.
         let c = &self.p.couplings;
         let uncoupled = c.pinion_torsion == Spring::default() && c.gear_torsion == Spring::default();
         let inertias = |h: &crate::dynamics::HalfParameters| (h.pinion_inertia_kg_m2, h.gear_inertia_kg_m2);
@@ -25,10 +26,10 @@ impl OperatingPoint<'_> {
         unloaded && still && (uncoupled || inertias(left) == inertias(right))
     }
 
-    /// The answer of a pair that rests.
+    /// Response of a pair at rest.
     ///
     /// # Errors
-    /// [`DynamicsError`] for parameters the equations cannot use.
+    /// [`DynamicsError`] for invalid parameters.
     pub(super) fn rest_response(&self) -> Result<Response, DynamicsError> {
         if self.p.is_symmetric() { self.rest_response_in::<6>() } else { self.rest_response_in::<12>() }
     }
@@ -44,7 +45,7 @@ impl OperatingPoint<'_> {
             }
             SolutionMethod::Auto | SolutionMethod::Periodic => ("periodic", 0, 1),
         };
-        // Touching without force: the contact is held open, so that rounding closes nothing.
+        // In contact without force: the contact is fixed as open, so that rounding does not close it.
         let side = if model.b == 0.0 { 1 } else { 0 };
         let mut start = MotionState { period: from, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [side; 2] };
         if touching {
@@ -85,7 +86,7 @@ mod tests {
     use crate::response::{Analysis, ContactState, Regime, SolutionMethod, solve, solve_many};
     use crate::watch::Watch;
 
-    /// Without load and impact: exactly at rest, whatever the stiffness, the play and the method.
+    /// Without load and impact: exactly at rest, with any stiffness, backlash and method.
     #[test]
     fn an_unloaded_pair_without_impact_rests() {
         let integrate = SolutionMethod::Integrate { mesh_periods: 30, record_mesh_periods: 10 };
@@ -120,7 +121,7 @@ mod tests {
         }
     }
 
-    /// What moves the pair is not rest: a pulse, or a load however small.
+    /// A pulse, or any load, moves the pair.
     #[test]
     fn a_load_or_a_pulse_moves() {
         let mut p = parameters("A");

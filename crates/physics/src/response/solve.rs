@@ -1,4 +1,4 @@
-//! One operating point: from parameters to a response.
+//! Response of operating points: steady-state search or integration, record, error estimate.
 
 use super::analysis::{Analysis, Multiplier, Regime, Response, SolutionMethod};
 use super::channel::ChannelId;
@@ -15,10 +15,10 @@ use crate::watch::{Canceled, Watch};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Solves the equations of motion and gathers what was asked for.
+/// Computes the response of a pair.
 ///
 /// # Errors
-/// [`DynamicsError`].
+/// [`DynamicsError`] for invalid parameters or settings, a missing steady state, and integrations that fail.
 pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<Response, DynamicsError> {
     let modes = validated_modes(p, analysis)?;
     let point = OperatingPoint { p, analysis, modes: &modes, watch };
@@ -38,19 +38,20 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
             if mirrored && let Some(response) = point.solve_steady::<6>(&start, false)? {
                 return Ok(response);
             }
-            // Equal halves come here only when their motion leaves the mirror symmetry by itself: a start off the symmetry lets it.
+            // Equal halves come here only when their motion leaves the mirror symmetry: the start is perturbed out of
+            // it.
             let found = point.solve_steady::<12>(&start, mirrored)?;
-            // Twelve coordinates are never given up for fewer.
+            // A search in twelve coordinates always returns a motion.
             found.ok_or(DynamicsError::NotPeriodic { mesh_periods: 0, change: f64::NAN })
         }
     }
 }
 
-/// Solves many operating points as [`solve`] does each, on all threads of the pool and, where they are integrated by Taylor series, eight
-/// side by side in vector instructions. The answers are those of [`solve`] to the last bit.
+/// Computes the responses of many operating points as [`solve`] does, on all threads of the pool and, for integrations
+/// by Taylor series, in vector lanes. The results are bit-identical to those of [`solve`].
 ///
 /// # Errors
-/// Per point as [`solve`]; cancellation for all.
+/// [`Canceled`] for all; [`DynamicsError`] per point as [`solve`].
 pub fn solve_many(
     points: &[Parameters],
     analysis: &Analysis,
@@ -69,7 +70,7 @@ pub fn solve_many(
     Ok(groups?.into_iter().flatten().collect())
 }
 
-/// Points that one thread takes at a time.
+/// Operating points per task of the thread pool.
 const POINTS_PER_GROUP: usize = 32;
 
 fn solve_group(
@@ -77,7 +78,7 @@ fn solve_group(
     analysis: &Analysis,
     watch: &Watch<'_>,
 ) -> Result<Vec<Result<Response, DynamicsError>>, Canceled> {
-    // Their own progress would run back and forth.
+    // The progress of single points is not monotonic in that of the whole.
     let canceled = || watch.checkpoint_quietly().is_err();
     let watch = &Watch::new(&|_| {}, &canceled);
     let lanes =
@@ -91,7 +92,7 @@ fn solve_group(
     }
     let modes: Vec<_> = group.iter().map(|p| validated_modes(p, analysis)).collect();
     let mut out = vec![Err(DynamicsError::Canceled(Canceled)); group.len()];
-    // Points in six coordinates, and in twelve, with their positions.
+    // Indices and points in six coordinates, and in twelve.
     let mut sides: [(Vec<usize>, Vec<OperatingPoint<'_>>); 2] = Default::default();
     for (i, (p, modes)) in group.iter().zip(&modes).enumerate() {
         match modes {
@@ -118,7 +119,7 @@ fn solve_group(
     Ok(out)
 }
 
-/// Checks the question and solves for the natural modes.
+/// Validates parameters and settings, and computes the natural modes.
 fn validated_modes(p: &Parameters, analysis: &Analysis) -> Result<NaturalModes, DynamicsError> {
     p.validate()?;
     if !(1e-13..=0.1).contains(&analysis.accuracy) {
@@ -134,7 +135,7 @@ fn validated_modes(p: &Parameters, analysis: &Analysis) -> Result<NaturalModes, 
     NaturalModes::new(p)
 }
 
-/// One operating point and what is asked of it.
+/// One operating point with the settings of the analysis.
 pub(super) struct OperatingPoint<'a> {
     pub p: &'a Parameters,
     pub analysis: &'a Analysis,
@@ -142,11 +143,11 @@ pub(super) struct OperatingPoint<'a> {
     pub watch: &'a Watch<'a>,
 }
 
-/// Relative size of the push that takes a motion off the mirror symmetry: as far as manufacture keeps halves alike.
+/// Relative size of the perturbation out of the mirror symmetry: about the manufacturing difference of the halves.
 const OFF_SYMMETRY: f64 = 1e-3;
 
 impl OperatingPoint<'_> {
-    /// Where it starts: as input, or at rest under the mean load.
+    /// Initial state: as given, or at rest under the mean load.
     fn start(&self) -> [f64; 24] {
         self.analysis.initial_state.unwrap_or_else(|| {
             let mut at_rest = [0.0; 24];
@@ -155,7 +156,7 @@ impl OperatingPoint<'_> {
         })
     }
 
-    /// ObserverPair halves and the start mirror each other.
+    /// Whether halves and start are mirror-symmetric.
     fn is_mirrored(&self, start: &[f64; 24]) -> bool {
         self.p.is_symmetric() && (self.analysis.initial_state.is_none() || is_mirrored(start))
     }
@@ -172,7 +173,7 @@ impl OperatingPoint<'_> {
         [0, 1].map(|j| self.p.halves[j].mesh_stiffness.mean_n_per_m())
     }
 
-    /// The steady state; None when six coordinates do not tell the whole story.
+    /// Steady state; None when the motion in six coordinates leaves the mirror symmetry.
     fn solve_steady<const D: usize>(
         &self,
         start: &[f64; 24],
@@ -265,7 +266,7 @@ impl OperatingPoint<'_> {
         Ok(Some(assemble_response(&self.report_input(), &model, finished.recorder, section, assessment)))
     }
 
-    /// What is known of an integrated record by itself; `compared` says whether its error is found by comparison.
+    /// Assessment of an integrated record, and whether its error is to be found by comparison.
     fn assess<const D: usize>(
         &self,
         model: &DynamicModel<D>,
@@ -303,7 +304,7 @@ impl OperatingPoint<'_> {
         Ok((assessment, compared))
     }
 
-    /// The energy balance, where it is asked for.
+    /// Energy balance, if requested.
     pub(super) fn energy<'m, const D: usize>(&self, model: &'m DynamicModel<D>) -> Option<EnergyBalance<'m, D>> {
         self.analysis.energy_balance.then(|| EnergyBalance::new(model))
     }
@@ -323,8 +324,8 @@ impl OperatingPoint<'_> {
         run.finish()
     }
 
-    /// Relative error of the RMS values of a periodic motion: the map is repeated far more accurately, the start corrected by
-    /// what it then fails to close, and the values compared.
+    /// Relative error of the RMS values of a periodic motion: it is integrated again with a much finer tolerance, its
+    /// start is corrected by the remaining defect, and the values are compared.
     fn orbit_error<const D: usize>(
         &self,
         model: &DynamicModel<D>,
@@ -345,7 +346,7 @@ impl OperatingPoint<'_> {
         Ok(SAFETY * rms_difference(recorder, &better, acceleration_floor(model)) + ROUNDING)
     }
 
-    /// Channels every response needs, and those asked for.
+    /// Recorder of the channels of every response and of the requested ones.
     pub(super) fn recorder<const D: usize>(&self, model: &DynamicModel<D>, periods: u64) -> ChannelRecorder<D> {
         let mut statistics = Vec::new();
         for half in solved_halves::<D>() {
@@ -364,7 +365,7 @@ impl OperatingPoint<'_> {
         )
     }
 
-    /// The accelerations alone.
+    /// Recorder of the accelerations alone.
     fn rms_recorder<const D: usize>(&self, model: &DynamicModel<D>) -> ChannelRecorder<D> {
         let mut statistics = Vec::new();
         for half in solved_halves::<D>() {
@@ -375,7 +376,7 @@ impl OperatingPoint<'_> {
     }
 }
 
-/// How points are integrated: one after the other by any method, or side by side by Taylor series.
+/// Execution of integrations: sequential by any method, or batched in vector lanes by Taylor series.
 #[derive(Clone, Copy)]
 enum LaneUse {
     Sequential(Integrator),
@@ -398,7 +399,7 @@ impl LaneUse {
         }
     }
 
-    /// For the comparison that measures the error: by Taylor series always.
+    /// Execution of the comparison for the error estimate: always by Taylor series.
     fn for_comparison(self) -> Self {
         match self {
             LaneUse::Sequential(_) => LaneUse::Sequential(Integrator::Taylor),
@@ -407,8 +408,8 @@ impl LaneUse {
     }
 }
 
-/// Integrates points that ask the same, and measures their errors by comparison with more accurate runs over the end of
-/// each.
+/// Integrates operating points with the same settings and estimates their errors by comparison with more accurate
+/// integrations of the last part of each.
 fn integrate<const D: usize>(
     points: &[OperatingPoint<'_>],
     lane_use: LaneUse,
@@ -419,14 +420,15 @@ fn integrate<const D: usize>(
     };
     let end = mesh_periods.max(1);
     let record_from = end - record_mesh_periods.clamp(1, end);
-    // Measured on the reference cases: RMS error over tolerance is up to 10 for Taylor series, up to 300 for Runge–Kutta.
+    // Measured on the reference cases: RMS error over tolerance is up to 10 for Taylor series, up to 300 for
+    // Runge–Kutta.
     let per_accuracy = match analysis.integrator {
         Integrator::Taylor => 0.05,
         Integrator::RungeKutta => 2e-3,
     };
     let tolerance = (per_accuracy * analysis.accuracy).max(1e-15);
     let tight = (1e-2 * tolerance).clamp(1e-15, 1e-9);
-    // Where the comparison sets out: far enough before the record for its own start to fade.
+    // Start of the comparison: far enough before the record for the initial difference to decay.
     let compared_from = record_from.saturating_sub(COMPARISON_LEAD_MESH_PERIODS);
 
     let models: Vec<_> = points.iter().map(|point| DynamicModel::<D>::new(point.p)).collect();
@@ -495,16 +497,16 @@ fn integrate<const D: usize>(
     Ok(out)
 }
 
-/// Relative change over its period below which an integrated motion counts as repeating.
+/// Relative change over its period below which an integrated motion counts as periodic.
 pub(super) const REPEATS: f64 = 1e-3;
-/// What an error found by comparison is multiplied by, because it is a comparison with something that has an error too.
+/// Factor on an error found by comparison with a result that has an error too.
 const SAFETY: f64 = 3.0;
-/// Mesh periods before the record from which a run is compared with a more accurate one.
+/// Mesh periods before the record from which an integration is compared with a more accurate one.
 const COMPARISON_LEAD_MESH_PERIODS: u64 = 50;
-/// RMS values in double precision are not better than this.
+/// Lower limit of the relative error of RMS values in double precision.
 const ROUNDING: f64 = 1e-13;
 
-/// An acceleration that is nothing but rounding: 1e-12 of what the load would give the free mesh, m/s².
+/// Acceleration that counts as rounding: 1e-12 of the acceleration of the free mesh by the load, m/s².
 fn acceleration_floor<const D: usize>(model: &DynamicModel<D>) -> f64 {
     let square = model.omega_ref * model.omega_ref;
     (0..DynamicModel::<D>::HALVES)
@@ -512,7 +514,7 @@ fn acceleration_floor<const D: usize>(model: &DynamicModel<D>) -> f64 {
         * 1e-12
 }
 
-/// Largest relative difference of the RMS accelerations of two records; below `floor` they count as equal.
+/// Largest relative difference of the RMS accelerations of two records; values below `floor` count as equal.
 fn rms_difference<const D: usize>(a: &ChannelRecorder<D>, b: &ChannelRecorder<D>, floor: f64) -> f64 {
     b.all().fold(0.0f64, |worst, (id, gb, _)| {
         let Some(ga) = a.accumulator(id) else { return worst };

@@ -1,4 +1,4 @@
-//! Exact time means and extremes of polynomials.
+//! Exact time means and extremes of piecewise polynomials.
 
 use std::sync::LazyLock;
 
@@ -7,14 +7,18 @@ use serde::{Deserialize, Serialize};
 use super::quadrature::{GAUSS, NODES};
 use crate::dynamics::MAX_ORDER;
 
-/// A channel over the recorded periods. Means are exact time means of the solution's polynomials, not of samples.
+/// Statistics of a channel over the recorded periods. Means are exact time means of the solution's polynomials, not of
+/// samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
+    /// Time mean, in the unit of the channel.
     pub mean: f64,
-    /// Root mean square: of displacements, velocities and forces with the mean removed; of accelerations as they are, because
-    /// their mean over a periodic motion is zero and over a transient it is part of the motion.
+    /// Root mean square: of displacements, velocities and forces without the mean; of accelerations with it, because
+    /// their mean is zero over a periodic motion and part of the motion over a transient.
     pub rms: f64,
+    /// Minimum.
     pub min: f64,
+    /// Maximum.
     pub max: f64,
 }
 
@@ -22,10 +26,10 @@ pub struct Statistics {
 static POWERS: LazyLock<[[f64; NODES]; MAX_ORDER + 1]> =
     LazyLock::new(|| std::array::from_fn(|n| std::array::from_fn(|q| GAUSS[q].0.powi(n as i32))));
 
-/// Integrals and extremes of one channel, gathered segment by segment.
+/// Integrals and extremes of one channel, accumulated by segment.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MomentAccumulator {
-    /// Taken off before squaring, so that a large mean costs no digits.
+    /// Subtracted before squaring, so that a large mean costs no digits.
     offset: Option<f64>,
     integral: f64,
     square_integral: f64,
@@ -36,7 +40,7 @@ pub(super) struct MomentAccumulator {
 }
 
 impl MomentAccumulator {
-    /// `includes_mean`: whether the mean counts in the mean square.
+    /// `includes_mean`: whether the mean square includes the mean.
     pub fn new(includes_mean: bool) -> Self {
         Self {
             includes_mean,
@@ -61,7 +65,7 @@ impl MomentAccumulator {
         }
         b[0] -= offset;
         let b = &b[..c.len()];
-        // Exact: the square's degree is below that to which the nodes are.
+        // Exact: the degree of the square is within that of the quadrature.
         let mut values = [0.0; NODES];
         for (bi, row) in b.iter().zip(POWERS.iter()) {
             for (value, power) in values.iter_mut().zip(row) {
@@ -81,7 +85,7 @@ impl MomentAccumulator {
         }
     }
 
-    /// Extremes over the unit interval: the nodes and both ends, then Newton's method on the derivative around the best of
+    /// Extremes over the unit interval: nodes and both ends, then Newton's method for the derivative from the best of
     /// them.
     fn add_extremes(&mut self, b: &[f64], at_nodes: &[f64; NODES], offset: f64) {
         const POINTS: usize = NODES + 2;
@@ -99,7 +103,8 @@ impl MomentAccumulator {
                 }
             }
             let mut top = sign * points[at].1;
-            // The tip of a parabola through neighbours lies above the middle one by less than the largest of the differences.
+            // The vertex of a parabola through neighbouring points exceeds the middle one by less than the larger
+            // difference.
             let neighbour = |i: usize| (points[i].1 - points[at].1).abs();
             let margin = neighbour(at.saturating_sub(1)).max(neighbour((at + 1).min(POINTS - 1)));
             if top + margin > best {
@@ -126,7 +131,7 @@ impl MomentAccumulator {
         }
     }
 
-    /// Mean of the channel, and mean square: about that mean unless the mean is kept.
+    /// Mean, and mean square about the mean unless the mean is included.
     pub fn mean_and_square(&self) -> (f64, f64) {
         let first = self.integral / self.length;
         let mean = self.offset.unwrap_or(0.0) + first;
@@ -134,14 +139,14 @@ impl MomentAccumulator {
         (mean, if self.includes_mean { variance + mean * mean } else { variance })
     }
 
-    /// Variance of what came after the snapshot `earlier`.
+    /// Variance of the part after the snapshot `earlier`.
     pub fn variance_since(&self, earlier: &MomentAccumulator) -> f64 {
         let (first, second) = (self.integral - earlier.integral, self.square_integral - earlier.square_integral);
         let length = self.length - earlier.length;
         (second / length - (first / length).powi(2)).max(0.0)
     }
 
-    /// Mean square, the mean included, of what came after the snapshot `earlier`.
+    /// Mean square, mean included, of the part after the snapshot `earlier`.
     pub fn square_since(&self, earlier: &MomentAccumulator) -> f64 {
         let (first, second) = (self.integral - earlier.integral, self.square_integral - earlier.square_integral);
         let length = self.length - earlier.length;

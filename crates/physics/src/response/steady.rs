@@ -1,4 +1,4 @@
-//! Finds the motion to report: periodic without loss of contact, periodic with it, or a record of one that does not repeat.
+//! Search for the steady motion: periodic without loss of contact, periodic with it, or a motion that does not repeat.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -9,67 +9,70 @@ use crate::dynamics::{
     RigidBodyModes, Shooting, StepCounts, U, Unobserved, state_difference,
 };
 
-/// Mesh periods after which a motion that has not come near to repeating is taken not to repeat.
+/// Mesh periods after which a motion that does not nearly repeat counts as aperiodic.
 const MAX_TRANSIENT_MESH_PERIODS: u64 = 1500;
-/// With fewer mesh periods than this a motion cannot be said not to repeat.
+/// Smallest number of mesh periods from which a motion can be called aperiodic.
 const MIN_TRANSIENT_MESH_PERIODS: u64 = 40;
-/// Relative change over its period from which Newton's method is tried.
+/// Relative change over its period below which Newton's method is started.
 const NEWTON_START_CHANGE: f64 = 1e-3;
-/// Relative change over a part of its period below which a motion made exact repeats after that part.
+/// Relative change over a fraction of its period below which an orbit has that fraction as its period.
 const SAME_PERIOD_CHANGE: f64 = 1e-6;
-/// Mesh periods between two tries.
+/// Mesh periods between two attempts.
 const MESH_PERIODS_BETWEEN_ATTEMPTS: u64 = 40;
 /// Mesh periods over which a Lyapunov exponent is averaged.
 const LYAPUNOV_MESH_PERIODS: u64 = 400;
-/// Length of the record of a motion that does not repeat, and the steps it may take.
+/// Length of the record of an aperiodic motion, and the limit of its steps.
 const LONG_RECORD_MESH_PERIODS: u64 = 2000;
 const LONG_RECORD_STEPS: u64 = 2_000_000;
-/// Steps of a mesh period beyond which the motion is first periods_integrated through a few periods in the hope that everything has died away
-/// then: the linear map takes as many perturbations along as there are displacements and velocities.
+/// Steps per mesh period above which the motion is first integrated over a few mesh periods, in case the transient
+/// decays within them: the monodromy matrix needs one perturbation per displacement and velocity.
 const MANY_STEPS_PER_PERIOD: f64 = 2000.0;
-/// How many periods, and by how much the change has to fall from one to the next.
+/// Number of these mesh periods, and the required reduction of the change from one to the next.
 const SETTLING_MESH_PERIODS: u64 = 6;
 const SETTLING_REDUCTION: f64 = 0.03;
-/// A change that no longer falls is rounding below this; what it means for the answer is measured later.
+/// Change below which a lack of reduction is rounding; its effect on the result is measured by the error estimate.
 const SETTLING_ROUNDING: f64 = 1e-5;
-/// What is left of a perturbation after a mesh period when everything dies away within it.
+/// Remaining part of a perturbation after a mesh period below which the transient counts as decayed.
 const DECAYED: f64 = 0.01;
-/// Multiplier from which a motion's start is corrected once more with a finer tolerance: an error of the map moves
-/// the start of a motion that hardly decays by 1/(1 - multiplier) times as much.
+/// Modulus of a multiplier above which the start of an orbit is refined with a finer tolerance: an error of the map is
+/// amplified by 1/(1 − modulus) in the start.
 const SLOW_DECAY: f64 = 0.95;
 
-/// A motion ready to be recorded.
+/// A steady motion, ready to be recorded.
 pub(super) struct SteadyMotion<const D: usize> {
     pub start: MotionState<D>,
     /// Mesh periods to record.
     pub record: u64,
-    /// The period in mesh periods and the linear map over it; None when the motion does not repeat.
+    /// Period in mesh periods and monodromy matrix over it; None for an aperiodic motion.
     pub orbit: Option<(u64, DMatrix<f64>)>,
     /// Largest modulus of the Floquet multipliers, per mesh period.
     pub floquet: Option<f64>,
-    /// All of them over the orbit, those against the mirror symmetry included, largest first.
+    /// All multipliers over the orbit, antisymmetric ones included, largest first.
     pub multipliers: Vec<Complex<f64>>,
     /// Largest Lyapunov exponent per mesh period.
     pub lyapunov: Option<f64>,
-    /// The halves do not keep their mirror symmetry: perturbations against it grow.
+    /// Whether antisymmetric perturbations grow, so that the motion leaves the mirror symmetry.
     pub leaves_symmetry: bool,
     pub tolerance: f64,
     pub counts: StepCounts,
 }
 
-/// What the search needs to know.
+/// Parameters of a search.
 pub(super) struct SteadyStateSearch<'a, const D: usize> {
     pub model: &'a DynamicModel<D>,
     pub mean_stiffness_n_per_m: [f64; 2],
     pub limits: IntegrationLimits<'a>,
-    /// A motion that does not repeat is an error.
+    /// Whether an aperiodic motion is an error.
     pub must_repeat: bool,
-    /// The motion that is reached from the start is wanted, even where another one keeps contact.
+    /// Whether the motion reached from the start is required, even if another one keeps contact.
     pub from_start: bool,
 }
 
 impl<const D: usize> SteadyStateSearch<'_, D> {
-    /// The steady state reached from `start`, or the periodic one without loss of contact when it exists and is stable.
+    /// The steady motion reached from `start`, or the periodic one without loss of contact if it exists and is stable.
+    ///
+    /// # Errors
+    /// [`DynamicsError`].
     pub fn run(&self, start: MotionState<D>) -> Result<SteadyMotion<D>, DynamicsError> {
         let mut budget = Budget::new::<D>(&self.limits);
         self.check_static_deflection(&start)?;
@@ -80,7 +83,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         {
             return Ok(found);
         }
-        // Also says whether there is a steady state at all.
+        // Also checks that a steady state exists.
         let keeps_contact = if self.model.uses_contact_force() {
             self.orbit_near_static_deflection(start, &mut budget, &mut counts)?
         } else {
@@ -92,7 +95,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         self.motion_by_integration(start, &mut budget, counts)
     }
 
-    /// Fails where the load would press the pair further than any motion may go.
+    /// Fails where the static deflection exceeds the limit of any motion.
     fn check_static_deflection(&self, start: &MotionState<D>) -> Result<(), DynamicsError> {
         const FURTHEST_M: f64 = 1e3;
         let furthest = largest_component(&(start.x, [0.0; D]));
@@ -106,8 +109,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         Ok(())
     }
 
-    /// A pair without load rests at zero: there is no size of its motion to measure a step by, when a pulse comes. It sets out from a
-    /// millionth of the deflection that the pulse could give instead; where it sets out from is forgotten.
+    /// Perturbs a start at zero (a pair without load), at which the motion has no size for the step control, by 1e-6 of
+    /// the deflection that the largest impact force could cause.
     fn perturb_from_rest(&self, start: MotionState<D>) -> MotionState<D> {
         const RELATIVE_SIZE: f64 = 1e-6;
         if start.x.iter().chain(&start.v).any(|c| *c != 0.0) {
@@ -128,24 +131,24 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         Motion::new(self.model, start, Integrator::Taylor, tolerance, budget.steps(0))
     }
 
-    /// The period map under what is left of the budget.
+    /// Shooting method within the remaining work.
     fn shooting<'s>(&'s self, model: &'s DynamicModel<D>, budget: &Budget) -> Result<Shooting<'s, D>, DynamicsError> {
         Shooting::new(model, self.mean_stiffness_n_per_m, budget.limits(&self.limits, 2 * model.active().count()))
     }
 
-    /// Fails when the mean load has a part along a motion that nothing holds.
+    /// Fails when the mean load has a component along a rigid-body mode.
     fn check_load_balance(&self, shooting: &Shooting<'_, D>, defect: &Perturbation<D>) -> Result<(), DynamicsError> {
         let unbalanced_n = shooting.unbalanced_force_n(defect, 1);
         let load = (0..DynamicModel::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.max_excitation_force_n(j)));
-        // Rounding and truncation leave a little; a real imbalance is far above. What is not loaded cannot be unbalanced.
+        // Rounding and truncation errors are far below this threshold, an imbalance far above.
         if load > 0.0 && unbalanced_n > 1e-6 * load {
             return Err(DynamicsError::Unbalanced { force_n: unbalanced_n });
         }
         Ok(())
     }
 
-    /// A motion of which nothing is left after a mesh period but what that period's excitation makes: found by following it, for a
-    /// few steps where the map would take very many. None when the transient does not die so fast.
+    /// Periodic motion of a pair whose transient decays within a mesh period, found by integration where the monodromy
+    /// matrix would need very many steps. None when the transient decays more slowly.
     fn settle_by_integration(
         &self,
         start: MotionState<D>,
@@ -163,7 +166,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
             section.push(motion.state);
             let change = section.change(1).unwrap_or(f64::INFINITY);
-            // Or as well as rounding lets it: a slow motion's velocity has few digits beside its displacement.
+            // Or limited by rounding: the velocity of a slow motion has few digits beside its displacement.
             let floor = change <= SETTLING_ROUNDING && change > SETTLING_REDUCTION * before;
             settled = floor || change <= 10.0 * self.limits.tolerance;
             if settled || change > SETTLING_REDUCTION * before {
@@ -178,7 +181,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             return Ok(None);
         }
         let near = MotionState { period: 0, ..last };
-        // Everything else might still be held by some motion that this start did not wake.
+        // A mode that this start does not excite may decay more slowly.
         let mut decays = |model: &DynamicModel<D>, rigid_body: &RigidBodyModes<D>| {
             let mut motion = self.motion(near, budget);
             let left = perturbation_decay(&mut motion, model, rigid_body, self.limits.watch)?;
@@ -214,7 +217,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         }))
     }
 
-    /// With contact held the equations are linear: one period from any start gives the periodic solution.
+    /// Periodic orbit with fixed contact: the equations are linear, so one period from any start gives it. None if it
+    /// loses contact or is unstable.
     fn orbit_in_contact(
         &self,
         start: MotionState<D>,
@@ -263,9 +267,9 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         }))
     }
 
-    /// Where the mesh force is that of the loaded contact: the period-1 motion about the static deflection, by Newton's method on the period map.
-    /// Its first step solves the equations linearised about a motion that sets out from the static deflection. The map is kept as long as the
-    /// steps converge (chord method), and taken anew at the motion found. None when that separates, is unstable or is not found.
+    /// Period-1 orbit about the static deflection for a tabulated contact force, by Newton's method on the period map.
+    /// The monodromy matrix is kept as long as the steps converge (chord method) and computed anew at the orbit. None
+    /// if the orbit loses contact, is unstable or is not found.
     fn orbit_near_static_deflection(
         &self,
         start: MotionState<D>,
@@ -273,7 +277,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         counts: &mut StepCounts,
     ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
         const MAX_ITERATIONS: usize = 12;
-        /// A map is kept while each step leaves less than this part of the defect.
+        /// Reduction of the defect per step with which a monodromy matrix is kept.
         const CHORD_REDUCTION: f64 = 0.2;
         let perturbations = 2 * self.model.active().count();
         let shooting = self.shooting(self.model, budget)?;
@@ -322,7 +326,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         self.stable_orbit(&shooting, at, 1, period_map.monodromy, budget, counts)
     }
 
-    /// The orbit that closes from `at` after `n` mesh periods with its multipliers; None where a perturbation grows.
+    /// The orbit that closes from `at` after `n` mesh periods, with its multipliers; None if it is unstable.
     fn stable_orbit(
         &self,
         shooting: &Shooting<'_, D>,
@@ -363,7 +367,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         section.push(motion.state);
         let mut next_attempt = 8;
         let mut periods_integrated = 0;
-        // Of the budget the motion may take a half, tries to close it three eighths; the rest is for what follows.
+        // Half of the work is for the integration, three eighths for attempts at an orbit, the rest for what follows.
         while periods_integrated < MAX_TRANSIENT_MESH_PERIODS && motion.counts.steps <= all / 2 {
             periods_integrated += 1;
             let fraction = 0.9 * periods_integrated as f64 / MAX_TRANSIENT_MESH_PERIODS as f64;
@@ -382,7 +386,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
                         return Ok(found);
                     }
                     Ok(None) => {}
-                    // It repeats too late for Newton's method to be afforded: a motion that does not repeat, as far as can be said.
+                    // Newton's method exceeds the work limit at this period: the motion is treated as aperiodic.
                     Err(DynamicsError::TooManySteps { .. }) => next_attempt = u64::MAX,
                     Err(other) => return Err(other),
                 }
@@ -427,8 +431,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         })
     }
 
-    /// The periodic motion near a state that nearly repeats after `n` mesh periods, with the shortest period it has; None when Newton's
-    /// method does not lead to a stable one.
+    /// Periodic orbit near a state that nearly repeats after `n` mesh periods, with its fundamental period; None if
+    /// Newton's method does not converge to a stable one.
     fn find_orbit(
         &self,
         near: MotionState<D>,
@@ -441,8 +445,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         Ok(Some(self.newton_orbit(found.start, shorter, size, budget)?.unwrap_or(found)))
     }
 
-    /// The part of the `n` mesh periods of a motion after which it repeats already: what is left of a transient turns, and comes closer
-    /// to itself after some numbers of periods than after the motion's own.
+    /// Divisor of the `n` mesh periods of an orbit after which it repeats already. A decaying oscillation can return
+    /// closest to itself after a multiple of the fundamental period.
     fn fundamental_period(
         &self,
         found: &SteadyMotion<D>,
@@ -465,7 +469,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         Ok(None)
     }
 
-    /// Newton's method on the map over `n` mesh periods; None when it does not lead to a stable motion close by.
+    /// Newton's method on the period map over `n` mesh periods; None if it does not converge to a stable orbit nearby.
     fn newton_orbit(
         &self,
         near: MotionState<D>,
@@ -490,7 +494,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             }
             last = change;
             let Some(correction) = shooting.correction(&defect, &period_map.monodromy, n) else { return Ok(None) };
-            // A free motion may need any speed to close.
+            // The velocity along rigid-body modes is not limited.
             if largest_component(&rigid_body.project_out(&correction)) > 0.1 * size {
                 return Ok(None);
             }
@@ -499,7 +503,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         Ok(None)
     }
 
-    /// The start of a motion that hardly decays, corrected by what it fails to close when it is periods_integrated more finely.
+    /// Start of a slowly decaying orbit, corrected by the defect of an integration with finer tolerance.
     fn refine_orbit(
         &self,
         shooting: &Shooting<'_, D>,
@@ -524,8 +528,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         Ok(better.filter(|b| b.contact == start.contact).map_or(start, |b| MotionState { period: start.period, ..b }))
     }
 
-    /// Largest modulus of the Floquet multipliers of perturbations against the mirror symmetry over `n` periods (0 with twelve
-    /// coordinates, whose own map has them all), and these among the multipliers `within` the symmetry.
+    /// Largest modulus of the multipliers of antisymmetric perturbations over `n` periods (0 with twelve coordinates,
+    /// whose monodromy matrix includes them), and all multipliers merged with those `within` the symmetry.
     fn with_antisymmetric_multipliers(
         &self,
         mut within: Vec<Complex<f64>>,
@@ -548,7 +552,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
     }
 }
 
-/// A state with a perturbation added, its contact found anew.
+/// A state displaced by a perturbation, with its contact determined anew.
 pub(super) fn displaced<const D: usize>(
     model: &DynamicModel<D>,
     mut state: MotionState<D>,

@@ -1,24 +1,25 @@
-//! What a natural mode is made of: energy shares, damping, and a name that follows from them.
+//! Energy shares, damping and names of the natural modes.
 
 use super::springs::{SpringGroup, spring_elements};
 use super::{NaturalModes, SourceVector, arcs, masses, mirrored};
 use crate::dynamics::parameters::Parameters;
 
-/// A natural mode for people and tools.
+/// A natural mode with its energy shares and name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mode {
-    /// 0 for a motion that nothing holds.
+    /// Hz; 0 for a rigid-body mode.
     pub frequency_hz: f64,
-    /// What it is, by the rule of [`NaturalModes::describe`].
+    /// Name by the rule of [`NaturalModes::describe`].
     pub name: String,
-    /// Displacements in the source's order, rotations as arcs at the radii of the plane in use; the largest is 1.
+    /// Displacements in the order of [the module](crate::dynamics), rotations as arcs at the radii of the reference
+    /// plane; the largest is 1.
     pub shape: [f64; 12],
     /// φᵀ M φ of that shape, kg.
     pub modal_mass_kg: f64,
-    /// φᵀ C φ/(2 ω φᵀ M φ): the damping ratio as far as damping does not couple the modes, which is right for light
-    /// damping. None for a motion that nothing holds.
+    /// Damping ratio φᵀ C φ/(2 ω φᵀ M φ), without the coupling of modes by damping, which is valid for light damping.
+    /// None for a rigid-body mode.
     pub damping_ratio: Option<f64>,
-    /// Share of each group of springs in the strain energy; none for a motion that nothing holds.
+    /// Share of each group of springs in the strain energy; empty for a rigid-body mode.
     pub strain_energy: Vec<(SpringGroup, f64)>,
     /// Share of each kind of displacement in the kinetic energy, both halves together.
     pub kinetic_energy: [(&'static str, f64); 6],
@@ -27,7 +28,7 @@ pub struct Mode {
 const DISPLACEMENT_KINDS: [&str; 6] =
     ["pinion_lateral", "pinion_axial", "pinion_rotation", "gear_lateral", "gear_axial", "gear_rotation"];
 
-/// What the groups of springs are called in the name of a mode: those of one kind count together.
+/// Groups of springs by the name they give to a mode.
 const SPRING_KINDS: [(&str, &[SpringGroup]); 7] = [
     ("mesh", &[SpringGroup::MeshLeft, SpringGroup::MeshRight]),
     ("pinion lateral", &[SpringGroup::PinionLateral, SpringGroup::PinionHalvesLateral]),
@@ -38,30 +39,31 @@ const SPRING_KINDS: [(&str, &[SpringGroup]); 7] = [
     ("gear torsional", &[SpringGroup::GearHalvesTorsional]),
 ];
 
-/// Share of the strain energy from which one kind of spring names a mode alone.
+/// Share of the strain energy from which one kind of springs alone names a mode.
 const DOMINANT_SHARE: f64 = 0.5;
-/// Share of the kinetic energy below which a free motion is not called after a direction.
+/// Share of the kinetic energy below which a direction is not part of the name of a rigid-body mode.
 const NEGLIGIBLE_SHARE: f64 = 1e-6;
 /// φᵀ M φ' (φ' the mirror image) from which a mode counts as symmetric, and below whose negative as antisymmetric.
 const MIRROR_CORRELATION: f64 = 0.99;
 
 impl Mode {
-    /// Share of both meshes in the strain energy: how far the mesh excites it and feels it.
+    /// Share of both meshes in the strain energy.
     pub fn mesh_strain_energy(&self) -> f64 {
         self.strain_energy_of(SPRING_KINDS[0].1)
     }
 
     fn strain_energy_of(&self, groups: &[SpringGroup]) -> f64 {
-        // A sum over nothing would be −0.
+        // The sum of an empty iterator would be −0.
         self.strain_energy.iter().filter(|(group, _)| groups.contains(group)).fold(0.0, |sum, (_, share)| sum + share)
     }
 }
 
 impl NaturalModes {
-    /// The modes with their energy shares, damping and names. The name is that of the springs with the largest share of the strain energy
-    /// (meshes; lateral, axial or torsional springs of pinion or gear, supports and shafts together) if that is at least half, else
-    /// those of the two largest; "meshes in phase" if the mode is its own mirror image between the halves, "meshes opposed" if it is the
-    /// antisymmetric of it. Motions that nothing holds are called by what moves in them: rotation, axial screw (rotation and axial), axial, lateral.
+    /// The modes with their energy shares, damping and names. The name is that of the kind of springs with the largest
+    /// share of the strain energy (meshes; lateral, axial or torsional springs of pinion or gear, supports and
+    /// couplings together) if that is at least half, otherwise those of the two largest; "meshes in phase" if the mode
+    /// is its own mirror image, "meshes opposed" if it is the opposite of it. Rigid-body modes are named by their
+    /// kinetic energy: rotation, axial screw (rotation and axial), axial, lateral.
     pub fn describe(&self, p: &Parameters) -> Vec<Mode> {
         self.frequencies_hz.iter().zip(&self.shapes).map(|(f, shape)| describe(p, *f, shape)).collect()
     }
@@ -175,7 +177,7 @@ mod tests {
         assert_eq!(names[11], "mesh mode, meshes in phase");
     }
 
-    /// Rayleigh's quotient of every shape is its squared frequency, and the shapes are orthogonal over the masses.
+    /// The Rayleigh quotient of every shape is its squared frequency, and the shapes are orthogonal over the masses.
     #[test]
     fn modes_of_equal_frequency_are_still_modes() {
         let p = parameters("A");
@@ -201,7 +203,7 @@ mod tests {
         check_worst(TOPIC, "orthogonality over masses and springs, case A", errors, 1e-10);
     }
 
-    /// Whatever mixture the eigenvalue solver hands out, the basis of a space is the same.
+    /// The basis of a space does not depend on the mixture that the eigenvalue solver returns.
     #[test]
     fn a_space_has_one_basis() {
         let p = parameters("A");
@@ -217,7 +219,7 @@ mod tests {
         }
     }
 
-    /// One mesh on two rotations: the document's damping ratio of the mesh is that of the mode.
+    /// One mesh between two rotations: the damping ratio of the mode is that of the mesh damper.
     #[test]
     fn the_damping_ratio_of_one_mesh_is_its_own() {
         let mut p = parameters("A");
@@ -238,7 +240,8 @@ mod tests {
         );
     }
 
-    /// Lightly damped with constant stiffness: the multipliers of the linear motion are exp(−ζ ω T) of the modes.
+    /// Lightly damped with constant stiffness: the Floquet multipliers of the linear motion are exp(−ζ ω T) of the
+    /// modes.
     #[test]
     fn damping_ratios_are_those_of_the_motion() {
         let mut p = parameters("A");
