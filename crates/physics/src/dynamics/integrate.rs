@@ -44,7 +44,7 @@ impl std::ops::AddAssign for StepCounts {
 const STEPS_PER_CHECKPOINT: u64 = 1024;
 
 /// Displacement (or velocity in scaled time) beyond which a motion counts as diverged, m.
-const DIVERGENCE_LIMIT_M: f64 = 1e3;
+pub(crate) const DIVERGENCE_LIMIT_M: f64 = 1e3;
 
 enum Stepper<const D: usize> {
     Taylor(Taylor<D>),

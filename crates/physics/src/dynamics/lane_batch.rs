@@ -16,6 +16,9 @@ use crate::watch::{Canceled, Watch};
 /// Number of lanes of a batch.
 pub(crate) const BATCH_LANES: usize = 8;
 
+/// Operating points per task of the thread pool.
+pub(crate) const POINTS_PER_TASK: usize = 4 * BATCH_LANES;
+
 /// One trajectory to be integrated: its model, start and tolerance, and the observer of its steps.
 pub(crate) trait TrajectoryObserver<'m, const D: usize> {
     /// Equations of motion of the trajectory.

@@ -59,7 +59,7 @@ pub use contact_force::{ContactForce, FlankForce};
 pub use error::DynamicsError;
 pub use excitation::{Harmonic, ImpactExcitation, Stiffness};
 pub use integrate::{Integrator, StepCounts};
-pub use modal::NaturalModes;
+pub use modal::{Mode, NaturalModes, SpringGroup};
 pub use model::ContactSide;
 pub use parameters::{
     Couplings, HalfParameters, ImpactActsOn, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m,
@@ -68,8 +68,8 @@ pub use trajectory::{FinalState, advance, advance_many};
 
 pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP};
 pub(crate) use excitation::MAX_ORDER;
-pub(crate) use integrate::Motion;
-pub(crate) use lane_batch::{TrajectoryObserver, integrate_trajectories, integrate_trajectory};
+pub(crate) use integrate::{DIVERGENCE_LIMIT_M, Motion};
+pub(crate) use lane_batch::{POINTS_PER_TASK, TrajectoryObserver, integrate_trajectories, integrate_trajectory};
 pub(crate) use model::{DynamicModel, MotionState};
 pub(crate) use rigid_body::RigidBodyModes;
 pub(crate) use segment::{Observer, Segment, Unobserved};

@@ -8,6 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use springs::{mesh_direction, spring_elements};
 
+pub use mode::Mode;
+pub use springs::SpringGroup;
+
 use super::error::DynamicsError;
 use super::parameters::Parameters;
 
@@ -24,10 +27,10 @@ pub struct NaturalModes {
 
 /// Squared frequency, relative to the largest, below which a mode is a rigid-body mode and within which frequencies are
 /// equal: far above rounding (1e-15), far below any spring of practical stiffness.
-const RIGID_BODY_EIGENVALUE: f64 = 1e-12;
+pub(super) const RIGID_BODY_EIGENVALUE: f64 = 1e-12;
 
 /// One value per displacement.
-type SourceVector = [f64; 12];
+type DisplacementVector = [f64; 12];
 
 impl NaturalModes {
     /// Solves K φ = ω² M φ by the eigenvalues of M^-½ K M^-½.
@@ -54,7 +57,7 @@ impl NaturalModes {
             .map(|l| if l > RIGID_BODY_EIGENVALUE * largest { l } else { 0.0 })
             .collect();
         let frequencies_hz = squares.iter().map(|l| l.sqrt() / std::f64::consts::TAU).collect();
-        let vectors: Vec<SourceVector> =
+        let vectors: Vec<DisplacementVector> =
             order.iter().map(|&i| std::array::from_fn(|c| eigen.eigenvectors[(c, i)])).collect();
         let directions = preferred_directions(p).map(|row| std::array::from_fn(|c| row[c] / root[c]));
         let mut shapes = Vec::with_capacity(12);
@@ -109,7 +112,7 @@ fn torques(p: &Parameters) -> DVector<f64> {
 
 /// Directions for the basis of equal frequencies, in this order: rigid rotation of both halves alike and opposed, then
 /// each displacement alike (as a mirror image) and opposed.
-fn preferred_directions(p: &Parameters) -> [SourceVector; 14] {
+fn preferred_directions(p: &Parameters) -> [DisplacementVector; 14] {
     let rotation = |c: usize| match c {
         2 => 1.0 / p.pinion_radius_m,
         5 => 1.0 / p.gear_radius_m,
@@ -129,34 +132,34 @@ fn mirrored(c: usize) -> f64 {
 
 /// Orthonormal basis of the span of the orthonormal `vectors` that depends on that span alone: projections of
 /// `directions` in turn, orthogonalised, dependent ones skipped.
-fn canonical_basis(vectors: &[SourceVector], directions: &[SourceVector]) -> Vec<SourceVector> {
+fn canonical_basis(vectors: &[DisplacementVector], directions: &[DisplacementVector]) -> Vec<DisplacementVector> {
     // The directions span the whole space, so one of those left has at least a twelfth of its square in the rest of the
     // span.
     const INDEPENDENT: f64 = 1e-2;
     if vectors.len() == 1 {
         return vectors.to_vec();
     }
-    let dot = |a: &SourceVector, b: &SourceVector| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut basis: Vec<SourceVector> = Vec::with_capacity(vectors.len());
+    let dot = |a: &DisplacementVector, b: &DisplacementVector| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut basis: Vec<DisplacementVector> = Vec::with_capacity(vectors.len());
     for least in [INDEPENDENT, 1e-9] {
         for direction in directions {
             if basis.len() == vectors.len() {
                 return basis;
             }
-            let mut interior = [0.0; 12];
+            let mut projection = [0.0; 12];
             for v in vectors {
                 let amount = dot(v, direction);
-                (0..12).for_each(|c| interior[c] += amount * v[c]);
+                (0..12).for_each(|c| projection[c] += amount * v[c]);
             }
             for _ in 0..2 {
                 for b in &basis {
-                    let amount = dot(b, &interior);
-                    (0..12).for_each(|c| interior[c] -= amount * b[c]);
+                    let amount = dot(b, &projection);
+                    (0..12).for_each(|c| projection[c] -= amount * b[c]);
                 }
             }
-            let square = dot(&interior, &interior);
+            let square = dot(&projection, &projection);
             if square > least * dot(direction, direction) {
-                basis.push(interior.map(|value| value / square.sqrt()));
+                basis.push(projection.map(|value| value / square.sqrt()));
             }
         }
     }
@@ -167,7 +170,7 @@ fn canonical_basis(vectors: &[SourceVector], directions: &[SourceVector]) -> Vec
 
 /// Shape with the sign that makes its largest displacement (of rotations: the arc at the radius) positive; of equal
 /// ones the first counts.
-fn with_positive_largest(p: &Parameters, shape: SourceVector) -> SourceVector {
+fn with_positive_largest(p: &Parameters, shape: DisplacementVector) -> DisplacementVector {
     const EQUAL: f64 = 1.0 - 1e-6;
     let arcs = arcs(p, &shape);
     let largest = arcs.iter().fold(0.0f64, |m, a| m.max(a.abs()));
@@ -176,7 +179,7 @@ fn with_positive_largest(p: &Parameters, shape: SourceVector) -> SourceVector {
 }
 
 /// Displacements with rotations as arcs at the radii of the reference plane, m.
-fn arcs(p: &Parameters, shape: &SourceVector) -> SourceVector {
+fn arcs(p: &Parameters, shape: &DisplacementVector) -> DisplacementVector {
     std::array::from_fn(|c| match c % 6 {
         2 => shape[c] * p.pinion_radius_m,
         5 => shape[c] * p.gear_radius_m,

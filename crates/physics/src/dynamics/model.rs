@@ -267,7 +267,7 @@ impl<const D: usize> DynamicModel<D> {
     }
 
     /// State from 12 displacements and 12 velocities.
-    pub fn state_from(&self, source: &[f64; 24]) -> MotionState<D> {
+    pub fn state_from(&self, physical: &[f64; 24]) -> MotionState<D> {
         let mut state = MotionState { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [1; 2] };
         for j in 0..Self::HALVES {
             let h = &self.halves[j];
@@ -280,8 +280,8 @@ impl<const D: usize> DynamicModel<D> {
                     out[j * PER_HALF + c] = row[c] * scale;
                 }
             };
-            convert(&source[6 * j..6 * j + 6], &mut state.x, 1.0);
-            convert(&source[12 + 6 * j..18 + 6 * j], &mut state.v, 1.0 / self.omega_ref);
+            convert(&physical[6 * j..6 * j + 6], &mut state.x, 1.0);
+            convert(&physical[12 + 6 * j..18 + 6 * j], &mut state.v, 1.0 / self.omega_ref);
         }
         for j in 0..Self::HALVES {
             state.contact[j] = self.contact_of(j, self.s(j, &state.x), state.phase);
@@ -309,15 +309,15 @@ impl<const D: usize> DynamicModel<D> {
     }
 
     /// 12 displacements (m, rad) and 12 velocities (m/s, rad/s) of a state.
-    pub fn source_state(&self, state: &MotionState<D>) -> [f64; 24] {
+    pub fn physical_state(&self, state: &MotionState<D>) -> [f64; 24] {
         let mut out = [0.0; 24];
-        out[..12].copy_from_slice(&self.source_displacements(&state.x));
-        out[12..].copy_from_slice(&self.source_displacements(&state.v).map(|v| v * self.omega_ref));
+        out[..12].copy_from_slice(&self.physical_displacements(&state.x));
+        out[12..].copy_from_slice(&self.physical_displacements(&state.v).map(|v| v * self.omega_ref));
         out
     }
 
     /// 12 displacements of solver coordinates; of velocities or accelerations when `row` holds those.
-    pub fn source_displacements(&self, row: &[f64; D]) -> [f64; 12] {
+    pub fn physical_displacements(&self, row: &[f64; D]) -> [f64; 12] {
         let mut out = [0.0; 12];
         for j in 0..2 {
             let (from, mirrored) = if D > PER_HALF { (j, 1.0) } else { (0, if j == 0 { 1.0 } else { -1.0 }) };

@@ -147,9 +147,9 @@ impl Parameters {
         }
         let mean = |h: &HalfParameters| h.impact.as_ref().map_or(0.0, ImpactExcitation::mean_n);
         let total = self.halves[0].pinion_torque_nm + self.halves[1].pinion_torque_nm;
-        let moved = 0.5 * self.pinion_radius_m * (mean(&self.halves[0]) - mean(&self.halves[1]));
-        self.halves[0].pinion_torque_nm = 0.5 * total + moved;
-        self.halves[1].pinion_torque_nm = 0.5 * total - moved;
+        let shift_nm = 0.5 * self.pinion_radius_m * (mean(&self.halves[0]) - mean(&self.halves[1]));
+        self.halves[0].pinion_torque_nm = 0.5 * total + shift_nm;
+        self.halves[1].pinion_torque_nm = 0.5 * total - shift_nm;
     }
 
     /// Checks all parameters.

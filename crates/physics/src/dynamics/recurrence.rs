@@ -35,7 +35,7 @@ impl<R: Real> ContactSeries<R> {
     /// Adds coefficient `n` of s, and returns coefficient `n` of Σ_a coefficients[a] e^a.
     #[inline(always)]
     fn force(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
-        self.push(cells, n, s);
+        self.add_displacement(cells, n, s);
         let mut sum = R::splat(0.0);
         for m in 0..=n.min(3) {
             let k = n - m;
@@ -49,7 +49,7 @@ impl<R: Real> ContactSeries<R> {
     /// Adds coefficient `n` of s, and returns coefficient `n` of the stiffness Σ_a a coefficients[a] e^(a−1).
     #[inline(always)]
     pub fn stiffness(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
-        self.push(cells, n, s);
+        self.add_displacement(cells, n, s);
         let (two, three) = (R::splat(2.0), R::splat(3.0));
         let mut sum = R::splat(0.0);
         for m in 0..=n.min(3) {
@@ -60,7 +60,7 @@ impl<R: Real> ContactSeries<R> {
     }
 
     #[inline(always)]
-    fn push(&mut self, cells: &ForceCells<R>, n: usize, s: R) {
+    fn add_displacement(&mut self, cells: &ForceCells<R>, n: usize, s: R) {
         self.e[n] = cells.side * s;
         if n < 4 {
             self.e[n] += cells.lower[n];
@@ -131,7 +131,7 @@ pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
     }
     let short = |r: f64| r <= MAX_EARLY_TERMINATION_SPAN;
     let early_end = early_end.filter(|e| e.remaining.any(short));
-    let mut alive = one;
+    let mut active = one;
     let mut power = early_end.map_or(zero, |e| e.remaining);
     for n in 0..order - 1 {
         let n1 = (n + 1) as f64;
@@ -141,7 +141,7 @@ pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
         for c in &mut v {
             *c = *c * R::splat(n1);
         }
-        let scale = R::splat(1.0 / (n1 * (n1 + 1.0))) * alive;
+        let scale = R::splat(1.0 / (n1 * (n1 + 1.0))) * active;
         for j in 0..halves {
             let h = &equations.halves[j];
             let mut f = damper[j] * R::splat(n1) * s[j][n + 1];
@@ -164,9 +164,9 @@ pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
             let mut along = zero;
             let mut normal = f;
             if excitation.impact_active[j] {
-                let push = loads * excitation.impact[j][n];
-                along -= equations.impact_along * push;
-                normal += equations.impact_normal * push;
+                let impact_force = loads * excitation.impact[j][n];
+                along -= equations.impact_along * impact_force;
+                normal += equations.impact_normal * impact_force;
             }
             if n == 0 {
                 along += loads * h.load;
@@ -187,17 +187,17 @@ pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
                 let size = e.size.zip(larger(norm(&rows[1]), norm(&rows[2])), f64::max);
                 let allowed = e.tolerance * size;
                 let terms = larger(norm(&rows[n + 1]) * before, norm(&rows[n + 2]) * power);
-                alive = R::from_fn(|l| {
+                active = R::from_fn(|l| {
                     let done = short(e.remaining.get(l)) && terms.get(l) <= allowed.get(l);
-                    if done { 0.0 } else { alive.get(l) }
+                    if done { 0.0 } else { active.get(l) }
                 });
-                if !alive.any(|a| a != 0.0) {
+                if !active.any(|a| a != 0.0) {
                     return (one, n + 2);
                 }
             }
         }
     }
-    (one - alive, order)
+    (one - active, order)
 }
 
 /// Σ a_i b_i from `from` on, in four partial sums for parallel execution. The partial sum of a product depends only on

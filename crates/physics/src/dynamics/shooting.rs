@@ -5,15 +5,12 @@ use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
 use super::equations::PER_HALF;
 use super::error::DynamicsError;
 use super::integrate::{Integrator, Motion, StepCounts};
+use super::modal::RIGID_BODY_EIGENVALUE;
 use super::model::{DynamicModel, MotionState};
 use super::recurrence::norm;
 use super::segment::{Observer, Segment};
 use super::variation::{ObserverPair, Perturbation, Variation};
 use crate::watch::Watch;
-
-/// Squared natural frequency, relative to the largest, up to which a mode is a rigid-body mode: far above rounding
-/// (1e-15), far below any spring of practical stiffness.
-const RIGID_BODY_EIGENVALUE: f64 = 1e-12;
 
 /// Accuracy and limits of the integrations of a search.
 #[derive(Clone, Copy)]
@@ -192,9 +189,9 @@ pub(super) fn rigid_body_modes<const D: usize>(
         unit[c] = 1.0;
         let mut a = model.acceleration_of_springs(&unit);
         for j in 0..DynamicModel::<D>::HALVES {
-            let push = model.acceleration_of_mesh_force(j, mean_stiffness_n_per_m[j] * model.s(j, &unit));
+            let acceleration = model.acceleration_of_mesh_force(j, mean_stiffness_n_per_m[j] * model.s(j, &unit));
             for i in j * PER_HALF..(j + 1) * PER_HALF {
-                a[i] += push[i];
+                a[i] += acceleration[i];
             }
         }
         for (row, &r) in active.iter().enumerate() {

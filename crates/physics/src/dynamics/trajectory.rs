@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::error::DynamicsError;
 use super::integrate::{Integrator, StepCounts};
-use super::lane_batch::{TrajectoryObserver, integrate_trajectories, integrate_trajectory};
+use super::lane_batch::{POINTS_PER_TASK, TrajectoryObserver, integrate_trajectories, integrate_trajectory};
 use super::model::{DynamicModel, MotionState};
 use super::parameters::Parameters;
 use super::segment::Segment;
@@ -70,7 +70,7 @@ pub fn advance_many(
 ) -> Result<Vec<Result<FinalState, DynamicsError>>, Canceled> {
     let pairs: Vec<_> = points.iter().zip(starts).collect();
     let groups: Result<Vec<_>, Canceled> = pairs
-        .par_chunks(POINTS_PER_GROUP)
+        .par_chunks(POINTS_PER_TASK)
         .map(|group| {
             let mut out = vec![Err(DynamicsError::Canceled(Canceled)); group.len()];
             let mirrored = |(p, start): &(&Parameters, &[f64; 24])| p.is_symmetric() && is_mirrored(start);
@@ -82,9 +82,6 @@ pub fn advance_many(
         .collect();
     Ok(groups?.into_iter().flatten().collect())
 }
-
-/// Operating points per task of the thread pool.
-const POINTS_PER_GROUP: usize = 32;
 
 /// Observer that keeps only the final state.
 struct FinalStateObserver<'m, const D: usize> {
@@ -160,7 +157,7 @@ impl<'m, const D: usize> TrajectoryObserver<'m, D> for FinalStateObserver<'m, D>
     }
 
     fn finished(&mut self, counts: StepCounts, error: Option<DynamicsError>) {
-        let reached = FinalState { state: self.model.source_state(&self.state), counts };
+        let reached = FinalState { state: self.model.physical_state(&self.state), counts };
         self.outcome = error.map_or(Ok(reached), Err);
     }
 }

@@ -78,17 +78,17 @@ impl<'m, const D: usize> Variation<'m, D> {
             }
             let damper = (h.cm - h.cm_in_gap) * speed;
             let change = f64::from(i8::from(is != 0) - i8::from(was != 0)) * damper;
-            let push = self.model.acceleration_of_mesh_force(j, change);
+            let acceleration = self.model.acceleration_of_mesh_force(j, change);
             // Velocity of s relative to the displacement at which contact begins, which may depend on time.
             let side = if is != 0 { is.signum() } else { was.signum() };
-            let passing = speed - f64::from(side) * self.model.contact_onset_rate(j, side, segment.phase);
-            if passing == 0.0 {
+            let crossing_speed = speed - f64::from(side) * self.model.contact_onset_rate(j, side, segment.phase);
+            if crossing_speed == 0.0 {
                 continue;
             }
             for (x, v) in &mut self.columns {
-                let later = self.model.s(j, x) / passing;
+                let delay = self.model.s(j, x) / crossing_speed;
                 for c in 0..D {
-                    v[c] += push[c] * later;
+                    v[c] += acceleration[c] * delay;
                 }
             }
         }

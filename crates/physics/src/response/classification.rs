@@ -6,17 +6,16 @@
 
 use super::analysis::{Regime, Response};
 use super::channel::ChannelId;
+use super::lyapunov::{CHAOS_PER_MESH_PERIOD, LYAPUNOV_MESH_PERIODS, lyapunov_exponent_with};
+use super::poincare::PoincareSection;
 use super::recorder::ChannelRecorder;
 use super::recording::FinishedRun;
-use super::regime::{CHAOS_PER_MESH_PERIOD, PoincareSection, lyapunov_exponent_with};
 use super::report::{MotionAssessment, assemble_response, solved_halves};
 use super::solve::{OperatingPoint, REPEATS};
 use crate::dynamics::{
     DynamicModel, DynamicsError, IntegrationLimits, Integrator, Motion, MotionState, Shooting, StepCounts,
 };
 
-/// Mesh periods over which a Lyapunov exponent is averaged.
-const FOLLOWED_MESH_PERIODS: u64 = 300;
 /// Distance from one within which the modulus of a multiplier counts as one (undamped motion).
 const UNIT_MODULUS_TOLERANCE: f64 = 1e-7;
 /// Slope of the logarithm of a perturbation per mesh period below which it decays. On a torus a perturbation
@@ -121,8 +120,8 @@ impl OperatingPoint<'_> {
     ) -> Result<ContinuedMotion, DynamicsError> {
         let mut motion = Motion::new(model, from, integrator, tolerance, self.analysis.max_steps);
         let mut section = PoincareSection::without_rigid_body(model)?;
-        let mut growth = Vec::with_capacity(FOLLOWED_MESH_PERIODS as usize);
-        let exponent = lyapunov_exponent_with(&mut motion, model, FOLLOWED_MESH_PERIODS, self.watch, |ln, state| {
+        let mut growth = Vec::with_capacity(LYAPUNOV_MESH_PERIODS as usize);
+        let exponent = lyapunov_exponent_with(&mut motion, model, LYAPUNOV_MESH_PERIODS, self.watch, |ln, state| {
             growth.push(ln);
             section.push(*state);
         })?;
@@ -370,8 +369,8 @@ mod tests {
                 } else {
                     assert!(!matches!(s.regime, Regime::QuasiPeriodic), "{factor}, {method:?}");
                 }
-                let told = s.period_mesh_periods.is_none() && s.rms_interval_95.is_none();
-                assert!(told || s.regime != Regime::Unstable, "{factor}, {method:?}");
+                let reported = s.period_mesh_periods.is_none() && s.rms_interval_95.is_none();
+                assert!(reported || s.regime != Regime::Unstable, "{factor}, {method:?}");
             }
         }
         // The rate is that of the motion, from one part of a record to another.
@@ -406,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn a_swing_is_no_decay_and_a_slow_fall_is() {
+    fn an_oscillation_is_no_decay_and_a_slow_fall_is() {
         let swing: Vec<f64> = (0..270).map(|i| (0.37 * f64::from(i)).sin()).collect();
         assert!(!decays(&swing));
         let falls: Vec<f64> = swing.iter().map(|g| 0.3 * g - 0.004).collect();

@@ -4,8 +4,8 @@ use super::analysis::PoincarePoint;
 use super::channel::ChannelId;
 use super::confidence::MeanSquares;
 use super::energy::EnergyBalance;
+use super::poincare::PoincareSection;
 use super::recorder::ChannelRecorder;
-use super::regime::PoincareSection;
 use super::report::RecordedMotion;
 use super::statistics::MomentAccumulator;
 use crate::dynamics::{

@@ -7,8 +7,8 @@ use super::analysis::{
 };
 use super::channel::{Channel, ChannelId};
 use super::confidence::rms_interval_95;
+use super::poincare::PoincareSection;
 use super::recorder::ChannelRecorder;
-use super::regime::PoincareSection;
 use crate::dynamics::{DynamicModel, MotionState, NaturalModes, PER_HALF, Parameters, StepCounts};
 
 /// Parameters, settings and natural modes of the analysis.
@@ -107,7 +107,7 @@ pub(super) fn assemble_response<const D: usize>(
             })
         })
         .collect();
-    let final_state = model.source_state(&last);
+    let final_state = model.physical_state(&last);
     let interval = |id: ChannelId| {
         let (_, squares) = record.mean_squares.iter().find(|(other, _)| *other == id)?;
         rms_interval_95(squares)

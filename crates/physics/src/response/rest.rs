@@ -52,9 +52,9 @@ impl OperatingPoint<'_> {
             (0..DynamicModel::<D>::HALVES)
                 .for_each(|j| start.x[j * PER_HALF + U] = model.first_contact_displacement_m(j) / model.cos);
         }
-        let held = model.with_fixed_contact();
+        let fixed = model.with_fixed_contact();
         let span = (from, from + periods);
-        let mut run = RecordedRun::new(&held, start, 1e-6, span, self.recorder(&held, periods))?;
+        let mut run = RecordedRun::new(&fixed, start, 1e-6, span, self.recorder(&fixed, periods))?;
         integrate_trajectory(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
         let finished = run.finish()?;
         let assessment = MotionAssessment {
@@ -70,7 +70,7 @@ impl OperatingPoint<'_> {
             counts: StepCounts::default(),
         };
         let mut response =
-            assemble_response(&self.report_input(), &held, finished.recorder, finished.record, assessment);
+            assemble_response(&self.report_input(), &fixed, finished.recorder, finished.record, assessment);
         if touching {
             response.summary.contact = ContactState::Continuous;
             response.summary.contact_share = Halves { left: 1.0, right: 1.0 };

@@ -8,8 +8,8 @@ use super::recording::{FinishedRun, RecordedRun};
 use super::report::{MotionAssessment, ReportInput, assemble_response, solved_halves};
 use super::steady::{SteadyMotion, SteadyStateSearch, displaced};
 use crate::dynamics::{
-    DynamicModel, DynamicsError, IntegrationLimits, Integrator, MotionState, NaturalModes, PER_HALF, Parameters,
-    Perturbation, Shooting, integrate_trajectories, integrate_trajectory, is_mirrored, state_difference,
+    DynamicModel, DynamicsError, IntegrationLimits, Integrator, MotionState, NaturalModes, PER_HALF, POINTS_PER_TASK,
+    Parameters, Perturbation, Shooting, integrate_trajectories, integrate_trajectory, is_mirrored, state_difference,
 };
 use crate::watch::{Canceled, Watch};
 use rayon::prelude::*;
@@ -59,7 +59,7 @@ pub fn solve_many(
 ) -> Result<Vec<Result<Response, DynamicsError>>, Canceled> {
     let done = AtomicUsize::new(0);
     let groups: Result<Vec<_>, Canceled> = points
-        .par_chunks(POINTS_PER_GROUP)
+        .par_chunks(POINTS_PER_TASK)
         .map(|group| {
             let responses = solve_group(group, analysis, watch)?;
             let done = done.fetch_add(group.len(), Ordering::Relaxed) + group.len();
@@ -69,9 +69,6 @@ pub fn solve_many(
         .collect();
     Ok(groups?.into_iter().flatten().collect())
 }
-
-/// Operating points per task of the thread pool.
-const POINTS_PER_GROUP: usize = 32;
 
 fn solve_group(
     group: &[Parameters],
@@ -192,11 +189,11 @@ impl OperatingPoint<'_> {
             model.close_contact(&mut state);
         }
         if off_symmetry {
-            let mut push: Perturbation<D> = ([0.0; D], [0.0; D]);
+            let mut perturbation: Perturbation<D> = ([0.0; D], [0.0; D]);
             for c in 0..PER_HALF - 1 {
-                push.0[c] = OFF_SYMMETRY * state.x[c];
+                perturbation.0[c] = OFF_SYMMETRY * state.x[c];
             }
-            state = displaced(&model, state, &push);
+            state = displaced(&model, state, &perturbation);
         }
         let bounded = |error: DynamicsError| {
             let diverged =
@@ -463,10 +460,10 @@ fn integrate<const D: usize>(
         let point = &points[i];
         let next = run.finish().and_then(|finished| {
             let (assessment, compare) = point.assess(model, &finished, tolerance)?;
-            let finely = compare.then(|| {
+            let fine_run = compare.then(|| {
                 RecordedRun::new(model, finished.stored, tight, (record_from, end), point.rms_recorder(model))
             });
-            Ok((finished, assessment, finely.transpose()?))
+            Ok((finished, assessment, fine_run.transpose()?))
         });
         match next {
             Err(DynamicsError::Canceled(canceled)) => return Err(canceled),
@@ -478,16 +475,16 @@ fn integrate<const D: usize>(
                 out[i] =
                     Ok(assemble_response(&point.report_input(), model, finished.recorder, finished.record, assessment));
             }
-            Ok((finished, assessment, Some(finely))) => {
-                compared.push(finely);
+            Ok((finished, assessment, Some(fine_run))) => {
+                compared.push(fine_run);
                 pending.push((i, finished, assessment));
             }
         }
     }
     lane_use.for_comparison().integrate(&mut compared, tight, analysis.max_steps, watch)?;
-    for ((i, finished, mut assessment), finely) in pending.into_iter().zip(compared) {
+    for ((i, finished, mut assessment), fine_run) in pending.into_iter().zip(compared) {
         let Ok(model) = &models[i] else { continue };
-        out[i] = finely.finish().map(|fine| {
+        out[i] = fine_run.finish().map(|fine| {
             let difference = rms_difference(&finished.recorder, &fine.recorder, acceleration_floor(model));
             assessment.error_estimate = SAFETY * difference + ROUNDING;
             assessment.counts += fine.record.counts;

@@ -3,10 +3,11 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::budget::{Budget, budget_exhausted, steps_per_period};
-use super::regime::{CHAOS_PER_MESH_PERIOD, PoincareSection, largest_component, lyapunov_exponent, perturbation_decay};
+use super::lyapunov::{CHAOS_PER_MESH_PERIOD, LYAPUNOV_MESH_PERIODS, lyapunov_exponent, perturbation_decay};
+use super::poincare::{PoincareSection, largest_component};
 use crate::dynamics::{
-    DynamicModel, DynamicsError, IntegrationLimits, Integrator, Motion, MotionState, PER_HALF, Perturbation,
-    RigidBodyModes, Shooting, StepCounts, U, Unobserved, state_difference,
+    DIVERGENCE_LIMIT_M, DynamicModel, DynamicsError, IntegrationLimits, Integrator, Motion, MotionState, PER_HALF,
+    Perturbation, RigidBodyModes, Shooting, StepCounts, U, Unobserved, state_difference,
 };
 
 /// Mesh periods after which a motion that does not nearly repeat counts as aperiodic.
@@ -19,8 +20,6 @@ const NEWTON_START_CHANGE: f64 = 1e-3;
 const SAME_PERIOD_CHANGE: f64 = 1e-6;
 /// Mesh periods between two attempts.
 const MESH_PERIODS_BETWEEN_ATTEMPTS: u64 = 40;
-/// Mesh periods over which a Lyapunov exponent is averaged.
-const LYAPUNOV_MESH_PERIODS: u64 = 400;
 /// Length of the record of an aperiodic motion, and the limit of its steps.
 const LONG_RECORD_MESH_PERIODS: u64 = 2000;
 const LONG_RECORD_STEPS: u64 = 2_000_000;
@@ -97,9 +96,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
 
     /// Fails where the static deflection exceeds the limit of any motion.
     fn check_static_deflection(&self, start: &MotionState<D>) -> Result<(), DynamicsError> {
-        const FURTHEST_M: f64 = 1e3;
         let furthest = largest_component(&(start.x, [0.0; D]));
-        if furthest > FURTHEST_M {
+        if furthest > DIVERGENCE_LIMIT_M {
             return Err(DynamicsError::InvalidParameter {
                 name: "static deflection in m",
                 value: furthest,
@@ -226,13 +224,13 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         counts: &mut StepCounts,
     ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
         let perturbations = 2 * self.model.active().count();
-        let held = self.model.with_fixed_contact();
+        let fixed = self.model.with_fixed_contact();
         let mut first = start;
         for j in 0..DynamicModel::<D>::HALVES {
             first.contact[j] = if self.model.halves[j].load < 0.0 { -1 } else { 1 };
         }
         let shooting = self.shooting(self.model, budget)?;
-        let period_map = shooting.period_map(&held, first, 1)?;
+        let period_map = shooting.period_map(&fixed, first, 1)?;
         budget.spend(&period_map.counts, perturbations);
         *counts += period_map.counts;
         let defect = state_difference(&period_map.end, &first);
@@ -410,10 +408,10 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             return Err(budget_exhausted(all, motion.time_s()));
         }
         let mut exponent_of = |model: &DynamicModel<D>| {
-            let mut along = self.motion(motion.state, budget);
-            let exponent = lyapunov_exponent(&mut along, model, periods, self.limits.watch)?;
-            budget.spend(&along.counts, 1);
-            counts += along.counts;
+            let mut continued = self.motion(motion.state, budget);
+            let exponent = lyapunov_exponent(&mut continued, model, periods, self.limits.watch)?;
+            budget.spend(&continued.counts, 1);
+            counts += continued.counts;
             Ok::<_, DynamicsError>(exponent)
         };
         let exponent = exponent_of(self.model)?;

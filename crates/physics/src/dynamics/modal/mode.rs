@@ -1,7 +1,7 @@
 //! Energy shares, damping and names of the natural modes.
 
 use super::springs::{SpringGroup, spring_elements};
-use super::{NaturalModes, SourceVector, arcs, masses, mirrored};
+use super::{DisplacementVector, NaturalModes, arcs, masses, mirrored};
 use crate::dynamics::parameters::Parameters;
 
 /// A natural mode with its energy shares and name.
@@ -69,7 +69,7 @@ impl NaturalModes {
     }
 }
 
-fn describe(p: &Parameters, frequency_hz: f64, shape: &SourceVector) -> Mode {
+fn describe(p: &Parameters, frequency_hz: f64, shape: &DisplacementVector) -> Mode {
     let masses = masses(p);
     let mut kinetic_energy = DISPLACEMENT_KINDS.map(|kind| (kind, 0.0));
     for c in 0..12 {
@@ -191,7 +191,7 @@ mod tests {
                 let strain: f64 = spring_elements(&p)
                     .iter()
                     .map(|m| {
-                        let deflection = |shape: &SourceVector| (0..12).map(|c| m.row[c] * shape[c]).sum::<f64>();
+                        let deflection = |shape: &DisplacementVector| (0..12).map(|c| m.row[c] * shape[c]).sum::<f64>();
                         m.spring.stiffness * deflection(first) * deflection(second)
                     })
                     .sum();

@@ -1,7 +1,7 @@
 //! Springs of the model as directions in the twelve displacements: meshes, supports, couplings of the halves of a
 //! shaft.
 
-use super::SourceVector;
+use super::DisplacementVector;
 use crate::dynamics::parameters::{Parameters, Spring};
 
 /// Group of a spring. Supports connect a half to the ground, the others connect the halves of a shaft.
@@ -59,7 +59,7 @@ impl SpringGroup {
 /// Spring with damper; its deflection is the scalar product of `row` and the displacements.
 pub(super) struct SpringElement {
     pub group: SpringGroup,
-    pub row: SourceVector,
+    pub row: DisplacementVector,
     pub spring: Spring,
 }
 
@@ -105,7 +105,7 @@ pub(super) fn spring_elements(p: &Parameters) -> Vec<SpringElement> {
 }
 
 /// Gradient of s_j by the displacements.
-pub(super) fn mesh_direction(p: &Parameters, j: usize) -> SourceVector {
+pub(super) fn mesh_direction(p: &Parameters, j: usize) -> DisplacementVector {
     let (sin, cos) = p.helix_angle_rad.sin_cos();
     let sin = if j == 0 { sin } else { -sin };
     let mut row = [0.0; 12];

@@ -1,4 +1,4 @@
-//! The mesh force of a loaded contact: its polynomials, motions under it by independent methods, lanes, perturbations.
+//! Tabulated contact force: its polynomials, motions by independent methods, lanes, perturbations.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -10,7 +10,8 @@ use herringbone_oracle::check_worst;
 
 const TOPIC: &str = "Dynamics: contact force";
 
-/// F = k(φ) e²/(e + c), k = mean (1 + a cos 2πφ): soft at the beginning, then as stiff as k; touches at free cos(2πφ).
+/// F = k(φ) e²/(e + c), k = mean (1 + a cos 2πφ): stiffness from 0 to k with the displacement; first contact at free
+/// cos(2πφ).
 fn law(mean: f64, a: f64, c: f64, free: f64, highest_m: f64) -> FlankForce {
     let level_m: Vec<f64> = (0..=12).map(|i| highest_m * (f64::from(i) / 12.0).powf(1.5)).collect();
     let wave = |phase: f64| (1.0 + a * (TAU * phase).cos(), -a * TAU * (TAU * phase).sin());
@@ -98,7 +99,7 @@ fn the_displacement_under_a_load_carries_it() {
     check_worst(TOPIC, "force at the displacement under a load", errors, 1e-11);
 }
 
-/// The Taylor method stops at every level and knot; the Runge–Kutta method knows nothing of levels.
+/// The Taylor method locates every level and knot; the Runge–Kutta method does not locate levels.
 #[test]
 fn motions_with_contact_on_both_flanks_agree_with_another_method() {
     let mut errors = Vec::new();
@@ -138,7 +139,8 @@ fn lanes_change_nothing_under_contact_forces_and_beside_stiffnesses() {
     }
 }
 
-/// The map of perturbations against differences of motions, over levels and loss of contact, the damper acting in the gap or not.
+/// The monodromy matrix against differences of motions, across levels and loss of contact, with and without the damper
+/// in the gap.
 #[test]
 fn perturbations_are_differences_of_motions() {
     let mut errors = Vec::new();
@@ -175,7 +177,7 @@ fn perturbations_are_differences_of_motions() {
 }
 
 #[test]
-fn what_no_motion_could_follow_is_refused() {
+fn invalid_tables_are_refused() {
     let good = law(9e8, 0.2, 1e-6, 0.0, 40e-6);
     let refused = |change: &dyn Fn(&mut FlankForce)| {
         let mut bad = good.clone();

@@ -1,6 +1,4 @@
-//! Motions in lanes are the motions alone, to the last bit.
-
-use std::time::{Duration, Instant};
+//! Motions in lanes are bit-identical to the motions alone.
 
 use super::reference::{parameters, reference};
 use crate::dynamics::*;
@@ -75,36 +73,4 @@ fn a_bad_point_fails_alone_and_a_watch_stops_all() {
     assert_eq!(failed, [3]);
     let canceled = advance_many(&points, &starts, 1_000_000, 5e-8, &Watch::new(&|_| {}, &|| true));
     assert_eq!(canceled.unwrap_err(), Canceled);
-}
-
-#[test]
-#[ignore = "prints the time per mesh period and point in lanes"]
-fn time_in_lanes() {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    for name in ["A", "B", "C"] {
-        let points: Vec<Parameters> = (0..32)
-            .map(|i| {
-                let mut p = parameters(name);
-                p.mesh_frequency_hz *= 1.0 + 1e-3 * f64::from(i);
-                p
-            })
-            .collect();
-        let starts = vec![start(name); points.len()];
-        for tolerance in [5e-8, 1e-12] {
-            let mut least = Duration::MAX;
-            let mut steps = 0;
-            for _ in 0..20 {
-                let at = Instant::now();
-                let many = pool.install(|| advance_many(&points, &starts, 100, tolerance, &Watch::none())).unwrap();
-                least = least.min(at.elapsed());
-                steps = many.iter().map(|r| r.as_ref().unwrap().counts.steps).sum();
-            }
-            let each = 3200.0;
-            println!(
-                "{name} {tolerance:e}: {:.2} µs per period and point, {:.1} steps",
-                least.as_secs_f64() * 1e6 / each,
-                steps as f64 / each
-            );
-        }
-    }
 }

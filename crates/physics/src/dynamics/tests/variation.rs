@@ -1,4 +1,4 @@
-//! Perturbations: the linear map against differences of motions.
+//! Perturbations: the monodromy matrix against differences of motions.
 
 use super::reference::{parameters, reference};
 use crate::dynamics::*;
@@ -82,25 +82,25 @@ fn the_slowest_multiplier_of_case_a() {
     check(topic, "slowest multiplier of case A, twelve coordinates", slowest, 0.891, Absolute(5e-4));
 }
 
-/// Slope of the logarithm of the distance of two motions that start `push` apart (12 displacements, m and rad) on the orbit of a
-/// case, per mesh period, fitted over the mesh periods 10 to 70: of what remains without free motions, and of all of it.
-fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
+/// Slope of the logarithm of the distance of two motions that start `push` apart (12 displacements, m and rad) on the
+/// orbit of a case, per mesh period, fitted over the mesh periods 10 to 70: without and with the rigid-body modes.
+fn decay_rates(name: &str, push: [f64; 12]) -> (f64, f64) {
     let p = parameters(name);
     let model = DynamicModel::<12>::new(&p).unwrap();
     let rigid_body = RigidBodyModes::new(&model).unwrap();
     let start: [f64; 24] = reference().cases[name].initial_state.as_slice().try_into().unwrap();
     let on_orbit = MotionState { period: 0, ..advance(&model, model.state_from(&start), 400) };
-    let mut source = model.source_state(&on_orbit);
+    let mut physical = model.physical_state(&on_orbit);
     for c in 0..12 {
-        source[c] += push[c];
+        physical[c] += push[c];
     }
-    let (mut a, mut b) = (on_orbit, model.state_from(&source));
+    let (mut a, mut b) = (on_orbit, model.state_from(&physical));
     let mut points: Vec<[f64; 3]> = Vec::new();
     for period in 1..=70 {
         (a, b) = (advance(&model, a, 1), advance(&model, b, 1));
         let d = state_difference(&b, &a);
         let held = rigid_body.project_out(&d);
-        // The free rotations are coordinates of their own, left out of `held` by their places.
+        // The rigid rotations are coordinates of their own, excluded by their indices.
         let rows = |d: &Perturbation<12>, all: bool| {
             (0..12).filter(|c| all || c % PER_HALF != W).fold(0.0f64, |m, c| m.max(d.0[c].abs()).max(d.1[c].abs()))
         };
@@ -114,13 +114,12 @@ fn approach(name: &str, push: [f64; 12]) -> (f64, f64) {
     (with_time(1) / with_time(0), with_time(2) / with_time(0))
 }
 
-/// How fast neighbours of case C come back to it. An independent program states -0.037 per mesh period for all twelve
-/// coordinates and -0.03 for perturbations against the mirror symmetry. The multipliers of the period-2 orbit, and two motions that are
-/// simply followed side by side, agree with each other on a faster decay. A likely reason, not shown: free motions (rotation of each half, screw
-/// motion of the pinion), along which a perturbation stays for ever, were part of the stated averages; with them in, the distance
-/// of the same two motions falls more slowly here too.
+/// Decay of perturbations of case C. An independent program states -0.037 per mesh period for all twelve coordinates
+/// and -0.03 for antisymmetric perturbations. The multipliers of the period-2 orbit and the distance of two motions
+/// agree on a faster decay. A likely reason, not shown: the stated averages include rigid-body modes, along which a
+/// perturbation does not decay; with them the distance of the same two motions falls more slowly here too.
 #[test]
-fn neighbours_of_case_c_approach_as_its_multipliers_say() {
+fn perturbations_of_case_c_decay_as_its_multipliers_say() {
     let watch = Watch::none();
     let p = parameters("C");
     let model = DynamicModel::<6>::new(&p).unwrap();
@@ -135,8 +134,8 @@ fn neighbours_of_case_c_approach_as_its_multipliers_say() {
         let shooting = Shooting::new(of, [9e8; 2], limits(&watch)).unwrap();
         let map = shooting.period_map(&model, start, 2).unwrap();
         let exponent = shooting.multipliers(&map.monodromy)[0].norm().ln() / 2.0;
-        let (held, all) = approach("C", push);
-        println!("case C, {what}: multipliers {exponent:.5}, followed {held:.5}, free motions left in {all:.5}");
+        let (held, all) = decay_rates("C", push);
+        println!("case C, {what}: multipliers {exponent:.5}, followed {held:.5}, rigid-body modes included {all:.5}");
         let quantity = format!("case C, decay {what} the mirror symmetry per mesh period, two motions followed");
         check(topic, &quantity, held, exponent, Absolute(0.01));
         assert!(all > 0.5 * held, "{what}: {all} {held}");
