@@ -4,8 +4,8 @@ use super::{bounds, supports};
 use crate::document::{self as doc, JobDocument, PressureAnglePlane};
 use crate::result::{GearGeometry, Geometry, Supports};
 use crate::{DocumentError, Violation};
-use herringbone_physics::contact;
 use herringbone_physics::gear::{self, Infeasibility, Pair, PairSpec, Warning};
+use herringbone_physics::{compliance, contact};
 
 /// Default bore as a fraction of the reference diameter, where none is given.
 const DEFAULT_BORE_FRACTION: f64 = 0.4;
@@ -196,7 +196,7 @@ fn held_elsewhere(document: &JobDocument, pair: &Pair) -> Vec<Warning> {
     [("pinion", &pair.pinion), ("gear", &pair.gear)]
         .into_iter()
         .filter_map(|(name, member)| {
-            let held_m = contact::hold_radius_m(member, contact::BodyHold::Bore, pair.spec.normal_module_m);
+            let held_m = compliance::hold_radius_m(member, compliance::BodyHold::Bore, pair.spec.normal_module_m);
             (held_m > member.bore_radius_m * (1.0 + 1e-9)).then(|| Warning {
                 code: "held-above-bore".to_owned(),
                 pointer: format!("/design/{name}/bore_diameter_mm"),

@@ -1,6 +1,6 @@
 //! The work–energy theorem over a record: a check of the solution that knows nothing of the method that made it.
 
-use super::quadrature::GAUSS;
+use super::statistics::GAUSS;
 use crate::dynamics::{Model, Observer, PER_HALF, Segment, W};
 
 /// Of longer records the first mesh periods are balanced, which says as much at a bounded cost.

@@ -8,7 +8,6 @@ mod budget;
 mod channel;
 mod confidence;
 mod energy;
-mod quadrature;
 mod recorder;
 mod recording;
 mod regime;

@@ -3,7 +3,7 @@
 /// The knots of periodic cubic splines, with the factored system that gives their slopes (continuous second derivative; C. de Boor, A Practical
 /// Guide to Splines, chapter IV).
 #[derive(Debug, Clone)]
-pub struct SplineKnots {
+pub struct PeriodicSpline {
     /// Ascending within one period.
     phase: Vec<f64>,
     /// Width of every interval; the last one leads to the first knot of the next period.
@@ -14,9 +14,9 @@ pub struct SplineKnots {
     gamma: f64,
 }
 
-impl SplineKnots {
+impl PeriodicSpline {
     /// Knots at `phase`, ascending within [φ₀, φ₀ + 1); at least three.
-    pub fn new(phase: Vec<f64>) -> SplineKnots {
+    pub fn new(phase: Vec<f64>) -> PeriodicSpline {
         let n = phase.len();
         let width: Vec<f64> =
             (0..n).map(|i| if i + 1 < n { phase[i + 1] - phase[i] } else { phase[0] + 1.0 - phase[i] }).collect();
@@ -31,7 +31,7 @@ impl SplineKnots {
         for i in 1..n {
             pivot[i] -= before(i) * before(i) / pivot[i - 1];
         }
-        let mut knots = SplineKnots { phase, width, pivot, corner: vec![0.0; n], gamma };
+        let mut knots = PeriodicSpline { phase, width, pivot, corner: vec![0.0; n], gamma };
         let mut corner = vec![0.0; n];
         corner[0] = gamma;
         corner[n - 1] = 1.0 / knots.width[n - 1];
@@ -116,7 +116,7 @@ mod tests {
     fn smooth_curves_converge_with_the_fourth_power_of_the_step() {
         let curve = |p: f64| (TAU * p).sin() + 0.3 * (3.0 * TAU * p).cos();
         let worst = |n: usize| {
-            let knots = SplineKnots::new(unequal(n));
+            let knots = PeriodicSpline::new(unequal(n));
             let value: Vec<f64> = knots.phase().iter().map(|&p| curve(p)).collect();
             let slope = knots.slopes(&value);
             (0..997)
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn second_derivatives_are_continuous_around_the_period() {
-        let knots = SplineKnots::new(unequal(9));
+        let knots = PeriodicSpline::new(unequal(9));
         let value: Vec<f64> = (0..9).map(|i| (1.7 * f64::from(i)).sin()).collect();
         let slope = knots.slopes(&value);
         let jumps = (0..9).map(|i| {

@@ -9,20 +9,12 @@
 //! which goes into the normal force because the root turns with the slope of its own displacement along the trace.
 
 use super::body::WidthBasis;
-use super::linalg::{add_product, cholesky_inlined, forward_solve_columns};
+use crate::numerics::dense::{add_product, cholesky_inlined, forward_solve_columns};
+use crate::numerics::gauss::gauss_12;
 use crate::simd::vectorised;
 
 /// Functions over the height: 1 (the root) and η L_{j-1}(2η - 1), j = 1..=ORDER.
 const ORDER: usize = 5;
-/// 12-point Gauss-Legendre rule on [-1, 1]: positive abscissae and weights (Abramowitz and Stegun, table 25.4).
-pub const GAUSS_12: [(f64, f64); 6] = [
-    (0.125_233_408_511_469, 0.249_147_045_813_403),
-    (0.367_831_498_998_180, 0.233_492_536_538_355),
-    (0.587_317_954_286_617, 0.203_167_426_723_066),
-    (0.769_902_674_194_305, 0.160_078_328_543_346),
-    (0.904_117_256_370_475, 0.106_939_325_995_318),
-    (0.981_560_634_246_719, 0.047_175_336_386_512),
-];
 
 /// Shape and material of the plate; Young's modulus is one.
 pub struct Plate<'a> {
@@ -93,7 +85,7 @@ impl Plate<'_> {
     fn sections(&self) -> [[Sections; FUNCTIONS]; FUNCTIONS] {
         let mut out = [[Sections::default(); FUNCTIONS]; FUNCTIONS];
         let shear = 5.0 / 6.0 / (2.0 * (1.0 + self.nu));
-        for (x, w) in GAUSS_12.into_iter().flat_map(|(x, w)| [(x, w), (-x, w)]) {
+        for (x, w) in gauss_12() {
             // η = t² takes the square root out of the fillet at the root circle.
             let t = 0.5 * (1.0 + x);
             let eta = t * t;

@@ -8,10 +8,10 @@
 
 use super::body::WidthBasis;
 use super::edge::EndFaces;
-use super::linalg::{add_product, cholesky, cholesky_solve, lu_solve};
 use super::plate::PlateModes;
 use super::ring_influence::{KINDS, RingFlexibility};
 use super::tooth::{Place, RootRemainder};
+use crate::numerics::dense::{add_product, cholesky, cholesky_solve, lu_solve};
 use crate::simd::vectorised;
 
 /// Places of the profile between which the compliance is interpolated (Chebyshev nodes, a polynomial through all).

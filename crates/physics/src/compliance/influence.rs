@@ -4,6 +4,7 @@
 //! *stations* along the face. The bulk part is smooth, so that few stations carry it and the contact lines may be cut as finely
 //! as their ends and modifications need: the cost of a position grows linearly with its points.
 
+use crate::numerics::interpolation::lagrange;
 use crate::simd::vectorised;
 
 /// Normal approach of both members per normal force. It depends on neither load, modification nor assembly.
@@ -163,15 +164,4 @@ pub fn stencil(nodes: &[f64], at: f64) -> Stencil {
         *weight = lagrange(&nodes[first..first + STENCIL], k, at);
     }
     Stencil { first, weights }
-}
-
-/// Lagrange's polynomial of node `k` at `x`.
-fn lagrange(nodes: &[f64], k: usize, x: f64) -> f64 {
-    let mut value = 1.0;
-    for (i, node) in nodes.iter().enumerate() {
-        if i != k {
-            value *= (x - node) / (nodes[k] - node);
-        }
-    }
-    value
 }

@@ -8,7 +8,8 @@
 //! width separate (U, V even with W odd, and the reverse). A Galerkin flexibility is positive definite and never larger
 //! than the exact one.
 
-use super::linalg::{add_product, cholesky_inlined, forward_solve_columns};
+use crate::numerics::dense::{add_product, cholesky_inlined, forward_solve_columns};
+use crate::numerics::gauss::{GAUSS_2, GAUSS_3};
 use crate::simd::vectorised;
 
 /// The ring and its material.
@@ -25,9 +26,6 @@ pub struct Ring {
 
 /// Growth of the radial elements towards the inside.
 const GROWTH: f64 = 1.5;
-
-/// 2-point Gauss rule on [-1, 1]: the reduced rule of the quadratic element, which keeps thin discs from locking.
-const GAUSS: [(f64, f64); 2] = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
 
 /// Legendre functions over the face width, orthonormal on [0, b].
 #[derive(Debug, Clone, PartialEq)]
@@ -86,9 +84,6 @@ impl WidthBasis {
     /// Mean of every polynomial over `count` equal slices of a part of the face (its start and its width) moved by `shift_m`:
     /// `count` rows of `order + 1`.
     pub fn slice_means(&self, count: usize, (from_m, width_m): (f64, f64), shift_m: f64) -> Vec<f64> {
-        /// 3-point Gauss rule on [-1, 1].
-        const GAUSS_3: [(f64, f64); 3] =
-            [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
         let size = self.order + 1;
         let step = width_m / count as f64;
         let shift_m = from_m + shift_m;
@@ -238,7 +233,8 @@ fn element_stiffness(ring: &Ring, basis: &WidthBasis, rows: &[(usize, usize)], r
     }
     let mut radial = [[Radial::default(); 3]; 3];
     let half = 0.5 * (r1 - r0);
-    for (xi, w) in GAUSS {
+    // The reduced rule of the quadratic element keeps thin discs from locking.
+    for (xi, w) in GAUSS_2 {
         let r = 0.5 * (r0 + r1) + half * xi;
         let weight = w * half * r;
         let shape = [0.5 * xi * (xi - 1.0), 1.0 - xi * xi, 0.5 * xi * (xi + 1.0)];
@@ -296,7 +292,7 @@ fn element_stiffness(ring: &Ring, basis: &WidthBasis, rows: &[(usize, usize)], r
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::annulus::harmonic_flexibility;
+    use crate::compliance::annulus::harmonic_flexibility;
     use herringbone_oracle::Tolerance::Relative;
     use herringbone_oracle::{check, check_worst};
 

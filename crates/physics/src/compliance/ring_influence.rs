@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 
 use super::annulus::arc_shapes;
 use super::body::{Ring, RingSolver, WidthBasis};
-use super::linalg::{add_product, dot};
+use crate::numerics::dense::{add_product, dot};
+use crate::numerics::gauss::gauss_legendre;
 use crate::simd::vectorised;
 
 /// Waves across the tooth longer than the first (in multiples of the normal module per radian) belong wholly to the
@@ -113,7 +114,7 @@ impl Twist {
         let mut angles = Vec::with_capacity(points);
         let mut products = vec![0.0; size * (size + 1) / 2 * points];
         let mut values = vec![0.0; size];
-        for (i, (x, w)) in gauss_legendre(points).into_iter().enumerate() {
+        for (i, (x, w)) in gauss_legendre(points).into_iter().map(|(x, w)| (-x, w)).enumerate() {
             angles.push(0.5 * width_m * x * twist_per_m);
             basis.values(0.5 * width_m * (1.0 + x), &mut values);
             let mut row = 0;
@@ -171,31 +172,6 @@ impl Sorted {
         let start = rows * self.count(0) * self.size + columns * self.count(rows) * self.count(0);
         start..start + self.count(rows) * self.count(columns)
     }
-}
-
-/// Points and weights of the Gauss-Legendre rule on [-1, 1], by Newton's method.
-fn gauss_legendre(points: usize) -> Vec<(f64, f64)> {
-    let n = points as f64;
-    (0..points)
-        .map(|i| {
-            let mut x = -(PI * (i as f64 + 0.75) / (n + 0.5)).cos();
-            let mut slope = 1.0;
-            for _ in 0..20 {
-                let (mut before, mut now) = (1.0, x);
-                for k in 1..points {
-                    let next = ((2 * k + 1) as f64 * x * now - k as f64 * before) / (k + 1) as f64;
-                    (before, now) = (now, next);
-                }
-                slope = n * (x * now - before) / (x * x - 1.0);
-                let step = now / slope;
-                x -= step;
-                if step.abs() < 1e-15 {
-                    break;
-                }
-            }
-            (x, 2.0 / ((1.0 - x * x) * slope * slope))
-        })
-        .collect()
 }
 
 impl RingFlexibility {

@@ -104,7 +104,7 @@ impl EndFaces {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::linalg::cholesky;
+    use crate::numerics::dense::cholesky;
     use herringbone_oracle::check_worst;
 
     #[test]

@@ -1,19 +1,58 @@
-//! The compliance of both members of one half, from either model, in the form the load distribution works with.
+//! Compliance of both members of one helix half: tooth, gear body, local contact.
+//!
+//! Fidelity `analytic`, per member: the tooth (`tooth`) is a clamped plate of its true profile with free end
+//! faces (`plate`); the reactions of its root load a three-dimensional elastic ring with free end faces, held at rim or
+//! bore (`body`, `ring_influence`); short waves at the root come from a plane-strain annulus (`annulus`); the corners of the
+//! end faces give as elastic wedges do (`edge`). `bulk` puts these together over Legendre functions of the
+//! face; the contact itself is Hertzian (`hertz`). Fidelity `fe` takes the flexibilities of [`crate::fe`] instead, with the indentation
+//! of half-spaces (`half_space`).
+//!
+//! Either way a [`Compliance`] is a table of bulk flexibility (`influence`) and a law of local indentation (`local`).
+//!
+//! Everything is SI; coordinates are those of [`crate::gear`].
 
-use super::flank::{Flank, hold_radius_m};
-use super::influence::{Influence, Stencil, stencil};
-use super::lines::CORNER_REACH;
-use super::local::LocalModel;
-use super::settings::Settings;
+mod annulus;
+mod body;
+mod bulk;
+mod edge;
+mod flank;
+mod half_space;
+mod hertz;
+mod influence;
+mod local;
+mod plate;
+mod ring_influence;
+mod settings;
+mod tooth;
+
+#[cfg(test)]
+pub(crate) mod fixtures;
+#[cfg(test)]
+mod tests;
+
+pub use flank::{BodyHold, hold_radius_m};
+pub use settings::Settings;
+
+#[cfg(test)]
+pub(crate) use hertz::LineContact;
+pub(crate) use influence::{Influence, LineWeights, STENCIL, Stencil};
+pub(crate) use local::{Indentation, LocalModel, line_contact};
+
+use self::flank::Flank;
+use self::influence::stencil;
 use crate::fe::{FlankFlexibility, FlankInput, Resolution, Side};
 use crate::gear::Pair;
+
+/// Corner contact is looked for this far beyond the path, in base pitches: gaps there are beyond any deflection that a
+/// tooth survives.
+pub(crate) const CORNER_REACH: f64 = 0.5;
 
 /// The compliance of both members of one half. It does not depend on load, modification or assembly: both halves share
 /// it, and every load of the same teeth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compliance {
-    pub(super) influence: Influence,
-    pub(super) local: LocalModel,
+    pub(crate) influence: Influence,
+    pub(crate) local: LocalModel,
     slices: usize,
 }
 

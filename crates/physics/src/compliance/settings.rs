@@ -1,10 +1,9 @@
-//! What can be chosen about a loaded contact analysis, and what can go wrong in it.
+//! Settings of a loaded contact analysis.
 
 use serde::{Deserialize, Serialize};
 
 use super::flank::BodyHold;
-use crate::gear::{Half, Pair};
-use crate::watch::Canceled;
+use crate::gear::Pair;
 
 /// Choices of the analysis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -42,29 +41,4 @@ impl Settings {
     pub fn station_count(&self, pair: &Pair) -> usize {
         (1.5 * pair.spec.face_width_m / pair.spec.normal_module_m).ceil().clamp(10.0, 48.0) as usize
     }
-}
-
-/// Why a loaded contact analysis gave no result.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum ContactError {
-    /// The torque is not a positive number.
-    #[error("the pinion torque must be positive and finite for a loaded contact analysis; it is {torque_nm} N m")]
-    Torque { torque_nm: f64 },
-    /// Fewer than two positions.
-    #[error("a mesh period needs at least 2 positions; {positions} were asked for")]
-    Positions { positions: usize },
-    /// No tooth pair can touch.
-    #[error("no tooth pair can touch at phase {phase} of the mesh period on the {half:?} half")]
-    NoContact { half: Half, phase: f64 },
-    /// The load distribution did not converge.
-    #[error(
-        "the load distribution on the {half:?} half did not converge at phase {phase}: relative change {change:.3e} of the \
-         forces after {iterations} iterations"
-    )]
-    NotConverged { half: Half, phase: f64, iterations: u32, change: f64 },
-    /// The two halves of a spur-like pair (no axial coupling) found no common deflection.
-    #[error("the halves did not settle on a common deflection at phase {phase}: relative difference {difference:.3e}")]
-    HalvesNotBalanced { phase: f64, difference: f64 },
-    #[error(transparent)]
-    Canceled(#[from] Canceled),
 }

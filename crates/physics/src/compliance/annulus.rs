@@ -7,7 +7,7 @@
 //!
 //! With u_r = U e^{inθ}, u_θ = iV e^{inθ} every harmonic is a real symmetric 2×2 flexibility.
 
-use super::linalg::solve_dense;
+use crate::numerics::dense::solve_dense;
 
 /// Displacements that have fallen to this part of their value at the outer circle do not reach the inner one.
 const NEGLIGIBLE: f64 = 1e-6;

@@ -7,8 +7,8 @@
 
 use std::f64::consts::PI;
 
-use super::{pair, spec};
-use crate::contact::flank::{BodyHold, Flank};
+use super::fixtures::{pair, spec};
+use super::flank::{BodyHold, Flank};
 use crate::gear::Pair;
 use herringbone_oracle::Tolerance::Relative;
 use herringbone_oracle::{check, check_worst};

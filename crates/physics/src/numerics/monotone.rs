@@ -3,15 +3,15 @@
 /// Piecewise cubic through the samples, monotone between them (Fritsch and Butland's slopes): a jump in slope is felt in the two
 /// intervals beside it only, and nothing overshoots.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PeriodicCurve {
+pub struct PeriodicMonotoneCubic {
     phase: Vec<f64>,
     value: Vec<f64>,
     slope: Vec<f64>,
 }
 
-impl PeriodicCurve {
+impl PeriodicMonotoneCubic {
     /// Through `value` at `phase`, which ascends within one period [φ₀, φ₀ + 1); at least two samples.
-    pub fn new(phase: Vec<f64>, value: Vec<f64>) -> PeriodicCurve {
+    pub fn new(phase: Vec<f64>, value: Vec<f64>) -> PeriodicMonotoneCubic {
         let n = phase.len();
         let width = |i: usize| if i + 1 < n { phase[i + 1] - phase[i] } else { phase[0] + 1.0 - phase[n - 1] };
         let rise = |i: usize| (value[(i + 1) % n] - value[i]) / width(i);
@@ -28,7 +28,7 @@ impl PeriodicCurve {
                 left * right / (weight * right + (1.0 - weight) * left)
             })
             .collect();
-        PeriodicCurve { phase, value, slope }
+        PeriodicMonotoneCubic { phase, value, slope }
     }
 
     /// Value at any phase.
@@ -51,6 +51,24 @@ impl PeriodicCurve {
     }
 }
 
+/// Coefficients of the periodic monotone cubics through `values` at equal steps of one period: c0 + c1 u + c2 u² + c3 u³ with
+/// u = 0 … 1 from each value to the next. The slopes are Brodlie's harmonic means, within the limits of Fritsch and Carlson
+/// (SIAM J. Numer. Anal. 17 (1980) 238, doi:10.1137/0717021).
+pub fn monotone_cubics(values: &[f64]) -> Vec<[f64; 4]> {
+    let n = values.len();
+    let rise = |i: usize| values[(i + 1) % n] - values[i % n];
+    let slope = |i: usize| {
+        let (before, after) = (rise(i + n - 1), rise(i));
+        if before * after > 0.0 { 2.0 * before * after / (before + after) } else { 0.0 }
+    };
+    (0..n)
+        .map(|i| {
+            let (d, m0, m1) = (rise(i), slope(i), slope(i + 1));
+            [values[i], m0, 3.0 * d - 2.0 * m0 - m1, m0 + m1 - 2.0 * d]
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -63,7 +81,7 @@ mod tests {
             if p < 0.3 { p / 0.3 } else { (1.0 - p) / 0.7 }
         };
         let phase = vec![0.0, 0.1, 0.15, 0.3, 0.4, 0.7, 0.9];
-        let curve = PeriodicCurve::new(phase.clone(), phase.iter().map(|&p| exact(p)).collect());
+        let curve = PeriodicMonotoneCubic::new(phase.clone(), phase.iter().map(|&p| exact(p)).collect());
         let topic = "Contact: periodic interpolation";
         let far = (0..200).map(|i| f64::from(i) / 100.0 - 0.5).filter(|p| {
             let p = p.rem_euclid(1.0);
@@ -79,7 +97,7 @@ mod tests {
         let worst = |n: usize| {
             let phase: Vec<f64> = (0..n).map(|i| i as f64 / n as f64).collect();
             let value = phase.iter().map(|p| (std::f64::consts::TAU * p).sin()).collect();
-            let curve = PeriodicCurve::new(phase, value);
+            let curve = PeriodicMonotoneCubic::new(phase, value);
             let error = |i: usize| {
                 let p = i as f64 / 1000.0;
                 (curve.at(p) - (std::f64::consts::TAU * p).sin()).abs()

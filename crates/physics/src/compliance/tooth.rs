@@ -12,7 +12,8 @@
 
 use super::annulus::arc_flexibility;
 use super::body::WidthBasis;
-use super::plate::{GAUSS_12, Plate, PlateModes};
+use super::plate::{Plate, PlateModes};
+use crate::numerics::gauss::gauss_12;
 
 /// Profile and position of one tooth form, in SI.
 pub struct ToothForm<'a> {
@@ -133,7 +134,7 @@ pub fn plate(form: &ToothForm<'_>, nu: f64, basis: &WidthBasis) -> PlateModes {
 /// times Young's modulus.
 pub fn compression(form: &ToothForm<'_>, nu: f64, lever_m: f64) -> f64 {
     let mut sum = 0.0;
-    for (x, w) in GAUSS_12.into_iter().flat_map(|(x, w)| [(x, w), (-x, w)]) {
+    for (x, w) in gauss_12() {
         let t = 0.5 * (1.0 + x);
         let r = form.root_radius_m + lever_m.max(0.0) * t * t;
         sum += w * t * lever_m.max(0.0) / (2.0 * r * (form.half_angle)(r));
