@@ -225,7 +225,8 @@ pub fn of_motion(document: &JobDocument, summary: &Summary) -> Vec<Warning> {
 mod tests {
     use super::*;
     use crate::parse_value;
-    use crate::study::{Surroundings, check, solve};
+    use crate::study::Surroundings;
+    use crate::study::unchecked::{check, solve};
     use serde_json::{Value, json};
 
     fn example(name: &str) -> Value {

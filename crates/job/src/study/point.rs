@@ -2,7 +2,8 @@
 
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
-use super::prepare::{geometry, prepare};
+use super::check::CheckedJob;
+use super::prepare::geometry;
 use super::{Channel, SolveError, Stage, Surroundings, accuracy, bounds, impact, vibration};
 use crate::document::{JobDocument, JobKind, Recorded};
 use crate::result::{JobResult, Numerics, Poincare};
@@ -57,15 +58,15 @@ impl Staged<'_> {
 /// # Errors
 /// [`SolveError`].
 pub fn solve(
-    document: &JobDocument,
+    job: &CheckedJob,
     surroundings: &Surroundings,
     memo: &MeshMemo,
     wanted: &Wanted,
 ) -> Result<Point, SolveError> {
-    let progress = |stage, fraction| (surroundings.progress)(stage, of_whole(document.kind, stage, fraction));
+    let progress = |stage, fraction| (surroundings.progress)(stage, of_whole(job.document().kind, stage, fraction));
     let surroundings = &Surroundings { progress: &progress, ..*surroundings };
-    let staged = stage(document, surroundings, memo)?;
-    respond(document, staged, surroundings, wanted)
+    let staged = stage(job, surroundings, memo)?;
+    respond(job.document(), staged, surroundings, wanted)
 }
 
 /// Geometry, contact and impact of a point, and the equations of motion that follow.
@@ -73,40 +74,40 @@ pub fn solve(
 /// # Errors
 /// [`SolveError`].
 pub fn stage<'a>(
-    document: &JobDocument,
+    job: &CheckedJob,
     surroundings: &Surroundings<'a>,
     memo: &MeshMemo,
 ) -> Result<Staged<'a>, SolveError> {
+    let (document, prepared) = (job.document(), job.prepared());
     let mut numerics = Numerics { solver_version: super::SOLVER_VERSION.to_owned(), ..Numerics::default() };
     let mut clock = Lap::new(surroundings);
-    let prepared = prepare(document)?;
     let mut warnings = prepared.warnings.clone();
     numerics.wall_ms.geometry = clock.lap_ms();
     (surroundings.progress)(Stage::Geometry, 1.0);
 
-    let plane = MotionPlane::new(document.model.plane, &prepared);
-    let (mesh, reused) = mesh::run(document, &prepared, &plane, surroundings, memo)?;
+    let plane = MotionPlane::new(document.model.plane, prepared);
+    let (mesh, reused) = mesh::run(document, prepared, &plane, surroundings, memo)?;
     numerics.reused.extend(reused.into_iter().map(str::to_owned));
     warnings.extend(bounds::of_mesh(document, &mesh.summary));
     numerics.wall_ms.mesh = clock.lap_ms();
 
-    let impact = impact::run(document, &prepared, &plane, &mesh, &mut warnings);
+    let impact = impact::run(document, prepared, &plane, &mesh, &mut warnings);
     numerics.wall_ms.impact = clock.lap_ms();
     (surroundings.progress)(Stage::Impact, 1.0);
 
     let parameters = (document.kind != JobKind::Mesh).then(|| {
         let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
-        let parameters = equations::parameters(document, &prepared, &plane, mesh.stiffness, impact.pulses, lead);
+        let parameters = equations::parameters(document, prepared, &plane, mesh.stiffness, impact.pulses, lead);
         match &mesh.forces {
             None => parameters,
             Some(contact) => equations::with_contact_forces(parameters, &contact.forces),
         }
     });
     let result = JobResult {
-        geometry: Some(geometry(&prepared)),
+        geometry: Some(geometry(prepared)),
         mesh: Some(mesh.summary),
         impact: impact.summary,
-        supports: (document.kind != JobKind::Mesh).then_some(prepared.supports),
+        supports: (document.kind != JobKind::Mesh).then(|| prepared.supports.clone()),
         warnings,
         numerics,
         ..JobResult::default()
