@@ -273,7 +273,8 @@ impl ForeignName<'_> {
             }
             "crowning" => Some(format!("crowning along the tooth is {member}/lead_crowning_um")),
             "torque" if self.is_about_the_gear() => {
-                let torque = self.si(Quantity::Torque, 1.0).zip(self.teeth()).map(|(torque, (z1, z2))| torque * z1 / z2);
+                let torque =
+                    self.si(Quantity::Torque, 1.0).zip(self.teeth()).map(|(torque, (z1, z2))| torque * z1 / z2);
                 Some(format!(
                     "the torque is the pinion's, /operation/pinion_torque_nm: T_1 = T_2 z_1 / z_2{}",
                     shown(torque, "N m")

@@ -71,6 +71,9 @@ mod tests {
         assert_eq!(split_first("/axes"), Some(("axes", "")));
         assert_eq!(split_first("/"), Some(("", "")));
         assert_eq!((split_first(""), split_first("axes")), (None, None));
-        assert_eq!(["0", "17", "01", "+1", "-1", "", "1e0"].map(index), [Some(0), Some(17), None, None, None, None, None]);
+        assert_eq!(
+            ["0", "17", "01", "+1", "-1", "", "1e0"].map(index),
+            [Some(0), Some(17), None, None, None, None, None]
+        );
     }
 }

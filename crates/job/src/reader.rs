@@ -209,8 +209,7 @@ impl<'a> Object<'a> {
         }
         let (form, outer) = (&declared.form, &self.inherited);
         let here = outer.derived_in.iter().find(|(name, _)| *name == declared.name).map(|(_, words)| *words);
-        let condition =
-            form.when.map(|(sibling, values)| Condition { on: self.pointer_to(sibling), values });
+        let condition = form.when.map(|(sibling, values)| Condition { on: self.pointer_to(sibling), values });
         Inherited {
             group: if form.group.is_empty() { outer.group } else { form.group },
             order: if form.order == 0 { outer.order } else { form.order },
@@ -299,7 +298,9 @@ impl<'a> Object<'a> {
             schema
         });
         let value = self.value(declared.name)?;
-        Some(self.in_range(&self.path.member(declared.name), value, declared).unwrap_or(default.unwrap_or(declared.min)))
+        Some(
+            self.in_range(&self.path.member(declared.name), value, declared).unwrap_or(default.unwrap_or(declared.min)),
+        )
     }
 
     /// The number at `path`; none, and a violation, where it is none or out of range.

@@ -7,7 +7,13 @@ use serde::de::IgnoredAny;
 impl JobDocument {
     /// A response with the inputs of this sweep as they stand, without axes.
     pub fn without_sweep(&self) -> JobDocument {
-        JobDocument { kind: JobKind::Response, axes: Vec::new(), continuation: None, record: Vec::new(), ..self.clone() }
+        JobDocument {
+            kind: JobKind::Response,
+            axes: Vec::new(),
+            continuation: None,
+            record: Vec::new(),
+            ..self.clone()
+        }
     }
 
     /// The document of a row of this sweep as a job of its own: a response with the values of the axes put in. None where the sweep

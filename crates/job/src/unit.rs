@@ -117,7 +117,10 @@ impl Unit {
                 if is_same(unit.text.as_bytes(), text.as_bytes()) {
                     found = Some(unit);
                 } else if found.is_none() && !unit.suffix.is_empty() {
-                    assert!(!ends_with(name, unit.suffix), "the name of the field ends in another unit than it is declared in");
+                    assert!(
+                        !ends_with(name, unit.suffix),
+                        "the name of the field ends in another unit than it is declared in"
+                    );
                 }
             }
             index += 1;

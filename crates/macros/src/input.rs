@@ -3,7 +3,9 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use syn::punctuated::Punctuated;
-use syn::{Attribute, Data, DataEnum, DeriveInput, Error, Expr, Fields, LitInt, LitStr, Meta, Path, Result, Token, Type};
+use syn::{
+    Attribute, Data, DataEnum, DeriveInput, Error, Expr, Fields, LitInt, LitStr, Meta, Path, Result, Token, Type,
+};
 
 /// The attributes of a field, as they are written.
 #[derive(Default)]
@@ -154,19 +156,18 @@ impl Declaration {
         let Self { constant, help, omitted, attributes, .. } = self;
         let name = self.name.to_string();
         let Attributes { required, min, max, min_items, max_items, max_chars, order, .. } = attributes;
-        let mut given: Vec<TokenStream> = [
-            ("min", min),
-            ("max", max),
-            ("min_items", min_items),
-            ("max_items", max_items),
-            ("max_chars", max_chars),
-        ]
-        .into_iter()
-        .filter_map(|(name, value)| {
-            let (name, value) = (format_ident!("{name}"), value.as_ref()?);
-            Some(if name == "min" || name == "max" { quote!(#name: (#value) as f64) } else { quote!(#name: #value) })
-        })
-        .collect();
+        let mut given: Vec<TokenStream> =
+            [("min", min), ("max", max), ("min_items", min_items), ("max_items", max_items), ("max_chars", max_chars)]
+                .into_iter()
+                .filter_map(|(name, value)| {
+                    let (name, value) = (format_ident!("{name}"), value.as_ref()?);
+                    Some(if name == "min" || name == "max" {
+                        quote!(#name: (#value) as f64)
+                    } else {
+                        quote!(#name: #value)
+                    })
+                })
+                .collect();
         if innermost(&self.ty) == "f64" {
             let unit = attributes.unit.as_ref().map_or_else(|| "1".to_owned(), LitStr::value);
             given.push(quote!(unit: crate::unit::Unit::of_field(#name, #unit)));
@@ -318,7 +319,8 @@ impl Word {
         if !matches!(variant.fields, Fields::Unit) {
             return Err(Error::new_spanned(variant, "a word has no fields"));
         }
-        let mut word = Self { variant: variant.ident.clone(), word: snake_case(&variant.ident.to_string()), label: None };
+        let mut word =
+            Self { variant: variant.ident.clone(), word: snake_case(&variant.ident.to_string()), label: None };
         for attribute in variant.attrs.iter().filter(|attribute| attribute.path().is_ident("words")) {
             attribute.parse_nested_meta(|meta| {
                 if meta.path.is_ident("rename") {
@@ -344,7 +346,8 @@ pub fn derive_words(item: DeriveInput) -> Result<TokenStream> {
     let count = words.len();
     let pairs = words.iter().map(|Word { variant, word, .. }| quote!((#word, Self::#variant)));
     let arms = words.iter().map(|Word { variant, word, .. }| quote!(Self::#variant => #word));
-    let labels = words.iter().filter_map(|Word { word, label, .. }| label.as_ref().map(|label| quote!((#word, #label))));
+    let labels =
+        words.iter().filter_map(|Word { word, label, .. }| label.as_ref().map(|label| quote!((#word, #label))));
     Ok(quote! {
         impl #ident {
             /// Every word with its value.
@@ -426,9 +429,9 @@ fn help(attributes: &[Attribute]) -> String {
 /// Whether the document is written without the field where it is empty (`#[serde(skip_serializing_if = …)]`).
 fn is_omitted(attributes: &[Attribute]) -> bool {
     let serde = attributes.iter().filter(|attribute| attribute.path().is_ident("serde"));
-    serde.filter_map(|attribute| attribute.parse_args_with(Punctuated::<Meta, Token![,]>::parse_terminated).ok()).any(
-        |metas| metas.iter().any(|meta| meta.path().is_ident("skip_serializing_if")),
-    )
+    serde
+        .filter_map(|attribute| attribute.parse_args_with(Punctuated::<Meta, Token![,]>::parse_terminated).ok())
+        .any(|metas| metas.iter().any(|meta| meta.path().is_ident("skip_serializing_if")))
 }
 
 fn last_segment(ty: &Type) -> Option<&syn::PathSegment> {

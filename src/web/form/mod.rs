@@ -87,8 +87,10 @@ fn all_fields() -> Vec<Field> {
     for description in field_descriptions() {
         if let Some(name) = description.pointer.strip_prefix("/axes/*") {
             // No axis is needed, so none of its fields is.
-            let of_axis = |axis| {
-                FieldDescription { pointer: format!("/axes/{axis}{name}"), required: false, ..description.clone() }
+            let of_axis = |axis| FieldDescription {
+                pointer: format!("/axes/{axis}{name}"),
+                required: false,
+                ..description.clone()
             };
             let axes = (0..groups::AXES).map(of_axis);
             fields.extend(axes.filter_map(|axis| Field::new(&axis, example.pointer(&axis.pointer))));
@@ -127,10 +129,7 @@ fn section(group: &GroupPlan, fields: &mut Vec<Field>) -> Group {
             LayoutPlan::Fields(object) => Layout::Fields(take(object)),
             LayoutPlan::Table(columns) => {
                 let taken = columns.iter().map(|(_, object)| take(object)).collect();
-                Layout::Table {
-                    columns: columns.iter().map(|(title, _)| *title).collect(),
-                    rows: rows(taken, columns),
-                }
+                Layout::Table { columns: columns.iter().map(|(title, _)| *title).collect(), rows: rows(taken, columns) }
             }
         },
     });

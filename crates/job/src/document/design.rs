@@ -238,10 +238,7 @@ pub struct TipReliefInput {
 
 fn tip_relief_rules(relief: &mut TipReliefInput, place: &Place) {
     if relief.amount_um > 0.0 && relief.length_mm == 0.0 {
-        place.conflict(
-            "length_mm",
-            "is 0 mm while amount_um is above 0; a relief needs a roll length above 0 mm",
-        );
+        place.conflict("length_mm", "is 0 mm while amount_um is above 0; a relief needs a roll length above 0 mm");
     }
 }
 

@@ -382,7 +382,8 @@ impl Input for ImpactInput {
         type Members = ImpactMembers;
         let (name, rest) = split_first(pointer)?;
         match (self, name) {
-            (_, "source") | (ImpactInput::CornerContact(_) | ImpactInput::Zhou2008(_) | ImpactInput::Given(_), "acts_on")
+            (_, "source")
+            | (ImpactInput::CornerContact(_) | ImpactInput::Zhou2008(_) | ImpactInput::Given(_), "acts_on")
             | (ImpactInput::CornerContact(_) | ImpactInput::Zhou2008(_), "duration") => {
                 rest.is_empty().then_some(Slot::Other)
             }

@@ -5,7 +5,8 @@ use super::equations::MotionPlane;
 use super::prepare::Prepared;
 use super::supports::shown;
 use crate::document::{
-    DEFAULT_BACKLASH_UM, ImpactInput, ImpactDuration, JobDocument, JobKind, Ltca, MeshStiffness, MethodInput, StiffnessLaw,
+    DEFAULT_BACKLASH_UM, ImpactDuration, ImpactInput, JobDocument, JobKind, Ltca, MeshStiffness, MethodInput,
+    StiffnessLaw,
 };
 use crate::result::Mesh;
 use herringbone_physics::dynamics;

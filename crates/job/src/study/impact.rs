@@ -4,7 +4,7 @@ use super::bounds;
 use super::equations::MotionPlane;
 use super::mesh::MeshStage;
 use super::prepare::Prepared;
-use crate::document::{CornerImpactInput, ImpactInput, ImpactDuration, JobDocument, MeshForce};
+use crate::document::{CornerImpactInput, ImpactDuration, ImpactInput, JobDocument, MeshForce};
 use crate::result;
 use herringbone_physics::dynamics;
 use herringbone_physics::gear::{Half, Warning};

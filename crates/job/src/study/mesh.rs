@@ -6,7 +6,9 @@ use super::hash::mesh_hash;
 use super::mesh_force::{self, MeshForces};
 use super::prepare::Prepared;
 use super::{SolveError, Stage, Surroundings};
-use crate::document::{BodyInput, Elements, Fidelity, JobDocument, JobKind, Ltca, MeshForce, MeshStiffness, StiffnessLaw};
+use crate::document::{
+    BodyInput, Elements, Fidelity, JobDocument, JobKind, Ltca, MeshForce, MeshStiffness, StiffnessLaw,
+};
 use crate::result::{ApexSensitivity, Convergence, FlankLoad, Mesh, MeshCurve, PerHalf};
 use herringbone_physics::contact::iso6336::{Blank, MethodB};
 use herringbone_physics::contact::{

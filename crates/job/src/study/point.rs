@@ -1,8 +1,8 @@
 //! One operating point: the stages a document needs, in their order.
 
+use super::check::CheckedJob;
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
-use super::check::CheckedJob;
 use super::prepare::geometry;
 use super::{Channel, SolveError, Stage, Surroundings, accuracy, bounds, impact, vibration};
 use crate::document::{JobDocument, JobKind, Recorded};
@@ -73,11 +73,7 @@ pub fn solve(
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn stage<'a>(
-    job: &CheckedJob,
-    surroundings: &Surroundings<'a>,
-    memo: &MeshMemo,
-) -> Result<Staged<'a>, SolveError> {
+pub fn stage<'a>(job: &CheckedJob, surroundings: &Surroundings<'a>, memo: &MeshMemo) -> Result<Staged<'a>, SolveError> {
     let (document, prepared) = (job.document(), job.prepared());
     let mut numerics = Numerics { solver_version: super::SOLVER_VERSION.to_owned(), ..Numerics::default() };
     let mut clock = Lap::new(surroundings);

@@ -120,7 +120,12 @@ fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
     }
 }
 
-fn gear_spec(design: &doc::DesignInput, gear: &doc::GearInput, pointer: &str, warnings: &mut Vec<Warning>) -> gear::GearSpec {
+fn gear_spec(
+    design: &doc::DesignInput,
+    gear: &doc::GearInput,
+    pointer: &str,
+    warnings: &mut Vec<Warning>,
+) -> gear::GearSpec {
     let bore_diameter_mm = gear.bore_diameter_mm.unwrap_or_else(|| {
         let reference_mm = design.normal_module_mm * f64::from(gear.teeth) / design.helix_angle_deg.to_radians().cos();
         let assumed_mm = DEFAULT_BORE_FRACTION * reference_mm;
