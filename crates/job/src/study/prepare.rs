@@ -105,7 +105,10 @@ fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
         gap_width_m: gap_mm * 1e-3,
         center_distance_m: design.center_distance_mm.map(|mm| mm * 1e-3),
         material: material(&design.material),
-        rotation: document.operation.rotation,
+        rotation: match document.operation.rotation {
+            doc::RotationInput::ApexLeading => gear::Rotation::ApexLeading,
+            doc::RotationInput::ApexTrailing => gear::Rotation::ApexTrailing,
+        },
         pinion: gear_spec(design, &design.pinion, "/design/pinion", warnings),
         gear: gear_spec(design, &design.gear, "/design/gear", warnings),
         assembly: gear::Assembly {
@@ -166,7 +169,10 @@ fn flank(flank: &doc::FlankInput) -> gear::FlankModification {
         tip_relief: gear::TipRelief {
             amount_m: flank.tip_relief.amount_um * 1e-6,
             length_m: flank.tip_relief.length_mm * 1e-3,
-            shape: flank.tip_relief.shape,
+            shape: match flank.tip_relief.shape {
+                doc::ReliefShapeInput::Linear => gear::ReliefShape::Linear,
+                doc::ReliefShapeInput::Parabolic => gear::ReliefShape::Parabolic,
+            },
         },
         lead_crowning_m: flank.lead_crowning_um * 1e-6,
         helix_slope_m: flank.helix_slope_um * 1e-6,
