@@ -1,7 +1,7 @@
 //! Campbell data of a sweep over the speed: at which speeds an order of the mesh frequency meets a natural frequency.
 
 use super::mesh::MeshMemo;
-use super::{SolveError, Surroundings, answer, point, row};
+use super::{SolveError, Surroundings, point, response_result, row};
 use crate::document::{Axis, JobDocument};
 use crate::result::{Campbell, CampbellCrossing, NaturalMode};
 use serde_json::Value;
@@ -36,7 +36,11 @@ pub fn run(
         other_axis_value.into_iter().for_each(|value| values.insert(1 - at, value));
         let modes = row::document(base, sweep, &values).and_then(|document| {
             let staged = point::stage(&document, &quiet, memo)?;
-            let modes = staged.parameters().map(answer::natural_modes).transpose().map_err(super::vibration::failed)?;
+            let modes = staged
+                .parameters()
+                .map(response_result::natural_modes)
+                .transpose()
+                .map_err(super::vibration::failed)?;
             Ok((modes, document.design.pinion.teeth))
         });
         match modes {

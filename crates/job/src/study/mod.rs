@@ -2,7 +2,6 @@
 //! meet physics.
 
 mod accuracy;
-mod answer;
 mod axes;
 mod bounds;
 mod branches;
@@ -18,6 +17,7 @@ mod mesh_force;
 mod point;
 mod points;
 mod prepare;
+mod response_result;
 mod row;
 mod supports;
 mod sweep;
@@ -25,7 +25,7 @@ mod vibration;
 
 use crate::DocumentError;
 use crate::document::{JobDocument, Kind};
-use crate::result::{Geometry, JobResult};
+use crate::result::{Geometry, JobResult, ReusedStage};
 use herringbone_physics::gear::Warning;
 
 use herringbone_physics::watch::Canceled;
@@ -153,7 +153,7 @@ pub enum SolveError {
 pub struct CheckReport {
     pub geometry: Geometry,
     /// Springs of the equations of motion; null for a job without a response.
-    pub supports: Option<crate::result::Supports>,
+    pub supports: Option<crate::result::SupportsResult>,
     /// Memory that the calculation takes at most (an estimate).
     pub memory_mib: f64,
     #[cfg_attr(feature = "schema", schema(value_type = Vec<crate::result::WarningEntry>))]
@@ -180,7 +180,7 @@ pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outc
     }
     let started_ms = (surroundings.clock_ms)();
     let kept = surroundings.points.load();
-    let reused = if kept.rows.is_empty() { Vec::new() } else { vec!["points".to_owned()] };
+    let reused = if kept.rows.is_empty() { Vec::new() } else { vec![ReusedStage::Points] };
     let sweep = sweep::run(document, kept, surroundings, &memo)?;
     let mut result = JobResult {
         geometry: Some(report.geometry),

@@ -5,7 +5,7 @@ use super::mesh::{self, MeshMemo};
 use super::prepare::{geometry, prepare};
 use super::{Channel, SolveError, Stage, Surroundings, accuracy, bounds, impact, vibration};
 use crate::document::{JobDocument, Kind, Recorded};
-use crate::result::{JobResult, Numerics, Poincare};
+use crate::result::{JobResult, NumericsResult, Poincare};
 use herringbone_physics::dynamics::{DynamicsError, Parameters};
 use herringbone_physics::response::Response;
 
@@ -77,7 +77,7 @@ pub fn stage<'a>(
     surroundings: &Surroundings<'a>,
     memo: &MeshMemo,
 ) -> Result<Staged<'a>, SolveError> {
-    let mut numerics = Numerics { solver_version: super::SOLVER_VERSION.to_owned(), ..Numerics::default() };
+    let mut numerics = NumericsResult { solver_version: super::SOLVER_VERSION.to_owned(), ..NumericsResult::default() };
     let mut clock = Lap::new(surroundings);
     let prepared = prepare(document)?;
     let mut warnings = prepared.warnings.clone();
@@ -86,7 +86,7 @@ pub fn stage<'a>(
 
     let plane = MotionPlane::new(document.model.plane, &prepared);
     let (mesh, reused) = mesh::run(document, &prepared, &plane, surroundings, memo)?;
-    numerics.reused.extend(reused.into_iter().map(str::to_owned));
+    numerics.reused.extend(reused);
     warnings.extend(bounds::of_mesh(document, &mesh.summary));
     numerics.wall_ms.mesh = clock.lap_ms();
 
@@ -144,7 +144,7 @@ pub fn answered(
         result.accuracy = Some(accuracy::of(document, &result));
         return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });
     };
-    let vibration = vibration::told(document, &parameters, wanted, response, &mut result.numerics)?;
+    let vibration = vibration::to_result(document, &parameters, wanted, response, &mut result.numerics)?;
     result.response = Some(vibration.summary);
     result.accuracy = Some(accuracy::of(document, &result));
     result.warnings.extend(vibration.warnings);
