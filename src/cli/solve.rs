@@ -108,7 +108,7 @@ fn solve(document: &JobDocument, stages: &dyn StageStore) -> Result<study::Outco
     let started = Instant::now();
     let bar = bar();
     let progress = |stage: Stage, fraction: f64| {
-        bar.set_message(stage.word());
+        bar.set_message(stage.as_str());
         bar.set_position((fraction * 1000.0) as u64);
     };
     let outcome = study::solve(

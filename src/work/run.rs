@@ -135,7 +135,7 @@ impl Run<'_> {
             let batch = points.take_unwritten();
             if progressed.has_changed().unwrap_or(false) || !batch.is_empty() {
                 let (stage, fraction) = *progressed.borrow_and_update();
-                if let Err(error) = self.recorder.progress(&self.job, stage.word(), fraction, &batch).await {
+                if let Err(error) = self.recorder.progress(&self.job, stage.as_str(), fraction, &batch).await {
                     tracing::warn!(%error, "progress not written");
                     points.put_back(batch);
                 }
@@ -182,7 +182,7 @@ impl Run<'_> {
     async fn write_points(&self, points: &RunningPoints, (stage, fraction): Progress) {
         let batch = points.take_unwritten();
         if !batch.is_empty() {
-            self.patiently(|| self.recorder.progress(&self.job, stage.word(), fraction, &batch)).await;
+            self.patiently(|| self.recorder.progress(&self.job, stage.as_str(), fraction, &batch)).await;
         }
     }
 

@@ -3,7 +3,7 @@
 use super::Breakpoints;
 use herringbone::work::Solver;
 use herringbone_job::DocumentError;
-use herringbone_job::document::{JobDocument, Kind};
+use herringbone_job::document::{JobDocument, JobKind};
 use herringbone_job::result::{JobResult, ReusedStage, SweepPoint, SweepResult};
 use herringbone_job::study::{self, Channel, CheckReport, Outcome, SolveError, Stage, Surroundings};
 use herringbone_physics::watch::Canceled;
@@ -49,13 +49,13 @@ impl Solver for ScriptedSolver {
             }),
             "panic" => panic!("secret detail"),
             "stage" => Ok(with_stage(surroundings)),
-            "not finite" if document.kind != Kind::Sweep => {
+            "not finite" if document.kind != JobKind::Sweep => {
                 let mut outcome = outcome();
                 outcome.result.numerics.wall_ms.mesh = f64::NAN;
                 outcome.series[0].values[1] = f64::NAN;
                 Ok(outcome)
             }
-            _ if document.kind == Kind::Sweep => self.sweep(document, surroundings),
+            _ if document.kind == JobKind::Sweep => self.sweep(document, surroundings),
             _ => Ok(outcome()),
         }
     }

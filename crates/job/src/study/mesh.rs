@@ -6,7 +6,9 @@ use super::hash::mesh_hash;
 use super::mesh_force::{self, MeshForces};
 use super::prepare::Prepared;
 use super::{SolveError, Stage, Surroundings};
-use crate::document::{Body, Elements, Fidelity, JobDocument, Kind, Ltca, MeshForce, MeshStiffness, StiffnessLaw};
+use crate::document::{
+    BodyInput, Elements, Fidelity, JobDocument, JobKind, Ltca, MeshForce, MeshStiffness, StiffnessLaw,
+};
 use crate::result::{ApexSensitivity, Convergence, FlankLoad, Mesh, MeshCurve, PerHalf, ReusedStage, StiffnessSource};
 use herringbone_physics::contact::iso6336::{Blank, MethodB};
 use herringbone_physics::contact::{
@@ -101,8 +103,8 @@ impl<'a> ContactCase<'a> {
                 accuracy: ltca.accuracy,
                 slices: ltca.slices.map(|slices| slices as usize),
                 body: match ltca.body {
-                    Body::Rim => BodyHold::Rim,
-                    Body::Bore => BodyHold::Bore,
+                    BodyInput::Rim => BodyHold::Rim,
+                    BodyInput::Bore => BodyHold::Bore,
                 },
                 corner_contact: ltca.corner_contact,
             },
@@ -158,7 +160,7 @@ pub fn run(
             let case = ContactCase::new(document, ltca, prepared);
             let (contact, reused) = loaded_contact(&case, &prepared.pair, surroundings, memo)?;
             let mut stage = from_contact(&contact, ltca, prepared, plane);
-            if document.model.mesh_force == MeshForce::Contact && document.kind != Kind::Mesh {
+            if document.model.mesh_force == MeshForce::Contact && document.kind != JobKind::Mesh {
                 let forces = mesh_force::run(&case, &prepared.pair, plane, surroundings, memo)?;
                 stage.summary.contact_force = Some(forces.summary.clone());
                 stage.stiffness = tangent_stiffness(&contact, plane);

@@ -24,7 +24,7 @@ mod sweep;
 mod vibration;
 
 use crate::DocumentError;
-use crate::document::{JobDocument, Kind};
+use crate::document::{JobDocument, JobKind};
 use crate::result::{Geometry, JobResult, ReusedStage};
 use herringbone_physics::gear::Warning;
 
@@ -54,7 +54,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Stage::Geometry => "geometry",
             Stage::Mesh => "mesh",
@@ -174,7 +174,7 @@ pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outc
     // All that can be refused is refused before anything is solved.
     let report = check(document)?;
     let memo = MeshMemo::default();
-    if document.kind != Kind::Sweep {
+    if document.kind != JobKind::Sweep {
         let point = point::solve(document, surroundings, &memo, &Wanted::WHOLE)?;
         return Ok(Outcome { result: point.result, series: point.series });
     }

@@ -4,7 +4,7 @@ use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
 use super::prepare::{geometry, prepare};
 use super::{Channel, SolveError, Stage, Surroundings, accuracy, bounds, impact, vibration};
-use crate::document::{JobDocument, Kind, Recorded};
+use crate::document::{JobDocument, JobKind, Recorded};
 use crate::result::{JobResult, NumericsResult, Poincare};
 use herringbone_physics::dynamics::{DynamicsError, Parameters};
 use herringbone_physics::response::Response;
@@ -94,7 +94,7 @@ pub fn stage<'a>(
     numerics.wall_ms.impact = clock.lap_ms();
     (surroundings.progress)(Stage::Impact, 1.0);
 
-    let parameters = (document.kind != Kind::Mesh).then(|| {
+    let parameters = (document.kind != JobKind::Mesh).then(|| {
         let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
         let parameters = equations::parameters(document, &prepared, &plane, mesh.stiffness, impact.pulses, lead);
         match &mesh.forces {
@@ -106,7 +106,7 @@ pub fn stage<'a>(
         geometry: Some(geometry(&prepared)),
         mesh: Some(mesh.summary),
         impact: impact.summary,
-        supports: (document.kind != Kind::Mesh).then_some(prepared.supports),
+        supports: (document.kind != JobKind::Mesh).then_some(prepared.supports),
         warnings,
         numerics,
         ..JobResult::default()
@@ -159,8 +159,8 @@ pub fn answered(
 }
 
 /// Fraction of the whole point at a fraction of one of its stages, by what the stages usually cost.
-fn of_whole(kind: Kind, stage: Stage, fraction: f64) -> f64 {
-    let mesh_ends = if kind == Kind::Mesh { 0.98 } else { 0.6 };
+fn of_whole(kind: JobKind, stage: Stage, fraction: f64) -> f64 {
+    let mesh_ends = if kind == JobKind::Mesh { 0.98 } else { 0.6 };
     let (start, end) = match stage {
         Stage::Geometry => (0.0, 0.01),
         Stage::Mesh => (0.01, mesh_ends),

@@ -1,6 +1,6 @@
 //! The springs outside the mesh: what the document gives, what follows from the gear bodies, and what is assumed after the size of the pair.
 
-use crate::document::{self as doc, JobDocument, Kind};
+use crate::document::{self as doc, JobDocument, JobKind};
 use crate::result::{SpringOrigin, SpringValue, SupportsResult};
 use herringbone_physics::gear::{BodyStiffness, Material, Pair, Warning};
 
@@ -18,7 +18,7 @@ const LATERAL_PER_MODULUS_AND_DISTANCE: f64 = 0.0145;
 const AXIAL_OVER_LATERAL: f64 = 1.0 / 3.0;
 
 /// The springs in use.
-pub fn used(supports: &doc::Supports, pair: &Pair) -> SupportsResult {
+pub fn used(supports: &doc::SupportsInput, pair: &Pair) -> SupportsResult {
     let lateral = LATERAL_PER_MODULUS_AND_DISTANCE * Material::STEEL.youngs_modulus_pa * pair.center_distance_m * 1e-6;
     let assumed = |given: Option<f64>, n_per_um: f64| value(given, n_per_um, SpringOrigin::Assumed);
     let derived = |given: Option<f64>, derived: f64| value(given, derived, SpringOrigin::Derived);
@@ -70,7 +70,7 @@ pub fn named(supports: &SupportsResult) -> [(&'static str, &SpringValue); 9] {
 
 /// What was not given, with the values used; nothing where no equations of motion are solved. What a sweep varies is given.
 pub fn assumed(document: &JobDocument, used: &SupportsResult) -> Option<Warning> {
-    if document.kind == Kind::Mesh {
+    if document.kind == JobKind::Mesh {
         return None;
     }
     let swept =
@@ -136,7 +136,7 @@ mod tests {
         PairSpec { gap_width_m: 0.03, ..PairSpec::plain(6e-3, [alpha_n, beta], 75e-3, teeth) }
     }
 
-    const NOTHING: doc::Supports = doc::Supports {
+    const NOTHING: doc::SupportsInput = doc::SupportsInput {
         pinion_lateral_n_per_um: None,
         gear_lateral_n_per_um: None,
         pinion_halves_axial_n_per_um: None,
@@ -197,7 +197,7 @@ mod tests {
 
     #[test]
     fn what_is_given_is_used_as_it_is_zero_too() {
-        let given = doc::Supports {
+        let given = doc::SupportsInput {
             pinion_lateral_n_per_um: Some(123.0),
             gear_halves_torsional_nm_per_rad: Some(0.0),
             ..NOTHING

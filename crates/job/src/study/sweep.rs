@@ -6,7 +6,7 @@ use super::mesh::MeshMemo;
 use super::points::{KeptPoints, LineEnd};
 use super::row;
 use super::{SolveError, Stage, Surroundings, campbell, response_result};
-use crate::document::{Axis, Continuation, JobDocument, Method, Recorded};
+use crate::document::{Axis, Continuation, JobDocument, MethodInput, Recorded};
 use crate::result::{BranchDirection, SweepAxis, SweepPoint, SweepResult};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -68,7 +68,7 @@ pub fn run(
             Ok(rows)
         };
         // Points that are integrated go side by side; the others take very different times, so each is for the next free thread.
-        let together = if document.analysis.method == Method::Integrate { SIDE_BY_SIDE } else { 1 };
+        let together = if document.analysis.method == MethodInput::Integrate { SIDE_BY_SIDE } else { 1 };
         let rows: HashMap<_, _> = kept.rows.into_iter().filter(|(position, _)| *position < all).collect();
         count(rows.len());
         sweep.points = independent((lines, length), together, rows, solve)?;

@@ -2,7 +2,7 @@
 
 use super::point::Wanted;
 use super::{Channel, SolveError, Stage, Surroundings, bounds, response_result};
-use crate::document::{Integrator, JobDocument, Method, Recorded};
+use crate::document::{IntegratorInput, JobDocument, MethodInput, Recorded};
 use crate::result::{NumericsResult, Poincare, ResponseResult};
 use crate::{DocumentError, Violation};
 use herringbone_physics::dynamics::{self, DynamicsError, Parameters};
@@ -143,16 +143,16 @@ pub fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, Doc
     }
     Ok(Analysis {
         method: match asked.method {
-            Method::Integrate => response::Method::Integrate {
+            MethodInput::Integrate => response::Method::Integrate {
                 mesh_periods: u64::from(asked.mesh_periods),
                 record_mesh_periods: u64::from(asked.record_mesh_periods),
             },
-            Method::Periodic => response::Method::Periodic,
-            Method::Auto => response::Method::Auto,
+            MethodInput::Periodic => response::Method::Periodic,
+            MethodInput::Auto => response::Method::Auto,
         },
         integrator: match asked.integrator {
-            Integrator::Taylor => dynamics::Integrator::Taylor,
-            Integrator::RungeKutta4 => dynamics::Integrator::RungeKutta,
+            IntegratorInput::Taylor => dynamics::Integrator::Taylor,
+            IntegratorInput::RungeKutta4 => dynamics::Integrator::RungeKutta,
         },
         accuracy: asked.accuracy,
         samples_per_mesh_period: asked.samples_per_mesh_period as usize,
