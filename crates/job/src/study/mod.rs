@@ -4,7 +4,7 @@
 mod accuracy;
 mod answer;
 mod axes;
-mod bounds;
+pub(crate) mod bounds;
 mod branches;
 mod campbell;
 mod check;
@@ -17,7 +17,7 @@ mod mesh;
 mod mesh_force;
 mod point;
 mod points;
-mod prepare;
+pub(crate) mod prepare;
 mod row;
 mod supports;
 mod sweep;
