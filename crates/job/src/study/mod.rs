@@ -3,7 +3,7 @@
 
 mod accuracy;
 mod axes;
-mod bounds;
+pub(crate) mod bounds;
 mod branches;
 mod campbell;
 mod check;
@@ -16,7 +16,7 @@ mod mesh;
 mod mesh_force;
 mod point;
 mod points;
-mod prepare;
+pub(crate) mod prepare;
 mod response_result;
 mod row;
 mod supports;

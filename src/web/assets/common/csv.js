@@ -36,7 +36,7 @@ function field(value, sign) {
 }
 
 /** The choice in the footer, on pages that offer such files. */
-const choice = document.getElementById("csv-decimal");
+const choice = /** @type {HTMLSelectElement | null} */ (document.getElementById("csv-decimal"));
 if (choice) {
   choice.value = chosen;
   choice.hidden = false;

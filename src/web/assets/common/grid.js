@@ -1,4 +1,4 @@
-// The values of a range, as the service counts them (src/job/grid.rs): both ends and the round values between them are met exactly.
+// The values of a range, as the service counts them (crates/job/src/grid.rs): both ends and the round values between them are met exactly.
 
 /** Significant decimal digits up to which a value of a logarithmic grid counts as round. */
 const ROUND_DIGITS = 12;

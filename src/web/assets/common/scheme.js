@@ -34,7 +34,7 @@
   apply(stored());
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", tell);
   document.addEventListener("DOMContentLoaded", () => {
-    const choice = document.getElementById("scheme");
+    const choice = /** @type {HTMLSelectElement | null} */ (document.getElementById("scheme"));
     if (!choice) return;
     choice.value = root.dataset.scheme ?? "";
     choice.addEventListener("change", () => choose(choice.value));

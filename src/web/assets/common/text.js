@@ -1,13 +1,13 @@
 // Text from files: UTF-8 is read, with or without a byte order mark; other encodings are named.
 
-/** Byte order marks of other encodings; UTF-32's begins as UTF-16's. */
+/** Byte order marks of other encodings; UTF-32's begins as UTF-16's. @type {[number[], string][]} */
 const OTHER_MARKS = [
   [[0xff, 0xfe, 0, 0], "UTF-32 (little-endian)"],
   [[0, 0, 0xfe, 0xff], "UTF-32 (big-endian)"],
   [[0xff, 0xfe], "UTF-16 (little-endian)"],
   [[0xfe, 0xff], "UTF-16 (big-endian)"],
 ];
-/** Where the zero bytes of ASCII characters stand among the first four (RFC 4627, section 3). */
+/** Where the zero bytes of ASCII characters stand among the first four (RFC 4627, section 3). @type {[RegExp, string][]} */
 const ZEROS = [
   [/^000x/, "UTF-32 (big-endian)"],
   [/^x000/, "UTF-32 (little-endian)"],

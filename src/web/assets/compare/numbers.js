@@ -3,15 +3,37 @@
 import { number } from "../common/format.js";
 import { valueText } from "../sweep/axes.js";
 
-/** A quantity: what it is called, its unit, and where it is found. `change` says how differences are told: in `percent`, as a `level` as well, in
- *  `points` of a percentage, `absolute`, or (a `word`) not at all. */
-const quantity = (name, label, unit, pick, options = {}) => ({ name, label, unit, pick, change: "percent", ...options });
+/**
+ * A quantity: name, label, unit, and the function that finds it in a job. `change` says how differences are given: in
+ * `percent`, as a `level` as well, in `points` of a percentage, `absolute`, or (a `word`) not at all.
+ * @typedef {"percent" | "level" | "points" | "absolute" | "word"} Change
+ * @typedef {{ value: number, at: string }} Finding a value with its place in a sweep
+ * @typedef {Finding | number | string | null | undefined} Found
+ * @typedef {{ left: Found, right: Found } | null | undefined} FoundPerHalf
+ * @typedef {{ name: string, label: string, unit: string, change?: Change }} Described
+ * @typedef {Described & { pick: (job: ComparedJob) => Found }} Quantity
+ * @typedef {Described & { pickBoth: (job: ComparedJob) => FoundPerHalf }} QuantityPerHalf
+ */
 
-/** A value per half: one row when the halves are alike in all jobs. */
+/** @type {(name: string, label: string, unit: string, pick: Quantity["pick"], options?: { change?: Change }) => Quantity} */
+const quantity = (name, label, unit, pick, options = {}) => ({ name, label, unit, pick, ...options });
+
+/**
+ * A value per half: one row when the halves are alike in all jobs.
+ * @type {(name: string, label: string, unit: string, pick: QuantityPerHalf["pickBoth"], options?: { change?: Change }) => QuantityPerHalf}
+ */
 const halves = (name, label, unit, pick, options) => ({ name, label, unit, pickBoth: pick, ...options });
 
-const of = (part, name) => ({ result }) => result?.[part]?.[name];
+/**
+ * Finds a member of a part of the result.
+ * @template {"geometry" | "impact" | "mesh" | "response"} Part
+ * @param {Part} part
+ * @param {keyof NonNullable<JobResult[Part]>} name
+ * @returns {Quantity["pick"]}
+ */
+const of = (part, name) => ({ result }) => /** @type {any} */ (result?.[part])?.[name];
 
+/** @type {[string, (Quantity | QuantityPerHalf)[]][]} */
 const GROUPS = [
   ["Vibration", [
     halves("circumferential", "Circumferential acceleration of the mesh, RMS", "m/s²", ({ result }) => result?.response?.rms?.mesh_circumferential_acceleration_m_s2, { change: "level" }),
@@ -58,56 +80,70 @@ const GROUPS = [
   ]],
 ];
 
+/** @param {JobResult | undefined} result @param {"max" | "min"} which */
 function extremeOfHalves(result, which) {
   const forces = result?.response?.tooth_force_n;
   return forces ? { left: forces.left[which], right: forces.right[which] } : null;
 }
 
+/** @param {MeshResult | null | undefined} mesh */
 function swing(mesh) {
   const [least, most] = [mesh?.stiffness_min_n_per_um, mesh?.stiffness_max_n_per_um];
   return typeof least === "number" && typeof most === "number" ? most - least : null;
 }
 
-/** The largest value of a column, and where it is. */
+/** The largest value of a column, and where it is. @param {ComparedJob["sweep"]} sweep @param {string} name @returns {Finding | null} */
 function largest(sweep, name) {
   const values = sweep?.data.column(name) ?? [];
   let found = -1;
   values.forEach((value, position) => {
     if (found < 0 ? !Number.isNaN(value) : value > values[found]) found = position;
   });
-  if (found < 0) return null;
+  if (found < 0 || !sweep) return null;
   const places = sweep.grid.valuesAt(found).map((value, index) => valueText(sweep.grid.axes[index], value));
   return { value: values[found], at: `at ${places.join(", ")}` };
 }
 
+/** @param {ComparedJob["sweep"]} sweep @param {string} name */
 function largestOfHalves(sweep, name, unit = "m_s2") {
   const [left, right] = ["left", "right"].map((half) => largest(sweep, `${name}_${half}_${unit}`));
   return left || right ? { left, right } : null;
 }
 
+/** @type {(found: Found) => found is Finding} */
 const isFinding = (found) => found !== null && typeof found === "object";
+/** @param {Found} found */
 const valueOf = (found) => (isFinding(found) ? found.value : found);
+/** @param {any} a @param {any} b */
 const alike = (a, b) => a === b || Math.abs(a - b) <= 1e-9 * Math.abs(a);
 
-/** Groups { title, rows: [{ name, label, unit, cells: [{ value, at }], change }] } of what at least one job has. */
+/** Groups of the quantities that at least one job has. @param {ComparedJob[]} jobs */
 export function groupsOf(jobs) {
   return GROUPS.map(([title, quantities]) => ({ title, rows: quantities.flatMap((entry) => rowsOf(entry, jobs)) })).filter(({ rows }) => rows.length > 0);
 }
 
+/** @param {Quantity | QuantityPerHalf} entry @param {ComparedJob[]} jobs */
 function rowsOf(entry, jobs) {
-  if (!entry.pickBoth) return row(entry, entry.label, jobs.map(entry.pick));
+  if ("pick" in entry) return row(entry, entry.label, jobs.map(entry.pick));
   const both = jobs.map((job) => entry.pickBoth(job));
-  const symmetric = both.every((pair) => !pair || alike(valueOf(pair.left), valueOf(pair.right)));
-  if (symmetric) return row({ ...entry, name: `${entry.name}-both` }, `${entry.label}, both halves`, both.map((pair) => pair?.left));
-  return ["left", "right"].flatMap((half) => row({ ...entry, name: `${entry.name}-${half}` }, `${entry.label}, ${half}`, both.map((pair) => pair?.[half])));
+  const isSymmetric = both.every((pair) => !pair || alike(valueOf(pair.left), valueOf(pair.right)));
+  if (isSymmetric) return row({ ...entry, name: `${entry.name}-both` }, `${entry.label}, both halves`, both.map((pair) => pair?.left));
+  return /** @type {const} */ (["left", "right"]).flatMap((half) => row({ ...entry, name: `${entry.name}-${half}` }, `${entry.label}, ${half}`, both.map((pair) => pair?.[half])));
 }
 
+/** @param {Described} entry @param {string} label @param {Found[]} found */
 function row({ name, unit, change = "percent" }, label, found) {
   const cells = found.map((one) => ({ value: valueOf(one) ?? null, at: isFinding(one) ? one.at : null }));
   return cells.every(({ value }) => value === null) ? [] : [{ name, label, unit, change, cells }];
 }
 
-/** How a value differs from the reference's, as text; empty where that means nothing. */
+/**
+ * The difference of a value from the reference's, as text; empty where there is none to give.
+ * @param {unknown} value
+ * @param {unknown} reference
+ * @param {Change} change
+ * @param {string} unit
+ */
 export function difference(value, reference, change, unit) {
   if (typeof value !== "number" || typeof reference !== "number" || change === "word") return "";
   const by = value - reference;

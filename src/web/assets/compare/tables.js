@@ -6,7 +6,7 @@ import { number } from "../common/format.js";
 import { differing, shown } from "./inputs.js";
 import { difference, groupsOf } from "./numbers.js";
 
-/** `jobs` in their order, each with its letter; `reference` is one of them. */
+/** @param {ComparedJob[]} jobs in their order @param {ComparedJob} reference one of them */
 export function showTables(jobs, reference) {
   const known = jobs.filter(({ input }) => input);
   show(byId("inputs"), known.length > 1);

@@ -8,9 +8,14 @@ import { IMPACTS, STIFFNESS, contactWords, regimeWords } from "./words.js";
 /** Standard gravity, m/s². */
 const GRAVITY = 9.80665;
 
-/** [name, number, unit, note, explanation] of each; what a result does not have is left out. */
+/**
+ * Name, number, unit, note and explanation of each headline; what a result does not have is left out.
+ * @param {JobResult} result
+ */
 export function headlines({ geometry, mesh, impact, response, numerics, accuracy }) {
+  /** @type {[name: string, shown: string, unit: string, note: Child | Child[], meaning: string][]} */
   const tiles = [];
+  /** @param {typeof tiles[number]} tile */
   const add = (...tile) => tiles.push(tile);
   if (response) {
     const { rms } = response;
@@ -45,7 +50,11 @@ export function headlines({ geometry, mesh, impact, response, numerics, accuracy
   return tiles;
 }
 
-/** [number, unit, note, explanation]: how far the model may be from the gear, beside how far the numbers may be from the model. */
+/**
+ * Number, unit, note and explanation of the error of the model, with the numerical error beside it.
+ * @param {Accuracy} accuracy
+ * @returns {[shown: string, unit: string, note: string, meaning: string]}
+ */
 export function accuracyTexts({ numerical, model }) {
   const { mesh_stiffness_percent: stiffness, transmission_error_harmonic_percent: harmonic, basis } = model;
   const claims = typeof stiffness === "number";
@@ -57,6 +66,7 @@ export function accuracyTexts({ numerical, model }) {
   ];
 }
 
+/** @param {JobResult} result */
 export function showHeadline(result) {
   const tiles = headlines(result);
   const box = byId("headline");
@@ -74,6 +84,7 @@ export function showHeadline(result) {
   show(box, tiles.length > 0);
 }
 
+/** @param {string} name @param {string} meaning */
 function tip(name, meaning) {
   const summary = el("summary", { title: meaning }, "?");
   summary.setAttribute("aria-label", `What is: ${name}?`);
@@ -82,11 +93,12 @@ function tip(name, meaning) {
     if (event.key === "Escape") details.open = false;
   });
   details.addEventListener("focusout", (event) => {
-    if (!details.contains(event.relatedTarget)) details.open = false;
+    if (!details.contains(/** @type {Node | null} */ (event.relatedTarget))) details.open = false;
   });
   return details;
 }
 
+/** @param {ImpactResult} impact */
 function impactNote({ force_n: force, source, applied, zhou2008_force_n: zhou, reduction_percent: reduction }) {
   if (applied === false) return "only reported: the mesh force in the equations already holds it";
   if (force === 0) return "no early contact: the teeth enter without a blow";
@@ -95,9 +107,11 @@ function impactNote({ force_n: force, source, applied, zhou2008_force_n: zhou, r
   return `${number(reduction, 3)} % below Zhou 2008 (${number(zhou, 4)} N)${used}`;
 }
 
+/** @param {PerHalf} sides */
 const alike = ({ left, right }) => Math.abs(left - right) <= 1e-9 * Math.max(Math.abs(left), Math.abs(right));
-/** One number where both halves have the same. */
+/** One number where both halves have the same. @param {PerHalf} sides */
 const pair = (sides) => (alike(sides) ? number(sides.left, 4) : `${number(sides.left, 4)} / ${number(sides.right, 4)}`);
+/** @param {PerHalf} sides */
 const sidesNote = (sides) => {
   const most = number(Math.max(sides.left, sides.right) / GRAVITY, 3);
   return alike(sides) ? `each half, left and right alike; ${most} g` : `left / right; at most ${most} g`;

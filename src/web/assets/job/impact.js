@@ -1,20 +1,21 @@
 // The mesh-in impact: the forces beside each other, the pulse, what they come from.
 
-import { byId, fillRows, fillValues, show } from "../common/dom.js";
+import { byId, fillRows, fillValues, show, showFigureOf } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { draw } from "../common/plots.js";
 import { pulsePlot } from "./impact_plots.js";
 import { ACTS_ON, IMPACTS } from "./words.js";
 
+/** @param {JobContext} context */
 export async function showImpact({ result: { impact, geometry, response, mesh }, input }) {
   if (!impact) return;
   fillRows(byId("impact-table").tBodies[0], impactRows(impact));
   fillValues(byId("impact-values"), impactValues(impact));
   show(byId("impact"));
   const frequency = response?.mesh_frequency_hz ?? geometry?.mesh_frequency_hz;
-  const pulse = pulsePlot(impact, frequency);
-  show(byId("impact-plot").closest("figure"), Boolean(pulse));
-  if (!pulse) return;
+  const pulse = pulsePlot(impact, frequency ?? null);
+  showFigureOf(byId("impact-plot"), Boolean(pulse));
+  if (!pulse || !frequency) return;
   const stagger = input?.design?.half_stagger;
   byId("impact-note").textContent = [
     `Once per mesh period (${number(1e6 / frequency, 4)} µs) and half.`,
@@ -24,6 +25,7 @@ export async function showImpact({ result: { impact, geometry, response, mesh },
   await draw(byId("impact-plot"), pulse.traces, pulse.axes);
 }
 
+/** @param {ImpactResult} impact @returns {Child[][]} */
 export function impactRows(impact) {
   const calculated = typeof impact.zhou2008_force_n === "number";
   const first = impact.source === "given" ? "Given" : "Corner contact, buffered by the pairs in mesh";
@@ -33,7 +35,9 @@ export function impactRows(impact) {
   ];
 }
 
+/** @param {ImpactResult} impact @returns {ValueRow[]} */
 export function impactValues(impact) {
+  /** @param {number | null | undefined} shown */
   const value = (shown, digits = 4) => (typeof shown === "number" ? number(shown, digits) : null);
   return [
     ["Excites the response", impact.applied === false ? "no: only reported" : (IMPACTS[impact.source] ?? impact.source)],

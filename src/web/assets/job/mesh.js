@@ -1,6 +1,6 @@
 // Mesh stiffness, transmission error, load sharing and the load on the flank.
 
-import { byId, fillValues, show } from "../common/dom.js";
+import { byAnyId, byId, fillValues, show, showFigureOf } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { draw } from "../common/plots.js";
 import { errorPlot, flankPlot, harmonicsPlot, sharePlot, sharingPlot, stiffnessPlot } from "./mesh_plots.js";
@@ -8,7 +8,8 @@ import { STIFFNESS } from "./words.js";
 
 const LAWS = { transmission_error: "equivalent to the transmission error", secant: "secant", tangent: "tangent" };
 
-export async function showMesh({ result: { mesh, geometry }, input }) {
+/** @param {JobContext} context */
+export async function showMesh({ result: { mesh }, input, gearData }) {
   if (!mesh) return;
   fillValues(byId("mesh-values"), meshValues(mesh, input));
   show(byId("mesh"));
@@ -16,9 +17,9 @@ export async function showMesh({ result: { mesh, geometry }, input }) {
     plot("stiffness-plot", stiffnessPlot(mesh)),
     plot("error-plot", errorPlot(mesh)),
     plot("harmonics-plot", harmonicsPlot(mesh)),
-    plot("share-plot", sharePlot(mesh, geometry)),
+    plot("share-plot", sharePlot(mesh, gearData)),
     plot("sharing-plot", sharingPlot(mesh)),
-    plot("flank-plot", flankPlot(mesh, geometry, input)),
+    plot("flank-plot", flankPlot(mesh, gearData)),
   ]);
   if (typeof mesh.max_line_load_n_per_mm === "number") {
     byId("flank-note").textContent = [
@@ -28,12 +29,15 @@ export async function showMesh({ result: { mesh, geometry }, input }) {
     ].join("");
   }
   byId("share-note").textContent = `A to E: theoretical start, inner and outer limits of single contact and end at the end of the face where teeth enter.`;
-  show(byId("share-note"), Boolean(geometry?.transverse_contact_ratio));
+  show(byId("share-note"), Boolean(gearData));
 }
 
+/** @param {number | null | undefined} low @param {number | null | undefined} high @param {number} [digits] */
 const range = (low, high, digits) => (typeof low === "number" && typeof high === "number" ? (low === high ? number(low, digits) : `${number(low, digits)} to ${number(high, digits)}`) : null);
+/** @param {number | null | undefined} shown */
 const value = (shown, digits = 5) => (typeof shown === "number" ? number(shown, digits) : null);
 
+/** @param {MeshResult} mesh @param {JobInput} input @returns {ValueRow[]} */
 export function meshValues(mesh, input) {
   const { axial_force_n: axial, apex_sensitivity: apex } = mesh;
   const law = mesh.contact_force ? "none: the force of the loaded contact over approach and phase" : mesh.source === "ltca" ? LAWS[input?.model?.mesh_stiffness?.law] : null;
@@ -57,7 +61,9 @@ export function meshValues(mesh, input) {
   ];
 }
 
+/** @param {string} id @param {Plot | null} picture */
 async function plot(id, picture) {
-  show(byId(id).closest("figure"), Boolean(picture));
-  if (picture) await draw(byId(id), picture.traces, picture.axes);
+  const box = byAnyId(id);
+  showFigureOf(box, Boolean(picture));
+  if (picture) await draw(box, picture.traces, picture.axes);
 }

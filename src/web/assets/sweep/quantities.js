@@ -1,6 +1,6 @@
-// What a point has: the quantities that can be plotted, and the words for its motion.
+// The quantities of a point that can be plotted, and the kinds of its motion and contact.
 
-/** A quantity: its columns by half (or one column for both), its name and unit; `least` marks those of which less is better. */
+/** @type {SweepQuantity[]} */
 export const QUANTITIES = [
   half("mesh_circumferential_acceleration_rms", "m_s2", "Circumferential acceleration of the mesh, RMS", "m/s²", true),
   half("pinion_axial_acceleration_rms", "m_s2", "Axial acceleration of the pinion, RMS", "m/s²", true),
@@ -14,20 +14,23 @@ export const QUANTITIES = [
   whole("error_estimate", "Estimated relative error of the RMS", ""),
 ];
 
+/** @param {string} name @param {string} unitName @param {string} label @param {string} unit @param {boolean} [least] @returns {SweepQuantity} */
 function half(name, unitName, label, unit, least = false) {
   return { name, label, unit, least, columns: { left: `${name}_left_${unitName}`, right: `${name}_right_${unitName}` } };
 }
 
+/** @param {string} name @param {string} label @param {string} unit @param {boolean} [least] @returns {SweepQuantity} */
 function whole(name, label, unit, least = false) {
   return { name, label, unit, least, columns: { both: name } };
 }
 
+/** @param {SweepQuantity} quantity */
 export const columnsOf = (quantity) => Object.values(quantity.columns);
 
 /** Columns that every view needs. */
 export const ALWAYS = ["regime", "contact", "error"];
 
-/** Kinds of motion, from the simplest to the wildest; `colour` is a variable of the stylesheet. */
+/** Kinds of motion, from the most to the least regular. @type {PointKind[]} */
 export const REGIMES = [
   { is: (word) => word === "period-1", label: "period-1", detail: "repeats every mesh period", colour: "--regime-1" },
   { is: (word) => word === "period-2", label: "period-2", detail: "repeats every second mesh period", colour: "--regime-2" },
@@ -38,7 +41,7 @@ export const REGIMES = [
   { is: (word) => word === "unstable", label: "unstable", detail: "grows without bound", colour: "--regime-7" },
 ];
 
-/** What the teeth do. */
+/** Kinds of contact. @type {PointKind[]} */
 export const CONTACTS = [
   { is: (word) => word === "continuous", label: "continuous", detail: "the teeth never separate", colour: "--contact-1" },
   { is: (word) => word === "single-sided", label: "single-sided", detail: "the teeth separate and come back to the same flank", colour: "--contact-2" },
@@ -46,9 +49,10 @@ export const CONTACTS = [
   { is: (word) => word === "apart", label: "apart", detail: "the teeth do not touch", colour: "--contact-4" },
 ];
 
-export const FAILED = { label: "no response", detail: "the point could not be solved; the table says why", colour: "--no-response" };
+/** A point without a response. @type {PointKind} */
+export const FAILED = { is: () => false, label: "no response", detail: "the point could not be solved; the table says why", colour: "--no-response" };
 
-/** Number of a word's kind; the number of kinds for a point without a response, null for one that is not solved yet. */
+/** Number of a word's kind; the number of kinds for a point without a response, null for one that is not solved yet. @param {PointKind[]} kinds @param {string | null} word @param {string | null} error */
 export function kindOf(kinds, word, error) {
   if (error) return kinds.length;
   if (!word) return null;
