@@ -15,12 +15,16 @@ import { valueText } from "../sweep/axes.js";
  * @typedef {Described & { pickBoth: (job: ComparedJob) => FoundPerHalf }} QuantityPerHalf
  */
 
-/** @type {(name: string, label: string, unit: string, pick: Quantity["pick"], options?: { change?: Change }) => Quantity} */
+/**
+ * @type {(name: string, label: string, unit: string, pick: Quantity["pick"], options?: { change?: Change }) =>
+ *   Quantity}
+ */
 const quantity = (name, label, unit, pick, options = {}) => ({ name, label, unit, pick, ...options });
 
 /**
  * A value per half: one row when the halves are alike in all jobs.
- * @type {(name: string, label: string, unit: string, pick: QuantityPerHalf["pickBoth"], options?: { change?: Change }) => QuantityPerHalf}
+ * @type {(name: string, label: string, unit: string, pick: QuantityPerHalf["pickBoth"], options?: { change?: Change })
+ * => QuantityPerHalf}
  */
 const halves = (name, label, unit, pick, options) => ({ name, label, unit, pickBoth: pick, ...options });
 
@@ -92,7 +96,12 @@ function swing(mesh) {
   return typeof least === "number" && typeof most === "number" ? most - least : null;
 }
 
-/** The largest value of a column, and where it is. @param {ComparedJob["sweep"]} sweep @param {string} name @returns {Finding | null} */
+/**
+ * The largest value of a column, and where it is.
+ * @param {ComparedJob["sweep"]} sweep
+ * @param {string} name
+ * @returns {Finding | null}
+ */
 function largest(sweep, name) {
   const values = sweep?.data.column(name) ?? [];
   let found = -1;

@@ -44,7 +44,7 @@ function showInputs(jobs, reference) {
 function showNumbers(groups, jobs, reference) {
   const table = byId("numbers-table");
   head(table, "Quantity", jobs, reference);
-  for (const body of [...table.tBodies]) body.remove();
+  for (const body of Array.from(table.tBodies)) body.remove();
   const at = jobs.indexOf(reference);
   for (const { title, rows } of groups) {
     const heading = el("tr", { class: "group-title" }, el("th", { scope: "rowgroup", colSpan: jobs.length + 2 }, el("span", {}, title)));

@@ -10,7 +10,10 @@ export function showResponse({ result: { response }, catalogue, input }) {
   const { rms, confidence_interval_95: intervals } = response;
   /** @param {{ low?: number | null, high?: number | null }} [interval] */
   const unsure = ({ low, high } = {}) => (typeof low === "number" ? ` (${number(low, 4)} to ${number(high, 4)})` : "");
-  /** @param {string} name @param {"mesh_circumferential_acceleration_m_s2" | "pinion_axial_acceleration_m_s2"} quantity */
+  /**
+   * @param {string} name
+   * @param {"mesh_circumferential_acceleration_m_s2" | "pinion_axial_acceleration_m_s2"} quantity
+   */
   const row = (name, quantity) => [name, .../** @type {const} */ (["left", "right"]).map((half) => number(rms[quantity]?.[half]) + unsure(intervals?.[quantity]?.[half])), "m/s²"];
   fillRows(byId("rms").tBodies[0], [row("Circumferential, mesh", "mesh_circumferential_acceleration_m_s2"), row("Axial, pinion", "pinion_axial_acceleration_m_s2")]);
   byId("rms-note").textContent = intervals ? "In brackets: where the true values lie with 95 % probability; the motion does not repeat, and the record is finite." : "";
