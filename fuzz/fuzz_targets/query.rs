@@ -7,12 +7,12 @@ use axum::Router;
 use axum::body::Body;
 use axum::http::{HeaderName, HeaderValue, Request, StatusCode, Uri};
 use herringbone::api::{self, Access, AccessConfig, AppState, HttpConfig, Pages};
+use herringbone::store::{Store, StoreConfig};
+use herringbone::work::{Jobs, Solver, WorkConfig};
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
 use herringbone_job::result::JobResult;
-use herringbone::store::{Store, StoreConfig};
-use herringbone_job::study::{self, Channel, CheckReport, Outcome, SolveError, Surroundings};
-use herringbone::work::{Jobs, Solver, WorkConfig};
+use herringbone_job::study::{self, Channel, CheckReport, Outcome, SolveContext, SolveError};
 use http_body_util::BodyExt;
 use jiff::Timestamp;
 use libfuzzer_sys::fuzz_target;
@@ -33,7 +33,7 @@ impl Solver for AtOnce {
         study::input_hash(document)
     }
 
-    fn solve(&self, _: &JobDocument, _: &Surroundings) -> Result<Outcome, SolveError> {
+    fn solve(&self, _: &JobDocument, _: &SolveContext) -> Result<Outcome, SolveError> {
         let values = (0..5000).map(|index| f64::from(index).sin()).collect();
         let (quantity, unit) = ("acceleration".to_owned(), "m/s2".to_owned());
         let channel = Channel { name: "a_x_left".to_owned(), quantity, unit, t0_s: 0.5, dt_s: 1e-4, rms: 0.7, values };

@@ -7,7 +7,7 @@ use axum::Json;
 use axum::http::header::{CACHE_CONTROL, ETAG, RETRY_AFTER};
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
-use herringbone_job::document::Kind;
+use herringbone_job::document::JobKind;
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -88,7 +88,7 @@ impl From<&JobRecord> for Job {
                 input: format!("{path}/input"),
                 result: format!("{path}/result"),
                 series: format!("{path}/series"),
-                points: (job.kind == Kind::Sweep.word()).then(|| format!("{path}/points")),
+                points: (job.kind == JobKind::Sweep.as_str()).then(|| format!("{path}/points")),
                 itself: path,
             },
         }

@@ -6,7 +6,7 @@ use super::{problem, table};
 use clap::Args;
 use herringbone::api::{CsvField, Decimal, Problem};
 use herringbone_job::document::JobDocument;
-use herringbone_job::study::{self, Channel, NoStageStore, SolveError, Stage, StageStore, Surroundings};
+use herringbone_job::study::{self, Channel, NoStageStore, SolveContext, SolveError, Stage, StageStore};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -108,16 +108,16 @@ fn solve(document: &JobDocument, stages: &dyn StageStore) -> Result<study::Outco
     let started = Instant::now();
     let bar = bar();
     let progress = |stage: Stage, fraction: f64| {
-        bar.set_message(stage.word());
+        bar.set_message(stage.as_str());
         bar.set_position((fraction * 1000.0) as u64);
     };
     let outcome = study::solve(
         document,
-        &Surroundings {
+        &SolveContext {
             stages,
             progress: &progress,
             clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,
-            ..Surroundings::none()
+            ..SolveContext::none()
         },
     );
     bar.finish_and_clear();

@@ -166,7 +166,7 @@ impl Jobs {
         let idempotency = idempotency_key.map(|key| (key, hash_of(&input)));
         let job = NewJob {
             id: self.store().next_id(),
-            kind: document.kind.word(),
+            kind: document.kind.as_str(),
             name: document.name,
             label: document.label,
             input,

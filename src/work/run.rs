@@ -15,7 +15,7 @@ use crate::store::{
 use herringbone_job;
 use herringbone_job::document::JobDocument;
 use herringbone_job::result::JobResult;
-use herringbone_job::study::{Outcome, SolveError, Stage, Surroundings};
+use herringbone_job::study::{Outcome, SolveContext, SolveError, Stage};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -135,7 +135,7 @@ impl Run<'_> {
             let batch = points.take_unwritten();
             if progressed.has_changed().unwrap_or(false) || !batch.is_empty() {
                 let (stage, fraction) = *progressed.borrow_and_update();
-                if let Err(error) = self.recorder.progress(&self.job, stage.word(), fraction, &batch).await {
+                if let Err(error) = self.recorder.progress(&self.job, stage.as_str(), fraction, &batch).await {
                     tracing::warn!(%error, "progress not written");
                     points.put_back(batch);
                 }
@@ -182,7 +182,7 @@ impl Run<'_> {
     async fn write_points(&self, points: &RunningPoints, (stage, fraction): Progress) {
         let batch = points.take_unwritten();
         if !batch.is_empty() {
-            self.patiently(|| self.recorder.progress(&self.job, stage.word(), fraction, &batch)).await;
+            self.patiently(|| self.recorder.progress(&self.job, stage.as_str(), fraction, &batch)).await;
         }
     }
 
@@ -225,7 +225,7 @@ struct Work<'a> {
 impl Work<'_> {
     fn solve(&self, document: &JobDocument, input_hash: String, progress: &watch::Sender<Progress>) -> Ending {
         let started = Instant::now();
-        let surroundings = Surroundings {
+        let context = SolveContext {
             stages: self.stages,
             points: self.points,
             progress: &|stage, fraction| {
@@ -234,7 +234,7 @@ impl Work<'_> {
             canceled: &|| self.stop.is_asked(),
             clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,
         };
-        match self.solver.solve(document, &surroundings) {
+        match self.solver.solve(document, &context) {
             Ok(outcome) => self.packed(outcome, input_hash).unwrap_or_else(|error| Ending::Failed(internal(&error))),
             Err(SolveError::Canceled(_)) => Ending::Stopped,
             Err(error) => Ending::Failed(failure_of(error)),

@@ -2,7 +2,7 @@
 
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
-use herringbone_job::study::{self, CheckReport, Outcome, SolveError, Surroundings};
+use herringbone_job::study::{self, CheckReport, Outcome, SolveContext, SolveError};
 
 /// Checks and solves documents. Called on plain threads; may take long and may panic.
 pub trait Solver: Send + Sync + 'static {
@@ -19,7 +19,7 @@ pub trait Solver: Send + Sync + 'static {
     ///
     /// # Errors
     /// Why there is no result.
-    fn solve(&self, document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError>;
+    fn solve(&self, document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError>;
 
     /// Results and stages stored under another version are not reused.
     fn version(&self) -> &'static str;
@@ -38,8 +38,8 @@ impl Solver for StudySolver {
         study::input_hash(document)
     }
 
-    fn solve(&self, document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
-        study::solve(document, surroundings)
+    fn solve(&self, document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
+        study::solve(document, context)
     }
 
     fn version(&self) -> &'static str {

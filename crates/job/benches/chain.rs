@@ -5,7 +5,7 @@
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use herringbone_job::document::JobDocument;
 use herringbone_job::parse_value;
-use herringbone_job::study::{self, Surroundings};
+use herringbone_job::study::{self, SolveContext};
 use serde_json::{Value, json};
 use std::hint::black_box;
 
@@ -18,8 +18,8 @@ fn example(change: impl FnOnce(&mut Value)) -> JobDocument {
 }
 
 fn solve(document: &JobDocument) -> study::Outcome {
-    let surroundings = Surroundings::none();
-    study::solve(document, &surroundings).expect("the example solves")
+    let context = SolveContext::none();
+    study::solve(document, &context).expect("the example solves")
 }
 
 fn documents(criterion: &mut Criterion) {

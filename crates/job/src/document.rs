@@ -7,8 +7,8 @@ use serde::Serialize;
 /// How much a job computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
-#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
-pub enum Kind {
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Kind))]
+pub enum JobKind {
     /// Geometry, loaded contact and impact.
     Mesh,
     /// One operating point up to its vibration response.
@@ -17,11 +17,11 @@ pub enum Kind {
     Sweep,
 }
 
-impl Kind {
-    pub const ALL: [(&'static str, Kind); 3] =
-        [("mesh", Kind::Mesh), ("response", Kind::Response), ("sweep", Kind::Sweep)];
+impl JobKind {
+    pub const ALL: [(&'static str, JobKind); 3] =
+        [("mesh", JobKind::Mesh), ("response", JobKind::Response), ("sweep", JobKind::Sweep)];
 
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         Self::ALL.iter().find(|(_, kind)| *kind == self).map_or("response", |(word, _)| word)
     }
 }
@@ -29,13 +29,13 @@ impl Kind {
 /// A job document with every default filled in and every value within its range.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JobDocument {
-    pub kind: Kind,
+    pub kind: JobKind,
     pub name: Option<String>,
     pub label: Option<String>,
-    pub design: Design,
-    pub operation: Operation,
-    pub model: Model,
-    pub analysis: Analysis,
+    pub design: DesignInput,
+    pub operation: OperationInput,
+    pub model: ModelInput,
+    pub analysis: AnalysisInput,
     /// Only for sweeps.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub axes: Vec<Axis>,
@@ -58,7 +58,7 @@ impl JobDocument {
 pub const DEFAULT_BACKLASH_UM: f64 = 2.0;
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Design {
+pub struct DesignInput {
     pub normal_module_mm: f64,
     pub pressure_angle_deg: f64,
     pub pressure_angle_plane: PressureAnglePlane,
@@ -69,11 +69,11 @@ pub struct Design {
     /// Total play along s; [`DEFAULT_BACKLASH_UM`] when null.
     pub backlash_um: Option<f64>,
     pub half_stagger: f64,
-    pub material: Material,
-    pub pinion: Gear,
-    pub gear: Gear,
-    pub supports: Supports,
-    pub assembly: Assembly,
+    pub material: MaterialInput,
+    pub pinion: GearInput,
+    pub gear: GearInput,
+    pub supports: SupportsInput,
+    pub assembly: AssemblyInput,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -84,7 +84,7 @@ pub enum PressureAnglePlane {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Material {
+pub struct MaterialInput {
     pub youngs_modulus_gpa: f64,
     pub poissons_ratio: f64,
     pub density_kg_m3: f64,
@@ -107,7 +107,7 @@ impl Hand {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Gear {
+pub struct GearInput {
     pub teeth: u32,
     pub left_half_hand: Hand,
     pub profile_shift: f64,
@@ -122,42 +122,42 @@ pub struct Gear {
     pub face_width_mm: Option<f64>,
     /// Material of this gear where it differs from the design's.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub material: Option<Material>,
+    pub material: Option<MaterialInput>,
     #[serde(flatten)]
-    pub flank: Flank,
+    pub flank: FlankInput,
     /// Modifications of one half where they differ from those of both.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub left: Option<Flank>,
+    pub left: Option<FlankInput>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub right: Option<Flank>,
+    pub right: Option<FlankInput>,
     /// Modifications of the other flanks, those in contact under negative torque, where they differ.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub coast: Option<Coast>,
+    pub coast: Option<CoastInput>,
 }
 
 /// Flank modifications of the flanks that are in contact while the pinion is driven.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Coast {
+pub struct CoastInput {
     #[serde(flatten)]
-    pub flank: Flank,
+    pub flank: FlankInput,
     /// Modifications of one half where they differ from those of both.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub left: Option<Flank>,
+    pub left: Option<FlankInput>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub right: Option<Flank>,
+    pub right: Option<FlankInput>,
 }
 
 /// Flank modifications: material removed, measured in the transverse plane along the base tangent.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Flank {
-    pub tip_relief: TipRelief,
+pub struct FlankInput {
+    pub tip_relief: TipReliefInput,
     pub lead_crowning_um: f64,
     pub helix_slope_um: f64,
-    pub end_relief: EndRelief,
+    pub end_relief: EndReliefInput,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct TipRelief {
+pub struct TipReliefInput {
     pub amount_um: f64,
     pub length_mm: f64,
     pub shape: ReliefShape,
@@ -166,14 +166,14 @@ pub struct TipRelief {
 pub use herringbone_physics::gear::{ReliefShape, Rotation};
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EndRelief {
+pub struct EndReliefInput {
     pub amount_um: f64,
     pub length_mm: f64,
 }
 
 /// Shafts and bearings, per half. What is null is derived (`study::supports`), and zero is not there.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Supports {
+pub struct SupportsInput {
     pub pinion_lateral_n_per_um: Option<f64>,
     pub gear_lateral_n_per_um: Option<f64>,
     pub pinion_halves_axial_n_per_um: Option<f64>,
@@ -187,7 +187,7 @@ pub struct Supports {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Assembly {
+pub struct AssemblyInput {
     pub center_distance_error_um: f64,
     pub in_plane_misalignment_um: f64,
     pub out_of_plane_misalignment_um: f64,
@@ -195,20 +195,20 @@ pub struct Assembly {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Operation {
+pub struct OperationInput {
     pub pinion_speed_rpm: f64,
     pub pinion_torque_nm: f64,
     pub rotation: Rotation,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Model {
+pub struct ModelInput {
     pub plane: Plane,
     pub mesh_damping_ratio: f64,
     pub damping_in_gap: bool,
     pub mesh_force: MeshForce,
     pub mesh_stiffness: MeshStiffness,
-    pub impact: Impact,
+    pub impact: ImpactInput,
 }
 
 /// What the equations of motion contain of the mesh.
@@ -244,7 +244,7 @@ pub struct Ltca {
     pub line_stiffness_n_per_mm_um: f64,
     /// How fine the finite elements of fidelity `fe` are.
     pub elements: Elements,
-    pub body: Body,
+    pub body: BodyInput,
     pub corner_contact: bool,
     pub law: StiffnessLaw,
     /// Agreement of stiffness and transmission error between chosen positions, as a part of their means.
@@ -288,7 +288,7 @@ pub enum Elements {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Body {
+pub enum BodyInput {
     Rim,
     Bore,
 }
@@ -297,12 +297,12 @@ pub enum Body {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum GivenStiffness {
-    Harmonics { mean_n_per_um: f64, harmonics: Vec<Harmonic> },
+    Harmonics { mean_n_per_um: f64, harmonics: Vec<HarmonicInput> },
     Samples { samples_n_per_um: Vec<f64> },
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Harmonic {
+pub struct HarmonicInput {
     /// Amplitude as a fraction of the mean.
     pub amplitude: f64,
     pub phase_rad: f64,
@@ -310,20 +310,20 @@ pub struct Harmonic {
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "source", rename_all = "snake_case")]
-pub enum Impact {
-    CornerContact(CornerImpact),
-    Zhou2008(CornerImpact),
+pub enum ImpactInput {
+    CornerContact(CornerImpactInput),
+    Zhou2008(CornerImpactInput),
     None,
-    Given(GivenImpact),
+    Given(GivenImpactInput),
 }
 
-impl Impact {
+impl ImpactInput {
     /// What the impact moves.
     pub fn acts_on(&self) -> ActsOn {
         match self {
-            Impact::CornerContact(corner) | Impact::Zhou2008(corner) => corner.acts_on,
-            Impact::Given(given) => given.acts_on,
-            Impact::None => ActsOn::Torsion,
+            ImpactInput::CornerContact(corner) | ImpactInput::Zhou2008(corner) => corner.acts_on,
+            ImpactInput::Given(given) => given.acts_on,
+            ImpactInput::None => ActsOn::Torsion,
         }
     }
 }
@@ -339,7 +339,7 @@ pub enum ActsOn {
 }
 
 impl ActsOn {
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             ActsOn::Torsion => "torsion",
             ActsOn::All => "all",
@@ -348,7 +348,7 @@ impl ActsOn {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CornerImpact {
+pub struct CornerImpactInput {
     pub acts_on: ActsOn,
     pub duration: ImpactDuration,
     /// Start of the pulse after the theoretical start of contact; when the pair enters (the corner contact) if null.
@@ -366,7 +366,7 @@ pub enum ImpactDuration {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct GivenImpact {
+pub struct GivenImpactInput {
     pub acts_on: ActsOn,
     pub force_n: f64,
     pub duration_mesh_periods: f64,
@@ -374,10 +374,10 @@ pub struct GivenImpact {
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Analysis {
+pub struct AnalysisInput {
     pub accuracy: f64,
-    pub method: Method,
-    pub integrator: Integrator,
+    pub method: MethodInput,
+    pub integrator: IntegratorInput,
     pub mesh_periods: u32,
     pub record_mesh_periods: u32,
     pub samples_per_mesh_period: u32,
@@ -389,7 +389,7 @@ pub struct Analysis {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Method {
+pub enum MethodInput {
     Auto,
     Periodic,
     Integrate,
@@ -397,7 +397,7 @@ pub enum Method {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Integrator {
+pub enum IntegratorInput {
     /// Event-exact Taylor series on the piecewise-linear equations.
     Taylor,
     /// Variable-step fourth-order Runge–Kutta, as the source paper used.

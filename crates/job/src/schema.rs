@@ -1,6 +1,6 @@
 //! The JSON Schema of the job document, from the same declarations that read it.
 
-use super::document::Kind;
+use super::document::JobKind;
 use super::fields;
 use super::reader::{FieldDescription, Reading};
 use serde_json::{Map, Value, json};
@@ -29,20 +29,20 @@ pub fn job_document_schema() -> Value {
 }
 
 /// The same for one kind of job: `kind` fixed, and without the fields that only sweeps have.
-pub fn job_document_schema_of(kind: Kind) -> Value {
+pub fn job_document_schema_of(kind: JobKind) -> Value {
     let mut schema = job_document_schema();
-    schema["title"] = json!(format!("JobDocument ({})", kind.word()));
+    schema["title"] = json!(format!("JobDocument ({})", kind.as_str()));
     if let Some(properties) = schema["properties"].as_object_mut() {
-        if kind != Kind::Sweep {
+        if kind != JobKind::Sweep {
             for name in ["axes", "continuation", "record"] {
                 properties.remove(name);
             }
         }
         let help = properties.get("kind").and_then(|field| field.get("description")).cloned();
-        let mut field = json!({"const": kind.word(), "description": help});
-        if kind == Kind::Response {
+        let mut field = json!({"const": kind.as_str(), "description": help});
+        if kind == JobKind::Response {
             // What a document without a kind means.
-            field = json!({"enum": [kind.word(), null], "default": kind.word(), "description": help});
+            field = json!({"enum": [kind.as_str(), null], "default": kind.as_str(), "description": help});
         }
         properties.insert("kind".to_owned(), field);
         if let Some(axes) = properties.get_mut("axes") {
@@ -50,7 +50,7 @@ pub fn job_document_schema_of(kind: Kind) -> Value {
             axes["type"] = json!("array");
         }
     }
-    let needs = |name: &str| (kind, name) == (Kind::Sweep, "axes") || (kind != Kind::Response && name == "kind");
+    let needs = |name: &str| (kind, name) == (JobKind::Sweep, "axes") || (kind != JobKind::Response && name == "kind");
     for name in ["kind", "axes"].into_iter().filter(|name| needs(name)) {
         push_required(&mut schema, name);
     }

@@ -1,6 +1,6 @@
 //! What sweeps consist of: the axes and rows of a stored one without reading the rest of its document, and the document of a row.
 
-use super::document::{JobDocument, Kind};
+use super::document::{JobDocument, JobKind};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::{Value, json};
@@ -8,7 +8,13 @@ use serde_json::{Value, json};
 impl JobDocument {
     /// A response with the inputs of this sweep as they stand, without axes.
     pub fn without_sweep(&self) -> JobDocument {
-        JobDocument { kind: Kind::Response, axes: Vec::new(), continuation: None, record: Vec::new(), ..self.clone() }
+        JobDocument {
+            kind: JobKind::Response,
+            axes: Vec::new(),
+            continuation: None,
+            record: Vec::new(),
+            ..self.clone()
+        }
     }
 
     /// The document of a row of this sweep as a job of its own: a response with the values of the axes put in. None where the sweep

@@ -26,12 +26,12 @@ fn with(pointer: &str, value: Value) -> Value {
 #[test]
 fn the_example_is_read_as_written() {
     let document = parse(include_bytes!("../../../examples/table1.json")).expect("valid");
-    assert_eq!(document.kind, Kind::Response);
+    assert_eq!(document.kind, JobKind::Response);
     assert_eq!(document.design.pinion.teeth, 17);
     assert_eq!(document.design.pressure_angle_plane, PressureAnglePlane::Transverse);
     assert_eq!(document.design.gear.left_half_hand, Hand::Right);
     assert_eq!(document.operation.pinion_torque_nm, 800.0);
-    assert!(matches!(document.model.impact, Impact::CornerContact(_)));
+    assert!(matches!(document.model.impact, ImpactInput::CornerContact(_)));
 }
 
 #[test]

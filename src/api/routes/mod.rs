@@ -31,7 +31,7 @@ use crate::store::{JobId, JobRecord, State};
 use axum::Router;
 use axum::middleware::from_fn;
 use axum::routing::get;
-use herringbone_job::document::Kind;
+use herringbone_job::document::JobKind;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -101,7 +101,7 @@ fn too_many_followers() -> Refusal {
 /// The stored document of a sweep, or 404.
 async fn sweep_input(state: &AppState, id: JobId) -> Result<String, Refusal> {
     let job = existing(state, id).await?;
-    if job.kind != Kind::Sweep.word() {
+    if job.kind != JobKind::Sweep.as_str() {
         return Err(Refusal::not_found("The job is not a sweep."));
     }
     state.jobs().store().input(id).await?.ok_or_else(no_job)

@@ -12,7 +12,7 @@ use axum::extract::State;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream::{Stream, StreamExt, unfold};
-use herringbone_job::document::Kind;
+use herringbone_job::document::JobKind;
 use serde_json::json;
 use std::convert::Infallible;
 use tokio_util::sync::CancellationToken;
@@ -28,7 +28,7 @@ use tokio_util::sync::CancellationToken;
 #[utoipa::path(
     get, path = "/jobs/events", tag = "jobs",
     params(
-        ("kind" = Option<Kind>, Query, description = "Jobs of this kind; deletions are told of all."),
+        ("kind" = Option<JobKind>, Query, description = "Jobs of this kind; deletions are told of all."),
         ("label" = Option<String>, Query, description = "Exactly this label; an empty one counts as left out. Deletions \
             are told of all."),
     ),
@@ -40,7 +40,7 @@ use tokio_util::sync::CancellationToken;
     )
 )]
 pub async fn watch_jobs(State(state): State<AppState>, mut query: Parameters) -> Result<Response, Refusal> {
-    let filter = Filter { kind: query.choice("kind", &Kind::ALL).map(Kind::word), label: query.text("label") };
+    let filter = Filter { kind: query.choice("kind", &JobKind::ALL).map(JobKind::as_str), label: query.text("label") };
     query.finish()?;
     let place = (state.follow().ok_or_else(super::too_many_followers)?, OpenStream::new());
     // Listens from here on: what the client reads after the first event holds everything before.

@@ -5,8 +5,8 @@ use crate::document::*;
 use crate::reader::Object;
 use crate::violation::Violation;
 
-pub(super) fn operation(object: Object) -> Operation {
-    let operation = Operation {
+pub(super) fn operation(object: Object) -> OperationInput {
+    let operation = OperationInput {
         pinion_speed_rpm: object
             .number("pinion_speed_rpm", number(0.1, 200_000.0, "r/min", None, "Speed of the pinion.")),
         pinion_torque_nm: object.number(
@@ -31,8 +31,8 @@ pub(super) fn operation(object: Object) -> Operation {
     operation
 }
 
-pub(super) fn analysis(object: Object) -> Analysis {
-    let analysis = Analysis {
+pub(super) fn analysis(object: Object) -> AnalysisInput {
+    let analysis = AnalysisInput {
         accuracy: object.number(
             "accuracy",
             number(
@@ -45,15 +45,15 @@ pub(super) fn analysis(object: Object) -> Analysis {
         ),
         method: object.choice(
             "method",
-            &[("auto", Method::Auto), ("periodic", Method::Periodic), ("integrate", Method::Integrate)],
-            Method::Auto,
+            &[("auto", MethodInput::Auto), ("periodic", MethodInput::Periodic), ("integrate", MethodInput::Integrate)],
+            MethodInput::Auto,
             "auto",
             "auto (the cheapest that is right), periodic, or integrate from the initial state.",
         ),
         integrator: object.choice(
             "integrator",
-            &[("taylor", Integrator::Taylor), ("runge_kutta_4", Integrator::RungeKutta4)],
-            Integrator::Taylor,
+            &[("taylor", IntegratorInput::Taylor), ("runge_kutta_4", IntegratorInput::RungeKutta4)],
+            IntegratorInput::Taylor,
             "taylor",
             "Time integration: event-exact Taylor series, or the variable-step fourth-order Runge-Kutta of the source.",
         ),
@@ -94,9 +94,9 @@ pub(super) fn analysis(object: Object) -> Analysis {
         );
         object.reading().violate(Violation::new(object.pointer_to("samples_per_mesh_period"), "conflict", detail));
     }
-    if analysis.initial_state.is_some() && analysis.method != Method::Integrate {
+    if analysis.initial_state.is_some() && analysis.method != MethodInput::Integrate {
         conflict(&object, "initial_state", "needs method \"integrate\"");
     }
     object.finish();
-    Analysis { record_mesh_periods: analysis.record_mesh_periods.min(analysis.mesh_periods), ..analysis }
+    AnalysisInput { record_mesh_periods: analysis.record_mesh_periods.min(analysis.mesh_periods), ..analysis }
 }

@@ -5,7 +5,7 @@ use crate::document::*;
 use crate::reader::Object;
 use crate::violation::Violation;
 
-pub(super) fn design(object: Object) -> Design {
+pub(super) fn design(object: Object) -> DesignInput {
     let of_both = material(object.object("material", false, "Material of both gears."), &STEEL);
     let pinion_hand = Hand::Left;
     let pinion = gear(object.object("pinion", true, "The driving gear."), pinion_hand, &of_both);
@@ -18,7 +18,7 @@ pub(super) fn design(object: Object) -> Design {
             "is the same hand as the pinion's left half; mating halves of an external pair have opposite hands",
         ));
     }
-    let design = Design {
+    let design = DesignInput {
         normal_module_mm: object.number("normal_module_mm", number(0.1, 100.0, "mm", None, "Normal module m_n.")),
         pressure_angle_deg: object
             .number("pressure_angle_deg", number(10.0, 35.0, "deg", Some(20.0), "Pressure angle of the rack.")),
@@ -64,7 +64,7 @@ pub(super) fn design(object: Object) -> Design {
 }
 
 /// What a gear is wider than the design on the side of the gap has to find room there.
-fn widths(object: &Object, design: &Design) {
+fn widths(object: &Object, design: &DesignInput) {
     let widest_mm = design.face_width_mm + design.gap_width_mm;
     for (name, gear) in [("pinion", &design.pinion), ("gear", &design.gear)] {
         if let Some(width_mm) = gear.face_width_mm.filter(|width_mm| *width_mm > widest_mm) {
@@ -78,11 +78,11 @@ fn widths(object: &Object, design: &Design) {
     }
 }
 
-const STEEL: Material = Material { youngs_modulus_gpa: 206.0, poissons_ratio: 0.3, density_kg_m3: 7850.0 };
+const STEEL: MaterialInput = MaterialInput { youngs_modulus_gpa: 206.0, poissons_ratio: 0.3, density_kg_m3: 7850.0 };
 
 /// A material; what is left out comes from `base`.
-fn material(object: Object, base: &Material) -> Material {
-    let material = Material {
+fn material(object: Object, base: &MaterialInput) -> MaterialInput {
+    let material = MaterialInput {
         youngs_modulus_gpa: object.number(
             "youngs_modulus_gpa",
             number(1.0, 1000.0, "GPa", Some(base.youngs_modulus_gpa), "Young's modulus."),
@@ -97,7 +97,7 @@ fn material(object: Object, base: &Material) -> Material {
 }
 
 /// Flank modifications of one half of `object`, where it gives any: what is left out is that of both.
-fn half(object: &Object, name: &'static str, help: &'static str, both: &Flank) -> Option<Flank> {
+fn half(object: &Object, name: &'static str, help: &'static str, both: &FlankInput) -> Option<FlankInput> {
     object.optional_object(name, help).map(|half| {
         let modification = flank(&half, Some(both));
         half.finish();
@@ -108,7 +108,7 @@ fn half(object: &Object, name: &'static str, help: &'static str, both: &Flank) -
 const LEFT: &str = "Flank modifications of the left half where they differ.";
 const RIGHT: &str = "Flank modifications of the right half where they differ.";
 
-fn gear(object: Object, default_hand: Hand, of_both: &Material) -> Gear {
+fn gear(object: Object, default_hand: Hand, of_both: &MaterialInput) -> GearInput {
     let default_word = if default_hand == Hand::Left { "left" } else { "right" };
     let flank = flank(&object, None);
     let left = half(&object, "left", LEFT, &flank);
@@ -118,9 +118,9 @@ fn gear(object: Object, default_hand: Hand, of_both: &Material) -> Gear {
         let flank = self::flank(&object, Some(&flank));
         let (left, right) = (half(&object, "left", LEFT, &flank), half(&object, "right", RIGHT, &flank));
         object.finish();
-        Coast { flank, left, right }
+        CoastInput { flank, left, right }
     });
-    let gear = Gear {
+    let gear = GearInput {
         teeth: object.integer("teeth", 5, 1000, None, "Number of teeth.") as u32,
         left_half_hand: object.choice(
             "left_half_hand",
@@ -188,11 +188,11 @@ fn gear(object: Object, default_hand: Hand, of_both: &Material) -> Gear {
 }
 
 /// Flank modifications among the fields of `object`; what is left out comes from `base`, or is zero.
-fn flank(object: &Object, base: Option<&Flank>) -> Flank {
-    let default = |pick: fn(&Flank) -> f64| Some(base.map_or(0.0, pick));
+fn flank(object: &Object, base: Option<&FlankInput>) -> FlankInput {
+    let default = |pick: fn(&FlankInput) -> f64| Some(base.map_or(0.0, pick));
     let tip = object.object("tip_relief", false, "Tip relief.");
     let base_shape = base.map_or(ReliefShape::Parabolic, |flank| flank.tip_relief.shape);
-    let tip_relief = TipRelief {
+    let tip_relief = TipReliefInput {
         amount_um: tip
             .number("amount_um", number(0.0, 1000.0, "um", default(|f| f.tip_relief.amount_um), "Relief at the tip.")),
         length_mm: tip.number(
@@ -218,7 +218,7 @@ fn flank(object: &Object, base: Option<&Flank>) -> Flank {
     }
     tip.finish();
     let end = object.object("end_relief", false, "End relief at both ends of the face width.");
-    let end_relief = EndRelief {
+    let end_relief = EndReliefInput {
         amount_um: end
             .number("amount_um", number(0.0, 1000.0, "um", default(|f| f.end_relief.amount_um), "Relief at the ends.")),
         length_mm: end.number(
@@ -230,7 +230,7 @@ fn flank(object: &Object, base: Option<&Flank>) -> Flank {
         conflict(&end, "length_mm", "is 0 mm while amount_um is above 0; a relief needs a length above 0 mm");
     }
     end.finish();
-    Flank {
+    FlankInput {
         tip_relief,
         lead_crowning_um: object.number(
             "lead_crowning_um",
@@ -256,10 +256,10 @@ fn flank(object: &Object, base: Option<&Flank>) -> Flank {
     }
 }
 
-fn supports(object: Object) -> Supports {
+fn supports(object: Object) -> SupportsInput {
     let spring = |name, help| object.optional_number(name, number(0.0, 1e7, "N/um", None, help));
     let torsion = |name, help| object.optional_number(name, number(0.0, 1e13, "N m/rad", None, help));
-    let supports = Supports {
+    let supports = SupportsInput {
         pinion_lateral_n_per_um: spring(
             "pinion_lateral_n_per_um",
             "Lateral support of each pinion half; scaled with the centre distance when null.",
@@ -303,9 +303,9 @@ fn supports(object: Object) -> Supports {
     supports
 }
 
-fn assembly(object: Object) -> Assembly {
+fn assembly(object: Object) -> AssemblyInput {
     let error = |name, help| object.number(name, number(-2000.0, 2000.0, "um", Some(0.0), help));
-    let assembly = Assembly {
+    let assembly = AssemblyInput {
         center_distance_error_um: error("center_distance_error_um", "Added to the centre distance."),
         in_plane_misalignment_um: error(
             "in_plane_misalignment_um",

@@ -47,7 +47,8 @@ pub fn parse_value(value: &Value) -> Result<JobDocument, DocumentError> {
 
 /// Reads the whole document (or, with [`Reading::describe`], declares all of its fields).
 pub fn read(root: Object) -> JobDocument {
-    let kind = root.choice("kind", &Kind::ALL, Kind::Response, "response", "What to compute: mesh, response or sweep.");
+    let kind =
+        root.choice("kind", &JobKind::ALL, JobKind::Response, "response", "What to compute: mesh, response or sweep.");
     let name = root.text("name", 200, "A name for people.");
     let label = root.text("label", 100, "A label to find jobs by.");
     let design = design::design(root.object("design", true, "The gear pair."));

@@ -5,7 +5,7 @@ use crate::document::*;
 use crate::reader::Object;
 use crate::violation::Violation;
 
-pub(super) fn model(object: Object) -> Model {
+pub(super) fn model(object: Object) -> ModelInput {
     let mesh_stiffness = mesh_stiffness(object.object("mesh_stiffness", false, "Where the mesh stiffness comes from."));
     let from_contact = matches!(mesh_stiffness, MeshStiffness::Ltca(_));
     let mesh_force = object.choice(
@@ -24,7 +24,7 @@ pub(super) fn model(object: Object) -> Model {
             "is contact, which needs a loaded contact analysis: mesh_stiffness.source ltca; with given and iso6336 it is stiffness",
         );
     }
-    let model = Model {
+    let model = ModelInput {
         plane: object.choice(
             "plane",
             &[("base", Plane::Base), ("pitch", Plane::Pitch)],
@@ -86,8 +86,8 @@ fn mesh_stiffness(object: Object) -> MeshStiffness {
     );
     let body = object.choice(
         "body",
-        &[("rim", Body::Rim), ("bore", Body::Bore)],
-        Body::Rim,
+        &[("rim", BodyInput::Rim), ("bore", BodyInput::Bore)],
+        BodyInput::Rim,
         "rim",
         "ltca: where the gear bodies are held: 3 normal modules below the root circle, or at the bore.",
     );
@@ -152,7 +152,7 @@ fn given_stiffness(object: &Object, wanted: bool) -> GivenStiffness {
         .unwrap_or_default()
         .into_iter()
         .map(|item| {
-            let harmonic = Harmonic {
+            let harmonic = HarmonicInput {
                 amplitude: item.number("amplitude", number(0.0, 1.0, "1", None, "Fraction of the mean.")),
                 phase_rad: item.number(
                     "phase_rad",
@@ -196,7 +196,7 @@ fn given_stiffness(object: &Object, wanted: bool) -> GivenStiffness {
 }
 
 /// Smallest value of 1 + Σ a_i cos(iφ + φ_i), bounded below by a fine sampling.
-fn lowest_of(harmonics: &[Harmonic]) -> f64 {
+fn lowest_of(harmonics: &[HarmonicInput]) -> f64 {
     let total: f64 = harmonics.iter().map(|harmonic| harmonic.amplitude).sum();
     if total < 1.0 {
         return 1.0 - total;
@@ -204,13 +204,14 @@ fn lowest_of(harmonics: &[Harmonic]) -> f64 {
     (0..4096)
         .map(|step| {
             let angle = std::f64::consts::TAU * f64::from(step) / 4096.0;
-            let term = |(index, h): (usize, &Harmonic)| h.amplitude * ((index + 1) as f64 * angle + h.phase_rad).cos();
+            let term =
+                |(index, h): (usize, &HarmonicInput)| h.amplitude * ((index + 1) as f64 * angle + h.phase_rad).cos();
             1.0 + harmonics.iter().enumerate().map(term).sum::<f64>()
         })
         .fold(f64::INFINITY, f64::min)
 }
 
-fn impact(object: Object) -> Impact {
+fn impact(object: Object) -> ImpactInput {
     let source = object.choice(
         "source",
         &[("corner_contact", 0), ("zhou2008", 1), ("none", 2), ("given", 3)],
@@ -225,7 +226,7 @@ fn impact(object: Object) -> Impact {
         "torsion",
         "What the impact moves: the torsional equations only (the source to the letter), or all: bending and axial motion too, as a normal force on the tooth does.",
     );
-    let corner = CornerImpact {
+    let corner = CornerImpactInput {
         acts_on,
         duration: object.choice(
             "duration",
@@ -264,10 +265,10 @@ fn impact(object: Object) -> Impact {
     }
     object.finish();
     match source {
-        0 => Impact::CornerContact(corner),
-        1 => Impact::Zhou2008(corner),
-        2 => Impact::None,
-        _ => Impact::Given(GivenImpact {
+        0 => ImpactInput::CornerContact(corner),
+        1 => ImpactInput::Zhou2008(corner),
+        2 => ImpactInput::None,
+        _ => ImpactInput::Given(GivenImpactInput {
             acts_on,
             force_n: force.unwrap_or(0.0),
             duration_mesh_periods: duration.unwrap_or(1.0),

@@ -8,15 +8,15 @@ use crate::violation::Violation;
 /// Most inputs that move with the first of an axis.
 const MAX_ALSO: usize = 16;
 
-pub(super) fn axes(root: &Object, kind: Kind) -> Vec<Axis> {
+pub(super) fn axes(root: &Object, kind: JobKind) -> Vec<Axis> {
     let help = "sweep: one or two inputs to vary.";
     let Some(objects) = root.objects("axes", 1, 2, help) else {
-        if kind == Kind::Sweep && !root.has("axes") {
+        if kind == JobKind::Sweep && !root.has("axes") {
             root.reading().violate(Violation::new("/axes", "missing", "is required for a sweep: one or two axes"));
         }
         return Vec::new();
     };
-    if kind != Kind::Sweep {
+    if kind != JobKind::Sweep {
         conflict(root, "axes", "is given, but kind is not \"sweep\"");
     }
     let axes: Vec<Axis> = objects.into_iter().map(axis).collect();
@@ -73,7 +73,7 @@ fn axis(object: Object) -> Axis {
     Axis { pointer, also, points }
 }
 
-pub(super) fn continuation(root: &Object, kind: Kind) -> Option<Continuation> {
+pub(super) fn continuation(root: &Object, kind: JobKind) -> Option<Continuation> {
     let value = root.choice(
         "continuation",
         &[
@@ -88,13 +88,13 @@ pub(super) fn continuation(root: &Object, kind: Kind) -> Option<Continuation> {
          up, then down, and where they differ. The steady motion is found from there; with method integrate, by \
          analysis.mesh_periods.",
     );
-    if kind != Kind::Sweep && root.has("continuation") {
+    if kind != JobKind::Sweep && root.has("continuation") {
         conflict(root, "continuation", "is given, but kind is not \"sweep\"");
     }
-    (kind == Kind::Sweep).then_some(value)
+    (kind == JobKind::Sweep).then_some(value)
 }
 
-pub(super) fn record(root: &Object, kind: Kind, axes: &[Axis]) -> Vec<Recorded> {
+pub(super) fn record(root: &Object, kind: JobKind, axes: &[Axis]) -> Vec<Recorded> {
     let help = "sweep: what every row carries beside its numbers: poincare (mesh displacement and velocity at the starts of the \
                 last mesh periods), spectrum (amplitudes at the mesh orders 1/4 to 20).";
     let permitted = Recorded::ALL.map(|(word, _)| word);
@@ -111,7 +111,7 @@ pub(super) fn record(root: &Object, kind: Kind, axes: &[Axis]) -> Vec<Recorded> 
             }
         }
     }
-    if kind != Kind::Sweep && !record.is_empty() {
+    if kind != JobKind::Sweep && !record.is_empty() {
         conflict(root, "record", "is given, but kind is not \"sweep\"");
         return Vec::new();
     }

@@ -1,6 +1,6 @@
 //! What a result says of its own errors: of the solution of the equations, and of the model of the mesh.
 
-use crate::document::{Body, Design, Elements, Fidelity, Flank, JobDocument, Ltca, MeshStiffness};
+use crate::document::{BodyInput, DesignInput, Elements, Fidelity, FlankInput, JobDocument, Ltca, MeshStiffness};
 use crate::result::{Accuracy, JobResult, Mesh, ModelError, Sweep};
 
 /// Largest differences that the comparisons with references found, in per cent.
@@ -135,14 +135,14 @@ fn told(bound: Bound, notes: &str) -> ModelError {
     }
 }
 
-fn analytic(design: &Design, ltca: &Ltca, mesh: Option<&Mesh>) -> ModelError {
+fn analytic(design: &DesignInput, ltca: &Ltca, mesh: Option<&Mesh>) -> ModelError {
     let helix_deg = design.helix_angle_deg;
     let mut bound = match (helix_deg == 0.0, ltca.body) {
-        (true, Body::Rim) => measured::SPUR_RIM,
-        (true, Body::Bore) => measured::SPUR_BORE,
+        (true, BodyInput::Rim) => measured::SPUR_RIM,
+        (true, BodyInput::Bore) => measured::SPUR_BORE,
         (false, _) if helix_deg > measured::STEEP_HELIX_DEG => measured::STEEP,
-        (false, Body::Rim) => measured::HELICAL_RIM,
-        (false, Body::Bore) => measured::HELICAL_BORE,
+        (false, BodyInput::Rim) => measured::HELICAL_RIM,
+        (false, BodyInput::Bore) => measured::HELICAL_BORE,
     };
     let mut notes = String::new();
     let few = design.pinion.teeth.min(design.gear.teeth) < measured::FEW_TEETH;
@@ -170,13 +170,13 @@ fn analytic(design: &Design, ltca: &Ltca, mesh: Option<&Mesh>) -> ModelError {
 }
 
 /// Largest tip relief of any flank.
-fn tip_relief_um(design: &Design) -> f64 {
+fn tip_relief_um(design: &DesignInput) -> f64 {
     let gears = [&design.pinion, &design.gear];
     let flanks = gears.into_iter().flat_map(|gear| {
         let both = [Some(&gear.flank), gear.left.as_ref(), gear.right.as_ref()];
         both.into_iter().flatten()
     });
-    flanks.map(|flank: &Flank| flank.tip_relief.amount_um).fold(0.0, f64::max)
+    flanks.map(|flank: &FlankInput| flank.tip_relief.amount_um).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

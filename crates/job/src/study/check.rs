@@ -6,7 +6,7 @@ use super::axes::check_axes;
 use super::prepare::{geometry, prepare};
 use super::{CheckReport, demand, vibration};
 use crate::DocumentError;
-use crate::document::{JobDocument, Kind};
+use crate::document::{JobDocument, JobKind};
 
 /// Checks that the gear of a document can exist and that everything it asks for can be computed: geometry and warnings.
 ///
@@ -16,13 +16,13 @@ use crate::document::{JobDocument, Kind};
 pub fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
     let prepared = prepare(document)?;
     vibration::channels(document)?;
-    if document.kind == Kind::Sweep {
+    if document.kind == JobKind::Sweep {
         check_axes(document)?;
     }
     let memory_mib = demand(document, 1).total_mib();
     Ok(CheckReport {
         geometry: geometry(&prepared),
-        supports: (document.kind != Kind::Mesh).then_some(prepared.supports),
+        supports: (document.kind != JobKind::Mesh).then_some(prepared.supports),
         memory_mib,
         warnings: prepared.warnings,
     })

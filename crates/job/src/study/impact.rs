@@ -4,7 +4,7 @@ use super::bounds;
 use super::equations::MotionPlane;
 use super::mesh::MeshStage;
 use super::prepare::Prepared;
-use crate::document::{CornerImpact, Impact, ImpactDuration, JobDocument, MeshForce};
+use crate::document::{CornerImpactInput, ImpactDuration, ImpactInput, JobDocument, MeshForce};
 use crate::result;
 use herringbone_physics::dynamics;
 use herringbone_physics::gear::{Half, Warning};
@@ -19,7 +19,7 @@ pub struct ImpactStage {
 /// Whether the impact of a document is put on the equations of motion, or only reported. The one place where that is decided.
 pub fn applied(document: &JobDocument) -> bool {
     // A mesh force by stiffness alone knows nothing of early contact; the loaded contact's contains it.
-    document.model.mesh_force == MeshForce::Stiffness && !matches!(document.model.impact, Impact::None)
+    document.model.mesh_force == MeshForce::Stiffness && !matches!(document.model.impact, ImpactInput::None)
 }
 
 /// Runs the impact stage: an impact that is not applied leaves no pulses. Warns of pulses that their model does not cover.
@@ -37,7 +37,7 @@ pub fn run(
     }
     if let Some(summary) = &mut stage.summary {
         summary.applied = applied;
-        summary.acts_on = document.model.impact.acts_on().word().to_owned();
+        summary.acts_on = document.model.impact.acts_on().as_str().to_owned();
     }
     warnings.extend(bounds::of_pulses(document, plane, &stage.pulses));
     stage
@@ -54,8 +54,8 @@ fn found(
     // The right half is staggered by the shift of the equations, unless its stiffness already is: then here.
     let shift = if mesh.stagger_included { -document.design.half_stagger } else { 0.0 };
     match &document.model.impact {
-        Impact::None => ImpactStage { summary: None, pulses: [None, None] },
-        Impact::Given(given) => {
+        ImpactInput::None => ImpactStage { summary: None, pulses: [None, None] },
+        ImpactInput::Given(given) => {
             let pulse = |shift: f64| dynamics::Impact::HalfSine {
                 force_n: given.force_n,
                 duration_mesh_periods: given.duration_mesh_periods,
@@ -70,8 +70,8 @@ fn found(
             };
             ImpactStage { summary: Some(summary), pulses: [Some(pulse(0.0)), Some(pulse(shift))] }
         }
-        Impact::CornerContact(corner) => calculated(prepared, plane, mesh, corner, true, shift, warnings),
-        Impact::Zhou2008(corner) => calculated(prepared, plane, mesh, corner, false, shift, warnings),
+        ImpactInput::CornerContact(corner) => calculated(prepared, plane, mesh, corner, true, shift, warnings),
+        ImpactInput::Zhou2008(corner) => calculated(prepared, plane, mesh, corner, false, shift, warnings),
     }
 }
 
@@ -87,7 +87,7 @@ fn calculated(
     prepared: &Prepared,
     plane: &MotionPlane,
     mesh: &MeshStage,
-    corner: &CornerImpact,
+    corner: &CornerImpactInput,
     buffered: bool,
     shift: f64,
     warnings: &mut Vec<Warning>,

@@ -24,7 +24,7 @@ mod sweep;
 mod vibration;
 
 use crate::DocumentError;
-use crate::document::{JobDocument, Kind};
+use crate::document::{JobDocument, JobKind};
 use crate::result::{Geometry, JobResult};
 use herringbone_physics::gear::Warning;
 
@@ -54,7 +54,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Stage::Geometry => "geometry",
             Stage::Mesh => "mesh",
@@ -82,20 +82,22 @@ impl StageStore for NoStageStore {
     fn save(&self, _key: &str, _stage: Stage, _bytes: &[u8]) {}
 }
 
-/// What a solve is given from outside besides the document.
-pub struct Surroundings<'a> {
+/// Services that a solve uses besides its document: stored stages and points, progress, cancellation, a clock.
+pub struct SolveContext<'a> {
+    /// Results of stages, stored for reuse.
     pub stages: &'a dyn StageStore,
-    /// Points of this sweep.
+    /// Solved points of this sweep.
     pub points: &'a dyn PointStore,
     /// Receives (stage, fraction of the whole job done).
     pub progress: &'a (dyn Fn(Stage, f64) + Sync),
+    /// Whether the solve is to stop; asked at every checkpoint.
     pub canceled: &'a (dyn Fn() -> bool + Sync),
     /// Milliseconds since an arbitrary start; the physics itself has no clock.
     pub clock_ms: &'a (dyn Fn() -> f64 + Sync),
 }
 
-impl Surroundings<'static> {
-    /// Nothing is kept, nobody looks on, and no time passes.
+impl SolveContext<'static> {
+    /// A context that stores nothing, reports nothing, never cancels, and whose clock stands still.
     pub fn none() -> Self {
         Self {
             stages: &NoStageStore,
@@ -170,18 +172,18 @@ impl SolveError {
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
+pub fn solve(document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
     // All that can be refused is refused before anything is solved.
     let report = check(document)?;
     let memo = MeshMemo::default();
-    if document.kind != Kind::Sweep {
-        let point = point::solve(document, surroundings, &memo, &Wanted::WHOLE)?;
+    if document.kind != JobKind::Sweep {
+        let point = point::solve(document, context, &memo, &Wanted::WHOLE)?;
         return Ok(Outcome { result: point.result, series: point.series });
     }
-    let started_ms = (surroundings.clock_ms)();
-    let kept = surroundings.points.load();
+    let started_ms = (context.clock_ms)();
+    let kept = context.points.load();
     let reused = if kept.rows.is_empty() { Vec::new() } else { vec!["points".to_owned()] };
-    let sweep = sweep::run(document, kept, surroundings, &memo)?;
+    let sweep = sweep::run(document, kept, context, &memo)?;
     let mut result = JobResult {
         geometry: Some(report.geometry),
         supports: report.supports,
@@ -192,7 +194,7 @@ pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outc
     };
     result.numerics.reused = reused;
     result.numerics.solver_version = SOLVER_VERSION.to_owned();
-    result.numerics.wall_ms.response = (surroundings.clock_ms)() - started_ms;
+    result.numerics.wall_ms.response = (context.clock_ms)() - started_ms;
     Ok(Outcome { result, series: Vec::new() })
 }
 

@@ -117,7 +117,12 @@ fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
     }
 }
 
-fn gear_spec(design: &doc::Design, gear: &doc::Gear, pointer: &str, warnings: &mut Vec<Warning>) -> gear::GearSpec {
+fn gear_spec(
+    design: &doc::DesignInput,
+    gear: &doc::GearInput,
+    pointer: &str,
+    warnings: &mut Vec<Warning>,
+) -> gear::GearSpec {
     let bore_diameter_mm = gear.bore_diameter_mm.unwrap_or_else(|| {
         let reference_mm = design.normal_module_mm * f64::from(gear.teeth) / design.helix_angle_deg.to_radians().cos();
         let assumed_mm = DEFAULT_BORE_FRACTION * reference_mm;
@@ -130,7 +135,7 @@ fn gear_spec(design: &doc::Design, gear: &doc::Gear, pointer: &str, warnings: &m
         });
         assumed_mm
     });
-    let flanks = |both: &doc::Flank, [left, right]: [&Option<doc::Flank>; 2]| {
+    let flanks = |both: &doc::FlankInput, [left, right]: [&Option<doc::FlankInput>; 2]| {
         [left.as_ref().unwrap_or(both), right.as_ref().unwrap_or(both)].map(flank)
     };
     gear::GearSpec {
@@ -148,7 +153,7 @@ fn gear_spec(design: &doc::Design, gear: &doc::Gear, pointer: &str, warnings: &m
     }
 }
 
-fn material(material: &doc::Material) -> gear::Material {
+fn material(material: &doc::MaterialInput) -> gear::Material {
     gear::Material {
         youngs_modulus_pa: material.youngs_modulus_gpa * 1e9,
         poissons_ratio: material.poissons_ratio,
@@ -156,7 +161,7 @@ fn material(material: &doc::Material) -> gear::Material {
     }
 }
 
-fn flank(flank: &doc::Flank) -> gear::FlankModification {
+fn flank(flank: &doc::FlankInput) -> gear::FlankModification {
     gear::FlankModification {
         tip_relief: gear::TipRelief {
             amount_m: flank.tip_relief.amount_um * 1e-6,
@@ -185,7 +190,7 @@ fn violation(reason: Infeasibility) -> Violation {
 
 /// A bore much smaller than the gear is not where its body is held: said where the bore was asked for.
 fn held_elsewhere(document: &JobDocument, pair: &Pair) -> Vec<Warning> {
-    let doc::MeshStiffness::Ltca(doc::Ltca { body: doc::Body::Bore, .. }) = &document.model.mesh_stiffness else {
+    let doc::MeshStiffness::Ltca(doc::Ltca { body: doc::BodyInput::Bore, .. }) = &document.model.mesh_stiffness else {
         return Vec::new();
     };
     [("pinion", &pair.pinion), ("gear", &pair.gear)]

@@ -1,6 +1,6 @@
 //! The springs outside the mesh: what the document gives, what follows from the gear bodies, and what is assumed after the size of the pair.
 
-use crate::document::{self as doc, JobDocument, Kind};
+use crate::document::{self as doc, JobDocument, JobKind};
 use crate::result::{SpringValue, Supports};
 use herringbone_physics::gear::{BodyStiffness, Material, Pair, Warning};
 
@@ -22,7 +22,7 @@ const ASSUMED: &str = "assumed";
 const DERIVED: &str = "derived";
 
 /// The springs in use.
-pub fn used(supports: &doc::Supports, pair: &Pair) -> Supports {
+pub fn used(supports: &doc::SupportsInput, pair: &Pair) -> Supports {
     let lateral = LATERAL_PER_MODULUS_AND_DISTANCE * Material::STEEL.youngs_modulus_pa * pair.center_distance_m * 1e-6;
     let assumed = |given: Option<f64>, n_per_um: f64| value(given, n_per_um, ASSUMED);
     let derived = |given: Option<f64>, derived: f64| value(given, derived, DERIVED);
@@ -71,7 +71,7 @@ pub fn named(supports: &Supports) -> [(&'static str, &SpringValue); 9] {
 
 /// What was not given, with the values used; nothing where no equations of motion are solved. What a sweep varies is given.
 pub fn assumed(document: &JobDocument, used: &Supports) -> Option<Warning> {
-    if document.kind == Kind::Mesh {
+    if document.kind == JobKind::Mesh {
         return None;
     }
     let swept =
@@ -137,7 +137,7 @@ mod tests {
         PairSpec { gap_width_m: 0.03, ..PairSpec::plain(6e-3, [alpha_n, beta], 75e-3, teeth) }
     }
 
-    const NOTHING: doc::Supports = doc::Supports {
+    const NOTHING: doc::SupportsInput = doc::SupportsInput {
         pinion_lateral_n_per_um: None,
         gear_lateral_n_per_um: None,
         pinion_halves_axial_n_per_um: None,
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn what_is_given_is_used_as_it_is_zero_too() {
-        let given = doc::Supports {
+        let given = doc::SupportsInput {
             pinion_lateral_n_per_um: Some(123.0),
             gear_halves_torsional_nm_per_rad: Some(0.0),
             ..NOTHING

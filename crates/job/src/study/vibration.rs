@@ -1,8 +1,8 @@
 //! The response stage: the steady vibration of the pair and its statistics.
 
 use super::point::Wanted;
-use super::{Channel, SolveError, Stage, Surroundings, answer, bounds};
-use crate::document::{Integrator, JobDocument, Method, Recorded};
+use super::{Channel, SolveContext, SolveError, Stage, answer, bounds};
+use crate::document::{IntegratorInput, JobDocument, MethodInput, Recorded};
 use crate::result::{self, Numerics};
 use crate::{DocumentError, Violation};
 use herringbone_physics::dynamics::{self, DynamicsError, Parameters};
@@ -66,11 +66,11 @@ pub fn solve(
     document: &JobDocument,
     parameters: &Parameters,
     wanted: &Wanted,
-    surroundings: &Surroundings,
+    context: &SolveContext,
 ) -> Result<Result<response::Response, DynamicsError>, DocumentError> {
     let analysis = analysis(document, wanted)?;
-    let progress = |fraction: f64| (surroundings.progress)(Stage::Response, fraction);
-    let watch = Watch::new(&progress, surroundings.canceled);
+    let progress = |fraction: f64| (context.progress)(Stage::Response, fraction);
+    let watch = Watch::new(&progress, context.canceled);
     Ok(response::solve(parameters, &analysis, &watch))
 }
 
@@ -134,16 +134,16 @@ pub fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, Doc
     }
     Ok(Analysis {
         method: match asked.method {
-            Method::Integrate => response::Method::Integrate {
+            MethodInput::Integrate => response::Method::Integrate {
                 mesh_periods: u64::from(asked.mesh_periods),
                 record_mesh_periods: u64::from(asked.record_mesh_periods),
             },
-            Method::Periodic => response::Method::Periodic,
-            Method::Auto => response::Method::Auto,
+            MethodInput::Periodic => response::Method::Periodic,
+            MethodInput::Auto => response::Method::Auto,
         },
         integrator: match asked.integrator {
-            Integrator::Taylor => dynamics::Integrator::Taylor,
-            Integrator::RungeKutta4 => dynamics::Integrator::RungeKutta,
+            IntegratorInput::Taylor => dynamics::Integrator::Taylor,
+            IntegratorInput::RungeKutta4 => dynamics::Integrator::RungeKutta,
         },
         accuracy: asked.accuracy,
         samples_per_mesh_period: asked.samples_per_mesh_period as usize,
