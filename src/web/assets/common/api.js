@@ -96,7 +96,9 @@ export const result = (id) => request("GET", resultUrl(id).slice(BASE.length));
 export const gearData = (id) => request("GET", `${at(id)}/gear-data`);
 /** @type {(id: string) => Promise<{ items: SeriesChannel[] }>} */
 export const catalogue = (id) => request("GET", `${at(id)}/series`);
-/** @type {(id: string, channel: string, parameters: Record<string, any>, signal?: AbortSignal) => Promise<SeriesData>} */
+/**
+ * @type {(id: string, channel: string, parameters: Record<string, any>, signal?: AbortSignal) => Promise<SeriesData>}
+ */
 export const series = (id, channel, parameters, signal) =>
   request("GET", `${at(id)}/series/${encodeURIComponent(channel)}${query(parameters)}`, { signal });
 

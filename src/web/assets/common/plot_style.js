@@ -18,7 +18,10 @@ export function palette(paper = false) {
   const style = getComputedStyle(source);
   const value = (name) => style.getPropertyValue(name).trim();
   const lines = ["--plot-1", "--plot-2", "--plot-3", "--plot-4", "--plot-5", "--plot-6"].map(value).filter(Boolean);
-  /** @type {{ text: string, muted: string, grid: string, surface: string, lines: string[], of: (name: string) => string }} */
+  /**
+   * @type {{ text: string, muted: string, grid: string, surface: string, lines: string[], of: (name: string) =>
+   *   string }}
+   */
   const colours = { of: value, text: value("--text"), muted: value("--muted"), grid: value("--line"), surface: value("--surface"), lines };
   // Any other colour of the stylesheets by its name. What is read from paper is read now.
   const known = paper ? new Map([...NAMED].map((name) => [name, value(name)])) : null;

@@ -86,7 +86,10 @@ export function summary(figure) {
 
 const shown = (value) => (typeof value === "number" ? number(value, 4) : String(value));
 
-/** Columns of what is drawn: traces over the same places share the first, others have their own. A heat map is a list of its cells. */
+/**
+ * Columns of what is drawn: traces over the same places share the first, others have their own. A heat map is a list
+ * of its cells.
+ */
 function tableOf(figure) {
   const { axes } = figure;
   const [x, y] = [parts(axes.x), parts(axes.y)];

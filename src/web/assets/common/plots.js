@@ -1,6 +1,7 @@
 // Plots with Plotly: loaded on first use, drawn when scrolled near, coloured by the stylesheet.
 //
-// `draw(node, traces, axes)` draws into a box of class `plot`; traces come from `line`, `points`, `stems`, `bars`, `heatMap`;
+// `draw(node, traces, axes)` draws into a box of class `plot`; traces come from `line`, `points`, `stems`, `bars`,
+// `heatMap`;
 // the members of `axes` are those of `PlotAxes` (src/web/types.d.ts).
 
 import { el } from "./dom.js";
@@ -62,7 +63,8 @@ function load() {
 }
 
 /**
- * Draws traces into a box, at once when it is near the window and otherwise when it comes near. Below the box stand the plot's tools: its
+ * Draws traces into a box, at once when it is near the window and otherwise when it comes near. Below the box stand the
+ * plot's tools: its
  * data as a table and as files.
  * @param {HTMLElement} node
  * @param {Trace[]} traces

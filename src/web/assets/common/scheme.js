@@ -1,4 +1,5 @@
-// Light or dark: as the system has it, or as chosen in the footer. A plain script that runs before the first paint, so that no page flashes.
+// Light or dark: as the system has it, or as chosen in the footer. A plain script that runs before the first paint, so
+// that no page flashes.
 
 (() => {
   const KEY = "herringbone.scheme";

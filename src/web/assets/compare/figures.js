@@ -77,7 +77,12 @@ async function update() {
   if (turn === drawing) byId("curves").dataset.ready = String(turn);
 }
 
-/** Shows a figure, or hides it where no job has anything for it. @param {string} id @param {Trace[]} traces @param {PlotAxes} axes */
+/**
+ * Shows a figure, or hides it where no job has anything for it.
+ * @param {string} id
+ * @param {Trace[]} traces
+ * @param {PlotAxes} axes
+ */
 async function put(id, traces, axes) {
   const present = traces.filter(({ x }) => x?.length);
   show(byAnyId(id), present.length > 0);
@@ -152,7 +157,11 @@ function spectrum({ isLogarithmic }) {
   return put("spectrum", traces, { x: "Mesh order", y: "m/s²", log: isLogarithmic, csvName: "compare-spectrum", hover: "closest" });
 }
 
-/** Time series and phase plane: both need records of the motion. @param {Options} options @param {() => boolean} isCurrent */
+/**
+ * Time series and phase plane: both need records of the motion.
+ * @param {Options} options
+ * @param {() => boolean} isCurrent
+ */
 async function records({ half, isMeanRemoved, channel, periods }, isCurrent) {
   const moving = jobs.filter(({ channels = [] }) => channels.length > 0);
   /** @param {string[]} names @param {number} count */

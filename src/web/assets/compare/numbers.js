@@ -70,7 +70,12 @@ function swing(mesh) {
   return typeof least === "number" && typeof most === "number" ? most - least : null;
 }
 
-/** The largest value of a column, and where it is. @param {ComparedJob["sweep"]} sweep @param {string} name @returns {Finding | null} */
+/**
+ * The largest value of a column, and where it is.
+ * @param {ComparedJob["sweep"]} sweep
+ * @param {string} name
+ * @returns {Finding | null}
+ */
 function largest(sweep, name) {
   const values = sweep?.data.column(name) ?? [];
   let found = -1;

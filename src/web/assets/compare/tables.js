@@ -47,7 +47,7 @@ function showInputs(jobs, reference) {
 function showNumbers(groups, jobs, reference) {
   const table = byId("numbers-table");
   head(table, "Quantity", jobs, reference);
-  for (const body of [...table.tBodies]) body.remove();
+  for (const body of Array.from(table.tBodies)) body.remove();
   const at = jobs.indexOf(reference);
   for (const { title, isFolded, rows } of groups) {
     const shownRows = rows.map((row) => numberRow(row, jobs, at));

@@ -120,7 +120,10 @@ function showReport({ geometry, drawing, memory_mib: memory, warnings }) {
 /** @param {string} label @param {string} unit @param {Node[]} cells */
 const row = (label, unit, cells) => el("tr", {}, el("th", { scope: "row" }, label, unit ? el("span", { class: "unit" }, ` ${unit === "m_n" ? "/ mₙ" : unit}`) : null), ...cells);
 
-/** The value with its limit; below the limit it is marked, in words too. @param {PairDrawing["margins"][number]} [margin] */
+/**
+ * The value with its limit; below the limit it is marked, in words too.
+ * @param {PairDrawing["margins"][number]} [margin]
+ */
 function marginCell(margin) {
   if (!margin) return el("td", {}, "–");
   const low = margin.value < margin.limit;

@@ -27,7 +27,10 @@ export function fieldsOf(form) {
   }));
 }
 
-/** The text in a field as a JSON value; unreadable text is passed on, so that the server says what is wrong. @param {Field} field */
+/**
+ * The text in a field as a JSON value; unreadable text is passed on, so that the server says what is wrong.
+ * @param {Field} field
+ */
 function valueOf(field) {
   const text = field.input.value.trim();
   switch (field.control) {
@@ -119,7 +122,11 @@ export function readDocument(form) {
   return root;
 }
 
-/** Fills the form from a document. Members without a field are kept for the documents read later. @param {HTMLElement} form @param {JobInput} document */
+/**
+ * Fills the form from a document. Members without a field are kept for the documents read later.
+ * @param {HTMLElement} form
+ * @param {JobInput} document
+ */
 export function writeDocument(form, document) {
   const known = new Set();
   for (const field of fieldsOf(form)) {
@@ -196,7 +203,11 @@ export function applyConditions(form) {
   byId("to-sweep").hidden = byAnyId("group-sweep").hidden;
 }
 
-/** The field of a pointer in an answer: itself, the nearest around it, or the first in it. @param {Field[]} fields @param {string} pointer */
+/**
+ * The field of a pointer in an answer: itself, the nearest around it, or the first in it.
+ * @param {Field[]} fields
+ * @param {string} pointer
+ */
 export function fieldAt(fields, pointer) {
   for (let place = pointer; place; place = place.slice(0, place.lastIndexOf("/"))) {
     const field = fields.find((field) => field.pointer === place && !field.box.hidden);

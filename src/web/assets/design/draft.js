@@ -1,4 +1,5 @@
-// The form as it was left and the document submitted last, in the storage of the browser. Without storage nothing is kept.
+// The form as it was left and the document submitted last, in the storage of the browser. Without storage nothing is
+// kept.
 
 const DRAFT = "herringbone.draft";
 const SUBMITTED = "herringbone.submitted";

@@ -1,4 +1,5 @@
-// The pair to scale: the teeth in the transverse section with the path of contact. All geometry comes from the server; here it
+// The pair to scale: the teeth in the transverse section with the path of contact. All geometry comes from the server;
+// here it
 // is turned, shifted and scaled.
 
 import { byId } from "../common/dom.js";
@@ -75,7 +76,11 @@ export function initDrawing() {
 
 const PERIOD_MS = 4000;
 
-/** Draws the section; the function returned moves it to a phase of the mesh period. @param {SVGSVGElement} root @param {SectionDrawing} section */
+/**
+ * Draws the section; the function returned moves it to a phase of the mesh period.
+ * @param {SVGSVGElement} root
+ * @param {SectionDrawing} section
+ */
 function drawSection(root, section) {
   const { pinion, gear, points } = section;
   /** @type {Points} */

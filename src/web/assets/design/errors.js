@@ -80,7 +80,12 @@ export function linkTo(field) {
 
 /** @typedef {import("./document.js").Field} Field */
 
-/** @param {Field} field @param {string} kind class of the text @param {string} text @param {{ add?: boolean }} [options] */
+/**
+ * @param {Field} field
+ * @param {string} kind class of the text
+ * @param {string} text
+ * @param {{ add?: boolean }} [options]
+ */
 function say(field, kind, text, { add = false } = {}) {
   const node = field.box.querySelector(`.${kind}`);
   if (!node) return;

@@ -111,7 +111,10 @@ function save() {
   download(fileName(document), `${JSON.stringify(document, null, 2)}\n`);
 }
 
-/** Pastes a column of a spreadsheet into a list with its lines separated; the input itself would join them. @param {ClipboardEvent} event */
+/**
+ * Pastes a column of a spreadsheet into a list with its lines separated; the input itself would join them.
+ * @param {ClipboardEvent} event
+ */
 function pasteList(event) {
   const text = event.clipboardData?.getData("text/plain") ?? "";
   const input = /** @type {HTMLInputElement} */ (event.target);

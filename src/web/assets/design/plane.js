@@ -9,7 +9,11 @@ const MARGIN = { left: 22, right: 8, top: 22, bottom: 26 };
 /** Least height of the zone, px: below it the roll direction is drawn larger than the axial one. */
 const LEAST_PX = 40;
 
-/** Draws the plane; the function returned moves the lines to a phase of the mesh period. @param {SVGSVGElement} root @param {PairDrawing} drawing */
+/**
+ * Draws the plane; the function returned moves the lines to a phase of the mesh period.
+ * @param {SVGSVGElement} root
+ * @param {PairDrawing} drawing
+ */
 export function drawPlane(root, { plane_of_action: plane, section }) {
   const [start, end] = plane.path_roll_mm;
   const [low, high] = [plane.left.axial_mm[0], plane.right.axial_mm[1]];

@@ -34,7 +34,10 @@ export function showWhatIsSet(form) {
   }
 }
 
-/** "Teeth 17 / 44, normal module 6 mm": fields of pinion and gear with the same name share an entry. @param {Field[]} fields */
+/**
+ * "Teeth 17 / 44, normal module 6 mm": fields of pinion and gear with the same name share an entry.
+ * @param {Field[]} fields
+ */
 function gistOf(fields) {
   const entries = new Map();
   for (const field of fields) {

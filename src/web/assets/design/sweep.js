@@ -1,4 +1,5 @@
-// The form's section on sweeps: the choice of inputs by their names, a range or a list of values, a second axis, and the
+// The form's section on sweeps: the choice of inputs by their names, a range or a list of values, a second axis, and
+// the
 // cost of the sweep. The fields of the document stay in the form; this fills them.
 
 import { byAnyId, byId, el, show } from "../common/dom.js";
@@ -61,7 +62,12 @@ const RECORDED = [
   ["spectrum", "Spectrum of the acceleration: a map of the mesh orders over the first axis"],
 ];
 
-/** A sentence below a field about its present value. @param {string} pointer @param {Fields["fieldOf"]} fieldOf @param {Record<string, string>} texts */
+/**
+ * A sentence below a field about its present value.
+ * @param {string} pointer
+ * @param {Fields["fieldOf"]} fieldOf
+ * @param {Record<string, string>} texts
+ */
 function explanation(pointer, fieldOf, texts) {
   const box = fieldOf(pointer);
   if (!box) return () => {};
@@ -72,7 +78,12 @@ function explanation(pointer, fieldOf, texts) {
   return () => { text.textContent = texts[input.value] ?? texts[""] ?? ""; };
 }
 
-/** A check box for each optional content of the rows, in place of the text field. @param {string} pointer @param {Fields["fieldOf"]} fieldOf @param {() => void} changed */
+/**
+ * A check box for each optional content of the rows, in place of the text field.
+ * @param {string} pointer
+ * @param {Fields["fieldOf"]} fieldOf
+ * @param {() => void} changed
+ */
 function recording(pointer, fieldOf, changed) {
   const box = fieldOf(pointer);
   if (!box) return () => {};
@@ -117,7 +128,11 @@ function sweepable(form) {
     });
 }
 
-/** One axis: a box for the input's name, and a switch between a range and a list. @param {number} place @param {Fields} fields */
+/**
+ * One axis: a box for the input's name, and a switch between a range and a list.
+ * @param {number} place
+ * @param {Fields} fields
+ */
 function axisOf(place, { form, inputOf, fieldOf, changed }) {
   /** @param {string} name */
   const at = (name) => `/axes/${place}/${name}`;

@@ -9,7 +9,10 @@ const MOST_RECORDED = 5_000;
 const ROW_KB = 0.55;
 /** @type {Record<string, number>} */
 const RECORD_KB = { poincare: 8, spectrum: 1.6 };
-/** Measured on two cores (docs/BENCHMARKS.md): a periodic point, an integrated one for each mesh period, and a mesh, ms. */
+/**
+ * Measured on two cores (docs/BENCHMARKS.md): a periodic point, an integrated one for each mesh period, and a mesh,
+ * ms.
+ */
 const PERIODIC_MS = 2;
 const MESH_PERIOD_MS = 0.02;
 const MESH_MS = 14;

@@ -1,4 +1,5 @@
-// Plots of the mesh, from the result: stiffness, transmission error, load sharing, load on the flank. Each is { traces, axes }, or null where the
+// Plots of the mesh, from the result: stiffness, transmission error, load sharing, load on the flank. Each is { traces,
+// axes }, or null where the
 // result has nothing for it.
 
 import { number } from "../common/format.js";
@@ -41,7 +42,8 @@ export function errorPlot(mesh) {
 }
 
 /**
- * Where an assembly error separates the halves by much more than they vary, each has an axis of its own, of the same length.
+ * Where an assembly error separates the halves by much more than they vary, each has an axis of its own, of the same
+ * length.
  * @param {MeshResult} mesh
  * @param {Trace[]} traces
  * @param {PlotAxes} axes

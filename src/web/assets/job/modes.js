@@ -23,7 +23,8 @@ export async function showModes({ result: { response, numerics }, input }) {
 }
 
 /**
- * Number, frequency, damping, share of the meshes, nearest order, its ratio, speed of the resonance and name of each mode.
+ * Number, frequency, damping, share of the meshes, nearest order, its ratio, speed of the resonance and name of each
+ * mode.
  * @param {ResponseResult} response
  * @param {JobInput} input
  * @returns {string[][]}

@@ -73,15 +73,23 @@ export function orderWords(order, periods = 1) {
 export const meshShare = ({ strain_energy: energy }) => (energy?.mesh_left ?? 0) + (energy?.mesh_right ?? 0);
 
 /** Whether the halves move against each other in a mode: equal halves do not excite it. @param {NaturalMode} mode */
-const isOpposed = ({ name }) => /opposed$/.test(name);
+const isOpposed = ({ name }) => name.endsWith("opposed");
 /** Whether the halves mirror each other, so that half of the equations was solved. @param {Numerics} [numerics] */
 export const halvesAlike = (numerics) => numerics?.degrees_of_freedom === 6;
 
-/** Modes that the mesh excites, with their number in the list, from 1. @param {ResponseResult} response @param {Numerics} numerics */
+/**
+ * Modes that the mesh excites, with their number in the list, from 1.
+ * @param {ResponseResult} response
+ * @param {Numerics} numerics
+ */
 const excitedModes = ({ natural_modes: modes = [] }, numerics) =>
   modes.map((mode, at) => ({ ...mode, index: at + 1 })).filter((mode) => mode.frequency_hz > 0 && meshShare(mode) >= EXCITED && !(halvesAlike(numerics) && isOpposed(mode)));
 
-/** Of a mode, the mesh order that lies nearest to it: { order, ratio } with ratio = order·f_mesh / f_mode. @param {number} hertz @param {number} mesh */
+/**
+ * Of a mode, the mesh order that lies nearest to it: { order, ratio } with ratio = order·f_mesh / f_mode.
+ * @param {number} hertz
+ * @param {number} mesh
+ */
 export function nearestOrder(hertz, mesh) {
   if (!(hertz > 0) || !(mesh > 0)) return null;
   const exact = hertz / mesh;
@@ -136,7 +144,8 @@ export function modesPlot(response, numerics) {
 
 /**
  * The motion in the phase plane; `edge` is half the backlash, where the displacement is the normal one.
- * @param {{ half: string, place: number[], velocity: number[], dots?: { place: number[], velocity: number[] } }[]} paths
+ * @param {{ half: string, place: number[], velocity: number[], dots?: { place: number[], velocity: number[] } }[]}
+ * paths
  * @param {{ x: string, y: string, edge?: number | null }} options
  * @returns {Plot}
  */

@@ -18,7 +18,7 @@ export async function showPhase({ id, result: { response, numerics }, input, cat
   if (!planes.length) return;
   show(byId("phase"));
   const choice = byId("phase-plane");
-  for (const option of [...choice.options]) if (!planes.includes(option.value)) option.remove();
+  for (const option of Array.from(choice.options)) if (!planes.includes(option.value)) option.remove();
   // With half of the equations solved the halves mirror each other.
   const halves = ["left", "right"].filter((half) => half === "left" || (!halvesAlike(numerics) && known.has(`x_${half}`)));
   const update = async () => {
@@ -60,7 +60,11 @@ async function path(id, response, { t0, t_end: end, n, dt }, plane, half) {
   return { half, place: closed(micrometres), velocity: closed(millimetres), dots };
 }
 
-/** Values of a series times a factor; what is not finite stands as 0. @param {SeriesData} series @param {number} factor */
+/**
+ * Values of a series times a factor; what is not finite stands as 0.
+ * @param {SeriesData} series
+ * @param {number} factor
+ */
 const valuesOf = ({ y }, factor) => y.map((value) => (value ?? 0) * factor);
 
 /**

@@ -1,4 +1,5 @@
-// Time series of one or two channels. Zooming in fetches finer data; the record of a periodic motion is shown several times.
+// Time series of one or two channels. Zooming in fetches finer data; the record of a periodic motion is shown several
+// times.
 
 import * as api from "../common/api.js";
 import { decimal } from "../common/csv.js";

@@ -52,7 +52,10 @@ export function channelWords(name) {
   return SOURCES[source] ? `${SOURCES[source]}, ${half}` : name;
 }
 
-/** Unit in which a channel is shown, and the factor of its values: micrometres rather than metres. @param {string} unit */
+/**
+ * Unit in which a channel is shown, and the factor of its values: micrometres rather than metres.
+ * @param {string} unit
+ */
 export function channelScale(unit) {
   /** @type {Record<string, [string, number]>} */
   const scales = { m: ["µm", 1e6], "m/s": ["mm/s", 1e3], "m/s2": ["m/s²", 1], rad: ["µrad", 1e6], "rad/s2": ["rad/s²", 1] };

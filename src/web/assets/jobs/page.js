@@ -72,7 +72,10 @@ async function refresh() {
   if (again) await refresh();
 }
 
-/** Puts the rows in order: those that stay keep their places in the document, and with them the focus. @param {Job[]} jobs */
+/**
+ * Puts the rows in order: those that stay keep their places in the document, and with them the focus.
+ * @param {Job[]} jobs
+ */
 function fill(jobs) {
   const wanted = new Set(jobs.map((job) => job.id));
   for (const id of [...rows.keys()].filter((id) => !wanted.has(id))) drop(id);

@@ -9,7 +9,8 @@ const GROUPS = [
 
 /**
  * Groups of rows; what is null is derived and left out.
- * @typedef {{ label: string, value: string, unit: string, differs: boolean, usual: string | null, help: string }} InputRow
+ * @typedef {{ label: string, value: string, unit: string, differs: boolean, usual: string | null, help: string }}
+ * InputRow
  * @param {JobInput} input
  * @param {any} schema JSON Schema of the document's kind
  */

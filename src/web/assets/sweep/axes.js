@@ -5,7 +5,8 @@ import { gridOf } from "../common/grid.js";
 
 /**
  * The axes of a sweep's document.
- * @typedef {{ pointer: string, label: string, unit: string, title: string, values: number[], logarithmic: boolean }} Axis
+ * @typedef {{ pointer: string, label: string, unit: string, title: string, values: number[], logarithmic: boolean }}
+ * Axis
  * @param {JobInput} document
  * @returns {Axis[]}
  */
@@ -26,7 +27,10 @@ export const withUnit = (label, unit) => (unit ? `${label}, ${unit}` : label);
 /** A value with the unit of its axis, as text. @param {Axis} axis @param {number} value */
 export const valueText = (axis, value) => [number(value, 7), axis.unit].filter(Boolean).join(" ");
 
-/** Places of the rows: the first axis runs first, then the second; with two directions the downward rows follow the upward ones. */
+/**
+ * Places of the rows: the first axis runs first, then the second; with two directions the downward rows follow the
+ * upward ones.
+ */
 export class Grid {
   /** @param {JobInput} document */
   constructor(document) {

@@ -113,7 +113,10 @@ export function spectra(sweep, view) {
   };
 }
 
-/** Values 80 dB below the strongest line, and those of no amplitude, are drawn as that level. @param {(number | null)[][]} z */
+/**
+ * Values 80 dB below the strongest line, and those of no amplitude, are drawn as that level.
+ * @param {(number | null)[][]} z
+ */
 function cutBelow(z) {
   let top = -Infinity;
   for (const row of z) for (const value of row) if (value !== null && value > top) top = value;

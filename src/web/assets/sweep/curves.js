@@ -1,4 +1,5 @@
-// A quantity over the first axis: both branches and halves, jumps, ranges with two motions, and the kinds of motion below.
+// A quantity over the first axis: both branches and halves, jumps, ranges with two motions, and the kinds of motion
+// below.
 
 import { CONTACTS, FAILED, REGIMES, kindOf } from "./quantities.js";
 import { resonancesOf } from "./resonances.js";
@@ -105,7 +106,14 @@ export function hysteresisAt(sweep, view) {
   return (sweep.rest?.sweep?.hysteresis ?? []).filter((range) => range.second_axis_value === value);
 }
 
-/** Arrows from the point before to the point after each jump, one trace for each branch. @param {SweepState} sweep @param {SweepView} view @param {number[]} x @param {Side} side @returns {Trace[]} */
+/**
+ * Arrows from the point before to the point after each jump, one trace for each branch.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @param {number[]} x
+ * @param {Side} side
+ * @returns {Trace[]}
+ */
 function jumpsOf(sweep, view, x, side) {
   const { grid, quantity } = view;
   const column = columnOf(sweep, quantity, side);
@@ -129,7 +137,12 @@ function jumpsOf(sweep, view, x, side) {
   });
 }
 
-/** The meaning of the shaded ranges, for the legend. @param {SweepState} sweep @param {SweepView} view @returns {Trace[]} */
+/**
+ * The meaning of the shaded ranges, for the legend.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @returns {Trace[]}
+ */
 function rangeKey(sweep, view) {
   if (!hysteresisAt(sweep, view).length) return [];
   return [{
@@ -216,13 +229,16 @@ function arrange(layout, colour, { sweep, view, rows, resonances, axis, x }) {
     ...resonances.map(({ at }) => ({ type: "line", xref: "x", yref: "y domain", x0: at, x1: at, y0: 0, y1: 1, line: { color: colour("--muted"), width: 1, dash: "dot" }, layer: "below" })),
   ];
   const along = (value) => (axis.logarithmic ? Math.log10(value) : value);
-  layout.annotations = [
-    ...resonances.filter(({ label }) => label).map(({ at, label }) => ({ x: along(at), yref: "y domain", y: 0.98, yanchor: "top", xanchor: "right", textangle: -90, showarrow: false, text: label, font: { size: 10, color: colour("--muted") } })),
-  ];
+  layout.annotations =
+    resonances.filter(({ label }) => label).map(({ at, label }) => ({ x: along(at), yref: "y domain", y: 0.98, yanchor: "top", xanchor: "right", textangle: -90, showarrow: false, text: label, font: { size: 10, color: colour("--muted") } }));
   layout.margin = { ...layout.margin, l: 70 };
 }
 
-/** From half a step before the first value to half a step after the last. @param {number[]} x @param {boolean} logarithmic */
+/**
+ * From half a step before the first value to half a step after the last.
+ * @param {number[]} x
+ * @param {boolean} logarithmic
+ */
 function edges(x, logarithmic) {
   const [first, last, before] = [x[0], x[x.length - 1], x[x.length - 2]];
   if (first === last) return [first - 0.5 * Math.abs(first || 1), first + 0.5 * Math.abs(first || 1)];
@@ -230,7 +246,12 @@ function edges(x, logarithmic) {
   return [first - (x[1] - first) / 2, last + (last - before) / 2];
 }
 
-/** A range of points with half a step at each end, so that a single point has a width. @param {number} from @param {number} to @param {number[]} x */
+/**
+ * A range of points with half a step at each end, so that a single point has a width.
+ * @param {number} from
+ * @param {number} to
+ * @param {number[]} x
+ */
 function widened(from, to, x) {
   const last = x[x.length - 1];
   const half = x.length > 1 ? Math.abs(last - x[0]) / (x.length - 1) / 2 : 0;

@@ -30,7 +30,11 @@ export class SweepData {
     this.last = Promise.resolve();
   }
 
-  /** The values of a column by position: NaN (numbers) or null (words, lists) where there is none. @param {string} name @returns {any} */
+  /**
+   * The values of a column by position: NaN (numbers) or null (words, lists) where there is none.
+   * @param {string} name
+   * @returns {any}
+   */
   column(name) {
     return this.columns.get(name);
   }
@@ -40,7 +44,11 @@ export class SweepData {
     return names.every((name) => this.columns.has(name));
   }
 
-  /** Fetches columns for the rows that are here. `onPage` is called at the end. @param {string[]} names @param {() => void} [onPage] */
+  /**
+   * Fetches columns for the rows that are here. `onPage` is called at the end.
+   * @param {string[]} names
+   * @param {() => void} [onPage]
+   */
   require(names, onPage) {
     return this.after(async () => {
       const missing = names.filter((name) => !this.columns.has(name));
@@ -52,7 +60,10 @@ export class SweepData {
     });
   }
 
-  /** Fetches the rows solved since the last time, in all columns that are here. @param {() => void} [onPage] called after each page */
+  /**
+   * Fetches the rows solved since the last time, in all columns that are here.
+   * @param {() => void} [onPage] called after each page
+   */
   refresh(onPage) {
     return this.after(async () => {
       for (const gap of this.gaps()) await this.fetch(gap, this.columns, onPage);

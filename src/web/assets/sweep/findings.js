@@ -12,13 +12,6 @@ const MOST = 6;
 /** A peak this near to a crossing belongs to it. */
 const NEAR = 0.03;
 
-/** Jumps of the branch on the map, each halfway between its points. @param {SweepState} sweep @param {SweepView} view */
-export function jumpsOnMap(sweep, view) {
-  const branch = view.grid.branches[view.branch];
-  const jumps = (sweep.rest?.sweep?.jumps ?? []).filter((jump) => jump.branch === branch);
-  return jumps.map(({ from, to, second_axis_value: y }) => ({ x: (from + to) / 2, y }));
-}
-
 /**
  * @typedef {{ text: string, position?: number }} Finding
  * @param {SweepState} sweep
@@ -42,7 +35,12 @@ export function showFindings(sweep, view, select) {
   }));
 }
 
-/** Greatest and least value of the quantity, and the resonance that a peak belongs to. @param {SweepState} sweep @param {SweepView} view @returns {Finding[]} */
+/**
+ * Greatest and least value of the quantity, and the resonance that a peak belongs to.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @returns {Finding[]}
+ */
 function extremes(sweep, view) {
   const { grid, quantity } = view;
   const value = valueAt(sweep, quantity, view.halves);
@@ -109,7 +107,13 @@ function jumps(sweep, view) {
   return found;
 }
 
-/** @param {SweepView["grid"]} grid @param {import("./axes.js").Axis} axis @param {number} value @param {number} line @param {number} branch */
+/**
+ * @param {SweepView["grid"]} grid
+ * @param {import("./axes.js").Axis} axis
+ * @param {number} value
+ * @param {number} line
+ * @param {number} branch
+ */
 function placed(grid, axis, value, line, branch) {
   const first = axis.values.indexOf(value);
   return first < 0 ? undefined : grid.at(first, line, branch);

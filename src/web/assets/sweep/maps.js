@@ -1,6 +1,5 @@
 // A sweep over two inputs: heat map or contours of a quantity, the kind of motion, and sections along both axes.
 
-import { jumpsOnMap } from "./findings.js";
 import { CONTACTS, FAILED, REGIMES, kindOf } from "./quantities.js";
 import { hover, lookOf, nameOf, steps } from "./style.js";
 
@@ -10,7 +9,13 @@ export const KINDS = [
   { name: "contact", label: "Contact of the teeth", kinds: CONTACTS },
 ];
 
-/** The value of a quantity at a row: of the chosen half, or the greater one. @param {SweepState} sweep @param {SweepQuantity} quantity @param {string} halves @returns {(position: number) => number} */
+/**
+ * The value of a quantity at a row: of the chosen half, or the greater one.
+ * @param {SweepState} sweep
+ * @param {SweepQuantity} quantity
+ * @param {string} halves
+ * @returns {(position: number) => number}
+ */
 export function valueAt(sweep, quantity, halves) {
   const columns = Object.values(quantity.columns).map((name) => sweep.data.column(name));
   if (columns.length === 1) return (position) => columns[0][position];
@@ -86,7 +91,14 @@ function valueMap(sweep, view, rows, base, where) {
   };
 }
 
-/** @param {SweepState} sweep @param {typeof KINDS[number]} kind @param {Rows} rows @param {Trace} base @param {string} where @returns {Trace} */
+/**
+ * @param {SweepState} sweep
+ * @param {typeof KINDS[number]} kind
+ * @param {Rows} rows
+ * @param {Trace} base
+ * @param {string} where
+ * @returns {Trace}
+ */
 function kindMap(sweep, { name, kinds }, rows, base, where) {
   const [words, errors] = [sweep.data.column(name), sweep.data.column("error")];
   const all = [...kinds, FAILED];
@@ -99,7 +111,11 @@ function kindMap(sweep, { name, kinds }, rows, base, where) {
   };
 }
 
-/** Position of the least value of the branch shown; null without any. @param {SweepState} sweep @param {SweepView} view */
+/**
+ * Position of the least value of the branch shown; null without any.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ */
 export function bestOf(sweep, view) {
   const { grid } = view;
   const value = valueAt(sweep, view.quantity, view.halves);
@@ -112,7 +128,14 @@ export function bestOf(sweep, view) {
   return best;
 }
 
-/** @param {SweepView["grid"]} grid @param {number} position @param {string} symbol @param {string} name @param {string} colour @returns {Trace} */
+/**
+ * @param {SweepView["grid"]} grid
+ * @param {number} position
+ * @param {string} symbol
+ * @param {string} name
+ * @param {string} colour
+ * @returns {Trace}
+ */
 function mark(grid, position, symbol, name, colour) {
   const [x, y] = grid.valuesAt(position);
   return {
@@ -121,7 +144,13 @@ function mark(grid, position, symbol, name, colour) {
   };
 }
 
-/** The curve through the selected point along one of the two axes. @param {SweepState} sweep @param {SweepView & { selected: number }} view @param {number} along @returns {Plot & { title: string }} */
+/**
+ * The curve through the selected point along one of the two axes.
+ * @param {SweepState} sweep
+ * @param {SweepView & { selected: number }} view
+ * @param {number} along
+ * @returns {Plot & { title: string }}
+ */
 export function section(sweep, view, along) {
   const { grid, quantity } = view;
   const place = grid.placeOf(view.selected);
@@ -152,4 +181,15 @@ export function section(sweep, view, along) {
     },
     title: `${quantity.label} at ${other.label.toLowerCase()} ${at[1 - along].toPrecision(6).replace(/\.?0+$/, "")} ${other.unit}`,
   };
+}
+
+/**
+ * Jumps of the branch on the map, each halfway between its points.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ */
+function jumpsOnMap(sweep, view) {
+  const branch = view.grid.branches[view.branch];
+  const jumps = (sweep.rest?.sweep?.jumps ?? []).filter((jump) => jump.branch === branch);
+  return jumps.map(({ from, to, second_axis_value: y }) => ({ x: (from + to) / 2, y }));
 }

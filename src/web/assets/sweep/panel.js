@@ -35,7 +35,10 @@ const CONTROLS = ["quantity", "state", "line", "branch", "halves", "log", "conto
 /** @type {Promise<Panel> | null} */
 let panel = null;
 
-/** Shows a sweep as far as it is solved; called at each change of the job. Resolves when all that is solved is drawn. @param {{ id: string, job: Job }} sweep */
+/**
+ * Shows a sweep as far as it is solved; called at each change of the job. Resolves when all that is solved is drawn.
+ * @param {{ id: string, job: Job }} sweep
+ */
 export async function showSweep({ id, job }) {
   panel ??= Panel.open(id, job);
   await (await panel).follow(job);

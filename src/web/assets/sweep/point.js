@@ -92,7 +92,12 @@ export class PointPanel {
   }
 }
 
-/** Legend of the strip: the kinds that occur, with their colours and meaning. @param {HTMLElement} node @param {PointKind[]} kinds @param {Set<number>} seen */
+/**
+ * Legend of the strip: the kinds that occur, with their colours and meaning.
+ * @param {HTMLElement} node
+ * @param {PointKind[]} kinds
+ * @param {Set<number>} seen
+ */
 export function showLegend(node, kinds, seen) {
   node.replaceChildren(...kinds.filter((_, index) => seen.has(index)).map(({ label, detail, colour }) => {
     const swatch = el("span", { class: "swatch" });

@@ -39,7 +39,12 @@ export const CONTACTS = [
 /** A point without a response. @type {PointKind} */
 export const FAILED = { is: () => false, label: "no response", detail: "the point could not be solved; the table says why", colour: "--no-response" };
 
-/** Number of a word's kind; the number of kinds for a point without a response, null for one that is not solved yet. @param {PointKind[]} kinds @param {string | null} word @param {string | null} error */
+/**
+ * Number of a word's kind; the number of kinds for a point without a response, null for one that is not solved yet.
+ * @param {PointKind[]} kinds
+ * @param {string | null} word
+ * @param {string | null} error
+ */
 export function kindOf(kinds, word, error) {
   if (error) return kinds.length;
   if (!word) return null;

@@ -10,7 +10,11 @@ const MOST_MARKED = 12;
 /** Least distance of two labels, as a part of the range. */
 const LABELS_APART = 0.022;
 
-/** The Campbell diagram of the line shown (of a sweep over two inputs, at the value of the other). @param {JobResult | null} rest @param {SweepView} view */
+/**
+ * The Campbell diagram of the line shown (of a sweep over two inputs, at the value of the other).
+ * @param {JobResult | null} rest
+ * @param {SweepView} view
+ */
 export function campbellAt(rest, view) {
   const all = rest?.sweep?.campbell ?? [];
   if (view.grid.axes.length === 1) return all[0] ?? null;
@@ -19,7 +23,12 @@ export function campbellAt(rest, view) {
   return all.find(({ other_axis_value: other }) => other === value) ?? null;
 }
 
-/** Speeds in a range at which a low order meets a mode of the mesh. @param {JobResult | null} rest @param {SweepView} view @param {Span} range */
+/**
+ * Speeds in a range at which a low order meets a mode of the mesh.
+ * @param {JobResult | null} rest
+ * @param {SweepView} view
+ * @param {Span} range
+ */
 export function resonancesOf(rest, view, [from, to]) {
   if (view.grid.axes[0].pointer !== SPEED) return [];
   const diagram = campbellAt(rest, view);
@@ -40,7 +49,12 @@ export function resonancesOf(rest, view, [from, to]) {
   return found;
 }
 
-/** Natural frequencies against the orders of the mesh frequency. @param {SweepState} sweep @param {SweepView} view @returns {Plot | null} */
+/**
+ * Natural frequencies against the orders of the mesh frequency.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @returns {Plot | null}
+ */
 export function campbell(sweep, view) {
   const diagram = campbellAt(sweep.rest, view);
   if (!diagram) return null;

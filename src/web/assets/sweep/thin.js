@@ -5,7 +5,12 @@ const GROUPS = 700;
 /** Lines up to this long are drawn whole. */
 const WHOLE = 4 * GROUPS;
 
-/** Indices [from, to) of the points of an ascending `x` in `range` (all without one), with one more at each end. @param {number[]} x @param {number[] | null} range @returns {Span} */
+/**
+ * Indices [from, to) of the points of an ascending `x` in `range` (all without one), with one more at each end.
+ * @param {number[]} x
+ * @param {number[] | null} range
+ * @returns {Span}
+ */
 export function windowOf(x, range) {
   if (!range) return [0, x.length];
   let from = 0;
@@ -15,7 +20,12 @@ export function windowOf(x, range) {
   return [Math.max(0, from - 1), Math.min(x.length, to + 1)];
 }
 
-/** Indices of `y` between `from` and `to` that a line needs. A group with gaps keeps one of them. @param {ArrayLike<number>} y @param {number} from @param {number} to */
+/**
+ * Indices of `y` between `from` and `to` that a line needs. A group with gaps keeps one of them.
+ * @param {ArrayLike<number>} y
+ * @param {number} from
+ * @param {number} to
+ */
 export function thinned(y, from, to) {
   const n = to - from;
   if (n <= WHOLE) return Array.from({ length: n }, (_, index) => from + index);
