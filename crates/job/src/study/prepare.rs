@@ -2,7 +2,7 @@
 
 use super::{bounds, supports};
 use crate::document::{self as doc, JobDocument, PressureAnglePlane};
-use crate::result::{GearGeometry, Geometry, Supports};
+use crate::result::{GearGeometry, Geometry, SupportsResult};
 use crate::{DocumentError, Violation};
 use herringbone_physics::gear::{self, Infeasibility, Pair, PairSpec, Warning};
 use herringbone_physics::{compliance, contact};
@@ -19,7 +19,7 @@ pub struct Prepared {
     pub mass_kg: [f64; 2],
     pub inertia_kg_m2: [f64; 2],
     /// Supports and couplings of the equations of motion.
-    pub supports: Supports,
+    pub supports: SupportsResult,
     pub mesh_frequency_hz: f64,
     pub pinion_speed_rad_s: f64,
     /// Base-tangent force of one half, T/2 / r_b1; negative on the coast flanks.

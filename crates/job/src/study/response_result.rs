@@ -2,21 +2,45 @@
 
 use super::bounds::backlash_um;
 use crate::document::{JobDocument, Plane};
-use crate::result::{self, PerHalf, Poincare, Rms};
+use crate::result::{
+    ContactStateResult, FloquetMultiplier, IntervalPerHalf, IntervalResult, MethodResult, NaturalMode, PerHalf,
+    PlaneResult, Poincare, RegimeResult, ResponseResult, RmsIntervalsResult, RmsResult, SpectrumResult,
+    ToothForceResult, ToothForces,
+};
 use herringbone_physics::dynamics::{DynamicsError, NaturalModes, Parameters};
-use herringbone_physics::response::{self, Halves};
+use herringbone_physics::response::{self, ContactState, Halves, Regime};
 
 fn per_half(halves: Halves<f64>) -> PerHalf {
     PerHalf { left: halves.left, right: halves.right }
 }
 
-fn tooth_force(force: response::ToothForce) -> result::ToothForce {
-    result::ToothForce { static_n: force.static_n, max_n: force.max_n, min_n: force.min_n }
+fn tooth_force(force: response::ToothForce) -> ToothForceResult {
+    ToothForceResult { static_n: force.static_n, max: force.max_n, min: force.min_n }
 }
 
-fn interval(halves: Halves<response::Interval>) -> result::IntervalPerHalf {
-    let of = |interval: response::Interval| result::Interval { low: interval.low, high: interval.high };
-    result::IntervalPerHalf { left: of(halves.left), right: of(halves.right) }
+fn interval(halves: Halves<response::Interval>) -> IntervalPerHalf {
+    let of = |interval: response::Interval| IntervalResult { low: interval.low, high: interval.high };
+    IntervalPerHalf { left: of(halves.left), right: of(halves.right) }
+}
+
+fn regime(summary: &response::Summary) -> RegimeResult {
+    match (summary.regime, summary.period_mesh_periods) {
+        (_, Some(mesh_periods)) => RegimeResult::Period(mesh_periods),
+        (Regime::Period1 | Regime::PeriodN, None) => RegimeResult::Period(1),
+        (Regime::QuasiPeriodic, None) => RegimeResult::QuasiPeriodic,
+        (Regime::Chaotic, None) => RegimeResult::Chaotic,
+        (Regime::NotSettled, None) => RegimeResult::NotSettled,
+        (Regime::Unstable, None) => RegimeResult::Unstable,
+    }
+}
+
+fn contact(state: ContactState) -> ContactStateResult {
+    match state {
+        ContactState::Continuous => ContactStateResult::Continuous,
+        ContactState::SingleSided => ContactStateResult::SingleSided,
+        ContactState::DoubleSided => ContactStateResult::DoubleSided,
+        ContactState::Apart => ContactStateResult::Apart,
+    }
 }
 
 /// The channel that spectra are of.
@@ -53,8 +77,8 @@ pub fn poincare(response: &response::Response, most: usize) -> Poincare {
 ///
 /// # Errors
 /// [`DynamicsError`] where the equations are refused.
-pub fn natural_modes(parameters: &Parameters) -> Result<Vec<result::NaturalMode>, DynamicsError> {
-    let modes = NaturalModes::new(parameters)?.describe(parameters).into_iter().map(|mode| result::NaturalMode {
+pub fn natural_modes(parameters: &Parameters) -> Result<Vec<NaturalMode>, DynamicsError> {
+    let modes = NaturalModes::new(parameters)?.describe(parameters).into_iter().map(|mode| NaturalMode {
         frequency_hz: mode.frequency_hz,
         name: mode.name,
         shape: mode.shape.to_vec(),
@@ -66,46 +90,40 @@ pub fn natural_modes(parameters: &Parameters) -> Result<Vec<result::NaturalMode>
     Ok(modes.collect())
 }
 
-fn multipliers(found: &[response::Multiplier]) -> Vec<result::FloquetMultiplier> {
-    found.iter().map(|m| result::FloquetMultiplier { modulus: m.modulus, angle_rad: m.angle_rad }).collect()
-}
-
-/// The word of a unit-only enum in its serialised form.
-pub fn word(value: &impl serde::Serialize) -> String {
-    match serde_json::to_value(value) {
-        Ok(serde_json::Value::String(word)) => word,
-        _ => String::new(),
-    }
+fn multipliers(multipliers: &[response::Multiplier]) -> Vec<FloquetMultiplier> {
+    multipliers.iter().map(|m| FloquetMultiplier { modulus: m.modulus, angle_rad: m.angle_rad }).collect()
 }
 
 /// The numbers of the result's response block: without what only a job of its own has (points, spectrum, modes).
-pub fn block(document: &JobDocument, parameters: &Parameters, response: &response::Response) -> result::Response {
+pub fn summary(document: &JobDocument, parameters: &Parameters, response: &response::Response) -> ResponseResult {
     let summary = &response.summary;
-    let regime = match summary.period_mesh_periods {
-        Some(periods) => format!("period-{periods}"),
-        None => word(&summary.regime),
-    };
-    result::Response {
-        rms: Rms {
+    ResponseResult {
+        rms: RmsResult {
             mesh_circumferential_acceleration_m_s2: per_half(summary.rms.mesh_circumferential_acceleration_m_s2),
             pinion_axial_acceleration_m_s2: per_half(summary.rms.pinion_axial_acceleration_m_s2),
             channels: summary.rms.channels.clone(),
         },
         dynamic_factor: summary.dynamic_factor,
-        tooth_force_n: result::ToothForces {
+        tooth_force_n: ToothForces {
             left: tooth_force(summary.tooth_force.left),
             right: tooth_force(summary.tooth_force.right),
         },
-        regime,
-        contact: word(&summary.contact),
+        regime: regime(summary),
+        contact: contact(summary.contact),
         min_displacement_um: summary.min_displacement_m * 1e6,
         natural_frequencies_hz: summary.natural_frequencies_hz.clone(),
         error_estimate: summary.error_estimate,
-        method: summary.method.clone(),
+        method: match summary.method.as_str() {
+            "periodic" => MethodResult::Periodic,
+            _ => MethodResult::Integrate,
+        },
         fraction_in_contact: 0.5 * (summary.contact_share.left + summary.contact_share.right),
         damping_in_gap: summary.damping_in_gap,
         backlash_um: Some(backlash_um(document)),
-        plane: if document.model.plane == Plane::Base { "base" } else { "pitch" }.to_owned(),
+        plane: match document.model.plane {
+            Plane::Base => PlaneResult::Base,
+            Plane::Pitch => PlaneResult::Pitch,
+        },
         mesh_frequency_hz: parameters.mesh_frequency_hz,
         averaged_mesh_periods: summary.recorded_mesh_periods,
         poincare: Poincare::default(),
@@ -115,7 +133,7 @@ pub fn block(document: &JobDocument, parameters: &Parameters, response: &respons
         floquet_modulus_per_mesh_period: summary.floquet_modulus,
         lyapunov_per_mesh_period: summary.lyapunov_per_mesh_period.filter(|exponent| exponent.is_finite()),
         contact_share: per_half(summary.contact_share),
-        confidence_interval_95: summary.rms_interval_95.map(|intervals| result::RmsIntervals {
+        confidence_interval_95: summary.rms_interval_95.map(|intervals| RmsIntervalsResult {
             mesh_circumferential_acceleration_m_s2: interval(intervals.mesh_circumferential_acceleration_m_s2),
             pinion_axial_acceleration_m_s2: interval(intervals.pinion_axial_acceleration_m_s2),
         }),
@@ -130,16 +148,16 @@ const SPECTRUM_LINES: usize = 4000;
 
 /// Spectrum of the left half's circumferential acceleration, where it was recorded. Of more lines than the result holds,
 /// the largest of each group of neighbours stays.
-pub fn spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<result::Spectrum> {
+pub fn spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<SpectrumResult> {
     let full = full_spectrum(response, mesh_frequency_hz)?;
     let lines = full.mesh_order.iter().filter(|order| **order <= SPECTRUM_ORDERS).count();
     let group = lines.div_ceil(SPECTRUM_LINES).max(1);
     let largest = |start: usize| {
         (start..(start + group).min(lines)).max_by(|&a, &b| full.amplitude[a].total_cmp(&full.amplitude[b]))
     };
-    let kept: Vec<usize> = (1..lines).step_by(group).filter_map(largest).collect();
-    Some(result::Spectrum {
-        frequency_hz: kept.iter().map(|&line| full.frequency_hz[line]).collect(),
-        amplitude_m_s2: kept.iter().map(|&line| full.amplitude[line]).collect(),
+    let chosen: Vec<usize> = (1..lines).step_by(group).filter_map(largest).collect();
+    Some(SpectrumResult {
+        frequency_hz: chosen.iter().map(|&line| full.frequency_hz[line]).collect(),
+        amplitude_m_s2: chosen.iter().map(|&line| full.amplitude[line]).collect(),
     })
 }
