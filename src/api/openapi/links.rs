@@ -6,8 +6,17 @@ use serde_json::{Value, json};
 const SHOW_A_JOB: [&str; 3] = ["submit_job", "read_job", "cancel_job"];
 
 /// Operations about one job.
-const ABOUT_A_JOB: [&str; 8] =
-    ["read_job", "watch_job", "cancel_job", "read_input", "read_result", "list_series", "list_points", "delete_job"];
+const ABOUT_A_JOB: [&str; 9] = [
+    "read_job",
+    "watch_job",
+    "cancel_job",
+    "read_input",
+    "read_gear_data",
+    "read_result",
+    "list_series",
+    "list_points",
+    "delete_job",
+];
 
 /// Adds the links that start from an operation's answers.
 pub(super) fn add(operation: &mut Value) {

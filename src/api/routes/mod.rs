@@ -8,6 +8,7 @@ mod list_jobs;
 mod list_kinds;
 mod list_points;
 mod list_series;
+mod read_gear_data;
 mod read_input;
 mod read_job;
 mod read_metrics;
@@ -42,6 +43,7 @@ pub fn versioned() -> OpenApiRouter<AppState> {
         .routes(routes!(read_job::read_job, delete_job::delete_job))
         .routes(routes!(cancel_job::cancel_job))
         .routes(routes!(read_input::read_input))
+        .routes(routes!(read_gear_data::read_gear_data))
         .routes(routes!(read_result::read_result))
         .routes(routes!(read_point_columns::read_point_columns))
         .routes(routes!(read_point_input::read_point_input))

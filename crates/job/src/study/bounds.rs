@@ -230,7 +230,8 @@ pub fn of_motion(document: &JobDocument, summary: &Summary) -> Vec<Warning> {
 mod tests {
     use super::*;
     use crate::parse_value;
-    use crate::study::{SolveContext, check, solve};
+    use crate::study::SolveContext;
+    use crate::study::unchecked::{check, solve};
     use serde_json::{Value, json};
 
     fn example(name: &str) -> Value {

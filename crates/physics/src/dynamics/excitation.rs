@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::DynamicsError;
 use super::lanes::Real;
+use crate::numerics::monotone_cubics;
 
 /// One harmonic of a Fourier series: `amplitude · cos(2π i φ + phase_rad)` for entry i, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -123,22 +124,6 @@ impl ImpactExcitation {
             }),
         }
     }
-}
-
-/// Slopes and cubics of the periodic monotone interpolant: c0 + c1 u + c2 u² + c3 u³, u = 0 … 1 between neighbours.
-fn monotone_cubics(values: &[f64]) -> Vec<[f64; 4]> {
-    let n = values.len();
-    let rise = |i: usize| values[(i + 1) % n] - values[i % n];
-    let slope = |i: usize| {
-        let (before, after) = (rise(i + n - 1), rise(i));
-        if before * after > 0.0 { 2.0 * before * after / (before + after) } else { 0.0 }
-    };
-    (0..n)
-        .map(|i| {
-            let (d, m0, m1) = (rise(i), slope(i), slope(i + 1));
-            [values[i], m0, 3.0 * d - 2.0 * m0 - m1, m0 + m1 - 2.0 * d]
-        })
-        .collect()
 }
 
 /// Number of Taylor coefficients of one parity (orders 0, 2, 4 … or 1, 3, 5 …).

@@ -1,6 +1,6 @@
 //! Energy balance of a recorded motion by the work–energy theorem, a check that is independent of the integrator.
 
-use super::quadrature::GAUSS;
+use super::statistics::GAUSS;
 use crate::dynamics::{DynamicModel, Observer, PER_HALF, Segment, W};
 
 /// Longest record that is balanced; of longer ones the first mesh periods are.

@@ -15,7 +15,6 @@ mod confidence;
 mod energy;
 mod lyapunov;
 mod poincare;
-mod quadrature;
 mod recorder;
 mod recording;
 mod report;

@@ -4,8 +4,14 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::quadrature::{GAUSS, NODES};
 use crate::dynamics::MAX_ORDER;
+use crate::numerics::gauss::gauss_legendre_unit;
+
+/// Gauss–Legendre nodes per segment: exact for powers up to 2·24 − 1 = 47 in time, so for the square of any step's series.
+const NODES: usize = 24;
+
+/// Nodes and weights over 0 … 1.
+pub(super) static GAUSS: LazyLock<[(f64, f64); NODES]> = LazyLock::new(gauss_legendre_unit);
 
 /// Statistics of a channel over the recorded periods. Means are exact time means of the solution's polynomials, not of
 /// samples.
