@@ -88,13 +88,13 @@ impl<'a, const D: usize> Motion<'a, D> {
     }
 
     #[cfg(test)]
-    pub fn with_fixed_taylor(mut self, order: usize, step_tau: f64) -> Self {
+    pub(crate) fn with_fixed_taylor(mut self, order: usize, step_tau: f64) -> Self {
         self.stepper = Stepper::Taylor(Taylor::new(1.0, order, Some(step_tau)));
         self
     }
 
     #[cfg(test)]
-    pub fn with_fixed_runge_kutta(mut self, step_tau: f64) -> Self {
+    pub(crate) fn with_fixed_runge_kutta(mut self, step_tau: f64) -> Self {
         self.stepper = Stepper::RungeKutta(RungeKutta::new(1.0, Some(step_tau)));
         self
     }
