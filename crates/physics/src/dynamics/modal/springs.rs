@@ -1,27 +1,40 @@
-//! The springs of the model one by one, each as a direction in the source's twelve displacements: meshes, supports, shafts between
-//! the halves.
+//! Springs of the model as directions in the twelve displacements: meshes, supports, couplings of the halves of a
+//! shaft.
 
-use super::Row;
+use super::DisplacementVector;
 use crate::dynamics::parameters::{Parameters, Spring};
 
-/// What a spring belongs to. Supports hold a half to the ground, the others hold the halves of a shaft together.
+/// Group of a spring. Supports connect a half to the ground, the others connect the halves of a shaft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpringGroup {
+    /// Mesh of the left half.
     MeshLeft,
+    /// Mesh of the right half.
     MeshRight,
+    /// Lateral supports of the pinion halves.
     PinionLateral,
+    /// Lateral supports of the gear halves.
     GearLateral,
+    /// Axial supports of the pinion halves.
     PinionAxial,
+    /// Axial supports of the gear halves.
     GearAxial,
+    /// Lateral coupling of the pinion halves.
     PinionHalvesLateral,
+    /// Lateral coupling of the gear halves.
     GearHalvesLateral,
+    /// Axial coupling of the pinion halves.
     PinionHalvesAxial,
+    /// Axial coupling of the gear halves.
     GearHalvesAxial,
+    /// Torsional coupling of the pinion halves.
     PinionHalvesTorsional,
+    /// Torsional coupling of the gear halves.
     GearHalvesTorsional,
 }
 
 impl SpringGroup {
+    /// All groups with their names in results.
     pub const ALL: [(SpringGroup, &'static str); 12] = [
         (SpringGroup::MeshLeft, "mesh_left"),
         (SpringGroup::MeshRight, "mesh_right"),
@@ -37,26 +50,26 @@ impl SpringGroup {
         (SpringGroup::GearHalvesTorsional, "gear_halves_torsional"),
     ];
 
-    /// Its name in results.
-    pub fn word(self) -> &'static str {
+    /// Name in results.
+    pub fn as_str(self) -> &'static str {
         Self::ALL.iter().find(|(group, _)| *group == self).map_or("", |(_, word)| word)
     }
 }
 
-/// A spring with its damper: its deflection is `row` times the displacements.
-pub(super) struct Member {
+/// Spring with damper; its deflection is the scalar product of `row` and the displacements.
+pub(super) struct SpringElement {
     pub group: SpringGroup,
-    pub row: Row,
+    pub row: DisplacementVector,
     pub spring: Spring,
 }
 
-/// Every spring there is, the meshes at their mean stiffness and closed; those of no stiffness and damping left out.
-pub(super) fn members(p: &Parameters) -> Vec<Member> {
+/// All springs with stiffness or damping; the meshes closed, with their mean stiffness.
+pub(super) fn spring_elements(p: &Parameters) -> Vec<SpringElement> {
     use SpringGroup::*;
     let mut out = Vec::with_capacity(16);
     let mut add = |group, row, spring: Spring| {
         if spring != Spring::default() {
-            out.push(Member { group, row, spring });
+            out.push(SpringElement { group, row, spring });
         }
     };
     for (j, h) in p.halves.iter().enumerate() {
@@ -91,8 +104,8 @@ pub(super) fn members(p: &Parameters) -> Vec<Member> {
     out
 }
 
-/// s_j as a row over the twelve displacements.
-pub(super) fn mesh_direction(p: &Parameters, j: usize) -> Row {
+/// Gradient of s_j by the displacements.
+pub(super) fn mesh_direction(p: &Parameters, j: usize) -> DisplacementVector {
     let (sin, cos) = p.helix_angle_rad.sin_cos();
     let sin = if j == 0 { sin } else { -sin };
     let mut row = [0.0; 12];
