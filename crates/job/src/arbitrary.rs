@@ -184,7 +184,7 @@ fn given(model: &mut Value) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 100, ..ProptestConfig::default() })]
 
     /// Parse, fill in, write out, parse: the same document, and the same text when written again.
     #[test]

@@ -349,7 +349,7 @@ fn check_wild(p: &Parameters, method: Method, integrator: Integrator) -> Result<
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
 
     #[test]
     fn wild_parameters_end(p in wild()) {
