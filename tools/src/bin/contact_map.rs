@@ -9,13 +9,15 @@
 use herringbone_job::parse_value;
 use herringbone_job::result::SweepPoint;
 use herringbone_job::study::{self, CheckedJob, SolveContext};
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::Arguments;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let args: Vec<usize> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
-    let (torques, speeds) = (args.first().copied().unwrap_or(27), args.get(1).copied().unwrap_or(116));
+fn main() -> Result<(), Failure> {
+    let arguments = Arguments::of_process();
+    let (torques, speeds) = (arguments.number(0)?.unwrap_or(27), arguments.number(1)?.unwrap_or(116));
     for (name, relief_um) in [("unrelieved", 0.0), ("relieved, 15 um parabolic over 6 mm", 15.0)] {
         let mut value: Value = serde_json::from_str(include_str!("../../../examples/contact.json"))?;
         value["kind"] = json!("sweep");
