@@ -10,7 +10,7 @@ use std::fmt::Write;
 #[folder = "src/web/assets/"]
 struct Files;
 
-/// `/assets/{*file}`: revalidated by entity tag, so that a new version is seen at once.
+/// `/assets/{*file}`: revalidated by entity tag, so that a new version is used at once.
 pub async fn file(Path(name): Path<String>, headers: HeaderMap) -> Response {
     let Some((file, media_type)) = find(&name) else {
         return super::not_found().await;
