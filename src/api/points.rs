@@ -1,12 +1,12 @@
 //! Rows of sweeps on their way out: a page of the table at a time, so that a large sweep takes no memory.
 
-use super::columns::{Cell, NUMBERS, WORDS};
+use super::columns;
 use super::config::MAX_ROWS;
 use super::csv::{Decimal, Field};
 use crate::store::{JobId, PointRow, PointsOfResult, Store, StoreError};
 use axum::body::{Body, Bytes};
 use futures_util::stream::{self, Stream, StreamExt};
-use herringbone_job::result::SweepPoint;
+use herringbone_job::result::{BranchDirection, Cell, SweepPoint};
 
 /// Up to `limit` rows of a job from position `from` on and before `to`, and the position of the next one, if there is one.
 pub async fn page(
@@ -80,7 +80,7 @@ fn pages(store: Store, id: JobId, from: u64) -> impl Stream<Item = Result<Vec<Po
 }
 
 fn header(axes: &[String], decimal: Decimal) -> String {
-    let names = NUMBERS.iter().chain(&WORDS).map(|column| column.0);
+    let names = columns::usual().into_iter().map(|column| column.name);
     let columns = ["position", "branch"].into_iter().chain(axes.iter().map(String::as_str)).chain(names);
     let mut text = decimal.start().to_owned();
     decimal.push_line(&mut text, columns.map(Field::Text));
@@ -88,12 +88,13 @@ fn header(axes: &[String], decimal: Decimal) -> String {
 }
 
 fn push_line(text: &mut String, position: u64, point: &SweepPoint, decimal: Decimal) {
-    let values = point.values.iter().map(|value| Field::Number(*value));
-    let cells = NUMBERS.iter().chain(&WORDS).map(|column| match (column.1)(point) {
-        Cell::Number(Some(number)) => Field::Number(number),
+    let cells: Vec<_> = columns::usual().into_iter().map(|column| (column.cell)(point)).collect();
+    let fields = cells.iter().map(|cell| match cell {
+        Cell::Number(Some(number)) => Field::Number(*number),
         Cell::Word(Some(word)) => Field::Text(word),
         _ => Field::Nothing,
     });
-    let branch = Field::Text(point.branch.as_deref().unwrap_or_default());
-    decimal.push_line(text, [Field::Whole(position), branch].into_iter().chain(values).chain(cells));
+    let values = point.values.iter().map(|value| Field::Number(*value));
+    let branch = Field::Text(point.branch.map_or("", BranchDirection::as_str));
+    decimal.push_line(text, [Field::Whole(position), branch].into_iter().chain(values).chain(fields));
 }

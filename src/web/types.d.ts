@@ -119,6 +119,7 @@ declare global {
     label: string;
     unit: string;
     least: boolean;
+    change: import("./assets/common/quantities.js").Quantity["change"];
     columns: { both?: string; left?: string; right?: string };
   }
 

@@ -13,7 +13,7 @@ use crate::store::{Cancellation, Deletion, JobId, JobRecord, NewJob, Store, Stor
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
 use herringbone_job::drawing::Drawing;
-use herringbone_job::study::CheckReport;
+use herringbone_job::study::CheckedJob;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 use std::time::Duration;
@@ -127,25 +127,25 @@ impl Jobs {
         self.0.closing.is_cancelled()
     }
 
-    /// Geometry and warnings, without a job.
+    /// Checks a document, without a job.
     ///
     /// # Errors
     /// [`SubmitError::Document`] when the gear cannot exist, is not supported, or would take more memory than one job may.
-    pub async fn check(&self, document: JobDocument) -> Result<CheckReport, SubmitError> {
+    pub async fn check(&self, document: JobDocument) -> Result<CheckedJob, SubmitError> {
         let (solver, memory) = (Arc::clone(&self.0.solver), self.0.memory);
         let checked = tokio::task::spawn_blocking(move || {
-            let report = solver.check(&document)?;
-            memory.check(&document).map(|()| report)
+            let job = solver.check(document)?;
+            memory.check(job.document()).map(|()| job)
         });
         Ok(checked.await??)
     }
 
-    /// The pair of a document to scale.
+    /// The pair of a job to scale.
     ///
     /// # Errors
-    /// [`SubmitError::Document`] when the gear cannot exist.
-    pub async fn drawing(&self, document: JobDocument) -> Result<Drawing, SubmitError> {
-        Ok(tokio::task::spawn_blocking(move || Drawing::of(&document)).await??)
+    /// When the thread that draws fails.
+    pub async fn drawing(&self, job: CheckedJob) -> Result<Drawing, SubmitError> {
+        Ok(tokio::task::spawn_blocking(move || Drawing::of(&job)).await?)
     }
 
     /// Accepts a job: checks it, writes it, and has it run; the job has ended already when its result was there.
@@ -158,7 +158,7 @@ impl Jobs {
         }
         self.store().admit().await?;
         let SubmitRequest { document, idempotency_key, request_id } = request;
-        self.check(document.clone()).await?;
+        let document = self.check(document).await?.into_document();
         let input = serde_json::to_string(&document)?;
         let input_hash = self.0.solver.input_hash(&document);
         let solver_version = self.0.solver.version();

@@ -1,7 +1,7 @@
 //! What is counted of jobs, and what every line of the log below a job carries.
 
 use crate::store::JobRecord;
-use herringbone_job::result::Numerics;
+use herringbone_job::result::NumericsResult;
 use tracing::Span;
 
 /// Around everything that is done for one run of a job. Of the highest level, so that whatever is logged carries it.
@@ -20,7 +20,7 @@ pub(super) fn started(job: &JobRecord) {
 }
 
 /// A job was computed: time of the stages that ran, and which were taken from earlier jobs.
-pub(super) fn computed(numerics: &Numerics) {
+pub(super) fn computed(numerics: &NumericsResult) {
     let wall_ms = &numerics.wall_ms;
     let stages = [
         ("geometry", wall_ms.geometry),
@@ -29,12 +29,12 @@ pub(super) fn computed(numerics: &Numerics) {
         ("response", wall_ms.response),
     ];
     for (stage, milliseconds) in stages {
-        if !numerics.reused.iter().any(|reused| reused == stage) {
+        if !numerics.reused.iter().any(|reused| reused.as_str() == stage) {
             metrics::histogram!("herringbone_stage_duration_seconds", "stage" => stage).record(milliseconds / 1e3);
         }
     }
     for stage in &numerics.reused {
-        metrics::counter!("herringbone_stage_reuse_total", "stage" => stage.clone()).increment(1);
+        metrics::counter!("herringbone_stage_reuse_total", "stage" => stage.as_str()).increment(1);
     }
 }
 

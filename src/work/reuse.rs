@@ -2,6 +2,7 @@
 
 use super::points::place_of_points;
 use crate::store::{Completion, PointBatch, PointsOfResult, Store, StoreError};
+use herringbone_job::result::ReusedStage;
 use serde_json::{Value, json};
 
 /// What would end a job with this input at once, if a result is stored.
@@ -29,7 +30,7 @@ pub(super) async fn stored_completion(
 fn marked_as_reused(body: &str) -> String {
     let Ok(mut result) = serde_json::from_str::<Value>(body) else { return body.to_owned() };
     if let Some(numerics) = result.get_mut("numerics").and_then(Value::as_object_mut) {
-        numerics.insert("reused".to_owned(), json!(["result"]));
+        numerics.insert("reused".to_owned(), json!([ReusedStage::Result]));
     }
     result.to_string()
 }
@@ -45,7 +46,7 @@ mod tests {
         result.numerics.steps = 17;
         let before = serde_json::to_string(&result).unwrap();
         let after: JobResult = serde_json::from_str(&marked_as_reused(&before)).unwrap();
-        result.numerics.reused = vec!["result".into()];
+        result.numerics.reused = vec![ReusedStage::Result];
         assert_eq!(after, result);
     }
 }

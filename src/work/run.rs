@@ -121,7 +121,7 @@ impl Run<'_> {
             let _entered = span.entered();
             let work = Work { solver: solver.as_ref(), stages: &stages, points: &points_here, stop: &stop };
             // A panic that leaves a closure of `spawn` would abort the process.
-            let ending = catch_unwind(AssertUnwindSafe(|| work.solve(&document, input_hash, &progress)));
+            let ending = catch_unwind(AssertUnwindSafe(|| work.solve(document, input_hash, &progress)));
             let _ = send.send(ending.unwrap_or_else(|panic| Ending::Failed(panic_failure(panic.as_ref()))));
         });
         loop {
@@ -223,7 +223,7 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    fn solve(&self, document: &JobDocument, input_hash: String, progress: &watch::Sender<Progress>) -> Ending {
+    fn solve(&self, document: JobDocument, input_hash: String, progress: &watch::Sender<Progress>) -> Ending {
         let started = Instant::now();
         let context = SolveContext {
             stages: self.stages,
@@ -234,7 +234,8 @@ impl Work<'_> {
             canceled: &|| self.stop.is_asked(),
             clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,
         };
-        match self.solver.solve(document, &context) {
+        let solved = self.solver.check(document).map_err(SolveError::from);
+        match solved.and_then(|job| self.solver.solve(&job, &context)) {
             Ok(outcome) => self.packed(outcome, input_hash).unwrap_or_else(|error| Ending::Failed(internal(&error))),
             Err(SolveError::Canceled(_)) => Ending::Stopped,
             Err(error) => Ending::Failed(failure_of(error)),

@@ -1,6 +1,6 @@
 //! The gear data of a pair in the terms of ISO 21771-1, calculated from its document.
 
-use crate::document::{Gear, Hand, JobDocument};
+use crate::document::{GearInput, Hand, JobDocument};
 use crate::study::{bounds, prepare};
 use crate::{DocumentError, parse};
 use herringbone_physics::gear::{Half, Member, Pair};
@@ -140,7 +140,7 @@ impl GearData {
         let pitch_radii_m = pair.pitch_radii_m();
         let beta = pair.spec.helix_angle_rad;
         let (speed_rpm, torque_nm) = (document.operation.pinion_speed_rpm, document.operation.pinion_torque_nm);
-        let member = |member: &Member, given: &Gear, index: usize| MemberData {
+        let member = |member: &Member, given: &GearInput, index: usize| MemberData {
             teeth: member.teeth,
             left_half_hand: given.left_half_hand,
             profile_shift: member.profile_shift,
@@ -305,7 +305,7 @@ mod tests {
             let inner_is_first = (rotation == "apex_leading") == (torque_nm > 0.0);
             let sense = if inner_is_first { -1.0 } else { 1.0 };
             let corner_roll = if torque_nm > 0.0 { start } else { end };
-            let entry_face = if (rotation == "apex_leading") { inner } else { outer };
+            let entry_face = if rotation == "apex_leading" { inner } else { outer };
             let mut of_half = [0, 0];
             for line in &found.contact_lines {
                 of_half[usize::from(line.half == Half::Right)] += 1;

@@ -19,10 +19,7 @@ use herringbone_job::gear_data::GearData;
         (status = 422, description = "`invalid-design` or `unsupported-design`: this version refuses the document of an earlier one."),
     )
 )]
-pub async fn read_gear_data(
-    State(state): State<AppState>,
-    JobPath(id): JobPath,
-) -> Result<Json<GearData>, Refusal> {
+pub async fn read_gear_data(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Json<GearData>, Refusal> {
     let input = state.jobs().store().input(id).await?.ok_or_else(super::no_job)?;
     let found = tokio::task::spawn_blocking(move || GearData::of_stored(&input)).await;
     Ok(Json(found.map_err(Refusal::internal)??))

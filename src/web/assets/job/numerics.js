@@ -2,6 +2,7 @@
 
 import { byId, el, fillValues, show } from "../common/dom.js";
 import { number } from "../common/format.js";
+import { scalarAt } from "../common/scalars.js";
 import { METHODS } from "./words.js";
 
 /** Stages with the names of their times. @type {[keyof Numerics["wall_ms"], string][]} */
@@ -58,22 +59,26 @@ export function numericsValues({ job, numerics, response, mesh }) {
   const states = freedom ? `${number(2 * freedom)} of 24` : null;
   /** @param {number | null | undefined} shown */
   const count = (shown) => (shown && shown > 0 ? number(shown, 9) : null);
+  /** @param {number | null | undefined} error */
+  const small = (error) => (typeof error === "number" ? number(error, 2) : null);
+  /** A row by the scalar's label and unit. @type {(pointer: string, shown: Child) => ValueRow} */
+  const row = (pointer, shown) => [scalarAt(pointer).label, shown, scalarAt(pointer).unit];
   return [
     ["Method", response ? (METHODS[response.method] ?? response.method) : null],
-    ["Degrees of freedom solved", halves],
+    row("/numerics/degrees_of_freedom", halves),
     ["States of the equations", states],
-    ["Mesh periods in the means", count(response?.averaged_mesh_periods)],
-    ["Steps", count(numerics.steps)],
-    ["Rejected steps", count(numerics.rejected_steps)],
-    ["Evaluations of the forces", count(numerics.force_evaluations)],
-    ["Contact: positions per mesh period, slices", convergence ? `${number(convergence.positions)}, ${number(convergence.slices)}` : null],
-    ["Contact: change with finer positions", typeof convergence?.position_error_percent === "number" ? number(convergence.position_error_percent, 2) : null, "%"],
+    [scalarAt("/response/averaged_mesh_periods").label, count(response?.averaged_mesh_periods)],
+    row("/numerics/steps", count(numerics.steps)),
+    row("/numerics/rejected_steps", count(numerics.rejected_steps)),
+    row("/numerics/force_evaluations", count(numerics.force_evaluations)),
+    ["Contact analysis: positions per mesh period, slices", convergence ? `${number(convergence.positions)}, ${number(convergence.slices)}` : null],
+    row("/mesh/convergence/position_error_percent", small(convergence?.position_error_percent)),
     ["Contact force: levels, phases tabulated", mesh?.contact_force ? `${number(mesh.contact_force.levels)}, ${number(mesh.contact_force.phases)}` : null],
-    ["Contact force: largest difference from the contact", mesh?.contact_force ? number(mesh.contact_force.error_percent, 2) : null, "%"],
-    ["Contact: change with half the slices", convergence ? number(convergence.slice_error_percent, 2) : null, "%"],
-    ["Balance of work and energy, residual", typeof response?.energy_balance_residual === "number" ? number(response.energy_balance_residual, 2) : null],
+    row("/mesh/contact_force/error_percent", small(mesh?.contact_force?.error_percent)),
+    row("/mesh/convergence/slice_error_percent", small(convergence?.slice_error_percent)),
+    row("/response/energy_balance_residual", small(response?.energy_balance_residual)),
     ["Reused", reused.length ? reused.map((name) => REUSED[name] ?? name).join(", ") : "nothing"],
-    ["Solver version", numerics.solver_version],
+    row("/numerics/solver_version", numerics.solver_version),
     ["Input hash", job?.input_hash ? el("code", { class: "hash" }, job.input_hash) : null],
     ...(numerics.not_finite ?? []).map(({ pointer, reason }) => /** @type {ValueRow} */ ([`Not finite: ${pointer}`, reason])),
   ];

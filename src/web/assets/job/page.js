@@ -16,6 +16,7 @@ import { showResponse } from "./response.js";
 import { showSeries } from "./series.js";
 import { showSpectrum } from "./spectrum.js";
 import { showGeometry } from "./tables.js";
+import { showValues } from "./values.js";
 
 const id = byId("job").dataset.id ?? "";
 const notice = byId("notice");
@@ -54,6 +55,7 @@ async function showResult(job) {
   showResponse(all);
   showGeometry(all);
   showNumerics(all);
+  showValues(all);
   const drawn = [showSeries(all), showPhase(all), showSpectrum(all), showModes(all), showMesh(all), showImpact(all)];
   // With the sections, so that nothing moves when their plots are drawn.
   showContents();

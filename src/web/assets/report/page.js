@@ -7,6 +7,7 @@ import { gearDataOf, memberRows, pairRows, symbolOf } from "../common/gear_data.
 import { line } from "../common/plot_traces.js";
 import { summary } from "../common/plot_tools.js";
 import { picture } from "../common/plots.js";
+import { scalarAt } from "../common/scalars.js";
 import { accuracyTexts, headlines } from "../job/headline.js";
 import { impactRows, impactValues } from "../job/impact.js";
 import { pulsePlot } from "../job/impact_plots.js";
@@ -56,9 +57,9 @@ function showGearData(gearData) {
 function showResults({ mesh, impact, response }, input) {
   show(byId("results"), Boolean(mesh || impact || response));
   if (response) {
-    /** @param {string} name @param {PerHalf} sides */
-    const row = (name, { left, right }) => [name, number(left), number(right), "m/s²"];
-    fillRows(byId("rms").tBodies[0], [row("Circumferential, mesh", response.rms.mesh_circumferential_acceleration_m_s2), row("Axial, pinion", response.rms.pinion_axial_acceleration_m_s2)]);
+    /** @param {string} pointer @param {PerHalf} sides */
+    const row = (pointer, { left, right }) => [scalarAt(pointer).label, number(left), number(right), scalarAt(pointer).unit];
+    fillRows(byId("rms").tBodies[0], [row("/response/rms/mesh_circumferential_acceleration_m_s2/{half}", response.rms.mesh_circumferential_acceleration_m_s2), row("/response/rms/pinion_axial_acceleration_m_s2/{half}", response.rms.pinion_axial_acceleration_m_s2)]);
     fillValues(byId("response-values"), responseValues(response, input));
     show(byId("response-block"));
   }

@@ -1,6 +1,7 @@
 // The rows of a sweep by columns: fetched when they are needed and as they are solved, at most once each.
 
 import * as api from "../common/api.js";
+import { SWEEP_COLUMNS } from "../common/quantities.js";
 
 /** Rows asked for at once; fewer where a row carries a list. */
 const PAGE = 10_000;
@@ -10,8 +11,10 @@ const PAGE_OF_LISTS = 500;
 /** Ranges of missing rows that are fetched one by one; more than these are joined over what lies between. */
 const MOST_GAPS = 8;
 
-const WORDS = new Set(["regime", "contact", "error"]);
-const LISTS = new Set(["poincare_x_left_m", "poincare_v_x_left_m_s", "acceleration_spectrum_m_s2"]);
+/** @param {string} kind */
+const namesOf = (kind) => new Set(SWEEP_COLUMNS.filter((column) => column.kind === kind).map(({ name }) => name));
+const WORDS = namesOf("word");
+const LISTS = namesOf("numbers");
 
 export class SweepData {
   /** @param {string} id @param {number} total number of rows of the complete sweep */

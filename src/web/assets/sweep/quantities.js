@@ -1,35 +1,15 @@
 // The quantities of a point that can be plotted, and the kinds of its motion and contact.
 
+import { SWEEP_COLUMNS } from "../common/quantities.js";
+import { scalarAt } from "../common/scalars.js";
+
 /** @type {SweepQuantity[]} */
-export const QUANTITIES = [
-  half("mesh_circumferential_acceleration_rms", "m_s2", "Circumferential acceleration of the mesh, RMS", "m/s²", true),
-  half("pinion_axial_acceleration_rms", "m_s2", "Axial acceleration of the pinion, RMS", "m/s²", true),
-  whole("dynamic_factor", "Dynamic factor", "", true),
-  half("tooth_force_max", "n", "Largest tooth force", "N", true),
-  whole("min_displacement_um", "Least displacement of the mesh", "µm"),
-  whole("impact_force_n", "Mesh-in impact force", "N", true),
-  whole("stiffness_mean_n_per_um", "Mean mesh stiffness", "N/µm"),
-  whole("total_contact_ratio", "Total contact ratio", ""),
-  whole("loaded_contact_ratio", "Contact ratio under load", ""),
-  whole("error_estimate", "Estimated relative error of the RMS", ""),
-];
-
-/**
- * @param {string} name
- * @param {string} unitName
- * @param {string} label
- * @param {string} unit
- * @param {boolean} [least]
- * @returns {SweepQuantity}
- */
-function half(name, unitName, label, unit, least = false) {
-  return { name, label, unit, least, columns: { left: `${name}_left_${unitName}`, right: `${name}_right_${unitName}` } };
-}
-
-/** @param {string} name @param {string} label @param {string} unit @param {boolean} [least] @returns {SweepQuantity} */
-function whole(name, label, unit, least = false) {
-  return { name, label, unit, least, columns: { both: name } };
-}
+export const QUANTITIES = [...new Set(SWEEP_COLUMNS.filter(({ kind }) => kind === "number").map(({ group }) => group))].map((group) => {
+  const columns = SWEEP_COLUMNS.filter((column) => column.group === group);
+  const { label, unit, percent, change, lower_is_better: least } = scalarAt(/** @type {string} */ (columns[0].quantity));
+  // Rows have shares of 1.
+  return { name: group, label, unit: percent ? "" : unit, change, least, columns: Object.fromEntries(columns.map(({ half, name }) => [half ?? "both", name])) };
+});
 
 /** @param {SweepQuantity} quantity */
 export const columnsOf = (quantity) => Object.values(quantity.columns);
