@@ -76,8 +76,8 @@ struct StressCase {
     description: String,
 }
 
-fn case(r: &mut SplitMix64, of: &Ranges) -> StressCase {
-    let log = |r: &mut SplitMix64, range: (f64, f64)| r.log(range.0, range.1);
+fn case(r: &mut Random, of: &Ranges) -> StressCase {
+    let log = |r: &mut Random, range: (f64, f64)| r.log(range.0, range.1);
     let teeth = r.between(10.0, 100.0).floor();
     let rpm = log(r, of.pinion_rpm);
     let pinion_radius_m = r.log(0.01, 1.0);
@@ -120,7 +120,7 @@ fn case(r: &mut SplitMix64, of: &Ranges) -> StressCase {
         start_mesh_periods: r.unit(),
     });
     let stagger = if r.chance(0.4) { r.unit() } else { 0.0 };
-    let spring = |r: &mut SplitMix64, mass: f64| Spring::with_damping_ratio(log(r, of.support_n_per_m), zeta, mass);
+    let spring = |r: &mut Random, mass: f64| Spring::with_damping_ratio(log(r, of.support_n_per_m), zeta, mass);
     let m_e = equivalent_mass_kg(pinion_radius_m, pinion_inertia_kg_m2, gear_radius_m, gear_inertia_kg_m2);
     let half = HalfParameters {
         pinion_mass_kg,
@@ -138,7 +138,7 @@ fn case(r: &mut SplitMix64, of: &Ranges) -> StressCase {
         impact,
         phase_shift_mesh_periods: 0.0,
     };
-    let torsional = |r: &mut SplitMix64, inertia: f64, radius: f64| {
+    let torsional = |r: &mut Random, inertia: f64, radius: f64| {
         if r.chance(0.3) {
             Spring::with_damping_ratio(log(r, of.support_n_per_m) * radius * radius, zeta, inertia)
         } else {
@@ -181,7 +181,7 @@ fn case(r: &mut SplitMix64, of: &Ranges) -> StressCase {
 
 /// Puts contact forces in place of the stiffness: F = k(φ) e²/(e + c) beyond a free position that varies with the phase, on knots and levels as a contact
 /// analysis leaves them.
-fn with_contact(p: &mut Parameters, r: &mut SplitMix64, of: &Ranges) -> Result<(), DynamicsError> {
+fn with_contact(p: &mut Parameters, r: &mut Random, of: &Ranges) -> Result<(), DynamicsError> {
     let knots: Vec<f64> = {
         let n = r.between(8.0, 160.0) as usize;
         (0..n).map(|i| (i as f64 + r.between(0.05, 0.95)) / n as f64).collect()
