@@ -1,26 +1,26 @@
-//! Columns of the rows of a sweep: what each is called and where in a row it stands.
+//! The columns of the rows of a sweep: their names and values.
 
 use herringbone_job::result::{PerHalf, SweepPoint};
 use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
 use utoipa::openapi::{ObjectBuilder, RefOr, Schema, Type};
 use utoipa::{PartialSchema, ToSchema};
 
-/// One value of a row; null where the row does not have it.
+/// The value of a column in a row; `None` where the row does not have one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Cell<'a> {
+pub enum ColumnValue<'a> {
     Number(Option<f64>),
-    Word(Option<&'a str>),
+    Text(Option<&'a str>),
     Numbers(Option<&'a [f64]>),
 }
 
-/// A column: its name, and its value in a row.
-pub type Column = (&'static str, fn(&SweepPoint) -> Cell<'_>);
+/// A column: its name, and the function that reads its value from a row.
+pub type Column = (&'static str, fn(&SweepPoint) -> ColumnValue<'_>);
 
-fn half(halves: Option<PerHalf>, pick: fn(PerHalf) -> f64) -> Cell<'static> {
-    Cell::Number(halves.map(pick))
+fn half(halves: Option<PerHalf>, pick: fn(PerHalf) -> f64) -> ColumnValue<'static> {
+    ColumnValue::Number(halves.map(pick))
 }
 
-/// The numbers of a row, in the order of the table.
+/// The columns of numbers, in the order of the CSV table.
 pub const NUMBERS: [Column; 13] = [
     ("mesh_circumferential_acceleration_rms_left_m_s2", |row| {
         half(row.mesh_circumferential_acceleration_rms_m_s2, |halves| halves.left)
@@ -34,39 +34,42 @@ pub const NUMBERS: [Column; 13] = [
     ("pinion_axial_acceleration_rms_right_m_s2", |row| {
         half(row.pinion_axial_acceleration_rms_m_s2, |halves| halves.right)
     }),
-    ("dynamic_factor", |row| Cell::Number(row.dynamic_factor)),
-    ("min_displacement_um", |row| Cell::Number(row.min_displacement_um)),
-    ("stiffness_mean_n_per_um", |row| Cell::Number(row.stiffness_mean_n_per_um)),
-    ("impact_force_n", |row| Cell::Number(row.impact_force_n)),
-    ("total_contact_ratio", |row| Cell::Number(row.total_contact_ratio)),
-    ("loaded_contact_ratio", |row| Cell::Number(row.loaded_contact_ratio)),
-    ("error_estimate", |row| Cell::Number(row.error_estimate)),
+    ("dynamic_factor", |row| ColumnValue::Number(row.dynamic_factor)),
+    ("min_displacement_um", |row| ColumnValue::Number(row.min_displacement_um)),
+    ("stiffness_mean_n_per_um", |row| ColumnValue::Number(row.stiffness_mean_n_per_um)),
+    ("impact_force_n", |row| ColumnValue::Number(row.impact_force_n)),
+    ("total_contact_ratio", |row| ColumnValue::Number(row.total_contact_ratio)),
+    ("loaded_contact_ratio", |row| ColumnValue::Number(row.loaded_contact_ratio)),
+    ("error_estimate", |row| ColumnValue::Number(row.error_estimate)),
     ("tooth_force_max_left_n", |row| half(row.tooth_force_max_n, |halves| halves.left)),
     ("tooth_force_max_right_n", |row| half(row.tooth_force_max_n, |halves| halves.right)),
 ];
 
-/// The words of a row that stand at its end.
-pub const WORDS: [Column; 3] = [
-    ("regime", |row| Cell::Word(row.regime.as_deref())),
-    ("contact", |row| Cell::Word(row.contact.as_deref())),
-    ("error", |row| Cell::Word(row.error.as_deref())),
+/// The columns of texts at the end of the CSV table.
+pub const TEXTS: [Column; 3] = [
+    ("regime", |row| ColumnValue::Text(row.regime.as_deref())),
+    ("contact", |row| ColumnValue::Text(row.contact.as_deref())),
+    ("error", |row| ColumnValue::Text(row.error.as_deref())),
 ];
 
+/// The columns that CSV does not have at the end.
 const OTHERS: [Column; 4] = [
-    ("branch", |row| Cell::Word(row.branch.as_deref())),
-    ("poincare_x_left_m", |row| Cell::Numbers(row.poincare.as_ref().map(|poincare| poincare.x_left_m.as_slice()))),
-    ("poincare_v_x_left_m_s", |row| {
-        Cell::Numbers(row.poincare.as_ref().map(|poincare| poincare.v_x_left_m_s.as_slice()))
+    ("branch", |row| ColumnValue::Text(row.branch.as_deref())),
+    ("poincare_x_left_m", |row| {
+        ColumnValue::Numbers(row.poincare.as_ref().map(|poincare| poincare.x_left_m.as_slice()))
     }),
-    ("acceleration_spectrum_m_s2", |row| Cell::Numbers(row.acceleration_spectrum_m_s2.as_deref())),
+    ("poincare_v_x_left_m_s", |row| {
+        ColumnValue::Numbers(row.poincare.as_ref().map(|poincare| poincare.v_x_left_m_s.as_slice()))
+    }),
+    ("acceleration_spectrum_m_s2", |row| ColumnValue::Numbers(row.acceleration_spectrum_m_s2.as_deref())),
 ];
 
 /// Every column, by its name.
 pub fn all() -> Vec<(&'static str, Column)> {
-    NUMBERS.iter().chain(&WORDS).chain(&OTHERS).map(|column| (column.0, *column)).collect()
+    NUMBERS.iter().chain(&TEXTS).chain(&OTHERS).map(|column| (column.0, *column)).collect()
 }
 
-/// The name of a column, for the description.
+/// The name of a column, for the OpenAPI document.
 pub struct ColumnName;
 
 impl PartialSchema for ColumnName {
@@ -79,35 +82,35 @@ impl PartialSchema for ColumnName {
 
 impl ToSchema for ColumnName {}
 
-/// Rows as an object with a list for each column.
-pub struct Table<'a> {
+/// Rows, serialized as an object with a list for each column.
+pub struct ColumnTable<'a> {
     pub columns: &'a [Column],
     pub rows: &'a [SweepPoint],
 }
 
-impl Serialize for Table<'_> {
+impl Serialize for ColumnTable<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.columns.len()))?;
         for column in self.columns {
-            map.serialize_entry(column.0, &Values { column, rows: self.rows })?;
+            map.serialize_entry(column.0, &ColumnValues { column, rows: self.rows })?;
         }
         map.end()
     }
 }
 
-struct Values<'a> {
+struct ColumnValues<'a> {
     column: &'a Column,
     rows: &'a [SweepPoint],
 }
 
-impl Serialize for Values<'_> {
+impl Serialize for ColumnValues<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut list = serializer.serialize_seq(Some(self.rows.len()))?;
         for row in self.rows {
             match (self.column.1)(row) {
-                Cell::Number(value) => list.serialize_element(&value)?,
-                Cell::Word(value) => list.serialize_element(&value)?,
-                Cell::Numbers(value) => list.serialize_element(&value)?,
+                ColumnValue::Number(value) => list.serialize_element(&value)?,
+                ColumnValue::Text(value) => list.serialize_element(&value)?,
+                ColumnValue::Numbers(value) => list.serialize_element(&value)?,
             }
         }
         list.end()
@@ -121,7 +124,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn every_number_and_word_of_a_row_is_a_column() {
+    fn every_number_and_text_of_a_row_is_a_column() {
         let row = SweepPoint {
             error: Some("why".to_owned()),
             branch: Some("up".to_owned()),
@@ -147,13 +150,13 @@ mod tests {
             ..SweepPoint::default()
         };
         let rows = [solved, SweepPoint { error: Some("no".to_owned()), ..SweepPoint::default() }];
-        let columns = [NUMBERS[1], WORDS[0], WORDS[2], OTHERS[3]];
+        let columns = [NUMBERS[1], TEXTS[0], TEXTS[2], OTHERS[3]];
         let expected = json!({
             "mesh_circumferential_acceleration_rms_right_m_s2": [2.5, null],
             "regime": ["period-1", null],
             "error": [null, "no"],
             "acceleration_spectrum_m_s2": [[0.5, 1.0], null],
         });
-        assert_eq!(serde_json::to_value(Table { columns: &columns, rows: &rows }).unwrap(), expected);
+        assert_eq!(serde_json::to_value(ColumnTable { columns: &columns, rows: &rows }).unwrap(), expected);
     }
 }

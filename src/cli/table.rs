@@ -1,9 +1,12 @@
-//! The headline numbers of a result, for people.
+//! The headline numbers of a result as a text table.
 
 use herringbone_job::result::JobResult;
 use std::io::{Result, Write};
 
-/// Writes one line per number: name, value, unit.
+/// Writes one line for each number: name, value, unit.
+///
+/// # Errors
+/// Those of `out`.
 pub fn write(out: &mut impl Write, result: &JobResult) -> Result<()> {
     let mut row = |name: &str, value: f64, unit: &str| writeln!(out, "{name:<46} {value:>12.5} {unit}");
     if let Some(geometry) = &result.geometry {

@@ -3,8 +3,8 @@
 use axum::extract::Path;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use headers::{HeaderMapExt, IfNoneMatch};
 use rust_embed::{EmbeddedFile, RustEmbed};
-use std::fmt::Write;
 
 #[derive(RustEmbed)]
 #[folder = "src/web/assets/"]
@@ -16,12 +16,10 @@ pub async fn file(Path(name): Path<String>, headers: HeaderMap) -> Response {
         return super::not_found().await;
     };
     let tag = entity_tag(&file);
-    let fresh = headers
-        .get(header::IF_NONE_MATCH)
-        .and_then(|value| value.to_str().ok())
-        .is_some_and(|known| known.split(',').any(|known| known.trim().trim_start_matches("W/") == tag));
+    let known: Option<IfNoneMatch> = headers.typed_get();
+    let is_known = known.zip(tag.parse().ok()).is_some_and(|(known, tag)| !known.precondition_passes(&tag));
     let caching = [(header::ETAG, tag), (header::CACHE_CONTROL, "no-cache".to_owned())];
-    if fresh {
+    if is_known {
         return (StatusCode::NOT_MODIFIED, caching).into_response();
     }
     let content = [
@@ -47,11 +45,5 @@ fn find(name: &str) -> Option<(EmbeddedFile, &'static str)> {
 }
 
 fn entity_tag(file: &EmbeddedFile) -> String {
-    let mut tag = String::from("\"");
-    for byte in &file.metadata.sha256_hash()[..12] {
-        // Writing to a String cannot fail.
-        let _ = write!(tag, "{byte:02x}");
-    }
-    tag.push('"');
-    tag
+    format!("\"{}\"", hex::encode(&file.metadata.sha256_hash()[..12]))
 }
