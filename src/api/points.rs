@@ -1,13 +1,13 @@
 //! Stored rows of sweeps in responses, read and sent a page at a time, so that the memory used does not grow with their
 //! number.
 
-use super::columns::{ColumnValue, NUMBERS, TEXTS};
+use super::columns;
 use super::config::MAX_ROWS;
 use super::csv::{CsvField, CsvWriter, Decimal};
 use crate::store::{JobId, PointRow, Store, StoreError};
 use axum::body::{Body, Bytes};
 use futures_util::stream::{self, Stream, StreamExt};
-use herringbone_job::result::SweepPoint;
+use herringbone_job::result::{BranchDirection, Cell, SweepPoint};
 use std::io;
 
 /// Reads up to `limit` rows of a job with positions in `from..to`. Also returns the position of the next row, if there
@@ -64,7 +64,7 @@ fn to_store_error(error: impl std::fmt::Display) -> StoreError {
 }
 
 fn header(axes: &[String], decimal: Decimal) -> io::Result<Vec<u8>> {
-    let names = NUMBERS.iter().chain(&TEXTS).map(|column| column.0);
+    let names = columns::default_columns().into_iter().map(|column| column.name);
     let columns = ["position", "branch"].into_iter().chain(axes.iter().map(String::as_str)).chain(names);
     let mut writer = CsvWriter::with_mark(Vec::new(), decimal)?;
     writer.write_record(columns.map(CsvField::Text))?;
@@ -73,11 +73,12 @@ fn header(axes: &[String], decimal: Decimal) -> io::Result<Vec<u8>> {
 
 fn write_row(writer: &mut CsvWriter<Vec<u8>>, position: u64, point: &SweepPoint) -> io::Result<()> {
     let values = point.values.iter().map(|value| CsvField::Number(*value));
-    let columns = NUMBERS.iter().chain(&TEXTS).map(|column| match (column.1)(point) {
-        ColumnValue::Number(Some(number)) => CsvField::Number(number),
-        ColumnValue::Text(Some(text)) => CsvField::Text(text),
+    let cells: Vec<_> = columns::default_columns().into_iter().map(|column| (column.cell)(point)).collect();
+    let fields = cells.iter().map(|cell| match cell {
+        Cell::Number(Some(number)) => CsvField::Number(*number),
+        Cell::Word(Some(word)) => CsvField::Text(word),
         _ => CsvField::Empty,
     });
-    let branch = CsvField::Text(point.branch.as_deref().unwrap_or_default());
-    writer.write_record([CsvField::Integer(position), branch].into_iter().chain(values).chain(columns))
+    let branch = CsvField::Text(point.branch.map_or("", BranchDirection::as_str));
+    writer.write_record([CsvField::Integer(position), branch].into_iter().chain(values).chain(fields))
 }

@@ -159,15 +159,17 @@ impl<'de> Visitor<'de> for RawObjectVisitor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use herringbone_job::result::{JobResult, Sweep, SweepPoint};
+    use herringbone_job::result::{JobResult, SweepPoint, SweepResult};
 
     #[test]
     fn the_result_with_rows_put_in_is_the_result_as_serde_writes_it() {
         let points = vec![SweepPoint { values: vec![1.5], ..SweepPoint::default() }; 3];
-        let mut result =
-            JobResult { sweep: Some(Sweep { points: Vec::new(), ..Sweep::default() }), ..JobResult::default() };
+        let mut result = JobResult {
+            sweep: Some(SweepResult { points: Vec::new(), ..SweepResult::default() }),
+            ..JobResult::default()
+        };
         // A text that looks like the place of the rows.
-        result.numerics.reused = vec!["\"points\":[]".to_owned()];
+        result.numerics.solver_version = "\"points\":[]".to_owned();
         let (head, tail) = split_at_rows(&serde_json::to_string(&result).unwrap()).unwrap();
         let rows: Vec<_> = points.iter().map(|point| serde_json::to_string(point).unwrap()).collect();
         if let Some(sweep) = &mut result.sweep {

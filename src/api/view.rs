@@ -8,7 +8,7 @@ use axum::http::header::{CACHE_CONTROL, RETRY_AFTER};
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
 use headers::{ETag, HeaderMapExt};
-use herringbone_job::document::Kind;
+use herringbone_job::document::JobKind;
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -89,7 +89,7 @@ impl From<&JobRecord> for Job {
                 input: format!("{path}/input"),
                 result: format!("{path}/result"),
                 series: format!("{path}/series"),
-                points: (job.kind == Kind::Sweep.word()).then(|| format!("{path}/points")),
+                points: (job.kind == JobKind::Sweep.as_str()).then(|| format!("{path}/points")),
                 itself: path,
             },
         }

@@ -6,7 +6,7 @@ use super::{problem, table};
 use clap::Args;
 use herringbone::api::{CsvField, CsvWriter, Decimal, Problem};
 use herringbone_job::document::JobDocument;
-use herringbone_job::study::{self, Channel, NoStageStore, SolveContext, SolveError, Stage, StageStore};
+use herringbone_job::study::{self, Channel, CheckedJob, NoStageStore, SolveContext, SolveError, Stage, StageStore};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -60,9 +60,12 @@ pub fn run(arguments: SolveArguments) -> ExitCode {
             }
         },
     };
-    let outcome = match solve(&document, &*stages) {
+    let job = match CheckedJob::new(document) {
+        Ok(job) => job,
+        Err(error) => return invalid(error),
+    };
+    let outcome = match solve(&job, &*stages) {
         Ok(outcome) => outcome,
-        Err(SolveError::Document(error)) => return invalid(error),
         Err(error) => {
             problem::print(&Problem::from(error));
             return ExitCode::FAILURE;
@@ -104,15 +107,15 @@ fn record(document: &mut JobDocument, series: &[(String, PathBuf)]) {
     }
 }
 
-fn solve(document: &JobDocument, stages: &dyn StageStore) -> Result<study::Outcome, SolveError> {
+fn solve(job: &CheckedJob, stages: &dyn StageStore) -> Result<study::Outcome, SolveError> {
     let started = Instant::now();
     let bar = progress_bar();
     let progress = |stage: Stage, fraction: f64| {
-        bar.set_message(stage.word());
+        bar.set_message(stage.as_str());
         bar.set_position((fraction * 1000.0) as u64);
     };
     let outcome = study::solve(
-        document,
+        job,
         &SolveContext {
             stages,
             progress: &progress,

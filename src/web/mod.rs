@@ -10,6 +10,7 @@ mod modules;
 mod pages;
 mod plotly;
 mod presets;
+mod quantities;
 
 pub use pages::{login, not_found};
 

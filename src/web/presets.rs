@@ -132,7 +132,7 @@ mod tests {
         assert_eq!(ids, names);
         for entry in listed {
             let document = herringbone_job::parse_value(&entry["document"]).unwrap();
-            herringbone_job::study::check(&document).unwrap();
+            herringbone_job::study::CheckedJob::new(document).unwrap();
         }
     }
 }

@@ -22,9 +22,9 @@ impl StageStore for DatabaseStages {
     }
 
     fn save(&self, key: &str, stage: Stage, bytes: &[u8]) {
-        let saved = self.store.save_stage(key, stage.word(), self.solver_version, bytes, self.now);
+        let saved = self.store.save_stage(key, stage.as_str(), self.solver_version, bytes, self.now);
         if let Err(error) = self.runtime.block_on(saved) {
-            tracing::warn!(%error, stage = stage.word(), size_bytes = bytes.len(), "stage not stored");
+            tracing::warn!(%error, stage = stage.as_str(), size_bytes = bytes.len(), "stage not stored");
         }
     }
 }

@@ -37,7 +37,7 @@ pub(super) fn solve_failure(error: SolveError) -> Failure {
     match error {
         SolveError::Document(error) => document_failure(error),
         SolveError::Failed { stage, code, detail, sim_time_s, step } => {
-            Failure { stage: Some(stage.word().to_owned()), sim_time_s, step, ..Failure::new(&code, detail) }
+            Failure { stage: Some(stage.as_str().to_owned()), sim_time_s, step, ..Failure::new(&code, detail) }
         }
         SolveError::Canceled(_) => internal_failure("canceled"),
     }

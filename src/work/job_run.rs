@@ -124,7 +124,7 @@ impl JobRun<'_> {
             let _entered = span.entered();
             let task = SolveTask { solver: solver.as_ref(), stages: &stages, points: &shared_points, stop: &stop };
             // A panic that leaves the closure would abort the process.
-            let outcome = catch_unwind(AssertUnwindSafe(|| task.solve(&document, input_hash, &progress)));
+            let outcome = catch_unwind(AssertUnwindSafe(|| task.solve(document, input_hash, &progress)));
             let _ = send.send(outcome.unwrap_or_else(|panic| SolveOutcome::Failed(panic_failure(panic.as_ref()))));
         });
         loop {
@@ -138,7 +138,7 @@ impl JobRun<'_> {
             let batch = points.take_unwritten();
             if updates.has_changed().unwrap_or(false) || !batch.is_empty() {
                 let (stage, fraction) = *updates.borrow_and_update();
-                if let Err(error) = self.recorder.progress(&self.job, stage.word(), fraction, &batch).await {
+                if let Err(error) = self.recorder.progress(&self.job, stage.as_str(), fraction, &batch).await {
                     tracing::warn!(%error, "progress not written");
                     points.restore(batch);
                 }
@@ -186,7 +186,7 @@ impl JobRun<'_> {
     async fn store_points(&self, points: &RunningPoints, (stage, fraction): Progress) {
         let batch = points.take_unwritten();
         if !batch.is_empty() {
-            self.retry_until_stored(|| self.recorder.progress(&self.job, stage.word(), fraction, &batch)).await;
+            self.retry_until_stored(|| self.recorder.progress(&self.job, stage.as_str(), fraction, &batch)).await;
         }
     }
 
@@ -227,7 +227,7 @@ struct SolveTask<'a> {
 }
 
 impl SolveTask<'_> {
-    fn solve(&self, document: &JobDocument, input_hash: String, progress: &watch::Sender<Progress>) -> SolveOutcome {
+    fn solve(&self, document: JobDocument, input_hash: String, progress: &watch::Sender<Progress>) -> SolveOutcome {
         let started = Instant::now();
         let context = SolveContext {
             stages: self.stages,
@@ -238,7 +238,8 @@ impl SolveTask<'_> {
             canceled: &|| self.stop.is_requested(),
             clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,
         };
-        match self.solver.solve(document, &context) {
+        let solved = self.solver.check(document).map_err(SolveError::from);
+        match solved.and_then(|job| self.solver.solve(&job, &context)) {
             Ok(outcome) => self
                 .complete(outcome, input_hash)
                 .unwrap_or_else(|error| SolveOutcome::Failed(internal_failure(&error))),

@@ -13,7 +13,7 @@ use crate::store::{Cancellation, Deletion, JobId, JobRecord, NewJob, Store, Stor
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
 use herringbone_job::drawing::Drawing;
-use herringbone_job::study::CheckReport;
+use herringbone_job::study::CheckedJob;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 use std::time::Duration;
@@ -140,25 +140,25 @@ impl Jobs {
         self.0.closing.is_cancelled()
     }
 
-    /// Checks a document without a job: geometry and warnings.
+    /// Checks a document without submitting it.
     ///
     /// # Errors
     /// [`SubmitError::Document`] when the gear is infeasible, unsupported, or needs more memory than permitted.
-    pub async fn check(&self, document: JobDocument) -> Result<CheckReport, SubmitError> {
+    pub async fn check(&self, document: JobDocument) -> Result<CheckedJob, SubmitError> {
         let (solver, memory) = (Arc::clone(&self.0.solver), self.0.memory);
         let checked = tokio::task::spawn_blocking(move || {
-            let report = solver.check(&document)?;
-            memory.check(&document).map(|()| report)
+            let job = solver.check(document)?;
+            memory.check(job.document()).map(|()| job)
         });
         Ok(checked.await??)
     }
 
-    /// The data of a drawing of the pair in a document.
+    /// The data of a drawing of the pair of a job.
     ///
     /// # Errors
-    /// [`SubmitError::Document`] when the gear is infeasible.
-    pub async fn drawing(&self, document: JobDocument) -> Result<Drawing, SubmitError> {
-        Ok(tokio::task::spawn_blocking(move || Drawing::of(&document)).await??)
+    /// [`SubmitError::Threads`] when the thread that computes it fails.
+    pub async fn drawing(&self, job: CheckedJob) -> Result<Drawing, SubmitError> {
+        Ok(tokio::task::spawn_blocking(move || Drawing::of(&job)).await?)
     }
 
     /// Submits a job: checks, stores and queues it. The job has ended already when a stored result is reused.
@@ -171,7 +171,7 @@ impl Jobs {
         }
         self.store().admit().await?;
         let SubmitRequest { document, idempotency_key, request_id } = request;
-        self.check(document.clone()).await?;
+        let document = self.check(document).await?.into_document();
         let input = serde_json::to_string(&document)?;
         let input_hash = self.0.solver.input_hash(&document);
         let solver_version = self.0.solver.version();
@@ -179,7 +179,7 @@ impl Jobs {
         let idempotency = idempotency_key.map(|key| (key, hex::encode(Sha256::digest(&input))));
         let job = NewJob {
             id: self.store().next_id(),
-            kind: document.kind.word(),
+            kind: document.kind.as_str(),
             name: document.name,
             label: document.label,
             input,

@@ -1,7 +1,7 @@
 //! Metrics of jobs, and the tracing span of their log lines.
 
 use crate::store::JobRecord;
-use herringbone_job::result::Numerics;
+use herringbone_job::result::NumericsResult;
 use tracing::Span;
 
 /// The span around one run of a job. It has the highest level, so that no filter removes it from log lines.
@@ -20,7 +20,7 @@ pub(super) fn record_start(job: &JobRecord) {
 }
 
 /// Records the durations of the stages of a solved job, and the stages that were reused.
-pub(super) fn record_stages(numerics: &Numerics) {
+pub(super) fn record_stages(numerics: &NumericsResult) {
     let wall_ms = &numerics.wall_ms;
     let stages = [
         ("geometry", wall_ms.geometry),
@@ -29,12 +29,12 @@ pub(super) fn record_stages(numerics: &Numerics) {
         ("response", wall_ms.response),
     ];
     for (stage, milliseconds) in stages {
-        if !numerics.reused.iter().any(|reused| reused == stage) {
+        if !numerics.reused.iter().any(|reused| reused.as_str() == stage) {
             metrics::histogram!("herringbone_stage_duration_seconds", "stage" => stage).record(milliseconds / 1e3);
         }
     }
     for stage in &numerics.reused {
-        metrics::counter!("herringbone_stage_reuse_total", "stage" => stage.clone()).increment(1);
+        metrics::counter!("herringbone_stage_reuse_total", "stage" => stage.as_str()).increment(1);
     }
 }
 

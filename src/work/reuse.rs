@@ -1,6 +1,7 @@
 //! Reuse of stored results for the same input.
 
 use crate::store::{Completion, PointBatch, Store, StoreError};
+use herringbone_job::result::ReusedStage;
 use serde_json::{Value, json};
 
 /// The completion of a job from a stored result with this input and solver version, if there is one.
@@ -28,7 +29,7 @@ pub(super) async fn stored_completion(
 fn mark_as_reused(body: &str) -> String {
     let Ok(mut result) = serde_json::from_str::<Value>(body) else { return body.to_owned() };
     if let Some(numerics) = result.get_mut("numerics").and_then(Value::as_object_mut) {
-        numerics.insert("reused".to_owned(), json!(["result"]));
+        numerics.insert("reused".to_owned(), json!([ReusedStage::Result]));
     }
     result.to_string()
 }
@@ -44,7 +45,7 @@ mod tests {
         result.numerics.steps = 17;
         let before = serde_json::to_string(&result).unwrap();
         let after: JobResult = serde_json::from_str(&mark_as_reused(&before)).unwrap();
-        result.numerics.reused = vec!["result".into()];
+        result.numerics.reused = vec![ReusedStage::Result];
         assert_eq!(after, result);
     }
 }

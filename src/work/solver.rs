@@ -2,24 +2,24 @@
 
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
-use herringbone_job::study::{self, CheckReport, Outcome, SolveContext, SolveError};
+use herringbone_job::study::{self, CheckedJob, Outcome, SolveContext, SolveError};
 
 /// Checks and solves documents. Called on threads outside the async runtime; calls may take long and may panic.
 pub trait Solver: Send + Sync + 'static {
-    /// Checks a document: geometry and warnings, in milliseconds.
+    /// Checks a document, in milliseconds.
     ///
     /// # Errors
     /// The gear is infeasible or not supported.
-    fn check(&self, document: &JobDocument) -> Result<CheckReport, DocumentError>;
+    fn check(&self, document: JobDocument) -> Result<CheckedJob, DocumentError>;
 
     /// Hash of all inputs that determine the result.
     fn input_hash(&self, document: &JobDocument) -> String;
 
-    /// Solves a document.
+    /// Solves a job.
     ///
     /// # Errors
     /// [`SolveError`].
-    fn solve(&self, document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError>;
+    fn solve(&self, job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError>;
 
     /// Version of the calculation; results and stages of other versions are not reused.
     fn version(&self) -> &'static str;
@@ -30,16 +30,16 @@ pub trait Solver: Send + Sync + 'static {
 pub struct StudySolver;
 
 impl Solver for StudySolver {
-    fn check(&self, document: &JobDocument) -> Result<CheckReport, DocumentError> {
-        study::check(document)
+    fn check(&self, document: JobDocument) -> Result<CheckedJob, DocumentError> {
+        CheckedJob::new(document)
     }
 
     fn input_hash(&self, document: &JobDocument) -> String {
         study::input_hash(document)
     }
 
-    fn solve(&self, document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
-        study::solve(document, context)
+    fn solve(&self, job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError> {
+        study::solve(job, context)
     }
 
     fn version(&self) -> &'static str {

@@ -1,6 +1,6 @@
 //! Schemas of the job document: one for each kind, with shared blocks.
 
-use herringbone_job::document::Kind;
+use herringbone_job::document::JobKind;
 use herringbone_job::schema::job_document_schema_of;
 use serde_json::{Value, json};
 
@@ -9,22 +9,22 @@ const SHARED: [(&str, &str); 4] =
     [("design", "JobDesign"), ("operation", "JobOperation"), ("model", "JobModel"), ("analysis", "JobAnalysis")];
 
 /// The name of the schema of the documents of a kind.
-fn schema_name(kind: Kind) -> &'static str {
+fn schema_name(kind: JobKind) -> &'static str {
     match kind {
-        Kind::Mesh => "MeshDocument",
-        Kind::Response => "ResponseDocument",
-        Kind::Sweep => "SweepDocument",
+        JobKind::Mesh => "MeshDocument",
+        JobKind::Response => "ResponseDocument",
+        JobKind::Sweep => "SweepDocument",
     }
 }
 
 /// A valid document of a kind.
-fn example(kind: Kind) -> Value {
+fn example(kind: JobKind) -> Value {
     let text = match kind {
-        Kind::Mesh | Kind::Response => include_str!("../../../examples/table1.json"),
-        Kind::Sweep => include_str!("../../../examples/speed_sweep.json"),
+        JobKind::Mesh | JobKind::Response => include_str!("../../../examples/table1.json"),
+        JobKind::Sweep => include_str!("../../../examples/speed_sweep.json"),
     };
     let mut example: Value = serde_json::from_str(text).unwrap_or_default();
-    example["kind"] = json!(kind.word());
+    example["kind"] = json!(kind.as_str());
     example
 }
 
@@ -32,13 +32,13 @@ fn example(kind: Kind) -> Value {
 pub(super) fn add_schemas(description: &mut Value) {
     let schemas = &mut description["components"]["schemas"];
     let mut kinds = Vec::new();
-    for (_, kind) in Kind::ALL {
+    for (_, kind) in JobKind::ALL {
         let mut schema = job_document_schema_of(kind);
         for (field, name) in SHARED {
             let reference = reference(name);
             schemas[name] = std::mem::replace(&mut schema["properties"][field], reference);
         }
-        if kind != Kind::Sweep {
+        if kind != JobKind::Sweep {
             // Null counts as absent here too.
             schema["properties"]["axes"] = json!({"type": "null"});
             schema["properties"]["continuation"] = json!({"type": "null"});
@@ -63,7 +63,7 @@ fn reference(name: &str) -> Value {
 pub(super) fn set_schemas(path: &str, operation: &mut Value) {
     if let Some(body) = operation.pointer_mut("/requestBody/content/application~1json") {
         body["schema"] = reference("JobDocument");
-        for (name, kind) in Kind::ALL {
+        for (name, kind) in JobKind::ALL {
             body["examples"][name] = json!({"value": example(kind)});
         }
     }

@@ -6,8 +6,17 @@ use serde_json::{Value, json};
 const RETURN_JOB: [&str; 3] = ["submit_job", "read_job", "cancel_job"];
 
 /// Operations with the id of a job as their parameter.
-const TAKE_JOB_ID: [&str; 8] =
-    ["read_job", "watch_job", "cancel_job", "read_input", "read_result", "list_series", "list_points", "delete_job"];
+const TAKE_JOB_ID: [&str; 9] = [
+    "read_job",
+    "watch_job",
+    "cancel_job",
+    "read_input",
+    "read_gear_data",
+    "read_result",
+    "list_series",
+    "list_points",
+    "delete_job",
+];
 
 /// Adds the links of an operation's responses.
 pub(super) fn add(operation: &mut Value) {

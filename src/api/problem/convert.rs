@@ -27,7 +27,7 @@ impl From<SolveError> for Problem {
             SolveError::Document(error) => error.into(),
             SolveError::Canceled(canceled) => Problem::new(ProblemCode::SolveFailed, canceled.to_string()),
             SolveError::Failed { stage, code, detail, sim_time_s, step } => {
-                let stage = Some(stage.word().to_owned());
+                let stage = Some(stage.as_str().to_owned());
                 (&Failure { stage, sim_time_s, step, ..Failure::new(&code, detail) }).into()
             }
         }

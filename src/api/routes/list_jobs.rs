@@ -8,7 +8,7 @@ use crate::api::view::Job;
 use crate::store::{JobFilter, JobState};
 use axum::Json;
 use axum::extract::State;
-use herringbone_job::document::Kind;
+use herringbone_job::document::JobKind;
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -26,7 +26,7 @@ pub struct JobList {
     params(
         ("state" = Option<Vec<JobState>>, Query, style = Form, explode = false, min_items = 1, description = "Any of these states, \
             separated by commas."),
-        ("kind" = Option<Kind>, Query, description = "Jobs of this kind."),
+        ("kind" = Option<JobKind>, Query, description = "Jobs of this kind."),
         ("label" = Option<String>, Query, description = "Exactly this label; an empty one counts as left out."),
         ("limit" = Option<u64>, Query, description = "Jobs per page, 1 to 200; more is taken for 200.", minimum = 1,
             example = 50),
@@ -40,7 +40,7 @@ pub struct JobList {
 pub async fn list_jobs(State(state): State<AppState>, mut query: QueryParameters) -> Result<Json<JobList>, ApiError> {
     let filter = JobFilter {
         states: query.choices("state", &JobState::ALL.map(|state| (state.as_str(), state))),
-        kind: query.choice("kind", &Kind::ALL).map(|kind| kind.word().to_owned()),
+        kind: query.choice("kind", &JobKind::ALL).map(|kind| kind.as_str().to_owned()),
         label: query.text("label"),
     };
     let limit = query.integer("limit", 1, MAX_PAGE.into(), true).map_or(DEFAULT_PAGE, |limit| limit as u32);

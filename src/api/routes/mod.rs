@@ -8,6 +8,7 @@ mod list_jobs;
 mod list_kinds;
 mod list_points;
 mod list_series;
+mod read_gear_data;
 mod read_input;
 mod read_job;
 mod read_metrics;
@@ -30,7 +31,7 @@ use crate::store::{JobId, JobRecord, JobState};
 use axum::Router;
 use axum::middleware::from_fn;
 use axum::routing::get;
-use herringbone_job::document::Kind;
+use herringbone_job::document::JobKind;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -42,6 +43,7 @@ pub fn versioned() -> OpenApiRouter<AppState> {
         .routes(routes!(read_job::read_job, delete_job::delete_job))
         .routes(routes!(cancel_job::cancel_job))
         .routes(routes!(read_input::read_input))
+        .routes(routes!(read_gear_data::read_gear_data))
         .routes(routes!(read_result::read_result))
         .routes(routes!(read_point_columns::read_point_columns))
         .routes(routes!(read_point_input::read_point_input))
@@ -108,7 +110,7 @@ fn too_many_followers() -> ApiError {
 /// 404 when the job does not exist or is not a sweep.
 async fn sweep_input(state: &AppState, id: JobId) -> Result<String, ApiError> {
     let job = find_job(state, id).await?;
-    if job.kind != Kind::Sweep.word() {
+    if job.kind != JobKind::Sweep.as_str() {
         return Err(ApiError::not_found("The job is not a sweep."));
     }
     state.jobs().store().input(id).await?.ok_or_else(job_not_found)

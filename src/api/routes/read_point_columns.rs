@@ -1,6 +1,6 @@
 //! `GET /api/v1/jobs/{id}/points/columns`
 
-use crate::api::columns::{self, Column, ColumnName, ColumnTable};
+use crate::api::columns::{self, ColumnName, ColumnTable};
 use crate::api::config::{DEFAULT_ROWS, MAX_ROWS, MAX_SWEEP_ROWS};
 use crate::api::points;
 use crate::api::problem::ApiError;
@@ -11,7 +11,7 @@ use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use herringbone_job::SweepShape;
-use herringbone_job::result::SweepPoint;
+use herringbone_job::result::{Column, SweepPoint};
 use serde::Serialize;
 use std::collections::HashSet;
 use utoipa::ToSchema;
@@ -72,10 +72,10 @@ pub async fn read_point_columns(
     let limit = query.integer("limit", 1, MAX_ROWS.into(), false).map_or(DEFAULT_ROWS, |limit| limit as u32);
     query.finish()?;
     if columns.is_empty() {
-        columns = columns::NUMBERS.iter().chain(&columns::TEXTS).copied().collect();
+        columns = columns::default_columns();
     }
     let mut seen = HashSet::new();
-    columns.retain(|column| seen.insert(column.0));
+    columns.retain(|column| seen.insert(column.name));
     let input = super::sweep_input(&state, id).await?;
     let shape = SweepShape::of_stored(&input).map_err(ApiError::internal)?;
     let store = state.jobs().store();
@@ -90,7 +90,7 @@ pub async fn read_point_columns(
 
 fn to_json(
     rows: &[PointRow],
-    columns: &[Column],
+    columns: &[&'static Column],
     next_position: Option<u64>,
     (n_solved, n_points): (u64, u64),
 ) -> Result<Vec<u8>, serde_json::Error> {

@@ -5,8 +5,8 @@ use crate::api::request::PointPath;
 use crate::api::state::AppState;
 use axum::Json;
 use axum::extract::State;
+use herringbone_job::document::JobDocument;
 use herringbone_job::parse;
-use serde_json::Value;
 
 /// Read the document of one point of a sweep, to submit it as a job of its own.
 #[utoipa::path(
@@ -26,7 +26,7 @@ use serde_json::Value;
 pub async fn read_point_input(
     State(state): State<AppState>,
     PointPath(id, position): PointPath,
-) -> Result<Json<Value>, ApiError> {
+) -> Result<Json<JobDocument>, ApiError> {
     let input = super::sweep_input(&state, id).await?;
     let sweep = parse(input.as_bytes()).map_err(ApiError::internal)?;
     sweep.of_row(position).map(Json).ok_or_else(|| ApiError::not_found("The sweep has no such point."))

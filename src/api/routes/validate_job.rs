@@ -43,11 +43,8 @@ pub async fn validate_job(
 ) -> Result<Json<ValidationResponse>, ApiError> {
     let with_drawing = query.choice("drawing", &[("true", true), ("false", false)]).unwrap_or(false);
     query.finish()?;
-    let drawing_of = with_drawing.then(|| document.clone());
-    let report = state.jobs().check(document).await?;
-    let drawing = match drawing_of {
-        Some(document) => Some(state.jobs().drawing(document).await?),
-        None => None,
-    };
+    let job = state.jobs().check(document).await?;
+    let report = job.report();
+    let drawing = if with_drawing { Some(state.jobs().drawing(job).await?) } else { None };
     Ok(Json(ValidationResponse { report, drawing }))
 }

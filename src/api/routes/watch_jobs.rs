@@ -12,7 +12,7 @@ use axum::extract::State;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream::{Stream, StreamExt, unfold};
-use herringbone_job::document::Kind;
+use herringbone_job::document::JobKind;
 use serde_json::json;
 use std::convert::Infallible;
 use tokio_util::sync::CancellationToken;
@@ -28,7 +28,7 @@ use tokio_util::sync::CancellationToken;
         A client that reconnects gets `reload` again; events have no `id`. The\nstream ends when the service shuts \
         down.",
     params(
-        ("kind" = Option<Kind>, Query, description = "Jobs of this kind; deletions are told of all."),
+        ("kind" = Option<JobKind>, Query, description = "Jobs of this kind; deletions are told of all."),
         ("label" = Option<String>, Query, description = "Exactly this label; an empty one counts as left out. Deletions \
             are told of all."),
     ),
@@ -40,7 +40,8 @@ use tokio_util::sync::CancellationToken;
     )
 )]
 pub async fn watch_jobs(State(state): State<AppState>, mut query: QueryParameters) -> Result<Response, ApiError> {
-    let filter = EventFilter { kind: query.choice("kind", &Kind::ALL).map(Kind::word), label: query.text("label") };
+    let filter =
+        EventFilter { kind: query.choice("kind", &JobKind::ALL).map(JobKind::as_str), label: query.text("label") };
     query.finish()?;
     let guards = (state.follower_permit().ok_or_else(super::too_many_followers)?, OpenStream::new());
     // Subscribed before the first event, which makes the client read the list: no change between the two is missed.

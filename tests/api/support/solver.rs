@@ -3,9 +3,9 @@
 use super::Breakpoints;
 use herringbone::work::Solver;
 use herringbone_job::DocumentError;
-use herringbone_job::document::{JobDocument, Kind};
-use herringbone_job::result::{JobResult, Sweep, SweepPoint};
-use herringbone_job::study::{self, Channel, CheckReport, Outcome, SolveContext, SolveError, Stage};
+use herringbone_job::document::{JobDocument, JobKind};
+use herringbone_job::result::{JobResult, ReusedStage, SweepPoint, SweepResult};
+use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveContext, SolveError, Stage};
 use herringbone_physics::watch::Canceled;
 
 /// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every
@@ -16,15 +16,16 @@ pub struct ScriptedSolver {
 }
 
 impl Solver for ScriptedSolver {
-    fn check(&self, document: &JobDocument) -> Result<CheckReport, DocumentError> {
-        study::check(document)
+    fn check(&self, document: JobDocument) -> Result<CheckedJob, DocumentError> {
+        CheckedJob::new(document)
     }
 
     fn input_hash(&self, document: &JobDocument) -> String {
         study::input_hash(document)
     }
 
-    fn solve(&self, document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
+    fn solve(&self, job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError> {
+        let document = job.document();
         let name = document.name.as_deref().unwrap_or("unnamed");
         (context.progress)(Stage::Mesh, 0.25);
         for point in ["solve", name] {
@@ -49,13 +50,13 @@ impl Solver for ScriptedSolver {
             }),
             "panic" => panic!("secret detail"),
             "stage" => Ok(with_stage(context)),
-            "not finite" if document.kind != Kind::Sweep => {
+            "not finite" if document.kind != JobKind::Sweep => {
                 let mut outcome = outcome();
                 outcome.result.numerics.wall_ms.mesh = f64::NAN;
                 outcome.series[0].values[1] = f64::NAN;
                 Ok(outcome)
             }
-            _ if document.kind == Kind::Sweep => self.sweep(document, context),
+            _ if document.kind == JobKind::Sweep => self.sweep(document, context),
             _ => Ok(outcome()),
         }
     }
@@ -69,7 +70,7 @@ impl ScriptedSolver {
     /// One point after the other, from those that are kept on; each passes the breakpoint `point N`.
     fn sweep(&self, document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
         let mut rows = context.points.load().rows;
-        let reused = if rows.is_empty() { Vec::new() } else { vec!["points".to_owned()] };
+        let reused = if rows.is_empty() { Vec::new() } else { vec![ReusedStage::Points] };
         let axis = &document.axes[0];
         for position in 0..axis.len() {
             if rows.contains_key(&position) {
@@ -91,7 +92,7 @@ impl ScriptedSolver {
         let mut result = JobResult::default();
         result.numerics.reused = reused;
         let points = (0..axis.len()).filter_map(|position| rows.remove(&position)).collect();
-        result.sweep = Some(Sweep { points, ..Sweep::default() });
+        result.sweep = Some(SweepResult { points, ..SweepResult::default() });
         Ok(Outcome { result, series: Vec::new() })
     }
 }
@@ -102,7 +103,7 @@ fn with_stage(context: &SolveContext) -> Outcome {
     match context.stages.load("key") {
         Some(bytes) => {
             assert_eq!(bytes, b"stage");
-            outcome.result.numerics.reused = vec!["mesh".into()];
+            outcome.result.numerics.reused = vec![ReusedStage::Mesh];
         }
         None => context.stages.save("key", Stage::Mesh, b"stage"),
     }

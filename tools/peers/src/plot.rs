@@ -1,46 +1,47 @@
-//! Run time against error, both logarithmic, as SVG: one picture for each case. Its greys and colours read on white and on black.
+//! Run time against error on logarithmic axes, as SVG: one figure per case, with colours for light and dark
+//! backgrounds.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use crate::case::Case;
+use crate::case::ReferenceCase;
 use crate::measure::{Ladder, error_periods};
-use crate::methods::Whose;
+use crate::methods::Origin;
 use crate::tables::{RESTARTED, better};
 
 const SIZE: [f64; 2] = [920.0, 560.0];
-/// Left, right, top, bottom edge of the field.
+/// Left, right, top, bottom edge of the axes.
 const FIELD: [f64; 4] = [66.0, 900.0, 20.0, 500.0];
 /// Decades of s per mesh period and of the relative error.
 const TIME: [f64; 2] = [-6.3, -1.5];
 const ERROR: [f64; 2] = [-14.0, 0.0];
 const FONT: f64 = 12.5;
-/// About the width of a letter.
+/// Approximate width of a letter.
 const LETTER: f64 = 6.1;
 
-/// One line: how names of methods begin that it may show (the fastest of them at 1e-6), and its colour.
-struct Series {
+/// A line: prefixes of the names of the methods it may show (the fastest of them at 1e-6), and its colour.
+struct PlottedMethod {
     names: &'static [&'static str],
     color: &'static str,
 }
 
-const SERIES: [Series; 12] = [
-    Series { names: &["herringbone Taylor, 8"], color: "#12a5a5" },
-    Series { names: &["herringbone Taylor, 12"], color: "#35a36b" },
-    Series { names: &["herringbone Taylor"], color: "#1f8fd6" },
-    Series { names: &["herringbone Runge"], color: "#5f8fb0" },
-    Series { names: &["heyoka Taylor with events, 8"], color: "#c05fc0" },
-    Series { names: &["heyoka Taylor with events"], color: "#9a3fb0" },
-    Series { names: &["ode_solvers"], color: "#d9a400" },
-    Series { names: &["differential-equations DOP853"], color: "#e8743b" },
-    Series { names: &["differential-equations DOPRI5", "differential-equations Verner"], color: "#d2475f" },
-    Series { names: &["diffsol"], color: "#7a6fe0" },
-    Series { names: &["SciPy DOP853"], color: "#8c8c8c" },
-    Series { names: &["SciPy odeint", "SciPy ode(", "SciPy LSODA", "SciPy RK45"], color: "#a07850" },
+const SERIES: [PlottedMethod; 12] = [
+    PlottedMethod { names: &["herringbone Taylor, 8"], color: "#12a5a5" },
+    PlottedMethod { names: &["herringbone Taylor, 12"], color: "#35a36b" },
+    PlottedMethod { names: &["herringbone Taylor"], color: "#1f8fd6" },
+    PlottedMethod { names: &["herringbone Runge"], color: "#5f8fb0" },
+    PlottedMethod { names: &["heyoka Taylor with events, 8"], color: "#c05fc0" },
+    PlottedMethod { names: &["heyoka Taylor with events"], color: "#9a3fb0" },
+    PlottedMethod { names: &["ode_solvers"], color: "#d9a400" },
+    PlottedMethod { names: &["differential-equations DOP853"], color: "#e8743b" },
+    PlottedMethod { names: &["differential-equations DOPRI5", "differential-equations Verner"], color: "#d2475f" },
+    PlottedMethod { names: &["diffsol"], color: "#7a6fe0" },
+    PlottedMethod { names: &["SciPy DOP853"], color: "#8c8c8c" },
+    PlottedMethod { names: &["SciPy odeint", "SciPy ode(", "SciPy LSODA", "SciPy RK45"], color: "#a07850" },
 ];
 
-/// The picture of a case.
-pub fn draw(case: &Case, ladders: &[Ladder]) -> String {
+/// Figure of a case.
+pub fn draw(case: &ReferenceCase, ladders: &[Ladder]) -> String {
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"system-ui, sans-serif\" font-size=\"{FONT}\" \
          fill=\"#808080\">\n<title>Case {}: run time against error</title>\n",
@@ -56,7 +57,7 @@ pub fn draw(case: &Case, ladders: &[Ladder]) -> String {
         left.retain(|l| !std::ptr::eq(*l, ladder));
         let places: Vec<[f64; 2]> = ladder.rungs.iter().map(|r| [x(r.seconds), y(r.error)]).collect();
         let path: Vec<String> = places.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
-        let width = if ladder.whose == Whose::Own { 2.6 } else { 1.5 };
+        let width = if ladder.origin == Origin::Own { 2.6 } else { 1.5 };
         let color = series.color;
         let _ = writeln!(
             svg,
@@ -77,13 +78,13 @@ pub fn draw(case: &Case, ladders: &[Ladder]) -> String {
 }
 
 struct Label {
-    /// The finest and the coarsest rung.
+    /// Points of the finest and the coarsest tolerance.
     ends: [[f64; 2]; 2],
     name: String,
     color: &'static str,
 }
 
-/// Names as near to an end of their lines as they find room: touching no other name and no line.
+/// Places each name near an end of its line, without overlap with other names and lines.
 fn place(svg: &mut String, labels: Vec<Label>, lines: &[Vec<[f64; 2]>]) {
     let between = |a: [f64; 2], b: [f64; 2]| {
         let pieces = ((a[0] - b[0]).hypot(a[1] - b[1]) / 4.0).ceil().max(1.0);
@@ -108,7 +109,7 @@ fn place(svg: &mut String, labels: Vec<Label>, lines: &[Vec<[f64; 2]>]) {
                     .iter()
                     .all(|p| p[0] < left - 5.0 || p[0] > right + 5.0 || p[1] < top - 3.0 || p[1] > bottom + 3.0)
         };
-        // The middle of the name on widening rings about the ends, from their right downwards.
+        // Centres of the name on widening rings about the ends, from the right downwards.
         let rings = (0..60).flat_map(|ring| (0..48).map(move |turn| (4.0 * f64::from(ring), turn)));
         let spot = rings
             .map(|(r, turn)| {
@@ -130,7 +131,7 @@ fn place(svg: &mut String, labels: Vec<Label>, lines: &[Vec<[f64; 2]>]) {
     }
 }
 
-fn axes(svg: &mut String, case: &Case) {
+fn axes(svg: &mut String, case: &ReferenceCase) {
     let [left, right, top, bottom] = FIELD;
     for (decade, label) in (-6..).zip(["1 µs", "10 µs", "0.1 ms", "1 ms", "10 ms"]) {
         let px = x(10f64.powi(decade));
@@ -167,7 +168,7 @@ fn axes(svg: &mut String, case: &Case) {
     );
 }
 
-/// Beyond the field: on its edge.
+/// Values outside the axes are drawn on their edge.
 fn x(time_s: f64) -> f64 {
     let t = (time_s.log10() - TIME[0]) / (TIME[1] - TIME[0]);
     FIELD[0] + (FIELD[1] - FIELD[0]) * t.clamp(0.0, 1.0)

@@ -8,7 +8,7 @@
 
 use herringbone_job::parse_value;
 use herringbone_job::result::SweepPoint;
-use herringbone_job::study::{self, SolveContext};
+use herringbone_job::study::{self, CheckedJob, SolveContext};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -27,9 +27,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             {"pointer": "/operation/pinion_torque_nm", "from": 10.0, "to": 4000.0, "points": torques, "spacing": "logarithmic"},
             {"pointer": "/operation/pinion_speed_rpm", "from": 500.0, "to": 12000.0, "points": speeds},
         ]);
-        let document = parse_value(&value).map_err(|e| format!("{e:?}"))?;
+        let job = parse_value(&value).and_then(CheckedJob::new).map_err(|e| format!("{e:?}"))?;
         let started = Instant::now();
-        let outcome = study::solve(&document, &SolveContext::none())?;
+        let outcome = study::solve(&job, &SolveContext::none())?;
         let seconds = started.elapsed().as_secs_f64();
         let points = outcome.result.sweep.ok_or("no sweep")?.points;
         report(name, &points, torques, speeds, seconds);

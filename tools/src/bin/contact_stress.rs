@@ -5,7 +5,8 @@
 
 use std::time::Instant;
 
-use herringbone_physics::contact::{BodyHold, Compliance, Settings, solve_pair_of_halves};
+use herringbone_physics::compliance::{BodyHold, Compliance, Settings};
+use herringbone_physics::contact::solve_pair_of_halves;
 use herringbone_physics::fe::{FlankFlexibility, Resolution};
 use herringbone_physics::gear::{
     Assembly, EndRelief, FlankModification, GearSpec, Material, Pair, PairSpec, ReliefShape, Rotation, TipRelief,

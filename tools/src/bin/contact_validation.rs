@@ -3,7 +3,8 @@
 
 use std::time::Instant;
 
-use herringbone_physics::contact::{BodyHold, Compliance, Settings, solve_half};
+use herringbone_physics::compliance::{BodyHold, Compliance, Settings};
+use herringbone_physics::contact::solve_half;
 use herringbone_physics::fe::{FlankFlexibility, Resolution};
 use herringbone_physics::gear::{GearSpec, Half, Pair, PairSpec, ReliefShape, Rotation, TipRelief};
 use herringbone_physics::watch::Watch;

@@ -3,7 +3,8 @@
 //! `cargo run --release -p herringbone-tools --no-default-features --bin short_faces [coarse|medium|standard|fine [Z1[:X1]/Z2[:X2] …]]`;
 //! teeth and profile shift coefficient of pinion and gear.
 
-use herringbone_physics::contact::{Compliance, ContactError, HalfCycle, Settings, solve_half};
+use herringbone_physics::compliance::{Compliance, Settings};
+use herringbone_physics::contact::{ContactError, HalfCycle, solve_half};
 use herringbone_physics::fe::{FlankFlexibility, Resolution};
 use herringbone_physics::gear::{GearSpec, Half, Pair, PairSpec};
 use herringbone_physics::watch::Watch;

@@ -1,11 +1,12 @@
 //! One operating point: the stages a document needs, in their order.
 
+use super::check::CheckedJob;
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
-use super::prepare::{geometry, prepare};
+use super::prepare::geometry;
 use super::{Channel, SolveContext, SolveError, Stage, accuracy, bounds, impact, vibration};
-use crate::document::{JobDocument, Kind, Recorded};
-use crate::result::{JobResult, Numerics, Poincare};
+use crate::document::{JobDocument, JobKind, Recorded};
+use crate::result::{JobResult, NumericsResult, Poincare};
 use herringbone_physics::dynamics::{DynamicsError, Parameters};
 use herringbone_physics::response::Response;
 
@@ -56,57 +57,48 @@ impl Staged<'_> {
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn solve(
-    document: &JobDocument,
-    context: &SolveContext,
-    memo: &MeshMemo,
-    wanted: &Wanted,
-) -> Result<Point, SolveError> {
-    let progress = |stage, fraction| (context.progress)(stage, of_whole(document.kind, stage, fraction));
+pub fn solve(job: &CheckedJob, context: &SolveContext, memo: &MeshMemo, wanted: &Wanted) -> Result<Point, SolveError> {
+    let progress = |stage, fraction| (context.progress)(stage, of_whole(job.document().kind, stage, fraction));
     let context = &SolveContext { progress: &progress, ..*context };
-    let staged = stage(document, context, memo)?;
-    respond(document, staged, context, wanted)
+    let staged = stage(job, context, memo)?;
+    respond(job.document(), staged, context, wanted)
 }
 
 /// Geometry, contact and impact of a point, and the equations of motion that follow.
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn stage<'a>(
-    document: &JobDocument,
-    context: &SolveContext<'a>,
-    memo: &MeshMemo,
-) -> Result<Staged<'a>, SolveError> {
-    let mut numerics = Numerics { solver_version: super::SOLVER_VERSION.to_owned(), ..Numerics::default() };
+pub fn stage<'a>(job: &CheckedJob, context: &SolveContext<'a>, memo: &MeshMemo) -> Result<Staged<'a>, SolveError> {
+    let (document, prepared) = (job.document(), job.prepared());
+    let mut numerics = NumericsResult { solver_version: super::SOLVER_VERSION.to_owned(), ..NumericsResult::default() };
     let mut stopwatch = Stopwatch::new(context);
-    let prepared = prepare(document)?;
     let mut warnings = prepared.warnings.clone();
     numerics.wall_ms.geometry = stopwatch.lap_ms();
     (context.progress)(Stage::Geometry, 1.0);
 
-    let plane = MotionPlane::new(document.model.plane, &prepared);
-    let (mesh, reused) = mesh::run(document, &prepared, &plane, context, memo)?;
-    numerics.reused.extend(reused.into_iter().map(str::to_owned));
+    let plane = MotionPlane::new(document.model.plane, prepared);
+    let (mesh, reused) = mesh::run(document, prepared, &plane, context, memo)?;
+    numerics.reused.extend(reused);
     warnings.extend(bounds::of_mesh(document, &mesh.summary));
     numerics.wall_ms.mesh = stopwatch.lap_ms();
 
-    let impact = impact::run(document, &prepared, &plane, &mesh, &mut warnings);
+    let impact = impact::run(document, prepared, &plane, &mesh, &mut warnings);
     numerics.wall_ms.impact = stopwatch.lap_ms();
     (context.progress)(Stage::Impact, 1.0);
 
-    let parameters = (document.kind != Kind::Mesh).then(|| {
+    let parameters = (document.kind != JobKind::Mesh).then(|| {
         let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
-        let parameters = equations::parameters(document, &prepared, &plane, mesh.stiffness, impact.pulses, lead);
+        let parameters = equations::parameters(document, prepared, &plane, mesh.stiffness, impact.pulses, lead);
         match &mesh.forces {
             None => parameters,
             Some(contact) => equations::with_contact_forces(parameters, &contact.forces),
         }
     });
     let result = JobResult {
-        geometry: Some(geometry(&prepared)),
+        geometry: Some(geometry(prepared)),
         mesh: Some(mesh.summary),
         impact: impact.summary,
-        supports: (document.kind != Kind::Mesh).then_some(prepared.supports),
+        supports: (document.kind != JobKind::Mesh).then(|| prepared.supports.clone()),
         warnings,
         numerics,
         ..JobResult::default()
@@ -144,7 +136,7 @@ pub fn answered(
         result.accuracy = Some(accuracy::of(document, &result));
         return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });
     };
-    let vibration = vibration::told(document, &parameters, wanted, response, &mut result.numerics)?;
+    let vibration = vibration::to_result(document, &parameters, wanted, response, &mut result.numerics)?;
     result.response = Some(vibration.summary);
     result.accuracy = Some(accuracy::of(document, &result));
     result.warnings.extend(vibration.warnings);
@@ -159,8 +151,8 @@ pub fn answered(
 }
 
 /// Fraction of the whole point at a fraction of one of its stages, by what the stages usually cost.
-fn of_whole(kind: Kind, stage: Stage, fraction: f64) -> f64 {
-    let mesh_ends = if kind == Kind::Mesh { 0.98 } else { 0.6 };
+fn of_whole(kind: JobKind, stage: Stage, fraction: f64) -> f64 {
+    let mesh_ends = if kind == JobKind::Mesh { 0.98 } else { 0.6 };
     let (start, end) = match stage {
         Stage::Geometry => (0.0, 0.01),
         Stage::Mesh => (0.01, mesh_ends),

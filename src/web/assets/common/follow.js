@@ -12,21 +12,30 @@ const AGAIN_MS = 30_000;
  * Calls `onReload` when everything is to be read (at first, after each gap, and again and again without a stream),
  * `onJob` with each job that changed, `onDeleted` with the id of one that is gone, `onMode` with "live", "polling" or
  * "lost". Returns a function that stops it.
+ * @param {{ kind?: string, label?: string }} filter
+ * @param {{
+ *   onReload: () => Promise<unknown> | void,
+ *   onJob: (job: Job) => void,
+ *   onDeleted: (id: string) => void,
+ *   onMode?: (mode: "live" | "polling" | "lost") => void,
+ * }} listeners
  */
 export function followJobs({ kind, label }, { onReload, onJob, onDeleted, onMode = () => {} }) {
-  const given = Object.entries({ kind, label }).filter(([, value]) => value);
+  const given = /** @type {[string, string][]} */ (Object.entries({ kind, label }).filter(([, value]) => value));
   const url = `/api/v1/jobs/events${given.length ? `?${new URLSearchParams(given)}` : ""}`;
   let stopped = false;
+  /** @type {EventSource | null} */
   let source = null;
   let isPolling = false;
   let polls = 0;
-  const timers = { poll: null, patience: null, again: null };
+  /** @type {Record<"poll" | "patience" | "again", number | undefined>} */
+  const timers = { poll: undefined, patience: undefined, again: undefined };
 
   function close() {
     source?.close();
     source = null;
     isPolling = false;
-    Object.values(timers).forEach(clearTimeout);
+    for (const timer of Object.values(timers)) clearTimeout(timer);
   }
 
   /** Asks, and again a while after the answer has come. */

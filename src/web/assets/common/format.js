@@ -7,7 +7,7 @@ const UNITS = [
   ["_nm", "N·m"], ["_mm", "mm"], ["_um", "µm"], ["_us", "µs"], ["_ms", "ms"], ["_kg", "kg"], ["_n", "N"], ["_m", "m"],
 ];
 
-const SHOWN = { um: "µm", deg: "°", "kg m2": "kg·m²", "N m": "N·m", "N/um": "N/µm", "m/s2": "m/s²", "m/s^2": "m/s²", "rad/s2": "rad/s²", "rad/s^2": "rad/s²", 1: "" };
+const SHOWN = { um: "µm", us: "µs", "%/um": "% per µm", "um/um": "µm/µm", "1/mesh period": "per mesh period", "N m/rad": "N·m/rad", deg: "°", "kg m2": "kg·m²", "N m": "N·m", "N/um": "N/µm", "m/s2": "m/s²", "m/s^2": "m/s²", "rad/s2": "rad/s²", "rad/s^2": "rad/s²", 1: "" };
 
 /** Unit of a field, from its name. */
 export function unitOf(name) {

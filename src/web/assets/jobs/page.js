@@ -15,25 +15,28 @@ const TYPING_MS = 300;
 
 const body = byId("jobs").tBodies[0];
 const notice = byId("notice");
+/** @type {Map<string, Row>} */
 const rows = new Map();
-/** Ids of deleted jobs: what is told of them later is old. */
+/** Ids of deleted jobs: later messages about them are ignored. */
 const gone = new Set();
-/** Jobs heard of since the list was asked for. */
+/** Jobs with an event since the list was requested. @type {Map<string, Job>} */
 let heard = new Map();
 const labels = new Set();
 let view = address.read();
+/** @type {string | null} */
 let nextCursor = null;
 let newer = new Set();
-/** The question that is under way, and whether its answer will be old when it comes. */
+/** The request under way, and whether its answer will be outdated. @type {AbortController | null} */
 let asking = null;
 let again = false;
 /** Whether the rows are those of this view. */
 let isFilled = false;
 let stopFollowing = () => {};
 
-const shown = () => [...body.rows].map((node) => rows.get(node.dataset.id));
+const shown = () => [...body.rows].flatMap((node) => rows.get(node.dataset.id ?? "") ?? []);
 const selection = new Selection({ rows: shown, changed: take, removed: remove, failed });
 
+/** @param {any[]} errors */
 function failed(errors) {
   if (errors.length === 0) return notify(notice, null);
   const [first] = errors;
@@ -61,7 +64,7 @@ async function refresh() {
   } catch (error) {
     if (signal.aborted) return;
     // A cursor that came with a shared address may belong to other filters: the first page is what is left.
-    if (error.problem?.code === "invalid-cursor") return step({ ...view, cursor: "", trail: [] }, false);
+    if (error instanceof api.Problem && error.problem.code === "invalid-cursor") return step({ ...view, cursor: "", trail: [] }, false);
     notify(notice, error);
   }
   asking = null;
@@ -69,19 +72,22 @@ async function refresh() {
   if (again) await refresh();
 }
 
-/** Puts the rows in order: those that stay keep their places in the document, and with them the focus. */
+/**
+ * Puts the rows in order: those that stay keep their places in the document, and with them the focus.
+ * @param {Job[]} jobs
+ */
 function fill(jobs) {
   const wanted = new Set(jobs.map((job) => job.id));
   for (const id of [...rows.keys()].filter((id) => !wanted.has(id))) drop(id);
   let at = body.firstElementChild;
   for (const job of jobs) {
     const row = known(job);
-    if (row.node === at) at = at.nextElementSibling;
+    if (at && row.node === at) at = at.nextElementSibling;
     else body.insertBefore(row.node, at);
   }
 }
 
-/** The row of a job, up to date. */
+/** The row of a job, updated. @param {Job} job */
 function known(job) {
   const present = rows.get(job.id);
   if (present) {
@@ -101,17 +107,18 @@ function known(job) {
   return row;
 }
 
+/** Removes a row. @param {string} id */
 function drop(id) {
   const row = rows.get(id);
   if (!row) return;
-  const next = row.node.nextElementSibling ?? row.node.previousElementSibling;
+  const next = /** @type {HTMLElement | null} */ (row.node.nextElementSibling ?? row.node.previousElementSibling);
   const handOn = row.held;
   row.node.remove();
   rows.delete(id);
-  if (handOn) (next ? rows.get(next.dataset.id).link : byId("select-all")).focus();
+  if (handOn) (rows.get(next?.dataset.id ?? "")?.link ?? byId("select-all")).focus();
 }
 
-/** A job has changed, or is new. Ids sort by the time of submission. */
+/** Takes up a job that has changed or is new. Ids sort by the time of submission. @param {Job} job */
 function take(job) {
   if (gone.has(job.id)) return;
   heard.set(job.id, job);
@@ -136,6 +143,7 @@ function fitLength() {
   if (asking === null && (rows.size > 2 * LIMIT || (nextCursor !== null && rows.size < LIMIT / 2))) refresh();
 }
 
+/** Adds the row of a new job. @param {Job} job */
 function add(job) {
   const present = shown();
   const isFirst = view.cursor === "";
@@ -146,12 +154,13 @@ function add(job) {
     return;
   }
   // It belongs to a later page.
-  if (nextCursor !== null && present.length > 0 && job.id < present.at(-1).job.id) return;
+  if (nextCursor !== null && present.length > 0 && job.id < present[present.length - 1].job.id) return;
   const after = present.find((row) => row.job.id < job.id);
   body.insertBefore(known(job).node, after?.node ?? null);
   if (isFirst && job.id > (present[0]?.job.id ?? "")) say(`New job: ${nameOf(job)}`);
 }
 
+/** Takes up that a job was deleted. @param {string} id */
 function remove(id) {
   gone.add(id);
   newer.delete(id);
@@ -161,7 +170,7 @@ function remove(id) {
   fitLength();
 }
 
-/** What follows from the rows. */
+/** Brings the rest of the page in line with the rows. */
 function settle() {
   const empty = isFilled && rows.size === 0;
   show(byId("empty"), empty);
@@ -187,10 +196,12 @@ function nothing() {
   return [el("strong", {}, "No job fits these filters."), " Jobs that come to fit appear here. ", clear];
 }
 
-/** Ends of jobs, for those who listen: collected, so that a batch is one sentence. */
+/** Jobs that ended, for screen readers: collected, so that a batch is one sentence. @type {Job[]} */
 const ends = [];
+/** @type {number | null} */
 let saying = null;
 
+/** @param {Job} job */
 function announce(job) {
   ends.push(job);
   saying ??= setTimeout(() => {
@@ -201,6 +212,7 @@ function announce(job) {
   }, 1000);
 }
 
+/** @param {string} text */
 function say(text) {
   byId("announcement").textContent = text;
 }
@@ -221,12 +233,17 @@ function follow() {
   });
 }
 
-/** Another view of the list, as a step that leads back, or in place of the present one. */
+/**
+ * Shows another view of the list, as an entry of its own in the history or in place of the present one.
+ * @param {ListView} next
+ * @param {boolean} isStep
+ */
 function step(next, isStep) {
   address.write(next, isStep);
   turn(next);
 }
 
+/** @param {ListView} next */
 function turn(next) {
   const other = next.kind !== view.kind || next.label !== view.label;
   view = next;
@@ -240,11 +257,12 @@ function turn(next) {
 }
 
 const filters = byId("filters");
-let typing = null;
+/** @type {number | undefined} */
+let typing;
 filters.addEventListener("input", (event) => {
   clearTimeout(typing);
   // Letter by letter is one step.
-  if (event.target.name === "label") typing = setTimeout(() => step(address.readForm(), false), TYPING_MS);
+  if (event.target === address.label) typing = setTimeout(() => step(address.readForm(), false), TYPING_MS);
 });
 filters.addEventListener("change", () => {
   clearTimeout(typing);
@@ -257,7 +275,7 @@ filters.addEventListener("reset", (event) => {
 filters.addEventListener("submit", (event) => event.preventDefault());
 
 /** Labels to choose from: of the jobs seen, and of the newest ones. */
-filters.elements.label.addEventListener("focus", async () => {
+address.label.addEventListener("focus", async () => {
   try {
     for (const { label } of (await api.jobs({ limit: LABELS_FROM })).items) if (label) labels.add(label);
   } catch {
@@ -267,7 +285,7 @@ filters.elements.label.addEventListener("focus", async () => {
 }, { once: true });
 
 byId("older").addEventListener("click", () => {
-  step({ ...view, cursor: nextCursor, trail: [...(view.trail ?? []), view.cursor] }, true);
+  step({ ...view, cursor: nextCursor ?? "", trail: [...(view.trail ?? []), view.cursor] }, true);
   top();
 });
 byId("newer").addEventListener("click", () => {

@@ -1,6 +1,7 @@
 //! How the cost grows with slices and positions.
 
-use herringbone_physics::contact::{Compliance, HalfContact, Settings};
+use herringbone_physics::compliance::{Compliance, Settings};
+use herringbone_physics::contact::HalfContact;
 use herringbone_physics::gear::Half;
 
 use crate::Failure;

@@ -4,10 +4,11 @@ use std::collections::hash_map::{DefaultHasher, Entry, HashMap};
 use std::hash::{Hash, Hasher};
 use std::path::Path;
 
-use herringbone_physics::contact::iso6336::{Blank, MethodB, course};
-use herringbone_physics::contact::{Compliance, HalfCycle, Settings, harmonics, solve_half};
+use herringbone_physics::compliance::{Compliance, Settings};
+use herringbone_physics::contact::{HalfCycle, harmonics, solve_half};
 use herringbone_physics::fe::{FlankFlexibility, FlankInput, Resolution};
 use herringbone_physics::gear::Half;
+use herringbone_physics::iso6336::{Blank, MethodB, course};
 use herringbone_physics::watch::Watch;
 
 use crate::Failure;

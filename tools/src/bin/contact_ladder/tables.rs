@@ -1,6 +1,6 @@
 //! The tables, as Markdown.
 
-use herringbone_physics::contact::BodyHold;
+use herringbone_physics::compliance::BodyHold;
 use herringbone_physics::fe::Resolution;
 
 use crate::cases::Case;
