@@ -19,7 +19,7 @@ struct Plotly {
 static PLOTLY: LazyLock<Plotly> = LazyLock::new(|| {
     let sources = plotly::Plot::offline_js_sources();
     let script = first_script(&sources).unwrap_or_default();
-    let version = Sha256::digest(script.as_bytes())[..6].iter().map(|byte| format!("{byte:02x}")).collect();
+    let version = hex::encode(&Sha256::digest(script.as_bytes())[..6]);
     let stylesheet = style_rules(script).unwrap_or_default();
     Plotly { script: Bytes::copy_from_slice(script.as_bytes()), stylesheet, version }
 });

@@ -1,4 +1,5 @@
-//! Random queries and headers on everything that reads: answered or refused in the one form, never a failure of the service.
+//! Random queries and headers on everything that reads: answered or refused in the one form, never a failure of the
+//! service.
 
 use crate::support::*;
 use axum::body::Body;

@@ -2,7 +2,7 @@
 
 use crate::documents;
 use crate::times::Times;
-use herringbone::store::{JobFilter, JobId, NewJob, State, Store, StoreConfig, Submission, WorkClass};
+use herringbone::store::{JobFilter, JobId, JobState, NewJob, Store, StoreConfig, Submission, WorkClass};
 use herringbone_tools::Failure;
 use jiff::Timestamp;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqliteSynchronous};
@@ -120,8 +120,8 @@ pub async fn many_jobs() -> Result<(), Failure> {
 async fn rows(store: &Store) -> Result<Vec<(&'static str, String)>, Failure> {
     let mut rows = Vec::new();
     let everything = JobFilter::default();
-    let states = |states: &[State]| JobFilter { states: states.to_vec(), ..JobFilter::default() };
-    let live = states(&[State::Queued, State::Running]);
+    let states = |states: &[JobState]| JobFilter { states: states.to_vec(), ..JobFilter::default() };
+    let live = states(&[JobState::Queued, JobState::Running]);
     let kind = JobFilter { kind: Some("sweep".to_owned()), ..JobFilter::default() };
     let usual = JobFilter { label: Some("usual".to_owned()), ..JobFilter::default() };
     let rare = JobFilter { label: Some("rare".to_owned()), ..JobFilter::default() };
@@ -131,8 +131,8 @@ async fn rows(store: &Store) -> Result<Vec<(&'static str, String)>, Failure> {
     for (name, filter, before) in [
         ("page of the list, first", &everything, None),
         ("… the last, by its cursor", &everything, oldest),
-        ("… of a state", &states(&[State::Queued]), None),
-        ("… of a state that no job has", &states(&[State::Failed]), None),
+        ("… of a state", &states(&[JobState::Queued]), None),
+        ("… of a state that no job has", &states(&[JobState::Failed]), None),
         ("… of two states", &live, None),
         ("… of a kind (1 of 100)", &kind, None),
         ("… of a label (1 of 50)", &rare, None),
