@@ -1,5 +1,6 @@
-//! Bytes as the path, query and headers of requests that read: never a panic, never a failure of the service, and a problem
-//! whenever something is refused. The input's first byte chooses the path; then lines: the query, and headers as `name: value`.
+//! Bytes as the path, query and headers of requests that read: never a panic, never a failure of the service, and a
+//! problem whenever something is refused. The input's first byte chooses the path; then lines: the query, and headers
+//! as `name: value`.
 
 #![no_main]
 

@@ -8,8 +8,8 @@ use herringbone_job::result::{JobResult, ReusedStage, SweepPoint, SweepResult};
 use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveContext, SolveError, Stage};
 use herringbone_physics::watch::Canceled;
 
-/// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every calculation passes the
-/// breakpoint `solve`, and the one of its own name.
+/// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every
+/// calculation passes the breakpoint `solve`, and the one of its own name.
 #[derive(Default)]
 pub struct ScriptedSolver {
     pub breakpoints: Breakpoints,

@@ -1,7 +1,7 @@
-//! What every exchange has: an id, a log line, metrics, security headers, and one form for all that goes wrong.
+//! The outermost middleware: request id, log line, metrics, security headers, and the uniform form of errors.
 
 use super::config::MAX_REQUEST_ID_CHARS;
-use super::problem::{Problem, ProblemCode, Refusal};
+use super::problem::{ApiError, Problem, ProblemCode};
 use super::request::RequestId;
 use axum::body::Body;
 use axum::extract::{MatchedPath, Request};
@@ -16,20 +16,19 @@ use std::time::Instant;
 use tracing::Instrument;
 use uuid::Uuid;
 
-const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
+const X_REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
-/// Nothing inline, nothing from elsewhere.
-const POLICY: &str =
+/// The content security policy of pages: no inline scripts or styles, no other origin.
+const CONTENT_POLICY: &str =
     "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
-/// For swagger-ui under `/docs`, whose script puts inline styles into the page (a browser test shows that it needs no
-/// more).
-const DOCS_POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; object-src 'none'; \
+/// The content security policy of swagger-ui under `/docs`, whose script inserts inline styles.
+const DOCS_CONTENT_POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; object-src 'none'; \
                            base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
-/// What browsers are told about every answer: take it for what it says it is, in no frame, shared with no other site, and
-/// without the machine's devices.
-const EVERYWHERE: [(HeaderName, &str); 5] = [
+/// Security headers of every response: no content sniffing, no framing, no access from other origins, no access to
+/// devices.
+const SECURITY_HEADERS: [(HeaderName, &str); 5] = [
     (X_CONTENT_TYPE_OPTIONS, "nosniff"),
     (X_FRAME_OPTIONS, "DENY"),
     (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
@@ -40,63 +39,64 @@ const EVERYWHERE: [(HeaderName, &str); 5] = [
     ),
 ];
 
-/// Middleware around everything.
-pub async fn envelope(mut request: Request, next: Next) -> Response {
+/// Middleware around all routes and all other layers but compression.
+pub async fn request_middleware(mut request: Request, next: Next) -> Response {
     let started = Instant::now();
     let id = request_id(request.headers());
     request.extensions_mut().insert(RequestId(id.clone()));
     let method = request.method().clone();
-    let policy = if request.uri().path().starts_with("/docs") { DOCS_POLICY } else { POLICY };
+    let policy = if request.uri().path().starts_with("/docs") { DOCS_CONTENT_POLICY } else { CONTENT_POLICY };
     let route = request.extensions().get::<MatchedPath>().map_or("unmatched", MatchedPath::as_str).to_owned();
 
     let span = tracing::error_span!("request", request_id = id, %method, route);
-    let answered = next.run(request).instrument(span.clone()).await;
+    let response = next.run(request).instrument(span.clone()).await;
     let _entered = span.entered();
-    let mut response = in_one_form(answered, &id);
+    let mut response = with_problem_body(response, &id);
 
     let status = response.status().as_u16();
     let duration = started.elapsed();
     tracing::info!(status, duration_ms = duration.as_secs_f64() * 1e3, "request");
-    let labels = [("method", counted(&method).to_owned()), ("route", route), ("status", status.to_string())];
+    let labels = [("method", method_label(&method).to_owned()), ("route", route), ("status", status.to_string())];
     metrics::counter!("herringbone_http_requests_total", &labels).increment(1);
     metrics::histogram!("herringbone_http_request_duration_seconds", &labels[..2]).record(duration.as_secs_f64());
     add_headers(response.headers_mut(), &id, policy);
     response
 }
 
-/// A panic in a handler: fixed text outside, the cause in the log.
-pub fn answer_panic(panic: Box<dyn Any + Send + 'static>) -> Response {
+/// The response to a panic in a handler: a fixed text; the message of the panic is logged.
+pub fn panic_response(panic: Box<dyn Any + Send + 'static>) -> Response {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
     metrics::counter!("herringbone_panics_total", "in" => "request").increment(1);
-    Refusal::internal(format!("panic: {text}")).into_response()
+    ApiError::internal(format!("panic: {text}")).into_response()
 }
 
-/// Clients may make up methods; what they make up is counted together.
-fn counted(method: &Method) -> &str {
+/// The label of a method in metrics; unknown methods share one, as clients may invent any number.
+fn method_label(method: &Method) -> &str {
     let known = [Method::GET, Method::HEAD, Method::POST, Method::PUT, Method::PATCH, Method::DELETE, Method::OPTIONS];
     if known.contains(method) { method.as_str() } else { "other" }
 }
 
-/// The client's id if it is short and printable, else a new one.
+/// The request id sent by the client if it is short and printable, else a new one.
 fn request_id(headers: &HeaderMap) -> String {
-    let given = headers.get(REQUEST_ID).and_then(|value| value.to_str().ok());
-    let usable = given.filter(|id| (1..=MAX_REQUEST_ID_CHARS).contains(&id.len()) && id.chars().all(is_plain));
+    let given = headers.get(X_REQUEST_ID).and_then(|value| value.to_str().ok());
+    let usable = given.filter(|id| (1..=MAX_REQUEST_ID_CHARS).contains(&id.len()) && id.chars().all(is_id_character));
     usable.map_or_else(|| Uuid::now_v7().to_string(), str::to_owned)
 }
 
-fn is_plain(character: char) -> bool {
+fn is_id_character(character: char) -> bool {
     character.is_ascii_alphanumeric() || "-_.:".contains(character)
 }
 
-fn in_one_form(mut response: Response, id: &str) -> Response {
+/// Writes the body of an error response as `application/problem+json`, unless the handler wrote its own.
+fn with_problem_body(mut response: Response, id: &str) -> Response {
     let status = response.status();
     if !status.is_client_error() && !status.is_server_error() {
         return response;
     }
-    let (problem, cause) = match response.extensions_mut().remove::<Refusal>() {
-        Some(refusal) => refusal.into_parts(),
-        None if is_written(&response) => return response,
+    let (problem, cause) = match response.extensions_mut().remove::<ApiError>() {
+        Some(error) => error.into_parts(),
+        None if has_error_body(&response) => return response,
         None => {
             let code = ProblemCode::of_status(status);
             (Problem { status: status.as_u16(), ..Problem::new(code, code.entry().title) }, None)
@@ -113,20 +113,20 @@ fn in_one_form(mut response: Response, id: &str) -> Response {
     Response::from_parts(parts, Body::from(body))
 }
 
-/// Whether a page or a handler wrote its own error.
-fn is_written(response: &Response) -> bool {
+/// Whether a page or a handler wrote its own error body.
+fn has_error_body(response: &Response) -> bool {
     let media_type = response.headers().get(CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
     media_type.starts_with("text/html") || media_type.starts_with("application/problem+json")
 }
 
 fn add_headers(headers: &mut HeaderMap, id: &str, policy: &'static str) {
     if let Ok(value) = HeaderValue::from_str(id) {
-        headers.insert(REQUEST_ID, value);
+        headers.insert(X_REQUEST_ID, value);
     }
-    for (name, value) in EVERYWHERE {
+    for (name, value) in SECURITY_HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
     }
-    // Pages have their own.
+    // Pages may set their own.
     for (name, value) in [(REFERRER_POLICY, "no-referrer"), (CONTENT_SECURITY_POLICY, policy)] {
         headers.entry(name).or_insert(HeaderValue::from_static(value));
     }

@@ -1,19 +1,19 @@
-//! The study's store of finished stages, over the database. Called on the pool's threads, never on async ones.
+//! The cache of stages in the database, as the study uses it.
 
 use crate::store::Store;
 use herringbone_job::study::{Stage, StageStore};
 use jiff::Timestamp;
 use tokio::runtime::Handle;
 
-/// Stages in the database. A cache: whatever goes wrong costs time, not results, so it is logged and forgotten.
-pub(super) struct StoredStages {
+/// Cached stages in the database. Errors are logged only, as they cost time but no results. Not for async threads.
+pub(super) struct DatabaseStages {
     pub store: Store,
     pub runtime: Handle,
     pub solver_version: &'static str,
     pub now: Timestamp,
 }
 
-impl StageStore for StoredStages {
+impl StageStore for DatabaseStages {
     fn load(&self, key: &str) -> Option<Vec<u8>> {
         self.runtime.block_on(self.store.stage(key)).unwrap_or_else(|error| {
             tracing::warn!(%error, "stored stage not read");

@@ -1,12 +1,12 @@
-//! The queue of this process: workers that take what waits in the store.
+//! The queue in this process: workers that claim queued jobs from the database.
 
 use super::config::WorkConfig;
+use super::job_run::JobRun;
 use super::measure;
-use super::queue::{Pending, Queue, Workers};
-use super::recorder::Recorder;
-use super::run::Run;
+use super::queue::{BoxFuture, Queue, Workers};
+use super::recorder::JobRecorder;
 use super::solver::Solver;
-use super::stop::{Reason, Stop};
+use super::stop_signal::{StopReason, StopSignal};
 use crate::store::{Claim, JobId, WorkClass};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,41 +16,43 @@ use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 use tracing::Instrument;
 
-/// Stack of the pools' threads: deep enough for recursive numerics.
+/// Stack size of the threads of the pools, sufficient for recursive numerics.
 const STACK_BYTES: usize = 8 << 20;
-/// Pause after the database did not answer.
+/// Pause after an error of the database.
 const RETRY_AFTER: Duration = Duration::from_secs(1);
 
 /// Runs jobs in this process.
 ///
-/// Within one pool a thread takes up parts of the job it is at before it looks for another job, so a long sweep would keep
-/// everything else waiting. Therefore the jobs of one operating point have a pool of their own, and so has each sweep; between
-/// pools the operating system shares the processors out. An idle pool costs nothing, so a lone job has every processor.
+/// Jobs of one operating point share one thread pool, and each sweep worker has its own. In a shared pool, threads
+/// would work on the tasks of a long sweep before they start another job. The operating system schedules the threads of
+/// all pools; an idle pool costs nothing, so that a single job can use every processor.
 pub struct LocalQueue {
-    shared: Arc<Shared>,
+    shared: Arc<QueueShared>,
     tasks: TaskTracker,
+    /// Workers for jobs of one operating point, and for sweeps.
     totals: (usize, usize),
 }
 
-struct Shared {
+struct QueueShared {
     config: WorkConfig,
-    recorder: Recorder,
+    recorder: JobRecorder,
     solver: Arc<dyn Solver>,
     single_wake: Notify,
     sweep_wake: Notify,
     closing: CancellationToken,
-    /// The running jobs.
-    running: Mutex<HashMap<JobId, (WorkClass, Arc<Stop>)>>,
+    running: Mutex<RunningJobs>,
 }
 
+type RunningJobs = HashMap<JobId, (WorkClass, Arc<StopSignal>)>;
+
 impl LocalQueue {
-    /// Starts the workers; they take up at once what waits.
+    /// Starts the workers, which claim queued jobs at once.
     ///
     /// # Errors
-    /// When the threads cannot be started.
+    /// The threads cannot be started.
     pub fn start(
         config: &WorkConfig,
-        recorder: Recorder,
+        recorder: JobRecorder,
         solver: Arc<dyn Solver>,
     ) -> Result<Self, rayon::ThreadPoolBuildError> {
         let (singles, sweeps) = (config.worker_count(), config.sweep_workers as usize);
@@ -59,7 +61,7 @@ impl LocalQueue {
         for number in 0..sweeps {
             workers.push((WorkClass::Sweep, Arc::new(pool(config, &format!("sweep-{number}"))?)));
         }
-        let shared = Arc::new(Shared {
+        let shared = Arc::new(QueueShared {
             config: config.clone(),
             recorder,
             solver,
@@ -70,7 +72,7 @@ impl LocalQueue {
         });
         let tasks = TaskTracker::new();
         for (class, pool) in workers {
-            tasks.spawn(Arc::clone(&shared).work(class, pool));
+            tasks.spawn(Arc::clone(&shared).run_worker(class, pool));
         }
         Ok(Self { shared, tasks, totals: (singles, sweeps) })
     }
@@ -92,7 +94,7 @@ impl Queue for LocalQueue {
 
     fn stop(&self, job: JobId) {
         if let Some((_, stop)) = self.shared.running().get(&job) {
-            stop.ask(Reason::Cancel);
+            stop.request(StopReason::Cancel);
         }
     }
 
@@ -103,30 +105,30 @@ impl Queue for LocalQueue {
         Workers { total, busy: running.len() - sweeps_busy, sweeps_total, sweeps_busy }
     }
 
-    fn close(&self, limit: Duration) -> Pending<'_, bool> {
+    fn close(&self, limit: Duration) -> BoxFuture<'_, bool> {
         self.shared.closing.cancel();
         self.tasks.close();
         for (_, stop) in self.shared.running().values() {
-            stop.ask(Reason::Shutdown);
+            stop.request(StopReason::Shutdown);
         }
         Box::pin(async move { tokio::time::timeout(limit, self.tasks.wait()).await.is_ok() })
     }
 }
 
-impl Shared {
-    async fn work(self: Arc<Self>, class: WorkClass, pool: Arc<rayon::ThreadPool>) {
+impl QueueShared {
+    async fn run_worker(self: Arc<Self>, class: WorkClass, pool: Arc<rayon::ThreadPool>) {
         while !self.closing.is_cancelled() {
             match self.recorder.claim_next(class).await {
                 Ok(Some(claim)) => {
-                    // One announcement may have come for several jobs: whoever finds work wakes the next.
+                    // Several jobs may have caused one notification: each worker that claims a job wakes the next.
                     self.wake(class).notify_one();
                     let span = measure::span(&claim.job);
-                    self.run(claim, class, &pool).instrument(span).await;
+                    self.run_job(claim, class, &pool).instrument(span).await;
                 }
                 Ok(None) => self.pause(self.wake(class).notified()).await,
                 Err(error) => {
                     tracing::error!(%error, "next job not read");
-                    measure::claim_retried();
+                    measure::record_claim_retry();
                     self.pause(tokio::time::sleep(RETRY_AFTER)).await;
                 }
             }
@@ -147,13 +149,13 @@ impl Shared {
         }
     }
 
-    async fn run(&self, claim: Claim, class: WorkClass, pool: &rayon::ThreadPool) {
+    async fn run_job(&self, claim: Claim, class: WorkClass, pool: &rayon::ThreadPool) {
         let id = claim.job.id;
         tracing::info!("job started");
-        let stop = Arc::new(Stop::default());
+        let stop = Arc::new(StopSignal::default());
         self.running().insert(id, (class, Arc::clone(&stop)));
-        self.stop_if_asked(id, &stop).await;
-        let run = Run {
+        self.stop_if_requested(id, &stop).await;
+        let run = JobRun {
             job: claim.job,
             computed_before: claim.computed,
             class,
@@ -164,23 +166,23 @@ impl Shared {
             stop: &stop,
             closing: &self.closing,
         };
-        run.to_its_end(&claim.input).await;
+        run.run(&claim.input).await;
         self.running().remove(&id);
     }
 
-    /// A wish to stop may have come between the claim and the entry among the running jobs.
-    async fn stop_if_asked(&self, id: JobId, stop: &Stop) {
+    /// Handles a cancellation or shutdown that came between the claim and the registration of the job as running.
+    async fn stop_if_requested(&self, id: JobId, stop: &StopSignal) {
         match self.recorder.store().job(id).await {
-            Ok(Some(job)) if job.cancel_requested_at.is_some() => stop.ask(Reason::Cancel),
+            Ok(Some(job)) if job.cancel_requested_at.is_some() => stop.request(StopReason::Cancel),
             Ok(_) => {}
             Err(error) => tracing::error!(job = %id, %error, "job not read"),
         }
         if self.closing.is_cancelled() {
-            stop.ask(Reason::Shutdown);
+            stop.request(StopReason::Shutdown);
         }
     }
 
-    fn running(&self) -> std::sync::MutexGuard<'_, HashMap<JobId, (WorkClass, Arc<Stop>)>> {
+    fn running(&self) -> std::sync::MutexGuard<'_, RunningJobs> {
         self.running.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,4 +1,4 @@
-//! How many jobs wait, known without counting them: this process is the only one that writes.
+//! The number of queued jobs, kept in memory: this process is the only one that writes.
 
 use super::connect::Store;
 use sqlx::{Row, SqlitePool};
@@ -7,11 +7,11 @@ use std::sync::atomic::{AtomicI64, Ordering};
 
 /// The number of queued jobs. Changed after the commit of each transition into or out of `queued`.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Waiting(Arc<AtomicI64>);
+pub(super) struct QueuedCount(Arc<AtomicI64>);
 
-impl Waiting {
-    /// Counts them, once.
-    pub async fn counted(pool: &SqlitePool) -> Result<Self, sqlx::Error> {
+impl QueuedCount {
+    /// Counts the queued jobs in the database.
+    pub async fn read(pool: &SqlitePool) -> Result<Self, sqlx::Error> {
         let row = sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'").fetch_one(pool).await?;
         Ok(Self(Arc::new(AtomicI64::new(row.try_get("n")?))))
     }
@@ -26,8 +26,8 @@ impl Waiting {
 }
 
 impl Store {
-    /// How many jobs wait.
-    pub fn waiting(&self) -> u64 {
-        self.waiting.get().max(0).unsigned_abs()
+    /// The number of queued jobs.
+    pub fn queued_count(&self) -> u64 {
+        self.queued_count.get().max(0).unsigned_abs()
     }
 }

@@ -1,4 +1,4 @@
-//! A problem on its way out of a handler.
+//! The error type of handlers.
 
 use super::{Problem, ProblemCode};
 use crate::api::config::{RETRY_FULL_S, RETRY_LIVE_S};
@@ -9,35 +9,35 @@ use axum::http::header::RETRY_AFTER;
 use axum::response::{IntoResponse, Response};
 use herringbone_job::DocumentError;
 
-/// What a handler answers instead of its result. The body is written by the envelope, which knows the request's id.
+/// An error response. Its body is written by the request middleware, which knows the request id.
 #[derive(Debug, Clone)]
-pub struct Refusal(Box<Content>);
+pub struct ApiError(Box<ApiErrorContent>);
 
 #[derive(Debug, Clone)]
-struct Content {
+struct ApiErrorContent {
     problem: Problem,
     retry_after_s: Option<u64>,
-    /// For the log only.
+    /// Cause, for the log only.
     cause: Option<String>,
 }
 
-impl Refusal {
+impl ApiError {
     pub fn new(code: ProblemCode, detail: impl Into<String>) -> Self {
         Problem::new(code, detail).into()
     }
 
-    /// A failure of the service: a fixed text outside, the cause in the log.
+    /// A failure of the service: the response has a fixed text, `cause` is logged.
     pub fn internal(cause: impl std::fmt::Display) -> Self {
-        let mut refusal = Self::new(ProblemCode::Internal, "The request failed for a reason that lies in the service.");
-        refusal.0.cause = Some(cause.to_string());
-        refusal
+        let mut error = Self::new(ProblemCode::Internal, "The request failed for a reason that lies in the service.");
+        error.0.cause = Some(cause.to_string());
+        error
     }
 
-    pub fn not_found(what: impl Into<String>) -> Self {
-        Self::new(ProblemCode::NotFound, what)
+    pub fn not_found(detail: impl Into<String>) -> Self {
+        Self::new(ProblemCode::NotFound, detail)
     }
 
-    /// The same, saying when to try again.
+    /// Returns this error with a `Retry-After` header.
     pub fn retry_after(mut self, seconds: u64) -> Self {
         self.0.retry_after_s = Some(seconds);
         self
@@ -48,30 +48,30 @@ impl Refusal {
     }
 }
 
-impl From<Problem> for Refusal {
+impl From<Problem> for ApiError {
     fn from(problem: Problem) -> Self {
-        Self(Box::new(Content { problem, retry_after_s: None, cause: None }))
+        Self(Box::new(ApiErrorContent { problem, retry_after_s: None, cause: None }))
     }
 }
 
-impl From<DocumentError> for Refusal {
+impl From<DocumentError> for ApiError {
     fn from(error: DocumentError) -> Self {
         Problem::from(error).into()
     }
 }
 
-impl From<StoreError> for Refusal {
+impl From<StoreError> for ApiError {
     fn from(error: StoreError) -> Self {
-        let Some(why) = error.unavailable() else { return Self::internal(error) };
-        let mut refusal = Self::new(ProblemCode::StorageUnavailable, reason(why)).retry_after(RETRY_FULL_S);
-        refusal.0.cause = Some(error.to_string());
-        refusal
+        let Some(cause) = error.unavailable() else { return Self::internal(error) };
+        let mut response = Self::new(ProblemCode::StorageUnavailable, public_detail(cause)).retry_after(RETRY_FULL_S);
+        response.0.cause = Some(error.to_string());
+        response
     }
 }
 
-/// What is said outside; the words of the database stay in the log.
-fn reason(why: Unavailable) -> &'static str {
-    match why {
+/// The detail in the response; the message of the database is only logged.
+fn public_detail(cause: Unavailable) -> &'static str {
+    match cause {
         Unavailable::Full => "There is no room for more data.",
         Unavailable::Busy => "The database is held by another program.",
         Unavailable::Disk => "The disk did not read or write.",
@@ -80,7 +80,7 @@ fn reason(why: Unavailable) -> &'static str {
     }
 }
 
-impl From<SubmitError> for Refusal {
+impl From<SubmitError> for ApiError {
     fn from(error: SubmitError) -> Self {
         let text = error.to_string();
         match error {
@@ -94,11 +94,11 @@ impl From<SubmitError> for Refusal {
     }
 }
 
-impl IntoResponse for Refusal {
+impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
         let status = axum::http::StatusCode::from_u16(self.0.problem.status);
         let mut response = status.unwrap_or(axum::http::StatusCode::INTERNAL_SERVER_ERROR).into_response();
-        let live = self.0.problem.code == ProblemCode::ResultNotReady.word();
+        let live = self.0.problem.code == ProblemCode::ResultNotReady.as_str();
         if let Some(seconds) = self.0.retry_after_s.or(live.then_some(RETRY_LIVE_S)) {
             response.headers_mut().insert(RETRY_AFTER, HeaderValue::from(seconds));
         }
