@@ -18,9 +18,11 @@ pub mod study;
 #[cfg(test)]
 mod tests;
 mod violation;
+mod warning;
 
 pub use encoding::{EncodingError, utf8_text, without_mark};
 pub use fields::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_value};
 pub use finite::not_finite;
 pub use shape::SweepShape;
 pub use violation::{DocumentError, Violation};
+pub use warning::Warning;

@@ -1,6 +1,6 @@
 //! The result document: what comes out. Names and units are the public contract; stages that did not run are null.
 
-use herringbone_physics::gear::Warning;
+use crate::warning::Warning;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -4,9 +4,9 @@ use super::point::Wanted;
 use super::{Channel, SolveError, Stage, Surroundings, answer, bounds};
 use crate::document::{Integrator, JobDocument, Method, Recorded};
 use crate::result::{self, Numerics};
+use crate::warning::Warning;
 use crate::{DocumentError, Violation};
 use herringbone_physics::dynamics::{self, DynamicsError, Parameters};
-use herringbone_physics::gear::Warning;
 use herringbone_physics::response::{self, Analysis, ChannelId, Regime};
 use herringbone_physics::watch::Watch;
 

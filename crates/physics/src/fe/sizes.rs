@@ -14,10 +14,12 @@ pub(super) struct Sizes {
     pub splines_per_cell: usize,
     /// Cells along the face may be this many times as long as the distance from the loaded flank.
     pub reach: f64,
+    /// Elements of the section.
     pub section: SectionSizes,
 }
 
 impl Sizes {
+    /// Sizes at a resolution.
     pub fn new(resolution: Resolution) -> Sizes {
         match resolution {
             Resolution::Coarse => Sizes {

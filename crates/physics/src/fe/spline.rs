@@ -47,11 +47,12 @@ impl SplineSpace {
         SplineSpace { order, borders, knots }
     }
 
+    /// Number of functions.
     pub fn len(&self) -> usize {
         self.knots.len() - self.order
     }
 
-    /// Where function `i` differs from zero.
+    /// Interval in which function `i` differs from zero.
     pub fn support(&self, i: usize) -> (f64, f64) {
         (self.knots[i], self.knots[i + self.order])
     }
@@ -120,7 +121,7 @@ impl SplineSpace {
 
 /// Products of the functions of two spaces, integrated over the face.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Products {
+pub(super) struct SplineProducts {
     columns: usize,
     /// For every function of the first space the functions of the second that overlap it.
     ranges: Vec<(usize, usize)>,
@@ -128,8 +129,9 @@ pub(super) struct Products {
     values: Vec<[f64; 4]>,
 }
 
-impl Products {
-    pub fn new(first: &SplineSpace, second: &SplineSpace) -> Products {
+impl SplineProducts {
+    /// Integrals over the common cells of both spaces.
+    pub fn new(first: &SplineSpace, second: &SplineSpace) -> SplineProducts {
         let columns = second.len();
         let mut values = vec![[0.0; 4]; first.len() * columns];
         let mut ranges = vec![(usize::MAX, 0); first.len()];
@@ -151,7 +153,7 @@ impl Products {
                 }
             }
         }
-        Products { columns, ranges, values }
+        SplineProducts { columns, ranges, values }
     }
 
     /// First function of the second space that overlaps function `i` of the first, and the products from there on.
@@ -179,7 +181,7 @@ mod tests {
     #[test]
     fn products_of_different_spaces_integrate_polynomials_exactly() {
         let (fine, coarse) = (SplineSpace::cubic(graded_cells(2.0, 9)), SplineSpace::cubic(graded_cells(2.0, 4)));
-        let products = Products::new(&fine, &coarse);
+        let products = SplineProducts::new(&fine, &coarse);
         let mut sums = [0.0; 4];
         for i in 0..fine.len() {
             let (_, row) = products.row(i);

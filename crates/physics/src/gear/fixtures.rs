@@ -2,10 +2,12 @@
 
 use crate::gear::{GearSpec, Pair, PairSpec};
 
+/// A plain gear with a profile shift.
 pub fn gear(teeth: u32, profile_shift: f64) -> GearSpec {
     GearSpec { profile_shift, ..GearSpec::plain(teeth) }
 }
 
+/// A pair from mm and degrees, gap 30 mm.
 pub fn spec(
     module_mm: f64,
     alpha_n_deg: f64,
@@ -37,6 +39,7 @@ pub fn undercut_pair() -> PairSpec {
     spec(5.0, 20.0, 5.0, 40.0, gear(15, 0.0), short)
 }
 
+/// The feasible pair of a specification.
 pub fn pair(spec: &PairSpec) -> Pair {
     match Pair::new(spec) {
         Ok((pair, _)) => pair,
@@ -44,6 +47,7 @@ pub fn pair(spec: &PairSpec) -> Pair {
     }
 }
 
+/// Asserts a value within a tolerance.
 #[track_caller]
 pub fn close(value: f64, expected: f64, tolerance: f64) {
     assert!((value - expected).abs() <= tolerance, "{value} is not {expected} within {tolerance}");

@@ -5,16 +5,24 @@
 
 use super::involute::{inv_at_radius, roll_length_m};
 
-/// Cutter and blank of one member: all a tooth form follows from.
+/// Cutter and blank of one member, from which the tooth form follows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cutter {
+    /// Number of teeth.
     pub teeth: u32,
+    /// Normal module.
     pub normal_module_m: f64,
+    /// Normal pressure angle.
     pub normal_pressure_angle_rad: f64,
+    /// Transverse pressure angle.
     pub transverse_pressure_angle_rad: f64,
+    /// Helix angle at the reference circle.
     pub helix_angle_rad: f64,
+    /// Profile shift coefficient.
     pub profile_shift: f64,
+    /// Dedendum coefficient of the rack.
     pub dedendum: f64,
+    /// Tip rounding coefficient of the rack.
     pub fillet_radius: f64,
 }
 
@@ -46,10 +54,12 @@ impl Cutter {
             - f64::from(self.teeth) * sin_t * sin_t / (2.0 * self.helix_angle_rad.cos())
     }
 
+    /// Radius of the root circle.
     pub fn root_radius_m(&self) -> f64 {
         self.reference_radius_m() - self.normal_module_m * (self.dedendum - self.profile_shift)
     }
 
+    /// Radius of the reference circle.
     pub fn reference_radius_m(&self) -> f64 {
         0.5 * f64::from(self.teeth) * self.normal_module_m / self.helix_angle_rad.cos()
     }
@@ -113,14 +123,15 @@ impl ToothForm {
         form
     }
 
-    /// Where fillet and involute meet: the rack's form circle, or with undercut the point where the fillet cuts the
-    /// involute.
+    /// Radius at which fillet and involute meet: the rack's form circle, or with undercut the point where the fillet
+    /// cuts the involute.
     fn join(&self, form_roll_m: f64) -> f64 {
         let form_radius = form_roll_m.hypot(self.base_radius_m);
         if form_roll_m >= 0.0 {
             return form_radius;
         }
-        // The fillet starts on the mirrored branch of the involute (outside the tooth) and cuts into the flank further in.
+        // The fillet starts on the mirrored branch of the involute (outside the tooth) and cuts into the flank further
+        // in.
         let excess = |r: f64| self.fillet_half_angle_rad(r) - self.involute_half_angle_rad(r);
         let (mut cut, mut free) = (self.base_radius_m, form_radius);
         if excess(cut) >= 0.0 {
@@ -155,8 +166,8 @@ impl ToothForm {
         }
     }
 
-    /// Half angle on the fillet: its radius falls monotonically along the arc parameter; found by bracketed regula falsi
-    /// (Illinois).
+    /// Half angle on the fillet: its radius falls monotonically along the arc parameter; found by bracketed regula
+    /// falsi (Illinois).
     fn fillet_half_angle_rad(&self, r_m: f64) -> f64 {
         let (mut lo, mut hi) = (self.start_rad, END_RAD);
         let (mut f_lo, mut f_hi) = (self.fillet_point(lo).r_m - r_m, self.fillet_point(hi).r_m - r_m);
@@ -208,18 +219,22 @@ impl ToothForm {
         self.fillet_point(END_RAD).half_angle_rad
     }
 
+    /// Radius at which fillet and involute join.
     pub fn join_radius_m(&self) -> f64 {
         self.join_radius_m
     }
 
+    /// Radius of the root circle.
     pub fn root_radius_m(&self) -> f64 {
         self.root_radius_m
     }
 
+    /// Radius of the base circle.
     pub fn base_radius_m(&self) -> f64 {
         self.base_radius_m
     }
 
+    /// Half angle of the tooth at the base circle.
     pub fn base_half_angle_rad(&self) -> f64 {
         self.base_half_angle_rad
     }
