@@ -6,8 +6,8 @@
 use std::sync::Mutex;
 use std::time::Instant;
 
-use herringbone_physics::fe::{FlankFlexibility, FlankInput, Resolution, Side};
-use herringbone_physics::gear::{GearSpec, Pair, PairSpec};
+use herringbone_physics::fe::{FlankFlexibility, FlankInput, Resolution};
+use herringbone_physics::gear::{GearSpec, MemberId, Pair, PairSpec};
 use herringbone_physics::watch::Watch;
 use serde_json::Value;
 
@@ -90,7 +90,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if !only.is_empty() && !only.iter().any(|o| o == name) {
             continue;
         }
-        for (member, side, hold) in [("pinion", Side::Pinion, 25e-3), ("gear", Side::Gear, 60e-3)] {
+        for (member, side, hold) in [("pinion", MemberId::Pinion, 25e-3), ("gear", MemberId::Gear, 60e-3)] {
             let input = FlankInput::new(&pair, side, hold, 4, resolution);
             let start = Instant::now();
             let last = Mutex::new((start, 0.0_f64));
@@ -115,14 +115,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn report(flank: &FlankFlexibility, reference: &Value, side: Side) {
+fn report(flank: &FlankFlexibility, reference: &Value, side: MemberId) {
     let n = flank.nodes();
     let value = |offset: usize, a: usize, b: usize| 1e6 * flank.total(offset, a, b).unwrap_or(f64::NAN);
     let half = |a: usize, b: usize| 1e6 * flank.half_space()[a * n + b];
     // The reference's next tooth lies on the side of the loaded flank: ahead of the pinion's, behind the gear's.
     let neighbour = |offset: usize, a: usize, b: usize| match side {
-        Side::Pinion => value(offset, a, b),
-        Side::Gear => value(offset, b, a),
+        MemberId::Pinion => value(offset, a, b),
+        MemberId::Gear => value(offset, b, a),
     };
     let face = &reference["face_uniform"];
     let stations = flank.stations_m().len();

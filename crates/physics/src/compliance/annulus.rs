@@ -1,8 +1,8 @@
 //! Plane-strain annulus loaded on its outer circle, held on its inner one: exact Fourier series.
 //!
-//! A tooth loads the root circle on the arc |θ| ≤ θ_f with a uniform tangential traction, a uniform radial traction, and
-//! a moment: a radial traction linear in θ plus the tangential force 1/r_f that cancels the net tangential force of that
-//! traction. Work-conjugate displacements make the flexibility symmetric. The harmonics are Michell's, from the
+//! A tooth loads the root circle on the arc |θ| ≤ θ_f with a uniform tangential traction, a uniform radial traction,
+//! and a moment: a radial traction linear in θ plus the tangential force 1/r_f that cancels the net tangential force of
+//! that traction. Work-conjugate displacements make the flexibility symmetric. The harmonics are Michell's, from the
 //! Kolosov–Muskhelishvili potentials φ = zⁿ⁺¹, z¹⁻ⁿ, ψ = zⁿ⁻¹, z⁻ⁿ⁻¹.
 //!
 //! With u_r = U e^{inθ}, u_θ = iV e^{inθ} every harmonic is a real symmetric 2×2 flexibility.
@@ -12,8 +12,8 @@ use crate::numerics::dense::solve_dense;
 /// Displacements that have fallen to this part of their value at the outer circle do not reach the inner one.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// Harmonic n ≥ 0 of a ring with unit outer radius and unit Young's modulus: displacement (U, V) of the outer circle per
-/// traction (t_r, t_θ/i) of the same harmonic. Inner radius `inner` in (0, 1), held.
+/// Harmonic n ≥ 0 of a ring with unit outer radius and unit Young's modulus: displacement (U, V) of the outer circle
+/// per traction (t_r, t_θ/i) of the same harmonic. Inner radius `inner` in (0, 1), held.
 pub fn harmonic_flexibility(n: u32, inner: f64, nu: f64) -> [[f64; 2]; 2] {
     let mu = 0.5 / (1.0 + nu);
     let lame = 2.0 * mu * nu / (1.0 - 2.0 * nu);
@@ -24,8 +24,8 @@ pub fn harmonic_flexibility(n: u32, inner: f64, nu: f64) -> [[f64; 2]; 2] {
         let hoop = (1.0 - q2) / (mu * 2.0 * q2);
         return [[radial, 0.0], [0.0, hoop]];
     }
-    // Basis: displacement and derivative of (U, V) at r, scaled to stay of order one: growing ones by r = 1, decaying ones
-    // by r = inner.
+    // Basis: displacement and derivative of (U, V) at r, scaled to stay of order one: growing ones by r = 1, decaying
+    // ones by r = inner.
     let kappa = 3.0 - 4.0 * nu;
     let m = n as f64;
     let basis = |r: f64| -> [[f64; 4]; 4] {

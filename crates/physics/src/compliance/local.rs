@@ -3,11 +3,11 @@
 use super::hertz::LineContact;
 use crate::gear::Pair;
 
-/// How the local part of the compliance is told from the bulk.
+/// Separation of the local part of the compliance from the bulk.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum LocalModel {
-    /// Plane-strain indentation down to the centrelines of both teeth: the bulk is the displacement of the centrelines. Depths of
-    /// both members at equally spaced roll coordinates from the start to the end of the path.
+    /// Plane-strain indentation down to the centrelines of both teeth: the bulk is the displacement of the centrelines.
+    /// Depths of both members at equally spaced roll coordinates from the start to the end of the path.
     CenterlineDepth(Vec<[f64; 2]>),
     /// Surface displacement of two half-spaces: the bulk has the half-space part taken out.
     HalfSpace,
@@ -44,8 +44,9 @@ impl Indentation {
     }
 }
 
-/// Segments on a half-space are kept this many times as long as the band of a line under twice the mean load is wide: the neighbours' bands
-/// are held while the load varies, which makes the tangent stiffness of shorter ones too small (2 % at half this length).
+/// Segments on a half-space are kept this many times as long as the band of a line under twice the mean load is wide:
+/// the neighbours' bands are held while the load varies, which makes the tangent stiffness of shorter ones too small (2
+/// % at half this length).
 const LENGTH_PER_BAND: f64 = 2.0;
 
 impl LocalModel {
@@ -83,7 +84,8 @@ impl LocalModel {
 /// Smallest radius of curvature, in normal modules: near the base circle the flank's vanishes.
 const SMALLEST_RADIUS: f64 = 1e-3;
 
-/// Contact of both flanks at roll coordinate `x_m`, with the depths to which the indentation of pinion and gear is counted.
+/// Contact of both flanks at roll coordinate `x_m`, with the depths to which the indentation of pinion and gear is
+/// counted.
 pub(crate) fn line_contact(pair: &Pair, x_m: f64, depths_m: [f64; 2]) -> LineContact {
     LineContact::new([&pair.pinion.material, &pair.gear.material], relative_radius_m(pair, x_m), depths_m)
 }

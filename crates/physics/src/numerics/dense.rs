@@ -29,8 +29,8 @@ pub fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {
     }
 }
 
-/// Solves A X = B for several right-hand sides, which follow one another in `sides`, by LU with partial pivoting; `a` is destroyed.
-/// `false` when a pivot vanishes.
+/// Solves A X = B for several right-hand sides, which follow one another in `sides`, by LU with partial pivoting; `a`
+/// is destroyed. `false` when a pivot vanishes.
 pub fn lu_solve(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
     vectorised(
         #[inline(always)]
@@ -72,8 +72,8 @@ fn lu_solve_inlined(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
     true
 }
 
-/// Cholesky factor L (lower triangle, in place) of a symmetric positive definite n×n matrix given by its lower triangle.
-/// `false` when a pivot is not positive.
+/// Cholesky factor L (lower triangle, in place) of a symmetric positive definite n×n matrix given by its lower
+/// triangle. `false` when a pivot is not positive.
 pub fn cholesky(a: &mut [f64], n: usize) -> bool {
     vectorised(
         #[inline(always)]

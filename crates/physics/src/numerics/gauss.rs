@@ -45,8 +45,8 @@ pub fn on_interval(rule: &[(f64, f64)], a: f64, b: f64) -> impl Iterator<Item = 
     rule.iter().map(move |&(x, w)| (middle + half * x, half * w))
 }
 
-/// Root `i` of the Legendre polynomial P_n, counted from the largest, and its weight 2/((1 - x²) P_n'(x)²): Newton's method from
-/// Tricomi's estimate, until a step is below `tolerance` or `most_steps` are made.
+/// Root `i` of the Legendre polynomial P_n, counted from the largest, and its weight 2/((1 - x²) P_n'(x)²): Newton's
+/// method from Tricomi's estimate, until a step is below `tolerance` or `most_steps` are made.
 fn node(n: usize, i: usize, most_steps: usize, tolerance: f64) -> (f64, f64) {
     let mut x = (PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
     let mut slope = 1.0;

@@ -1,7 +1,7 @@
 //! A periodic curve through unequally spaced phases that keeps its jumps in slope where they are.
 
-/// Piecewise cubic through the samples, monotone between them (Fritsch and Butland's slopes): a jump in slope is felt in the two
-/// intervals beside it only, and nothing overshoots.
+/// Piecewise cubic through the samples, monotone between them (Fritsch and Butland's slopes): a jump in slope is felt
+/// in the two intervals beside it only, and nothing overshoots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PeriodicMonotoneCubic {
     phase: Vec<f64>,
@@ -51,9 +51,9 @@ impl PeriodicMonotoneCubic {
     }
 }
 
-/// Coefficients of the periodic monotone cubics through `values` at equal steps of one period: c0 + c1 u + c2 u² + c3 u³ with
-/// u = 0 … 1 from each value to the next. The slopes are Brodlie's harmonic means, within the limits of Fritsch and Carlson
-/// (SIAM J. Numer. Anal. 17 (1980) 238, doi:10.1137/0717021).
+/// Coefficients of the periodic monotone cubics through `values` at equal steps of one period: c0 + c1 u + c2 u² + c3
+/// u³ with u = 0 … 1 from each value to the next. The slopes are Brodlie's harmonic means, within the limits of Fritsch
+/// and Carlson (SIAM J. Numer. Anal. 17 (1980) 238, doi:10.1137/0717021).
 pub fn monotone_cubics(values: &[f64]) -> Vec<[f64; 4]> {
     let n = values.len();
     let rise = |i: usize| values[(i + 1) % n] - values[i % n];
