@@ -1,15 +1,16 @@
 //! The JSON Schema of the job document, from the same declarations that read it.
 
-use super::document::Kind;
-use super::fields;
-use super::reader::{FieldDescription, Reading};
+use super::document::{self, JobKind};
+use super::reader::Reading;
+
+pub use super::reader::{Condition, FieldDescription};
 use serde_json::{Map, Value, json};
 
 /// Every declared field of the job document, parents before children.
 pub fn field_descriptions() -> Vec<FieldDescription> {
     let reading = Reading::describe();
     let nothing = Value::Object(Map::new());
-    fields::read(reading.root(&nothing));
+    document::read(&reading, &nothing);
     reading.fields()
 }
 
@@ -29,20 +30,20 @@ pub fn job_document_schema() -> Value {
 }
 
 /// The same for one kind of job: `kind` fixed, and without the fields that only sweeps have.
-pub fn job_document_schema_of(kind: Kind) -> Value {
+pub fn job_document_schema_of(kind: JobKind) -> Value {
     let mut schema = job_document_schema();
-    schema["title"] = json!(format!("JobDocument ({})", kind.word()));
+    schema["title"] = json!(format!("JobDocument ({})", kind.as_str()));
     if let Some(properties) = schema["properties"].as_object_mut() {
-        if kind != Kind::Sweep {
+        if kind != JobKind::Sweep {
             for name in ["axes", "continuation", "record"] {
                 properties.remove(name);
             }
         }
         let help = properties.get("kind").and_then(|field| field.get("description")).cloned();
-        let mut field = json!({"const": kind.word(), "description": help});
-        if kind == Kind::Response {
+        let mut field = json!({"const": kind.as_str(), "description": help});
+        if kind == JobKind::Response {
             // What a document without a kind means.
-            field = json!({"enum": [kind.word(), null], "default": kind.word(), "description": help});
+            field = json!({"enum": [kind.as_str(), null], "default": kind.as_str(), "description": help});
         }
         properties.insert("kind".to_owned(), field);
         if let Some(axes) = properties.get_mut("axes") {
@@ -50,7 +51,7 @@ pub fn job_document_schema_of(kind: Kind) -> Value {
             axes["type"] = json!("array");
         }
     }
-    let needs = |name: &str| (kind, name) == (Kind::Sweep, "axes") || (kind != Kind::Response && name == "kind");
+    let needs = |name: &str| (kind, name) == (JobKind::Sweep, "axes") || (kind != JobKind::Response && name == "kind");
     for name in ["kind", "axes"].into_iter().filter(|name| needs(name)) {
         push_required(&mut schema, name);
     }

@@ -1,29 +1,36 @@
 //! What sweeps consist of: the axes and rows of a stored one without reading the rest of its document, and the document of a row.
 
-use super::document::{JobDocument, Kind};
+use super::document::{JobDocument, JobKind};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
-use serde_json::{Value, json};
 
 impl JobDocument {
     /// A response with the inputs of this sweep as they stand, without axes.
     pub fn without_sweep(&self) -> JobDocument {
-        JobDocument { kind: Kind::Response, axes: Vec::new(), continuation: None, record: Vec::new(), ..self.clone() }
+        JobDocument {
+            kind: JobKind::Response,
+            axes: Vec::new(),
+            continuation: None,
+            record: Vec::new(),
+            ..self.clone()
+        }
     }
 
     /// The document of a row of this sweep as a job of its own: a response with the values of the axes put in. None where the sweep
     /// has no such row.
-    pub fn of_row(&self, position: usize) -> Option<Value> {
+    pub fn of_row(&self, position: usize) -> Option<JobDocument> {
         if position >= self.sweep_points() {
             return None;
         }
-        let mut value = serde_json::to_value(self.without_sweep()).ok()?;
+        let mut document = self.without_sweep();
         let mut place = position;
         for axis in &self.axes {
-            *value.pointer_mut(&axis.pointer)? = json!(axis.value(place % axis.len()));
+            for pointer in axis.pointers() {
+                document.slot(pointer)?.set(axis.value(place % axis.len())).ok()?;
+            }
             place /= axis.len();
         }
-        Some(value)
+        Some(document)
     }
 }
 

@@ -26,12 +26,12 @@ fn with(pointer: &str, value: Value) -> Value {
 #[test]
 fn the_example_is_read_as_written() {
     let document = parse(include_bytes!("../../../examples/table1.json")).expect("valid");
-    assert_eq!(document.kind, Kind::Response);
+    assert_eq!(document.kind, JobKind::Response);
     assert_eq!(document.design.pinion.teeth, 17);
     assert_eq!(document.design.pressure_angle_plane, PressureAnglePlane::Transverse);
     assert_eq!(document.design.gear.left_half_hand, Hand::Right);
     assert_eq!(document.operation.pinion_torque_nm, 800.0);
-    assert!(matches!(document.model.impact, Impact::CornerContact(_)));
+    assert!(matches!(document.model.impact, ImpactInput::CornerContact(_)));
 }
 
 #[test]
@@ -179,4 +179,19 @@ fn a_sweep_records_what_it_knows_and_no_more() {
     assert_eq!(violations(&document)[0].pointer, "/record");
     let alone = with("/record", json!(["poincare"]));
     assert_eq!(violations(&alone)[0].pointer, "/record");
+}
+
+#[test]
+fn the_input_of_a_row_has_all_that_its_axes_move() {
+    let mut document = table1();
+    document["kind"] = json!("sweep");
+    document["axes"] = json!([
+        {"pointer": "/design/pinion/teeth", "also": ["/design/gear/teeth"], "values": [20, 30]},
+        {"pointer": "/operation/pinion_speed_rpm", "values": [500.0, 600.0, 700.0]},
+    ]);
+    let sweep = parse_value(&document).expect("valid");
+    let row = sweep.of_row(3).expect("a row");
+    assert_eq!((row.kind, row.axes.len(), row.continuation), (JobKind::Response, 0, None));
+    assert_eq!((row.design.pinion.teeth, row.design.gear.teeth, row.operation.pinion_speed_rpm), (30, 30, 600.0));
+    assert_eq!(sweep.of_row(6), None);
 }

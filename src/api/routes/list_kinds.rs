@@ -2,7 +2,7 @@
 
 use crate::api::config::MAX_BODY_BYTES;
 use axum::Json;
-use herringbone_job::document::Kind;
+use herringbone_job::document::JobKind;
 use herringbone_job::schema::job_document_schema_of;
 use herringbone_job::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS};
 use serde::Serialize;
@@ -18,7 +18,7 @@ pub struct KindList {
 /// A kind of job: what its document may say.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct KindEntry {
-    pub kind: Kind,
+    pub kind: JobKind,
     pub description: &'static str,
     /// JSON Schema (2020-12) of the document: ranges, defaults, units (`x-unit`).
     pub schema: Value,
@@ -43,29 +43,29 @@ pub struct KindLimits {
     responses((status = 200, description = "The kinds of jobs.", body = KindList))
 )]
 pub async fn list_kinds() -> Json<KindList> {
-    Json(KindList { items: Kind::ALL.iter().map(|(_, kind)| entry(*kind)).collect() })
+    Json(KindList { items: JobKind::ALL.iter().map(|(_, kind)| entry(*kind)).collect() })
 }
 
-fn entry(kind: Kind) -> KindEntry {
+fn entry(kind: JobKind) -> KindEntry {
     let schema = job_document_schema_of(kind);
     let defaults = defaults_of(&schema).unwrap_or_else(|| json!({}));
     let limits = KindLimits {
         max_body_bytes: MAX_BODY_BYTES,
-        max_sweep_points: (kind == Kind::Sweep).then_some(MAX_SWEEP_POINTS),
-        max_series_samples: (kind == Kind::Response).then_some(MAX_SERIES_SAMPLES),
+        max_sweep_points: (kind == JobKind::Sweep).then_some(MAX_SWEEP_POINTS),
+        max_series_samples: (kind == JobKind::Response).then_some(MAX_SERIES_SAMPLES),
     };
     KindEntry { kind, description: description(kind), schema, defaults, limits }
 }
 
-fn description(kind: Kind) -> &'static str {
+fn description(kind: JobKind) -> &'static str {
     match kind {
-        Kind::Mesh => "Geometry, loaded tooth contact and mesh-in impact.",
-        Kind::Response => "Everything of a mesh job, and the vibration response at one operating point.",
-        Kind::Sweep => "A response over the values of one or two inputs.",
+        JobKind::Mesh => "Geometry, loaded tooth contact and mesh-in impact.",
+        JobKind::Response => "Everything of a mesh job, and the vibration response at one operating point.",
+        JobKind::Sweep => "A response over the values of one or two inputs.",
     }
 }
 
-/// The defaults within a schema, in the shape of what it describes.
+/// The defaults in a schema, arranged as in the document that it describes; `None` without any.
 fn defaults_of(schema: &Value) -> Option<Value> {
     if let Some(value) = schema.get("default").or_else(|| schema.get("const")) {
         return Some(value.clone());

@@ -1,7 +1,7 @@
 //! What a result says of its own errors: of the solution of the equations, and of the model of the mesh.
 
-use crate::document::{Body, Design, Elements, Fidelity, Flank, JobDocument, Ltca, MeshStiffness};
-use crate::result::{Accuracy, JobResult, Mesh, ModelError, Sweep};
+use crate::document::{BodyInput, DesignInput, Elements, Fidelity, FlankInput, JobDocument, Ltca, MeshStiffness};
+use crate::result::{Accuracy, JobResult, Mesh, ModelError, SweepResult};
 
 /// Largest differences that the comparisons with references found, in per cent.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,7 +92,7 @@ pub fn of(document: &JobDocument, result: &JobResult) -> Accuracy {
 }
 
 /// The accuracy of a sweep: the largest numerical error of its points, and the model's for its base document.
-pub fn of_sweep(document: &JobDocument, sweep: &Sweep) -> Accuracy {
+pub fn of_sweep(document: &JobDocument, sweep: &SweepResult) -> Accuracy {
     let errors = sweep.points.iter().filter_map(|point| point.error_estimate).filter(|error| error.is_finite());
     Accuracy { numerical: errors.reduce(f64::max), model: model(document, None) }
 }
@@ -110,10 +110,10 @@ fn model(document: &JobDocument, mesh: Option<&Mesh>) -> ModelError {
             transmission_error_harmonic_percent: None,
             basis: "the mesh stiffness is given: how near it is to the gear's is not known here".to_owned(),
         },
-        MeshStiffness::Iso6336 => told(measured::ISO_6336, ""),
+        MeshStiffness::Iso6336 => model_error(measured::ISO_6336, ""),
         MeshStiffness::Ltca(ltca) => match ltca.fidelity {
             Fidelity::Fe => {
-                told(if ltca.elements == Elements::Coarse { measured::FE_COARSE } else { measured::FE }, "")
+                model_error(if ltca.elements == Elements::Coarse { measured::FE_COARSE } else { measured::FE }, "")
             }
             Fidelity::Analytic => analytic(&document.design, ltca, mesh),
             Fidelity::Uniform => ModelError {
@@ -127,7 +127,7 @@ fn model(document: &JobDocument, mesh: Option<&Mesh>) -> ModelError {
     }
 }
 
-fn told(bound: Bound, notes: &str) -> ModelError {
+fn model_error(bound: Bound, notes: &str) -> ModelError {
     ModelError {
         mesh_stiffness_percent: Some(bound.stiffness),
         transmission_error_harmonic_percent: Some(bound.harmonic),
@@ -135,14 +135,14 @@ fn told(bound: Bound, notes: &str) -> ModelError {
     }
 }
 
-fn analytic(design: &Design, ltca: &Ltca, mesh: Option<&Mesh>) -> ModelError {
+fn analytic(design: &DesignInput, ltca: &Ltca, mesh: Option<&Mesh>) -> ModelError {
     let helix_deg = design.helix_angle_deg;
     let mut bound = match (helix_deg == 0.0, ltca.body) {
-        (true, Body::Rim) => measured::SPUR_RIM,
-        (true, Body::Bore) => measured::SPUR_BORE,
+        (true, BodyInput::Rim) => measured::SPUR_RIM,
+        (true, BodyInput::Bore) => measured::SPUR_BORE,
         (false, _) if helix_deg > measured::STEEP_HELIX_DEG => measured::STEEP,
-        (false, Body::Rim) => measured::HELICAL_RIM,
-        (false, Body::Bore) => measured::HELICAL_BORE,
+        (false, BodyInput::Rim) => measured::HELICAL_RIM,
+        (false, BodyInput::Bore) => measured::HELICAL_BORE,
     };
     let mut notes = String::new();
     let few = design.pinion.teeth.min(design.gear.teeth) < measured::FEW_TEETH;
@@ -166,17 +166,17 @@ fn analytic(design: &Design, ltca: &Ltca, mesh: Option<&Mesh>) -> ModelError {
             notes += note;
         }
     }
-    told(bound, &notes)
+    model_error(bound, &notes)
 }
 
 /// Largest tip relief of any flank.
-fn tip_relief_um(design: &Design) -> f64 {
+fn tip_relief_um(design: &DesignInput) -> f64 {
     let gears = [&design.pinion, &design.gear];
     let flanks = gears.into_iter().flat_map(|gear| {
         let both = [Some(&gear.flank), gear.left.as_ref(), gear.right.as_ref()];
         both.into_iter().flatten()
     });
-    flanks.map(|flank: &Flank| flank.tip_relief.amount_um).fold(0.0, f64::max)
+    flanks.map(|flank: &FlankInput| flank.tip_relief.amount_um).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -5,7 +5,8 @@ use super::equations::MotionPlane;
 use super::prepare::Prepared;
 use super::supports::shown;
 use crate::document::{
-    DEFAULT_BACKLASH_UM, Impact, ImpactDuration, JobDocument, Kind, Ltca, MeshStiffness, Method, StiffnessLaw,
+    DEFAULT_BACKLASH_UM, ImpactDuration, ImpactInput, JobDocument, JobKind, Ltca, MeshStiffness, MethodInput,
+    StiffnessLaw,
 };
 use crate::result::Mesh;
 use crate::warning::Warning;
@@ -40,8 +41,8 @@ pub fn backlash_um(document: &JobDocument) -> f64 {
 
 /// What can be said of a document before anything is solved: masses and inertias of which the geometry gives `discs` (kg, kg m²), backlash.
 pub fn of_document(document: &JobDocument, prepared: &Prepared, discs: [(f64, f64); 2]) -> Vec<Warning> {
-    let vibrates = document.kind != Kind::Mesh;
-    let strikes = matches!(document.model.impact, Impact::CornerContact(_) | Impact::Zhou2008(_));
+    let vibrates = document.kind != JobKind::Mesh;
+    let strikes = matches!(document.model.impact, ImpactInput::CornerContact(_) | ImpactInput::Zhou2008(_));
     let mut found = Vec::new();
     let design = &document.design;
     for ((name, gear), (mass_kg, inertia_kg_m2)) in
@@ -154,15 +155,19 @@ pub fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
 }
 
 /// What the pulse of a half does to the equations: longer than the mesh period, or of more than the load.
-pub fn of_pulses(document: &JobDocument, plane: &MotionPlane, pulses: &[Option<dynamics::Impact>; 2]) -> Vec<Warning> {
+pub fn of_pulses(
+    document: &JobDocument,
+    plane: &MotionPlane,
+    pulses: &[Option<dynamics::ImpactExcitation>; 2],
+) -> Vec<Warning> {
     let mut found = Vec::new();
     let longest = pulses.iter().flatten().filter_map(|pulse| match pulse {
-        dynamics::Impact::HalfSine { duration_mesh_periods, .. } => Some(*duration_mesh_periods),
-        dynamics::Impact::Harmonics { .. } => None,
+        dynamics::ImpactExcitation::HalfSine { duration_mesh_periods, .. } => Some(*duration_mesh_periods),
+        dynamics::ImpactExcitation::Harmonics { .. } => None,
     });
     let longest = longest.fold(0.0, f64::max);
     let calculated = match &document.model.impact {
-        Impact::CornerContact(corner) | Impact::Zhou2008(corner) => Some(corner.duration),
+        ImpactInput::CornerContact(corner) | ImpactInput::Zhou2008(corner) => Some(corner.duration),
         _ => None,
     };
     if longest > 1.0 {
@@ -177,7 +182,7 @@ pub fn of_pulses(document: &JobDocument, plane: &MotionPlane, pulses: &[Option<d
         );
         found.push(warning("pulse-longer-than-period", pointer, detail));
     }
-    let mean_n = pulses.iter().flatten().map(dynamics::Impact::mean_n).fold(0.0, f64::max);
+    let mean_n = pulses.iter().flatten().map(dynamics::ImpactExcitation::mean_n).fold(0.0, f64::max);
     let load_n = (document.operation.pinion_torque_nm / 2.0 / plane.pinion_radius_m).abs();
     if mean_n > load_n {
         let pointer = if calculated.is_some() { "/model/impact" } else { "/model/impact/force_n" };
@@ -204,7 +209,7 @@ pub fn of_motion(document: &JobDocument, summary: &Summary) -> Vec<Warning> {
             vec![warning("unstable", "/operation/pinion_speed_rpm", detail)]
         }
         Regime::NotSettled => {
-            let integrates = document.analysis.method == Method::Integrate;
+            let integrates = document.analysis.method == MethodInput::Integrate;
             let pointer = if integrates { "/analysis/mesh_periods" } else { "/analysis/method" };
             let course = match rate {
                 Some(rate) if rate < 0.0 => format!("deviations fall by a factor of {:.4} per mesh period", rate.exp()),
@@ -225,7 +230,8 @@ pub fn of_motion(document: &JobDocument, summary: &Summary) -> Vec<Warning> {
 mod tests {
     use super::*;
     use crate::parse_value;
-    use crate::study::{Surroundings, check, solve};
+    use crate::study::SolveContext;
+    use crate::study::unchecked::{check, solve};
     use serde_json::{Value, json};
 
     fn example(name: &str) -> Value {
@@ -243,7 +249,7 @@ mod tests {
     }
 
     fn solved(value: &Value) -> crate::result::JobResult {
-        solve(&parse_value(value).expect("valid"), &Surroundings::none()).expect("solved").result
+        solve(&parse_value(value).expect("valid"), &SolveContext::none()).expect("solved").result
     }
 
     fn has(warnings: &[Warning], code: &str, pointer: &str) -> bool {

@@ -1,10 +1,9 @@
 //! Campbell data of a sweep over the speed: at which speeds an order of the mesh frequency meets a natural frequency.
 
 use super::mesh::MeshMemo;
-use super::{SolveError, Surroundings, answer, point, row};
+use super::{SolveContext, SolveError, point, response_result, row};
 use crate::document::{Axis, JobDocument};
 use crate::result::{Campbell, CampbellCrossing, NaturalMode};
-use serde_json::Value;
 
 /// The swept input that makes a Campbell diagram.
 const SPEED: &str = "/operation/pinion_speed_rpm";
@@ -17,9 +16,9 @@ const ORDERS: u32 = 10;
 /// # Errors
 /// [`SolveError::Canceled`].
 pub fn run(
-    base: &Value,
+    base: &JobDocument,
     sweep: &JobDocument,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<Vec<Campbell>, SolveError> {
     let Some(at) = sweep.axes.iter().position(|axis| axis.pointers().any(|pointer| pointer == SPEED)) else {
@@ -27,17 +26,21 @@ pub fn run(
     };
     let speed = &sweep.axes[at];
     let other = sweep.axes.get(1 - at);
-    let quiet = Surroundings { progress: &|_, _| {}, ..*surroundings };
+    let quiet = SolveContext { progress: &|_, _| {}, ..*context };
     let mut found = Vec::new();
     for index in 0..other.map_or(1, Axis::len) {
         let other_axis_value = other.map(|axis| axis.value(index));
         let mut values = vec![speed.value(0)];
         // In the order of the axes.
         other_axis_value.into_iter().for_each(|value| values.insert(1 - at, value));
-        let modes = row::document(base, sweep, &values).and_then(|document| {
-            let staged = point::stage(&document, &quiet, memo)?;
-            let modes = staged.parameters().map(answer::natural_modes).transpose().map_err(super::vibration::failed)?;
-            Ok((modes, document.design.pinion.teeth))
+        let modes = row::job(base, sweep, &values).and_then(|job| {
+            let staged = point::stage(&job, &quiet, memo)?;
+            let modes = staged
+                .parameters()
+                .map(response_result::natural_modes)
+                .transpose()
+                .map_err(super::vibration::failed)?;
+            Ok((modes, job.document().design.pinion.teeth))
         });
         match modes {
             Ok((Some(modes), teeth)) => found.push(diagram(speed, other_axis_value, f64::from(teeth), modes)),

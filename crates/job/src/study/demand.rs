@@ -3,7 +3,7 @@
 //! Upper estimates from the sizes that grow with the input; what is the same for every job (a few tens of MiB) is left out.
 //! `scripts/memory` holds them against the peak of real runs.
 
-use crate::document::{Axis, Elements, Fidelity, JobDocument, Kind, MeshStiffness};
+use crate::document::{Axis, Elements, Fidelity, JobDocument, JobKind, MeshStiffness};
 
 const MIB: f64 = 1_048_576.0;
 /// A sample of a channel.
@@ -46,15 +46,15 @@ impl Demand {
 
 /// The demand of a document that was checked, solved on so many threads.
 pub fn demand(document: &JobDocument, threads: usize) -> Demand {
-    let is_sweep = document.kind == Kind::Sweep;
+    let is_sweep = document.kind == JobKind::Sweep;
     let series_mib = match document.kind {
-        Kind::Response => {
+        JobKind::Response => {
             let channels = super::vibration::channels(document).map_or(0, |channels| channels.len());
             let analysis = &document.analysis;
             let samples = f64::from(analysis.record_mesh_periods) * f64::from(analysis.samples_per_mesh_period);
             (PER_CHANNEL * channels as f64 + SPECTRUM_CHANNELS) * samples * SAMPLE_BYTES / MIB
         }
-        Kind::Mesh | Kind::Sweep => 0.0,
+        JobKind::Mesh | JobKind::Sweep => 0.0,
     };
     let over_design =
         is_sweep && document.axes.iter().flat_map(Axis::pointers).any(|pointer| pointer.starts_with("/design"));

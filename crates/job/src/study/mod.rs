@@ -2,9 +2,8 @@
 //! meet physics.
 
 mod accuracy;
-mod answer;
 mod axes;
-mod bounds;
+pub(crate) mod bounds;
 mod branches;
 mod campbell;
 mod check;
@@ -18,15 +17,16 @@ mod mesh;
 mod mesh_force;
 mod point;
 mod points;
-mod prepare;
+pub(crate) mod prepare;
+mod response_result;
 mod row;
 mod supports;
 mod sweep;
 mod vibration;
 
 use crate::DocumentError;
-use crate::document::{JobDocument, Kind};
-use crate::result::{Geometry, JobResult};
+use crate::document::JobKind;
+use crate::result::{Geometry, JobResult, ReusedStage};
 use crate::warning::Warning;
 
 use herringbone_physics::watch::Canceled;
@@ -34,7 +34,7 @@ use mesh::MeshMemo;
 use point::Wanted;
 use serde::{Deserialize, Serialize};
 
-pub use check::check;
+pub use check::CheckedJob;
 pub use demand::{Demand, demand};
 pub use hash::input_hash;
 pub use points::{KeptPoints, LineEnd, NoPointStore, PointStore};
@@ -55,7 +55,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    pub fn word(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Stage::Geometry => "geometry",
             Stage::Mesh => "mesh",
@@ -83,20 +83,22 @@ impl StageStore for NoStageStore {
     fn save(&self, _key: &str, _stage: Stage, _bytes: &[u8]) {}
 }
 
-/// What a solve is given from outside besides the document.
-pub struct Surroundings<'a> {
+/// Services that a solve uses besides its document: stored stages and points, progress, cancellation, a clock.
+pub struct SolveContext<'a> {
+    /// Results of stages, stored for reuse.
     pub stages: &'a dyn StageStore,
-    /// Points of this sweep.
+    /// Solved points of this sweep.
     pub points: &'a dyn PointStore,
     /// Receives (stage, fraction of the whole job done).
     pub progress: &'a (dyn Fn(Stage, f64) + Sync),
+    /// Whether the solve is to stop; asked at every checkpoint.
     pub canceled: &'a (dyn Fn() -> bool + Sync),
     /// Milliseconds since an arbitrary start; the physics itself has no clock.
     pub clock_ms: &'a (dyn Fn() -> f64 + Sync),
 }
 
-impl Surroundings<'static> {
-    /// Nothing is kept, nobody looks on, and no time passes.
+impl SolveContext<'static> {
+    /// A context that stores nothing, reports nothing, never cancels, and whose clock stands still.
     pub fn none() -> Self {
         Self {
             stages: &NoStageStore,
@@ -133,7 +135,7 @@ pub struct Outcome {
 pub enum SolveError {
     #[error(transparent)]
     Canceled(#[from] Canceled),
-    /// The design turned out infeasible (a document that was not checked first).
+    /// A point of a sweep whose values do not go together, or make a gear that cannot exist.
     #[error(transparent)]
     Document(#[from] DocumentError),
     /// A stage failed: deterministic, so it is not tried again.
@@ -154,7 +156,7 @@ pub enum SolveError {
 pub struct CheckReport {
     pub geometry: Geometry,
     /// Springs of the equations of motion; null for a job without a response.
-    pub supports: Option<crate::result::Supports>,
+    pub supports: Option<crate::result::SupportsResult>,
     /// Memory that the calculation takes at most (an estimate).
     pub memory_mib: f64,
     #[cfg_attr(feature = "schema", schema(value_type = Vec<crate::result::WarningEntry>))]
@@ -171,18 +173,18 @@ impl SolveError {
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
-    // All that can be refused is refused before anything is solved.
-    let report = check(document)?;
+pub fn solve(job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError> {
+    let document = job.document();
     let memo = MeshMemo::default();
-    if document.kind != Kind::Sweep {
-        let point = point::solve(document, surroundings, &memo, &Wanted::WHOLE)?;
+    if document.kind != JobKind::Sweep {
+        let point = point::solve(job, context, &memo, &Wanted::WHOLE)?;
         return Ok(Outcome { result: point.result, series: point.series });
     }
-    let started_ms = (surroundings.clock_ms)();
-    let kept = surroundings.points.load();
-    let reused = if kept.rows.is_empty() { Vec::new() } else { vec!["points".to_owned()] };
-    let sweep = sweep::run(document, kept, surroundings, &memo)?;
+    let started_ms = (context.clock_ms)();
+    let kept = context.points.load();
+    let reused = if kept.rows.is_empty() { Vec::new() } else { vec![ReusedStage::Points] };
+    let sweep = sweep::run(document, kept, context, &memo)?;
+    let report = job.report();
     let mut result = JobResult {
         geometry: Some(report.geometry),
         supports: report.supports,
@@ -193,8 +195,24 @@ pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outc
     };
     result.numerics.reused = reused;
     result.numerics.solver_version = SOLVER_VERSION.to_owned();
-    result.numerics.wall_ms.response = (surroundings.clock_ms)() - started_ms;
+    result.numerics.wall_ms.response = (context.clock_ms)() - started_ms;
     Ok(Outcome { result, series: Vec::new() })
+}
+
+/// Documents that tests check and solve in one go.
+#[cfg(test)]
+mod unchecked {
+    use super::{CheckReport, CheckedJob, Outcome, SolveContext, SolveError};
+    use crate::DocumentError;
+    use crate::document::JobDocument;
+
+    pub fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
+        CheckedJob::new(document.clone()).map(|job| job.report())
+    }
+
+    pub fn solve(document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
+        super::solve(&CheckedJob::new(document.clone())?, context)
+    }
 }
 
 #[cfg(test)]

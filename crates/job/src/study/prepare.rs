@@ -3,7 +3,7 @@
 use super::{bounds, gear_findings, supports};
 use crate::DocumentError;
 use crate::document::{self as doc, JobDocument, PressureAnglePlane};
-use crate::result::{GearGeometry, Geometry, Supports};
+use crate::result::{GearGeometry, Geometry, SupportsResult};
 use crate::warning::Warning;
 use herringbone_physics::gear::{self, Pair, PairSpec};
 use herringbone_physics::{compliance, contact};
@@ -20,7 +20,7 @@ pub struct Prepared {
     pub mass_kg: [f64; 2],
     pub inertia_kg_m2: [f64; 2],
     /// Supports and couplings of the equations of motion.
-    pub supports: Supports,
+    pub supports: SupportsResult,
     pub mesh_frequency_hz: f64,
     pub pinion_speed_rad_s: f64,
     /// Base-tangent force of one half, T/2 / r_b1; negative on the coast flanks.
@@ -106,7 +106,10 @@ fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
         gap_width_m: gap_mm * 1e-3,
         center_distance_m: design.center_distance_mm.map(|mm| mm * 1e-3),
         material: material(&design.material),
-        rotation: document.operation.rotation,
+        rotation: match document.operation.rotation {
+            doc::RotationInput::ApexLeading => gear::Rotation::ApexLeading,
+            doc::RotationInput::ApexTrailing => gear::Rotation::ApexTrailing,
+        },
         pinion: gear_spec(design, &design.pinion, "/design/pinion", warnings),
         gear: gear_spec(design, &design.gear, "/design/gear", warnings),
         assembly: gear::Assembly {
@@ -118,7 +121,12 @@ fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
     }
 }
 
-fn gear_spec(design: &doc::Design, gear: &doc::Gear, pointer: &str, warnings: &mut Vec<Warning>) -> gear::GearSpec {
+fn gear_spec(
+    design: &doc::DesignInput,
+    gear: &doc::GearInput,
+    pointer: &str,
+    warnings: &mut Vec<Warning>,
+) -> gear::GearSpec {
     let bore_diameter_mm = gear.bore_diameter_mm.unwrap_or_else(|| {
         let reference_mm = design.normal_module_mm * f64::from(gear.teeth) / design.helix_angle_deg.to_radians().cos();
         let assumed_mm = DEFAULT_BORE_FRACTION * reference_mm;
@@ -131,7 +139,7 @@ fn gear_spec(design: &doc::Design, gear: &doc::Gear, pointer: &str, warnings: &m
         });
         assumed_mm
     });
-    let flanks = |both: &doc::Flank, [left, right]: [&Option<doc::Flank>; 2]| {
+    let flanks = |both: &doc::FlankInput, [left, right]: [&Option<doc::FlankInput>; 2]| {
         [left.as_ref().unwrap_or(both), right.as_ref().unwrap_or(both)].map(flank)
     };
     gear::GearSpec {
@@ -149,7 +157,7 @@ fn gear_spec(design: &doc::Design, gear: &doc::Gear, pointer: &str, warnings: &m
     }
 }
 
-fn material(material: &doc::Material) -> gear::Material {
+fn material(material: &doc::MaterialInput) -> gear::Material {
     gear::Material {
         youngs_modulus_pa: material.youngs_modulus_gpa * 1e9,
         poissons_ratio: material.poissons_ratio,
@@ -157,12 +165,15 @@ fn material(material: &doc::Material) -> gear::Material {
     }
 }
 
-fn flank(flank: &doc::Flank) -> gear::FlankModification {
+fn flank(flank: &doc::FlankInput) -> gear::FlankModification {
     gear::FlankModification {
         tip_relief: gear::TipRelief {
             amount_m: flank.tip_relief.amount_um * 1e-6,
             length_m: flank.tip_relief.length_mm * 1e-3,
-            shape: flank.tip_relief.shape,
+            shape: match flank.tip_relief.shape {
+                doc::ReliefShapeInput::Linear => gear::ReliefShape::Linear,
+                doc::ReliefShapeInput::Parabolic => gear::ReliefShape::Parabolic,
+            },
         },
         lead_crowning_m: flank.lead_crowning_um * 1e-6,
         helix_slope_m: flank.helix_slope_um * 1e-6,
@@ -175,7 +186,7 @@ fn flank(flank: &doc::Flank) -> gear::FlankModification {
 
 /// A bore much smaller than the gear is not where its body is held: said where the bore was asked for.
 fn held_elsewhere(document: &JobDocument, pair: &Pair) -> Vec<Warning> {
-    let doc::MeshStiffness::Ltca(doc::Ltca { body: doc::Body::Bore, .. }) = &document.model.mesh_stiffness else {
+    let doc::MeshStiffness::Ltca(doc::Ltca { body: doc::BodyInput::Bore, .. }) = &document.model.mesh_stiffness else {
         return Vec::new();
     };
     [("pinion", &pair.pinion), ("gear", &pair.gear)]

@@ -1,16 +1,16 @@
 //! One row of a sweep: the document of a point, and what is kept of its solution.
 
-use super::axes::set;
+use super::axes;
+use super::check::CheckedJob;
 use super::mesh::MeshMemo;
 use super::point::{self, Point, Wanted};
-use super::{SolveError, Surroundings, vibration};
+use super::{SolveContext, SolveError, vibration};
+use crate::DocumentError;
 use crate::document::JobDocument;
-use crate::result::{PerHalf, SweepPoint};
-use crate::{DocumentError, parse_value};
+use crate::result::SweepPoint;
 use herringbone_physics::dynamics::{DynamicsError, Parameters};
 use herringbone_physics::response::{self, Analysis, Response};
 use herringbone_physics::watch::Watch;
-use serde_json::Value;
 
 /// A row, and what its neighbours need of it.
 #[derive(Default)]
@@ -20,16 +20,13 @@ pub struct Solved {
     pub end_state: Option<Vec<f64>>,
 }
 
-/// The document of one point: `base` with the values of the axes put in.
+/// The job of one point: `base` with the values of the axes put in.
 ///
 /// # Errors
-/// [`SolveError::Document`] where the values do not go together.
-pub fn document(base: &Value, sweep: &JobDocument, values: &[f64]) -> Result<JobDocument, SolveError> {
-    let mut value = base.clone();
-    for (axis, number) in sweep.axes.iter().zip(values) {
-        axis.pointers().for_each(|pointer| set(&mut value, pointer, *number));
-    }
-    parse_value(&value).map_err(SolveError::from)
+/// [`SolveError::Document`] where the values do not go together, or make a gear that cannot exist.
+pub fn job(base: &JobDocument, sweep: &JobDocument, values: &[f64]) -> Result<CheckedJob, SolveError> {
+    let document = axes::at(base.clone(), sweep.axes.iter().zip(values.iter().copied()))?;
+    Ok(CheckedJob::of_point(document)?)
 }
 
 /// Solves one point. `start`: a neighbour's end state. A point that fails says so in its row.
@@ -37,16 +34,16 @@ pub fn document(base: &Value, sweep: &JobDocument, values: &[f64]) -> Result<Job
 /// # Errors
 /// [`SolveError::Canceled`].
 pub fn solve(
-    base: &Value,
+    base: &JobDocument,
     sweep: &JobDocument,
     values: Vec<f64>,
     start: Option<&[f64]>,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<Solved, SolveError> {
-    let quiet = Surroundings { progress: &|_, _| {}, ..*surroundings };
+    let quiet = SolveContext { progress: &|_, _| {}, ..*context };
     let wanted = Wanted { start, whole: false, record: &sweep.record };
-    let solved = document(base, sweep, &values).and_then(|document| point::solve(&document, &quiet, memo, &wanted));
+    let solved = job(base, sweep, &values).and_then(|job| point::solve(&job, &quiet, memo, &wanted));
     match solved {
         Ok(point) => Ok(of_point(values, point)),
         Err(error) => failed(values, error),
@@ -58,21 +55,21 @@ pub fn solve(
 /// # Errors
 /// [`SolveError::Canceled`].
 pub fn solve_together(
-    base: &Value,
+    base: &JobDocument,
     sweep: &JobDocument,
     group: Vec<Vec<f64>>,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<Vec<Solved>, SolveError> {
-    let quiet = Surroundings { progress: &|_, _| {}, ..*surroundings };
+    let quiet = SolveContext { progress: &|_, _| {}, ..*context };
     let wanted = Wanted { start: None, whole: false, record: &sweep.record };
     let staged: Vec<_> = group
         .iter()
         .map(|values| {
-            let document = document(base, sweep, values)?;
-            let staged = point::stage(&document, &quiet, memo)?;
-            let analysis = vibration::analysis(&document, &wanted)?;
-            Ok::<_, SolveError>((document, staged, analysis))
+            let job = job(base, sweep, values)?;
+            let staged = point::stage(&job, &quiet, memo)?;
+            let analysis = vibration::analysis(job.document(), &wanted)?;
+            Ok::<_, SolveError>((job, staged, analysis))
         })
         .collect();
     // Together: those that ask the same of their equations.
@@ -89,14 +86,14 @@ pub fn solve_together(
         }
     }
     let mut responses: Vec<Option<Result<Response, DynamicsError>>> = group.iter().map(|_| None).collect();
-    let watch = Watch::new(&|_| {}, surroundings.canceled);
+    let watch = Watch::new(&|_| {}, context.canceled);
     for (analysis, places, points) in asked {
         for (i, response) in places.into_iter().zip(response::solve_many(&points, analysis, &watch)?) {
             responses[i] = Some(response);
         }
     }
     let solved = group.into_iter().zip(staged).zip(responses).map(|((values, staged), response)| {
-        let point = staged.and_then(|(document, staged, _)| point::answered(&document, staged, &wanted, response));
+        let point = staged.and_then(|(job, staged, _)| point::answered(job.document(), staged, &wanted, response));
         match point {
             Ok(point) => Ok(of_point(values, point)),
             Err(error) => failed(values, error),
@@ -105,29 +102,12 @@ pub fn solve_together(
     solved.collect()
 }
 
-/// What is kept of a solved point.
+/// The row of a solved point.
 pub fn of_point(values: Vec<f64>, point: Point) -> Solved {
-    let result = &point.result;
-    let response = result.response.as_ref();
     let row = SweepPoint {
-        values,
-        mesh_circumferential_acceleration_rms_m_s2: response.map(|r| r.rms.mesh_circumferential_acceleration_m_s2),
-        pinion_axial_acceleration_rms_m_s2: response.map(|r| r.rms.pinion_axial_acceleration_m_s2),
-        dynamic_factor: response.and_then(|r| r.dynamic_factor),
-        regime: response.map(|r| r.regime.clone()),
-        contact: response.map(|r| r.contact.clone()),
-        min_displacement_um: response.map(|r| r.min_displacement_um),
-        stiffness_mean_n_per_um: result.mesh.as_ref().map(|mesh| mesh.stiffness_mean_n_per_um),
-        impact_force_n: result.impact.as_ref().map(|impact| impact.force_n),
-        total_contact_ratio: result.geometry.as_ref().map(|geometry| geometry.total_contact_ratio),
-        loaded_contact_ratio: result.mesh.as_ref().and_then(|mesh| mesh.loaded_contact_ratio),
-        error_estimate: response.map(|r| r.error_estimate),
-        tooth_force_max_n: response
-            .map(|r| PerHalf { left: r.tooth_force_n.left.max_n, right: r.tooth_force_n.right.max_n }),
-        error: None,
-        branch: None,
         poincare: point.poincare,
         acceleration_spectrum_m_s2: point.bands,
+        ..SweepPoint::of_result(values, &point.result)
     };
     Solved { row, end_state: point.end_state }
 }

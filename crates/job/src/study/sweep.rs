@@ -1,13 +1,13 @@
 //! A response over the values of one or two inputs.
 
 use super::axes::base;
-use super::branches::{self, Way};
+use super::branches;
 use super::mesh::MeshMemo;
 use super::points::{KeptPoints, LineEnd};
 use super::row;
-use super::{SolveError, Stage, Surroundings, answer, campbell};
-use crate::document::{Axis, Continuation, JobDocument, Method, Recorded};
-use crate::result::{Sweep, SweepAxis, SweepPoint};
+use super::{SolveContext, SolveError, Stage, campbell, response_result};
+use crate::document::{Axis, Continuation, JobDocument, MethodInput, Recorded};
+use crate::result::{BranchDirection, SweepAxis, SweepPoint, SweepResult};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -23,18 +23,18 @@ const POINTS_TOGETHER: usize = 32;
 pub fn run(
     document: &JobDocument,
     kept: KeptPoints,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
-) -> Result<Sweep, SolveError> {
+) -> Result<SweepResult, SolveError> {
     let base = base(document);
     let (first, second) = (&document.axes[0], document.axes.get(1));
     let lines = second.map_or(1, Axis::len);
     let length = first.len();
-    let ways: &[Way] = match document.continuation.unwrap_or(Continuation::None) {
+    let ways: &[BranchDirection] = match document.continuation.unwrap_or(Continuation::None) {
         Continuation::None => &[],
-        Continuation::Up => &[Way::Up],
-        Continuation::Down => &[Way::Down],
-        Continuation::Both => &[Way::Up, Way::Down],
+        Continuation::Up => &[BranchDirection::Up],
+        Continuation::Down => &[BranchDirection::Down],
+        Continuation::Both => &[BranchDirection::Up, BranchDirection::Down],
     };
     let all = lines * length * ways.len().max(1);
     let done = AtomicUsize::new(0);
@@ -46,29 +46,29 @@ pub fn run(
     };
     let count = |solved: usize| {
         let count = done.fetch_add(solved, Ordering::Relaxed) + solved;
-        (surroundings.progress)(Stage::Sweep, count as f64 / all as f64);
+        (context.progress)(Stage::Sweep, count as f64 / all as f64);
     };
     let axes = document.axes.iter().map(|axis| SweepAxis {
         pointer: axis.pointer.clone(),
         also: axis.also.clone(),
         values: (0..axis.len()).map(|index| axis.value(index)).collect(),
     });
-    let mut sweep = Sweep {
+    let mut sweep = SweepResult {
         axes: axes.collect(),
-        spectrum_mesh_orders: document.record.contains(&Recorded::Spectrum).then(answer::band_orders),
-        ..Sweep::default()
+        spectrum_mesh_orders: document.record.contains(&Recorded::Spectrum).then(response_result::band_orders),
+        ..SweepResult::default()
     };
     if ways.is_empty() {
         let solve = |points: &[usize]| -> Result<Vec<SweepPoint>, SolveError> {
             let group = points.iter().map(|position| values(*position)).collect();
-            let solved = row::solve_together(&base, document, group, surroundings, memo)?;
+            let solved = row::solve_together(&base, document, group, context, memo)?;
             let rows: Vec<SweepPoint> = solved.into_iter().map(|solved| solved.row).collect();
-            points.iter().zip(&rows).for_each(|(position, row)| surroundings.points.save(*position, row, None));
+            points.iter().zip(&rows).for_each(|(position, row)| context.points.save(*position, row, None));
             count(points.len());
             Ok(rows)
         };
         // Points that are integrated go side by side; the others take very different times, so each is for the next free thread.
-        let together = if document.analysis.method == Method::Integrate { POINTS_TOGETHER } else { 1 };
+        let together = if document.analysis.method == MethodInput::Integrate { POINTS_TOGETHER } else { 1 };
         let rows: HashMap<_, _> = kept.rows.into_iter().filter(|(position, _)| *position < all).collect();
         count(rows.len());
         sweep.points = independent((lines, length), together, rows, solve)?;
@@ -80,10 +80,10 @@ pub fn run(
             count(followed.len());
             for &index in &order[followed.len()..] {
                 let position = line * length + index;
-                let mut solved = row::solve(&base, document, values(position), state.as_deref(), surroundings, memo)?;
-                solved.row.branch = Some(way.word().to_owned());
+                let mut solved = row::solve(&base, document, values(position), state.as_deref(), context, memo)?;
+                solved.row.branch = Some(way);
                 let end = LineEnd { line, position, state: solved.end_state };
-                surroundings.points.save(position, &solved.row, Some(&end));
+                context.points.save(position, &solved.row, Some(&end));
                 state = end.state;
                 followed.push(solved.row);
                 count(1);
@@ -110,7 +110,7 @@ pub fn run(
         }
         sweep.points = rows.into_iter().flatten().collect();
     }
-    sweep.campbell = campbell::run(&base, document, surroundings, memo)?;
+    sweep.campbell = campbell::run(&base, document, context, memo)?;
     Ok(sweep)
 }
 

@@ -1,30 +1,26 @@
 //! The drawing of a document's pair.
 
-use crate::DocumentError;
-use crate::document::{Hand, JobDocument};
-use crate::drawing::{Drawing, DrawnGear, DrawnHalf, DrawnLine, Margin, PathPoint, PlaneOfAction, Section};
-use crate::study::prepare::prepare;
-use herringbone_physics::gear::{self, Half, MarginKind, Member, Pair, Rotation};
+use crate::document::{Hand, JobDocument, RotationInput};
+use crate::drawing::{Drawing, DrawnGear, DrawnHalf, DrawnLine, DrawnSection, MarginResult, PathPoint, PlaneOfAction};
+use crate::study::CheckedJob;
+use herringbone_physics::gear::{self, Half, MarginKind, Member, Pair};
 use std::f64::consts::TAU;
 
 const MM: f64 = 1e3;
 
 impl Drawing {
-    /// The drawing of a document's pair.
-    ///
-    /// # Errors
-    /// Those of [`crate::study::check`], as far as they are about the gear.
-    pub fn of(document: &JobDocument) -> Result<Drawing, DocumentError> {
-        let pair = prepare(document)?.pair;
-        Ok(Drawing {
+    /// The drawing of a job's pair.
+    pub fn of(job: &CheckedJob) -> Drawing {
+        let (document, pair) = (job.document(), &job.prepared().pair);
+        Drawing {
             margins: pair.margins().into_iter().map(margin).collect(),
-            section: section(&pair, document),
-            plane_of_action: plane_of_action(&pair, document),
-        })
+            section: section(pair, document),
+            plane_of_action: plane_of_action(pair, document),
+        }
     }
 }
 
-fn margin(margin: gear::Margin) -> Margin {
+fn margin(margin: gear::Margin) -> MarginResult {
     let (code, unit, factor) = match margin.kind {
         MarginKind::TipThickness => ("tip-thickness", "m_n", 1.0),
         MarginKind::TipClearance => ("tip-clearance", "m_n", 1.0),
@@ -32,7 +28,7 @@ fn margin(margin: gear::Margin) -> Margin {
         // As a diameter.
         MarginKind::ActiveProfileRadius => ("active-profile", "mm", 2.0 * MM),
     };
-    Margin {
+    MarginResult {
         code: code.to_owned(),
         member: margin.member.as_str().to_owned(),
         value: factor * margin.value,
@@ -41,7 +37,7 @@ fn margin(margin: gear::Margin) -> Margin {
     }
 }
 
-fn section(pair: &Pair, document: &JobDocument) -> Section {
+fn section(pair: &Pair, document: &JobDocument) -> DrawnSection {
     // Where the lines of the left half pass through its middle.
     let b = pair.spec.face_width_m;
     let x_m = pair.position_m(0.0) + 0.5 * b * pair.base_helix_angle_rad.tan();
@@ -64,7 +60,7 @@ fn section(pair: &Pair, document: &JobDocument) -> Section {
     let p = pair.base_pitch_m;
     let first = ((pair.path_start_m - x_m) / p).ceil() as i32 - 1;
     let last = ((pair.path_end_m - x_m) / p).floor() as i32;
-    Section {
+    DrawnSection {
         seen_from: seen_from(document),
         pinion: drawn(&pair.pinion, [0.0, -pinion_pitch_m], pinion_pitch_m, pinion_rad, -1.0),
         gear: drawn(&pair.gear, [0.0, gear_pitch_m], gear_pitch_m, gear_rad, 1.0),
@@ -79,7 +75,7 @@ fn section(pair: &Pair, document: &JobDocument) -> Section {
 /// counter-clockwise, seen from the right; with the apex leading the inner ends are ahead in the sense of rotation.
 fn seen_from(document: &JobDocument) -> Half {
     let right_half_is_right_hand = document.design.pinion.left_half_hand == Hand::Left;
-    let apex_leads = document.operation.rotation == Rotation::ApexLeading;
+    let apex_leads = document.operation.rotation == RotationInput::ApexLeading;
     if right_half_is_right_hand == apex_leads { Half::Right } else { Half::Left }
 }
 
@@ -143,7 +139,7 @@ mod tests {
     fn drawn(change: impl Fn(&mut Value)) -> Drawing {
         let mut value: Value = serde_json::from_str(include_str!("../../../../../examples/table1.json")).unwrap();
         change(&mut value);
-        Drawing::of(&parse_value(&value).unwrap()).unwrap()
+        Drawing::of(&CheckedJob::new(parse_value(&value).unwrap()).unwrap())
     }
 
     fn near(value: f64, expected: f64) {
