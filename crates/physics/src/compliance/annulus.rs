@@ -14,7 +14,7 @@ const NEGLIGIBLE: f64 = 1e-6;
 
 /// Harmonic n ≥ 0 of a ring with unit outer radius and unit Young's modulus: displacement (U, V) of the outer circle
 /// per traction (t_r, t_θ/i) of the same harmonic. Inner radius `inner` in (0, 1), held.
-pub fn harmonic_flexibility(n: u32, inner: f64, nu: f64) -> [[f64; 2]; 2] {
+pub(super) fn harmonic_flexibility(n: u32, inner: f64, nu: f64) -> [[f64; 2]; 2] {
     let mu = 0.5 / (1.0 + nu);
     let lame = 2.0 * mu * nu / (1.0 - 2.0 * nu);
     if n == 0 {
@@ -82,7 +82,7 @@ pub fn harmonic_flexibility(n: u32, inner: f64, nu: f64) -> [[f64; 2]; 2] {
 
 /// Fourier shapes of the arc loads for harmonic `n` and half arc `theta`: (uniform, linear), both tending to a unit
 /// resultant: sin(nθ)/(nθ) and 3 [sin(nθ)/n² - θ cos(nθ)/n] / θ³.
-pub fn arc_shapes(n: f64, theta: f64) -> (f64, f64) {
+pub(super) fn arc_shapes(n: f64, theta: f64) -> (f64, f64) {
     let x = n * theta;
     if x.abs() < 1e-3 {
         return (1.0 - x * x / 6.0, n * (1.0 - x * x / 10.0));
@@ -92,14 +92,14 @@ pub fn arc_shapes(n: f64, theta: f64) -> (f64, f64) {
 
 /// Flexibility between the arc loads of two teeth of a plane-strain annulus, times Young's modulus and face width.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ArcFlexibility {
+pub(super) struct ArcFlexibility {
     /// Rows and columns: tangential force, moment / r_f, radial force. Row: response at angle ψ, column: load at 0.
     pub matrix: [[f64; 3]; 3],
 }
 
 /// Sums harmonics `0..=terms`, each weighted by `weight(n)`, for an annulus of outer radius 1 and inner radius `inner`,
 /// loaded on arcs of half angle `theta`, `psi` apart.
-pub fn arc_flexibility(
+pub(super) fn arc_flexibility(
     inner: f64,
     theta: f64,
     psi: f64,

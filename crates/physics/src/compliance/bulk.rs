@@ -15,19 +15,19 @@ use crate::numerics::dense::{add_product, cholesky, cholesky_solve, lu_solve};
 use crate::simd::vectorised;
 
 /// Places of the profile between which the compliance is interpolated (Chebyshev nodes, a polynomial through all).
-pub const NODES: usize = 4;
+pub(super) const NODES: usize = 4;
 
 /// Normal displacements per normal force of teeth and ring together, for every pair of slices and places of the
 /// profile.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BulkCompliance {
+pub(super) struct BulkCompliance {
     slices: usize,
     /// By offset, places of response and load, slices of response and load.
     table: Vec<f64>,
 }
 
 /// Parts of the compliance of a member.
-pub struct BulkInput<'a> {
+pub(super) struct BulkInput<'a> {
     /// Functions over the face.
     pub basis: &'a WidthBasis,
     /// Tooth as a plate over those functions, Young's modulus one.
@@ -56,7 +56,7 @@ pub struct BulkInput<'a> {
 
 impl BulkCompliance {
     /// Puts the parts together.
-    pub fn new(parts: &BulkInput<'_>) -> BulkCompliance {
+    pub(super) fn new(parts: &BulkInput<'_>) -> BulkCompliance {
         let count = parts.ring.offsets.len() * (NODES * parts.slices).pow(2);
         let mut bulk = BulkCompliance { slices: parts.slices, table: vec![0.0; count] };
         vectorised(
@@ -130,14 +130,14 @@ impl BulkCompliance {
 
     /// Displacement at slice `i` and place `a` from a force at slice `j` and place `b`, both on one tooth (`offset` 0)
     /// or with the first `offset` pairs earlier in the mesh than the second.
-    pub fn entry(&self, offset: usize, (i, a): (usize, usize), (j, b): (usize, usize)) -> f64 {
+    pub(super) fn entry(&self, offset: usize, (i, a): (usize, usize), (j, b): (usize, usize)) -> f64 {
         self.table[(((offset * NODES + a) * NODES + b) * self.slices + i) * self.slices + j]
     }
 
     /// Displacement at slice `i` from a force at slice `j`, both on one tooth (`offset` 0) or with the first `offset`
     /// pairs earlier in the mesh than the second; `wa` and `wb` are the interpolation weights of their places.
     #[cfg(test)]
-    pub fn between(&self, offset: usize, i: usize, j: usize, wa: &[f64; NODES], wb: &[f64; NODES]) -> f64 {
+    pub(super) fn between(&self, offset: usize, i: usize, j: usize, wa: &[f64; NODES], wb: &[f64; NODES]) -> f64 {
         let mut sum = 0.0;
         for (a, wa) in wa.iter().enumerate() {
             for (b, wb) in wb.iter().enumerate() {

@@ -41,7 +41,7 @@ const WEDGE: [(f64, f64); 17] = [
 
 /// Both end faces of a tooth.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EndFaces {
+pub(super) struct EndFaces {
     /// κ (1-ν²)/(πE) at the first and at the last slice.
     factors: [f64; 2],
     /// ℓ per depth.
@@ -64,7 +64,7 @@ fn wedge_factor(degrees: f64) -> f64 {
 impl EndFaces {
     /// Ends of the pinion's (`side` +1) or gear's teeth, which extend by `margin_m` on both sides of the bearing part
     /// of `width_m`, which is cut into `slices`.
-    pub fn new(
+    pub(super) fn new(
         base_helix_angle_rad: f64,
         side: f64,
         (width_m, margin_m): (f64, f64),
@@ -83,7 +83,7 @@ impl EndFaces {
 
     /// Adds the mean displacement of every slice per force spread over every other, at places of the smaller depth
     /// `depth_m`, to a row-major matrix over the slices.
-    pub fn add(&self, matrix: &mut [f64], depth_m: f64) {
+    pub(super) fn add(&self, matrix: &mut [f64], depth_m: f64) {
         let reach = depth_m * self.reach;
         // Twice integrated 1/x: x ln x - x.
         let twice = |x: f64| if x > 0.0 { x * x.ln() - x } else { 0.0 };

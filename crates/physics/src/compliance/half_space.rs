@@ -20,7 +20,7 @@ const FAR: f64 = 4.0;
 const ABSCISSAE: usize = 24;
 
 /// G(r) and its derivative.
-pub fn own(r: f64) -> (f64, f64) {
+pub(super) fn own(r: f64) -> (f64, f64) {
     if r > FAR {
         let r2 = r * r;
         return ((4.0 * r).ln() + 0.5 + 1.0 / (16.0 * r2), 1.0 / r - 1.0 / (8.0 * r2 * r));
@@ -39,7 +39,7 @@ pub fn own(r: f64) -> (f64, f64) {
 }
 
 /// G(η₂/b) - G(η₁/b) of a segment `[from, to]` with the half width `b`, seen from `at` outside it.
-pub fn beside(at: f64, (from, to): (f64, f64), b: f64) -> f64 {
+pub(super) fn beside(at: f64, (from, to): (f64, f64), b: f64) -> f64 {
     let (near, far) = if at < from { (from - at, to - at) } else { (at - to, at - from) };
     if near > FAR * b { (far / near).ln() } else { own(far / b).0 - own(near / b).0 }
 }

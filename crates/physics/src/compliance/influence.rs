@@ -10,7 +10,7 @@ use crate::simd::vectorised;
 
 /// Normal approach of both members per normal force. It depends on neither load, modification nor assembly.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Influence {
+pub(crate) struct Influence {
     path_nodes_m: Vec<f64>,
     stations_m: Vec<f64>,
     offsets: usize,
@@ -20,7 +20,7 @@ pub struct Influence {
 
 /// Four neighbouring stations and their weights.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stencil {
+pub(crate) struct Stencil {
     /// First station.
     pub first: usize,
     /// Weights of the stations from the first on; they sum to one.
@@ -28,11 +28,11 @@ pub struct Stencil {
 }
 
 /// Stations of a [`Stencil`].
-pub const STENCIL: usize = 4;
+pub(crate) const STENCIL: usize = 4;
 
 impl Stencil {
     /// Last of its stations.
-    pub fn last(&self) -> usize {
+    pub(crate) fn last(&self) -> usize {
         self.first + STENCIL - 1
     }
 }
@@ -42,7 +42,7 @@ const OVERHANG: f64 = 0.05;
 
 /// One line of contact at the stations `first..first + count`.
 #[derive(Debug, Clone, Default)]
-pub struct LineWeights {
+pub(crate) struct LineWeights {
     /// Tooth pair: k + 1 entered before k.
     pub pair: i32,
     /// First station.
@@ -57,7 +57,7 @@ impl Influence {
     /// Tabulates `entry(offset, (response station, place), (load station, place))`: both on one tooth pair (offset 0),
     /// or the response on the pair that entered `offset` pitches before the loaded one. Places and stations ascend; at
     /// least four stations.
-    pub fn new(
+    pub(crate) fn new(
         path_nodes_m: Vec<f64>,
         stations_m: Vec<f64>,
         offsets: usize,
@@ -78,13 +78,19 @@ impl Influence {
     }
 
     /// Weights of the stations about `entry_m`.
-    pub fn stencil(&self, entry_m: f64) -> Stencil {
+    pub(crate) fn stencil(&self, entry_m: f64) -> Stencil {
         stencil(&self.stations_m, entry_m)
     }
 
     /// Sets `line` up for the pair `pair`, whose line of contact is at the roll coordinate `base_m + slope z`, over the
     /// stations `first..=last`.
-    pub fn line(&self, line: &mut LineWeights, pair: i32, (base_m, slope): (f64, f64), (first, last): (usize, usize)) {
+    pub(crate) fn line(
+        &self,
+        line: &mut LineWeights,
+        pair: i32,
+        (base_m, slope): (f64, f64),
+        (first, last): (usize, usize),
+    ) {
         line.pair = pair;
         line.first = first;
         line.count = last + 1 - first;
@@ -101,7 +107,13 @@ impl Influence {
 
     /// Flexibility between the stations of two lines, `response` that of the pair that entered earlier (or the same):
     /// written to `out`, `response.count` rows of `load.count`. `scratch` is reused memory.
-    pub fn between(&self, response: &LineWeights, load: &LineWeights, scratch: &mut Vec<f64>, out: &mut Vec<f64>) {
+    pub(crate) fn between(
+        &self,
+        response: &LineWeights,
+        load: &LineWeights,
+        scratch: &mut Vec<f64>,
+        out: &mut Vec<f64>,
+    ) {
         let offset = (response.pair - load.pair) as usize;
         let p = self.path_nodes_m.len();
         let (rows, columns) = (response.count, load.count);
@@ -150,7 +162,7 @@ impl Influence {
 }
 
 /// Weights of the four `nodes` about `at`: cubic; linear beyond the outermost nodes. At least four nodes, ascending.
-pub fn stencil(nodes: &[f64], at: f64) -> Stencil {
+pub(super) fn stencil(nodes: &[f64], at: f64) -> Stencil {
     let last = nodes.len() - 1;
     let mut weights = [0.0; STENCIL];
     if at <= nodes[0] {

@@ -35,7 +35,7 @@ enum IndentationLaw {
 
 impl Indentation {
     /// Approach under the line load `w` (N/m), m, and its derivative.
-    pub fn approach(&self, w: f64) -> (f64, f64) {
+    pub(crate) fn approach(&self, w: f64) -> (f64, f64) {
         match self.law {
             IndentationLaw::PlaneStrain => self.line.approach(w),
             IndentationLaw::HalfSpace { length_m } => self.line.half_space_approach(w, length_m),
@@ -51,7 +51,7 @@ const LENGTH_PER_BAND: f64 = 2.0;
 
 impl LocalModel {
     /// Least axial width of a segment under the normal force `force_n` in all; 0 when there is none.
-    pub fn least_width_m(&self, pair: &Pair, force_n: f64) -> f64 {
+    pub(crate) fn least_width_m(&self, pair: &Pair, force_n: f64) -> f64 {
         match self {
             LocalModel::CenterlineDepth(_) | LocalModel::Foundation { .. } => 0.0,
             LocalModel::HalfSpace => {
@@ -63,7 +63,7 @@ impl LocalModel {
     }
 
     /// Indentation of a segment of length `length_m` at roll coordinate `x_m`, or at the end of the path beyond it.
-    pub fn indentation(&self, pair: &Pair, x_m: f64, length_m: f64) -> Indentation {
+    pub(crate) fn indentation(&self, pair: &Pair, x_m: f64, length_m: f64) -> Indentation {
         let (start, end) = (pair.path_start_m, pair.path_end_m);
         let x = x_m.clamp(start, end);
         let depths_m = match self {

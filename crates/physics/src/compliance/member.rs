@@ -46,7 +46,7 @@ fn width_order(width_modules: f64) -> usize {
 
 /// Compliance of one member.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MemberCompliance {
+pub(super) struct MemberCompliance {
     tooth: Tooth,
     /// All compliance of tooth and body between slices and places of the profile, contact indentation excepted.
     pub bulk: BulkCompliance,
@@ -57,7 +57,7 @@ pub struct MemberCompliance {
 impl MemberCompliance {
     /// The pinion (`side` +1) or the gear (`side` -1) of `pair`, for `slices` of the common face width and teeth up to
     /// `offsets` pitches apart. Tooth and ring have the member's own width, with the common one in their middle.
-    pub fn new(pair: &Pair, side: f64, hold: BodyHold, slices: usize, offsets: usize) -> MemberCompliance {
+    pub(super) fn new(pair: &Pair, side: f64, hold: BodyHold, slices: usize, offsets: usize) -> MemberCompliance {
         let member = if side > 0.0 { &pair.pinion } else { &pair.gear };
         let rolls = if side > 0.0 {
             (pair.path_start_m, pair.path_end_m)
@@ -122,13 +122,13 @@ impl MemberCompliance {
     }
 
     /// Rolls between which the flexibility is interpolated.
-    pub fn path_nodes_m(&self) -> &[f64] {
+    pub(super) fn path_nodes_m(&self) -> &[f64] {
         &self.path_nodes_m
     }
 
     /// Interpolation weights of the bulk compliance at roll length `roll_m`.
     #[cfg(test)]
-    pub fn weights(&self, roll_m: f64) -> [f64; NODES] {
+    pub(super) fn weights(&self, roll_m: f64) -> [f64; NODES] {
         let places = &self.path_nodes_m;
         std::array::from_fn(|a| {
             (0..NODES).filter(|&b| b != a).map(|b| (roll_m - places[b]) / (places[a] - places[b])).product()
@@ -136,7 +136,7 @@ impl MemberCompliance {
     }
 
     /// The tooth at roll length `roll_m` of this member.
-    pub fn at(&self, roll_m: f64) -> ProfilePoint {
+    pub(super) fn at(&self, roll_m: f64) -> ProfilePoint {
         self.tooth.at(roll_m, self.side)
     }
 }

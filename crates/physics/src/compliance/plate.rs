@@ -19,7 +19,7 @@ use crate::simd::vectorised;
 const ORDER: usize = 5;
 
 /// Shape and material of the plate; Young's modulus is one.
-pub struct Plate<'a> {
+pub(super) struct Plate<'a> {
     /// Height from the root circle to the tip.
     pub height_m: f64,
     /// Poisson's ratio.
@@ -32,7 +32,7 @@ pub struct Plate<'a> {
 
 /// Displacements and reactions of the plate under loads H_j(η) P_q(z), over the Legendre functions of the face.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PlateModes {
+pub(super) struct PlateModes {
     height_m: f64,
     size: usize,
     /// Deflection coefficients per load coefficients, ((j, q), (j', q')), j from 1.
@@ -116,7 +116,7 @@ impl Plate<'_> {
     }
 
     /// Solves the plate over the functions of `basis`.
-    pub fn modes(&self, basis: &WidthBasis) -> PlateModes {
+    pub(super) fn modes(&self, basis: &WidthBasis) -> PlateModes {
         let sections = self.sections();
         let size = basis.order + 1;
         let mut modes = PlateModes {
@@ -245,7 +245,7 @@ impl PlateModes {
     }
 
     /// Deflection coefficients at `height_m` per load coefficients at `load_m`, times Young's modulus: `size` × `size`.
-    pub fn deflection(&self, height_m: f64, load_m: f64) -> Vec<f64> {
+    pub(super) fn deflection(&self, height_m: f64, load_m: f64) -> Vec<f64> {
         let (size, width) = (self.size, ORDER * self.size);
         let (at, load) = (self.shapes(height_m), self.shapes(load_m));
         let mut out = vec![0.0; size * size];
@@ -264,7 +264,7 @@ impl PlateModes {
     }
 
     /// Force (0) or moment (1) coefficients that reach the root per load coefficients at `load_m`: `size` × `size`.
-    pub fn root(&self, which: usize, load_m: f64) -> Vec<f64> {
+    pub(super) fn root(&self, which: usize, load_m: f64) -> Vec<f64> {
         let (size, width) = (self.size, ORDER * self.size);
         let load = self.shapes(load_m);
         let mut out = vec![0.0; size * size];

@@ -15,7 +15,7 @@ use crate::simd::vectorised;
 const RING_WAVES_PER_MODULE: (f64, f64) = (0.8, 1.8);
 
 /// Share of the ring model at a wave number (rad/m) across the tooth.
-pub fn ring_weight(wave_per_m: f64, normal_module_m: f64) -> f64 {
+pub(super) fn ring_weight(wave_per_m: f64, normal_module_m: f64) -> f64 {
     let (low, high) = RING_WAVES_PER_MODULE;
     let t = ((wave_per_m * normal_module_m - low) / (high - low)).clamp(0.0, 1.0);
     0.5 * (1.0 + (PI * t).cos())
@@ -23,7 +23,7 @@ pub fn ring_weight(wave_per_m: f64, normal_module_m: f64) -> f64 {
 
 /// Arrangement of the teeth on the ring.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ToothLayout {
+pub(super) struct ToothLayout {
     /// Number of teeth.
     pub teeth: u32,
     /// Half angle of a tooth at the root circle.
@@ -40,11 +40,11 @@ pub struct ToothLayout {
 
 /// Kinds of root load: tangential force, moment / r_f (radial traction linear across the tooth), radial force, axial
 /// force.
-pub const KINDS: usize = 4;
+pub(super) const KINDS: usize = 4;
 
 /// Displacements of root loads (conjugate to them) per root load: kinds times Legendre functions of the face.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RingFlexibility {
+pub(super) struct RingFlexibility {
     /// Functions of the face per kind.
     pub size: usize,
     /// One square row-major matrix over (kind, degree) per pitch between the teeth. Row: the tooth that is ahead in the
@@ -183,7 +183,7 @@ impl ParityOrder {
 
 impl RingFlexibility {
     /// Flexibility over the functions of `basis`, for teeth up to `offsets` pitches apart.
-    pub fn new(ring: &Ring, basis: &WidthBasis, layout: &ToothLayout, offsets: usize) -> RingFlexibility {
+    pub(super) fn new(ring: &Ring, basis: &WidthBasis, layout: &ToothLayout, offsets: usize) -> RingFlexibility {
         let reach = ring.outer_radius_m * layout.root_helix_angle_rad.cos();
         let highest = (RING_WAVES_PER_MODULE.1 / layout.normal_module_m * reach).ceil().max(3.0) as u32;
         let solver = RingSolver::new(ring, basis);

@@ -17,7 +17,7 @@ use super::ring::WidthBasis;
 use crate::numerics::gauss::gauss_12;
 
 /// Profile and position of one tooth form, in SI.
-pub struct ToothProfile<'a> {
+pub(super) struct ToothProfile<'a> {
     /// Base radius.
     pub base_radius_m: f64,
     /// Radius of the root circle.
@@ -38,7 +38,7 @@ pub struct ToothProfile<'a> {
 
 /// One tooth of a member.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tooth {
+pub(super) struct Tooth {
     base_radius_m: f64,
     root_radius_m: f64,
     base_half_angle_rad: f64,
@@ -47,7 +47,7 @@ pub struct Tooth {
 
 /// Unit normal force at one place of the profile, as the tooth takes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ProfilePoint {
+pub(super) struct ProfilePoint {
     /// Components of the flank normal: tangential, radial (outwards), axial (with the sign of the member's side).
     pub tangential: f64,
     /// Radial component, outwards.
@@ -68,7 +68,7 @@ pub struct ProfilePoint {
 
 impl Tooth {
     /// The tooth of a profile.
-    pub fn new(form: &ToothProfile<'_>) -> Tooth {
+    pub(super) fn new(form: &ToothProfile<'_>) -> Tooth {
         Tooth {
             base_radius_m: form.base_radius_m,
             root_radius_m: form.root_radius_m,
@@ -78,7 +78,7 @@ impl Tooth {
     }
 
     /// The place at roll length `roll_m`; `side` is +1 or -1, the sign of the axial force in the body's coordinates.
-    pub fn at(&self, roll_m: f64, side: f64) -> ProfilePoint {
+    pub(super) fn at(&self, roll_m: f64, side: f64) -> ProfilePoint {
         let (sin_b, cos_b) = self.base_helix;
         let at = self.crossing(roll_m);
         ProfilePoint {
@@ -127,7 +127,7 @@ impl Tooth {
 }
 
 /// The tooth of `form` as a plate over the functions of `basis`; Young's modulus is one.
-pub fn plate(form: &ToothProfile<'_>, nu: f64, basis: &WidthBasis) -> PlateModes {
+pub(super) fn plate(form: &ToothProfile<'_>, nu: f64, basis: &WidthBasis) -> PlateModes {
     let tan_base = form.base_helix_angle_rad.tan();
     let cos_at = |r: f64| 1.0 / (1.0 + (r * tan_base / form.base_radius_m).powi(2)).sqrt();
     let plate = Plate {
@@ -144,7 +144,7 @@ pub fn plate(form: &ToothProfile<'_>, nu: f64, basis: &WidthBasis) -> PlateModes
 
 /// Compression of the tooth from the root circle to `lever_m` above it per force along its height and per unit face
 /// width, times Young's modulus.
-pub fn compression(form: &ToothProfile<'_>, nu: f64, lever_m: f64) -> f64 {
+pub(super) fn compression(form: &ToothProfile<'_>, nu: f64, lever_m: f64) -> f64 {
     let mut sum = 0.0;
     for (x, w) in gauss_12() {
         let t = 0.5 * (1.0 + x);
@@ -156,7 +156,7 @@ pub fn compression(form: &ToothProfile<'_>, nu: f64, lever_m: f64) -> f64 {
 
 /// Part of the root's flexibility with short waves across the tooth: plane strain in the normal section, on the virtual
 /// annulus of that section (radius r_f / cos²β).
-pub struct RootRemainder {
+pub(super) struct RootRemainder {
     /// Over tangential force, moment / virtual radius and radial force, times Young's modulus and face width.
     pub matrix: [[f64; 3]; 3],
     /// Radius of the virtual root circle in the normal section, r_f / cos²β.
@@ -168,7 +168,7 @@ pub struct RootRemainder {
 impl RootRemainder {
     /// `weight(κ)` is the part of the body's flexibility at circumferential wave number κ (rad/m, across the tooth)
     /// that the ring leaves to the tooth's own root.
-    pub fn new(form: &ToothProfile<'_>, nu: f64, weight: &dyn Fn(f64) -> f64) -> RootRemainder {
+    pub(super) fn new(form: &ToothProfile<'_>, nu: f64, weight: &dyn Fn(f64) -> f64) -> RootRemainder {
         let tan = form.root_radius_m * form.base_helix_angle_rad.tan() / form.base_radius_m;
         let cos = 1.0 / (1.0 + tan * tan).sqrt();
         let r = form.root_radius_m / (cos * cos);

@@ -137,10 +137,10 @@ const ENTRY_POINTS: usize = 7;
 const LEAST_SHARE: f64 = 1e-9;
 
 /// Positions of the curves when the solved positions are chosen by accuracy, and of spur halves that share the torque.
-pub const CURVE_POSITIONS: usize = 64;
+pub(super) const CURVE_POSITIONS: usize = 64;
 
 /// Puts positions together to a [`HalfCycle`].
-pub struct CycleBuilder<'a> {
+pub(super) struct CycleBuilder<'a> {
     pair: &'a Pair,
     slices: usize,
     /// Phase, F_bt, state.
@@ -151,12 +151,16 @@ pub struct CycleBuilder<'a> {
 
 impl<'a> CycleBuilder<'a> {
     /// Curves over the solved positions themselves, equally spaced: phase, F_bt and state of each.
-    pub fn at_positions(pair: &'a Pair, slices: usize, states: Vec<(f64, f64, LoadedPosition)>) -> CycleBuilder<'a> {
+    pub(super) fn at_positions(
+        pair: &'a Pair,
+        slices: usize,
+        states: Vec<(f64, f64, LoadedPosition)>,
+    ) -> CycleBuilder<'a> {
         CycleBuilder { pair, slices, states, resampled: None }
     }
 
     /// Curves over equally spaced positions from `from` between positions solved where they were needed.
-    pub fn refined(
+    pub(super) fn refined(
         pair: &'a Pair,
         slices: usize,
         positions: RefinedPositions,
@@ -169,7 +173,7 @@ impl<'a> CycleBuilder<'a> {
 
     /// Solves the special states (mesh-in share, begin and end of load, entry) and closes the period. `force_at` gives
     /// F_bt at a phase.
-    pub fn finish(
+    pub(super) fn finish(
         self,
         contact: &mut HalfContact<'_>,
         force_at: &dyn Fn(f64) -> f64,

@@ -13,7 +13,7 @@ use super::system::{ContactSystem, LEAST_FORCE, LocalApproach, Workspace};
 
 /// A converged distribution.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Distribution {
+pub(super) struct Distribution {
     /// Normal force of every point, N.
     pub forces: Vec<f64>,
     /// Approach d of the bodies.
@@ -26,7 +26,7 @@ pub struct Distribution {
 
 /// Error of an iteration that did not converge.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NotConverged {
+pub(super) struct NotConverged {
     /// Newton iterations.
     pub iterations: u32,
     /// Largest relative change of a force in the last iteration.
@@ -40,7 +40,7 @@ const TOLERANCE: f64 = 1e-6;
 
 /// Prescribed quantity of a distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Prescribed {
+pub(super) enum Prescribed {
     /// The sum of the forces.
     Force(f64),
     /// The approach of the bodies, which has to be larger than the least gap; `expected_force` is the size of the
@@ -49,7 +49,7 @@ pub enum Prescribed {
 }
 
 /// Distributes the force over the points. `start` holds forces of a neighbouring state, zeros and all.
-pub fn distribute<L: LocalApproach>(
+pub(super) fn distribute<L: LocalApproach>(
     system: &ContactSystem<'_, L>,
     prescribed: Prescribed,
     start: &[f64],

@@ -32,7 +32,7 @@ const MOST_PARTS_PER_SLICE: f64 = 8.0;
 
 /// Range of the pairs that are considered, and of the contact beyond the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PairRange {
+pub(super) struct PairRange {
     /// Lowest pair to be considered.
     pub lowest_pair: i32,
     /// Corner contacts with a kinematic gap up to this are considered; zero: the path only.
@@ -42,12 +42,12 @@ pub struct PairRange {
 }
 
 /// Roll coordinate of pair 0 at entry 0 when pair 0 is `phase` base pitches after its first theoretical contact.
-pub fn reference_roll_m(pair: &Pair, phase: f64) -> f64 {
+pub(super) fn reference_roll_m(pair: &Pair, phase: f64) -> f64 {
     pair.path_start_m + phase * pair.base_pitch_m - pair.spec.face_width_m * pair.base_helix_angle_rad.tan()
 }
 
 /// Collects the points of `half` into `out`.
-pub fn collect(
+pub(super) fn collect(
     pair: &Pair,
     corners: &CornerGaps,
     half: Half,
@@ -137,7 +137,7 @@ pub fn collect(
 /// Kinematic gaps of both corners over the overrun, tabulated once: their exact formulas take a good part of a
 /// position's time.
 #[derive(Debug, Clone, Default)]
-pub struct CornerGaps {
+pub(super) struct CornerGaps {
     /// Corner of the gear's tip, before the path.
     pub mesh_in: CornerGap,
     /// Corner of the pinion's tip, after the path.
@@ -146,7 +146,7 @@ pub struct CornerGaps {
 
 /// Gap of one corner: linear interpolation of what multiplies the square of the overrun.
 #[derive(Debug, Clone, Default)]
-pub struct CornerGap {
+pub(super) struct CornerGap {
     step_m: f64,
     per_square: Vec<f64>,
 }
@@ -156,7 +156,7 @@ const CORNER_TABLE: usize = 128;
 
 impl CornerGaps {
     /// Tables up to [`CORNER_REACH`].
-    pub fn new(pair: &Pair) -> CornerGaps {
+    pub(super) fn new(pair: &Pair) -> CornerGaps {
         let step_m = CORNER_REACH * pair.base_pitch_m / CORNER_TABLE as f64;
         let table = |gap: fn(&Pair, f64) -> Option<f64>| {
             let at = |i: usize| gap(pair, i as f64 * step_m).map(|gap| gap / (i as f64 * step_m).powi(2));
@@ -172,7 +172,7 @@ impl CornerGaps {
 
 impl CornerGap {
     /// Gap at an overrun; `None` where the corner has no flank to meet.
-    pub fn at(&self, overrun_m: f64) -> Option<f64> {
+    pub(super) fn at(&self, overrun_m: f64) -> Option<f64> {
         let position = (overrun_m / self.step_m).max(0.0);
         let i = position as usize;
         let (low, high) = (*self.per_square.get(i)?, *self.per_square.get(i + 1)?);

@@ -25,7 +25,7 @@ struct PointContact {
 impl PointContacts {
     /// Sets up the contacts of `points` under the normal force `force_n` in all; `coupling` receives what couples the
     /// points of each of `lines`, nothing for plane strain.
-    pub fn prepare(
+    pub(super) fn prepare(
         &mut self,
         pair: &Pair,
         model: &LocalModel,

@@ -43,13 +43,13 @@ pub struct ForceCurve {
 
 /// Errors of one position.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum PositionError {
+pub(super) enum PositionError {
     NoContact,
     NotConverged(NotConverged),
 }
 
 /// Solves positions one after the other, each from the one before.
-pub struct PositionSolver<'a> {
+pub(super) struct PositionSolver<'a> {
     pair: &'a Pair,
     half: Half,
     compliance: &'a Compliance,
@@ -88,7 +88,12 @@ type PointKey = (i32, usize, u8, u8);
 
 impl<'a> PositionSolver<'a> {
     /// A solver for one half.
-    pub fn new(pair: &'a Pair, half: Half, compliance: &'a Compliance, corner_contact: bool) -> PositionSolver<'a> {
+    pub(super) fn new(
+        pair: &'a Pair,
+        half: Half,
+        compliance: &'a Compliance,
+        corner_contact: bool,
+    ) -> PositionSolver<'a> {
         PositionSolver {
             pair,
             half,
@@ -136,18 +141,23 @@ impl<'a> PositionSolver<'a> {
     }
 
     /// Cuts the contact lines into `slices` from here on.
-    pub fn set_slices(&mut self, slices: usize) {
+    pub(super) fn set_slices(&mut self, slices: usize) {
         self.slices = slices.max(2);
         self.previous.clear();
     }
 
     /// Takes `state` as the neighbour to start from.
-    pub fn start_from(&mut self, state: &LoadedPosition) {
+    pub(super) fn start_from(&mut self, state: &LoadedPosition) {
         store_forces(&mut self.previous, &state.points, &state.forces_n);
     }
 
     /// Distributes `force_bt_n` at `phase`. Pairs below `lowest_pair` stay out.
-    pub fn solve(&mut self, phase: f64, lowest_pair: i32, force_bt_n: f64) -> Result<LoadedPosition, PositionError> {
+    pub(super) fn solve(
+        &mut self,
+        phase: f64,
+        lowest_pair: i32,
+        force_bt_n: f64,
+    ) -> Result<LoadedPosition, PositionError> {
         let cos = self.pair.base_helix_angle_rad.cos();
         let least_m = self.compliance.local.least_width_m(self.pair, force_bt_n / cos);
         let most = (self.pair.spec.face_width_m / least_m).clamp(4.0, 1e6) as usize;
@@ -182,7 +192,7 @@ impl<'a> PositionSolver<'a> {
     /// Forces at prescribed approaches: F_bt and dF_bt/dδ at `approaches_m` above the free position (the least
     /// gap of any point), which ascend from above 0. The lines are cut as finely as `force_bt_n`, the force at the
     /// usual approach, needs. Depends on nothing that was solved before.
-    pub fn force_curve(
+    pub(super) fn force_curve(
         &mut self,
         phase: f64,
         force_bt_n: f64,

@@ -14,7 +14,7 @@ const MOST: usize = 256;
 const FINEST: f64 = 1.0 / 1024.0;
 
 /// Positions of one period and how well they carry its curves.
-pub struct RefinedPositions {
+pub(super) struct RefinedPositions {
     /// Phases ascending in [0, 1) and their states.
     pub states: Vec<(f64, LoadedPosition)>,
     /// Largest change of a Fourier coefficient (mean and first harmonics of stiffness and transmission error, as parts
@@ -24,7 +24,7 @@ pub struct RefinedPositions {
 
 /// Solves positions until stiffness and transmission error halfway between neighbours agree with the interpolation of
 /// the others to `accuracy` of their means. `solve` gets a phase and the state nearest to it.
-pub fn refine(
+pub(super) fn refine(
     pair: &Pair,
     accuracy: f64,
     mut solve: impl FnMut(f64, Option<&LoadedPosition>) -> Result<LoadedPosition, ContactError>,
@@ -65,7 +65,7 @@ pub fn refine(
 
 /// `count` equally spaced phases, and those at which a line of contact begins, ends, or reaches another edge of the
 /// field where they are further than `least` from the others.
-pub fn start_phases(pair: &Pair, count: usize, least: f64) -> Vec<f64> {
+pub(super) fn start_phases(pair: &Pair, count: usize, least: f64) -> Vec<f64> {
     let mut phases: Vec<f64> = (0..count).map(|i| i as f64 / count as f64).collect();
     for ratio in [pair.transverse_contact_ratio, pair.overlap_ratio, pair.total_contact_ratio()] {
         let phase = ratio.rem_euclid(1.0);

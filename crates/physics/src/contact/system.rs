@@ -10,13 +10,13 @@ use crate::numerics::dense::{cholesky, cholesky_solve, dot, forward_solve, lu_so
 use crate::simd::vectorised;
 
 /// Approach of one point under its own force.
-pub trait LocalApproach {
+pub(super) trait LocalApproach {
     /// Local approach of point `i` under a positive force, and its derivative.
     fn approach(&self, i: usize, force: f64) -> (f64, f64);
 }
 
 /// The points and what couples them. All quantities along the flank normal.
-pub struct ContactSystem<'a, L: LocalApproach> {
+pub(super) struct ContactSystem<'a, L: LocalApproach> {
     /// Normal gap of every point before loading, m.
     pub gaps: &'a [f64],
     /// Interpolation of every point between the stations of all lines.
@@ -35,7 +35,7 @@ pub struct ContactSystem<'a, L: LocalApproach> {
 
 /// Reused memory of the solver.
 #[derive(Debug, Clone, Default)]
-pub struct Workspace {
+pub(super) struct Workspace {
     slope: Vec<f64>,
     target: Vec<f64>,
     /// Forces after the step.
@@ -56,13 +56,13 @@ pub struct Workspace {
 }
 
 /// Least force that counts as contact, as a part of the mean force of the points.
-pub const LEAST_FORCE: f64 = 1e-9;
+pub(super) const LEAST_FORCE: f64 = 1e-9;
 /// Diagonals of W.
 const BAND: usize = 2 * STENCIL - 1;
 impl<L: LocalApproach> ContactSystem<'_, L> {
     /// One Newton step on the active points: their new forces into `work.new_forces`; returns approach and stiffness.
     /// `total` is the sum of the forces (their size, where the approach above the datum is `prescribed` instead).
-    pub fn newton(
+    pub(super) fn newton(
         &self,
         (total, prescribed): (f64, Option<f64>),
         datum: f64,
@@ -299,7 +299,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
     }
 
     /// Bulk displacement of the stations under `forces`, into `work.station_shift`.
-    pub fn station_shifts(&self, forces: &[f64], work: &mut Workspace) {
+    pub(super) fn station_shifts(&self, forces: &[f64], work: &mut Workspace) {
         work.station_force.clear();
         work.station_force.resize(self.stations, 0.0);
         for (stencil, f) in self.stencils.iter().zip(forces) {
@@ -313,7 +313,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
     }
 
     /// Displacement of point `j` of `line` by the forces of all other points.
-    pub fn deflection(&self, line: usize, j: usize, forces: &[f64], work: &Workspace) -> f64 {
+    pub(super) fn deflection(&self, line: usize, j: usize, forces: &[f64], work: &Workspace) -> f64 {
         let mut sum = self.stencils[j].at(&work.station_shift);
         if let Some(coupling) = self.coupling.get(line) {
             let range = &self.lines[line];

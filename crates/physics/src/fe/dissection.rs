@@ -25,7 +25,7 @@ struct PointPosition {
 
 impl Dissection {
     /// Orders all points inside the sector: those on the cut faces stay out.
-    pub fn new(section: &SectionMesh, operator: &Operator, cells: &[f64]) -> Dissection {
+    pub(super) fn new(section: &SectionMesh, operator: &Operator, cells: &[f64]) -> Dissection {
         let places = (0..operator.points())
             .filter_map(|point| {
                 let (node, function) = operator.place(point);

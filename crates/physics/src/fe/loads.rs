@@ -16,7 +16,7 @@ pub(super) struct LoadGrid {
 
 impl LoadGrid {
     /// Number of hats.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.profile_m.len() * self.stations_m.len()
     }
 }
@@ -38,7 +38,7 @@ pub(super) struct Loads {
 
 impl Loads {
     /// Unit normal forces into the tooth. `twist_per_m` as in [`super::operator::ElasticBody`].
-    pub fn new(
+    pub(super) fn new(
         section: &SectionMesh,
         involute: &InvoluteFlank,
         grid: &LoadGrid,
@@ -103,13 +103,19 @@ impl Loads {
     }
 
     /// True where the line of `node` is loaded.
-    pub fn touches(&self, node: usize) -> bool {
+    pub(super) fn touches(&self, node: usize) -> bool {
         !self.section[node].is_empty()
     }
 
     /// Calls `add` with the index of every hat (`profile * stations + station`) that loads function `function` on
     /// `node`'s line, and the force.
-    pub fn for_each(&self, operator: &Operator, node: usize, function: usize, mut add: impl FnMut(usize, [f64; 3])) {
+    pub(super) fn for_each(
+        &self,
+        operator: &Operator,
+        node: usize,
+        function: usize,
+        mut add: impl FnMut(usize, [f64; 3]),
+    ) {
         for (hat, force) in &self.section[node] {
             for &(station, along) in &self.along[operator.level(node)][function] {
                 add(hat * self.stations + station, force.map(|f| f * along));

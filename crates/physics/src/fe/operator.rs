@@ -41,7 +41,7 @@ pub(super) struct Operator {
 
 impl Operator {
     /// `levels` says which of `spaces` every node's line carries.
-    pub fn new(body: &ElasticBody, spaces: Vec<SplineSpace>, levels: Vec<u8>) -> Operator {
+    pub(super) fn new(body: &ElasticBody, spaces: Vec<SplineSpace>, levels: Vec<u8>) -> Operator {
         let section = body.section;
         let mut first = vec![0];
         let mut node = Vec::new();
@@ -61,38 +61,38 @@ impl Operator {
     }
 
     /// Number of points.
-    pub fn points(&self) -> usize {
+    pub(super) fn points(&self) -> usize {
         self.node.len()
     }
 
     /// Node and function of a point.
-    pub fn place(&self, point: usize) -> (usize, usize) {
+    pub(super) fn place(&self, point: usize) -> (usize, usize) {
         let node = self.node[point] as usize;
         (node, point - self.first[node])
     }
 
     /// Points of a node's line.
-    pub fn line(&self, node: usize) -> std::ops::Range<usize> {
+    pub(super) fn line(&self, node: usize) -> std::ops::Range<usize> {
         self.first[node]..self.first[node + 1]
     }
 
     /// Functions along the face at a node.
-    pub fn space(&self, node: usize) -> &SplineSpace {
+    pub(super) fn space(&self, node: usize) -> &SplineSpace {
         &self.spaces[usize::from(self.levels[node])]
     }
 
     /// Index of those functions among [`Operator::spaces`].
-    pub fn level(&self, node: usize) -> usize {
+    pub(super) fn level(&self, node: usize) -> usize {
         usize::from(self.levels[node])
     }
 
     /// Function spaces along the face, finest first.
-    pub fn spaces(&self) -> &[SplineSpace] {
+    pub(super) fn spaces(&self) -> &[SplineSpace] {
         &self.spaces
     }
 
     /// Calls `visit` with every point that `point` is coupled to (itself included) and gives access to the stiffness.
-    pub fn for_each_neighbour(&self, point: usize, mut visit: impl FnMut(usize, NodeBlock<'_>)) {
+    pub(super) fn for_each_neighbour(&self, point: usize, mut visit: impl FnMut(usize, NodeBlock<'_>)) {
         let (node, function) = self.place(point);
         let level = self.level(node);
         for (other, coupling) in &self.couplings[node] {
@@ -115,7 +115,7 @@ pub(super) struct NodeBlock<'a> {
 
 impl NodeBlock<'_> {
     /// 3 x 3, row-major, rows of the point that was given.
-    pub fn values(&self) -> [f64; 9] {
+    pub(super) fn values(&self) -> [f64; 9] {
         std::array::from_fn(|e| (0..4).map(|p| self.coupling[p][e] * self.along[p]).sum())
     }
 }

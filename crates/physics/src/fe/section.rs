@@ -89,7 +89,7 @@ impl SectionSizes {
 impl SectionMesh {
     /// The mesh of `member` down to `hold_radius_m`, with rows at the profile nodes `profile_m` (arc lengths from 0 to
     /// the flank's length).
-    pub fn new(
+    pub(super) fn new(
         member: &Member,
         involute: &InvoluteFlank,
         normal_module_m: f64,

@@ -22,7 +22,7 @@ pub(super) struct Sector {
 
 impl Sector {
     /// `levels` says which of `spaces` the line of every node carries; `cells` are the finest borders along the face.
-    pub fn new(
+    pub(super) fn new(
         body: &ElasticBody,
         spaces: Vec<SplineSpace>,
         levels: Vec<u8>,
@@ -47,7 +47,7 @@ impl Sector {
     }
 
     /// The sector condensed to its cut faces.
-    pub fn condense(&self, watch: Watch, progress: (f64, f64)) -> Result<Condensed, FeError> {
+    pub(super) fn condense(&self, watch: Watch, progress: (f64, f64)) -> Result<Condensed, FeError> {
         condense(&self.operator, &self.loads, self.load_count, &self.tree, &self.kept, watch, progress)
     }
 }

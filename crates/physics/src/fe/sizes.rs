@@ -20,7 +20,7 @@ pub(super) struct Sizes {
 
 impl Sizes {
     /// Sizes at a resolution.
-    pub fn new(resolution: Resolution) -> Sizes {
+    pub(super) fn new(resolution: Resolution) -> Sizes {
         match resolution {
             Resolution::Coarse => Sizes {
                 profile_cell: 0.4,
@@ -79,7 +79,7 @@ impl Sizes {
     }
 
     /// Load cells on a flank of `length` and `width`, both in normal modules.
-    pub fn load_cells(&self, length: f64, width: f64) -> (usize, usize) {
+    pub(super) fn load_cells(&self, length: f64, width: f64) -> (usize, usize) {
         let cells = |size: f64, cell: f64, range: (usize, usize)| {
             ((size / cell).round().clamp(range.0 as f64, range.1 as f64)) as usize
         };

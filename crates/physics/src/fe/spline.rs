@@ -30,13 +30,13 @@ pub(super) struct SplineSpace {
 
 impl SplineSpace {
     /// Twice continuously differentiable cubics on the cells between `borders` (at least two, rising).
-    pub fn cubic(borders: Vec<f64>) -> SplineSpace {
+    pub(super) fn cubic(borders: Vec<f64>) -> SplineSpace {
         SplineSpace::of_order(ORDER, borders)
     }
 
     /// The constant alone: what makes a body endless (plane strain) when the face's length is one.
     #[cfg(test)]
-    pub fn constant(width: f64) -> SplineSpace {
+    pub(super) fn constant(width: f64) -> SplineSpace {
         SplineSpace::of_order(1, vec![0.0, width])
     }
 
@@ -48,17 +48,17 @@ impl SplineSpace {
     }
 
     /// Number of functions.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.knots.len() - self.order
     }
 
     /// Interval in which function `i` differs from zero.
-    pub fn support(&self, i: usize) -> (f64, f64) {
+    pub(super) fn support(&self, i: usize) -> (f64, f64) {
         (self.knots[i], self.knots[i + self.order])
     }
 
     /// Index of the first function that differs from zero at `z`, and values and slopes of all that do.
-    pub fn at(&self, z: f64) -> (usize, [f64; ORDER], [f64; ORDER]) {
+    pub(super) fn at(&self, z: f64) -> (usize, [f64; ORDER], [f64; ORDER]) {
         let k = self.order;
         let last = self.borders.len() - 2;
         let cell = self.borders.partition_point(|&b| b <= z).saturating_sub(1).min(last);
@@ -101,7 +101,7 @@ impl SplineSpace {
     }
 
     /// Integrals of every function against every piecewise linear hat between `stations`.
-    pub fn hat_integrals(&self, stations: &[f64]) -> Vec<Vec<(usize, f64)>> {
+    pub(super) fn hat_integrals(&self, stations: &[f64]) -> Vec<Vec<(usize, f64)>> {
         let mut table = vec![vec![0.0; stations.len()]; self.len()];
         let rule = gauss_legendre(4);
         for piece in self.borders_with(stations).windows(2) {
@@ -131,7 +131,7 @@ pub(super) struct SplineProducts {
 
 impl SplineProducts {
     /// Integrals over the common cells of both spaces.
-    pub fn new(first: &SplineSpace, second: &SplineSpace) -> SplineProducts {
+    pub(super) fn new(first: &SplineSpace, second: &SplineSpace) -> SplineProducts {
         let columns = second.len();
         let mut values = vec![[0.0; 4]; first.len() * columns];
         let mut ranges = vec![(usize::MAX, 0); first.len()];
@@ -157,7 +157,7 @@ impl SplineProducts {
     }
 
     /// First function of the second space that overlaps function `i` of the first, and the products from there on.
-    pub fn row(&self, i: usize) -> (usize, &[[f64; 4]]) {
+    pub(super) fn row(&self, i: usize) -> (usize, &[[f64; 4]]) {
         let (from, to) = self.ranges[i];
         (from, &self.values[i * self.columns + from..i * self.columns + to])
     }

@@ -18,7 +18,7 @@ pub(super) struct InvoluteFlank {
 
 impl InvoluteFlank {
     /// The flank of a member.
-    pub fn new(member: &Member) -> Result<InvoluteFlank, FeError> {
+    pub(super) fn new(member: &Member) -> Result<InvoluteFlank, FeError> {
         let form_roll_m = member.root_form_roll_m();
         let tip_roll_m = member.tip_roll_m();
         let length_m = (tip_roll_m - form_roll_m) * (tip_roll_m + form_roll_m) / (2.0 * member.base_radius_m);
@@ -34,12 +34,12 @@ impl InvoluteFlank {
     }
 
     /// Roll length at arc length `s`: s = (ρ² - ρ_form²)/(2 r_b).
-    pub fn roll_m(&self, s_m: f64) -> f64 {
+    pub(super) fn roll_m(&self, s_m: f64) -> f64 {
         (self.form_roll_m * self.form_roll_m + 2.0 * self.base_radius_m * s_m).sqrt()
     }
 
     /// Point (x, y) of the loaded flank and the unit normal into the tooth, in the section.
-    pub fn at(&self, s_m: f64) -> ([f64; 2], [f64; 2]) {
+    pub(super) fn at(&self, s_m: f64) -> ([f64; 2], [f64; 2]) {
         let roll = self.roll_m(s_m);
         let angle = roll / self.base_radius_m;
         // The flank's point lies at the end of the tangent of length roll; its normal is the tangent's direction.

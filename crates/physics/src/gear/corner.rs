@@ -46,12 +46,12 @@ struct CornerKinematics {
 
 impl<'a> Corner<'a> {
     /// The gear's tip against the pinion.
-    pub fn mesh_in(pair: &'a Pair) -> Corner<'a> {
+    pub(super) fn mesh_in(pair: &'a Pair) -> Corner<'a> {
         Corner::new(pair, &pair.gear, pair.gear.tip_radius_m, &pair.pinion)
     }
 
     /// The pinion's tip against the gear.
-    pub fn mesh_out(pair: &'a Pair) -> Corner<'a> {
+    pub(super) fn mesh_out(pair: &'a Pair) -> Corner<'a> {
         Corner::new(pair, &pair.pinion, pair.pinion.tip_radius_m, &pair.gear)
     }
 
@@ -125,13 +125,13 @@ impl<'a> Corner<'a> {
 
     /// True where the corner's circle crosses the line of action before the mate's base tangent point, where the mate
     /// has no conjugate flank.
-    pub fn passes_base_tangent(&self) -> bool {
+    pub(super) fn passes_base_tangent(&self) -> bool {
         self.radius_m > self.line_of_action_m.hypot(self.corner.base_radius_m)
     }
 
     /// Largest radius of the corner, between the pitch circle and its own, at which it cuts at most `depth_m` deep into
     /// the mate's tooth.
-    pub fn radius_with_cut_m(&self, depth_m: f64) -> f64 {
+    pub(super) fn radius_with_cut_m(&self, depth_m: f64) -> f64 {
         let pitch_m = self.corner.base_radius_m / self.working_pressure_angle_rad.cos();
         let (mut low, mut high) = (pitch_m.min(self.radius_m), self.radius_m);
         for _ in 0..RADIUS_STEPS {
@@ -148,7 +148,7 @@ impl<'a> Corner<'a> {
     /// Depth by which the corner would cut into the mate's tooth, as its cutter has left it, on the way from the line
     /// of action to the line of centres (positive: it cuts). Only a fillet that rises above the conjugate path can be
     /// in its way; a corner that passes the base tangent point meets what is left of the flank near the base circle.
-    pub fn fillet_cut_m(&self) -> f64 {
+    pub(super) fn fillet_cut_m(&self) -> f64 {
         let start = self.start_angle_rad();
         (1..=FILLET_SAMPLES)
             .map(|i| -self.at(-start * f64::from(i) / f64::from(FILLET_SAMPLES)).gap_m)

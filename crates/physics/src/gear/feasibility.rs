@@ -50,7 +50,7 @@ pub(super) struct Findings {
 
 impl Findings {
     /// Adds a reason.
-    pub fn refuse(&mut self, field: SpecField, reason: InfeasibilityReason) {
+    pub(super) fn refuse(&mut self, field: SpecField, reason: InfeasibilityReason) {
         self.reasons.push(Infeasibility { field, reason });
     }
 
@@ -59,14 +59,14 @@ impl Findings {
     }
 
     /// Appends the findings of another check.
-    pub fn add(&mut self, other: Findings) {
+    pub(super) fn add(&mut self, other: Findings) {
         self.reasons.extend(other.reasons);
         self.warnings.extend(other.warnings);
     }
 
     /// The cutter's tip rounding must fit its tip; a larger one is reduced to what fits, so that the rest can be
     /// checked.
-    pub fn check_cutter(&mut self, member: MemberId, cutter: &mut Cutter) {
+    pub(super) fn check_cutter(&mut self, member: MemberId, cutter: &mut Cutter) {
         let limit = cutter.fillet_radius_limit();
         if limit < 0.0 {
             let limit = std::f64::consts::FRAC_PI_4 / cutter.normal_pressure_angle_rad.tan();
@@ -92,7 +92,7 @@ impl Findings {
     }
 
     /// The teeth of one member, whatever it meshes with.
-    pub fn check_member(&mut self, id: MemberId, member: &Member, spec: &PairSpec) {
+    pub(super) fn check_member(&mut self, id: MemberId, member: &Member, spec: &PairSpec) {
         let m = spec.normal_module_m;
         let start_radius_m = member.root_form_radius_m.max(member.base_radius_m);
         if member.tip_radius_m <= start_radius_m {
@@ -143,7 +143,12 @@ impl Findings {
     }
 
     /// Working centre distance with its error, or `None` when no line of action exists.
-    pub fn center_distance_m(&mut self, spec: &PairSpec, base_radius_sum_m: f64, fit: &ZeroBacklashFit) -> Option<f64> {
+    pub(super) fn center_distance_m(
+        &mut self,
+        spec: &PairSpec,
+        base_radius_sum_m: f64,
+        fit: &ZeroBacklashFit,
+    ) -> Option<f64> {
         let nominal = match (spec.center_distance_m, fit.center_distance_m) {
             (Some(a), _) => a,
             (None, Some(a)) => a,
@@ -171,7 +176,7 @@ impl Findings {
     }
 
     /// The engagement of the two members.
-    pub fn check_pair(&mut self, pair: &Pair, fit: &ZeroBacklashFit) {
+    pub(super) fn check_pair(&mut self, pair: &Pair, fit: &ZeroBacklashFit) {
         self.check_interference(MemberId::Gear, &pair.gear, &Corner::mesh_in(pair), pair);
         self.check_interference(MemberId::Pinion, &pair.pinion, &Corner::mesh_out(pair), pair);
         self.check_clearance(MemberId::Pinion, &pair.pinion, &pair.gear, pair);
@@ -257,7 +262,7 @@ impl Findings {
     /// Reasons that the pair would not have at the centre distance of its profile shifts are the centre distance's:
     /// they become one that names it, that distance, and the profile shifts that fit the one given. Its other reasons
     /// stay as they are there.
-    pub fn blame_center_distance(
+    pub(super) fn blame_center_distance(
         &mut self,
         without_backlash: Findings,
         pair: &Pair,

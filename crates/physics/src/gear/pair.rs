@@ -143,7 +143,7 @@ pub(super) struct ZeroBacklashFit {
 impl ZeroBacklashFit {
     /// Sum of the profile shift coefficients with which the teeth run without backlash at `center_distance_m`; none up
     /// to the sum of the base radii.
-    pub fn shift_sum_at(&self, center_distance_m: f64) -> Option<f64> {
+    pub(super) fn shift_sum_at(&self, center_distance_m: f64) -> Option<f64> {
         let cos = self.base_sum_m / center_distance_m;
         (cos < 1.0).then(|| (inv(cos.acos()) - self.transverse_inv) / self.inv_per_shift)
     }

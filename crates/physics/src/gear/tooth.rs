@@ -29,7 +29,7 @@ pub(super) struct Cutter {
 impl Cutter {
     /// Largest tip rounding (in normal modules) for which the rack still has a tip: the arc's centre on its centreline,
     /// and an arc that ends below the datum line.
-    pub fn fillet_radius_limit(&self) -> f64 {
+    pub(super) fn fillet_radius_limit(&self) -> f64 {
         let (sin, cos) = self.normal_pressure_angle_rad.sin_cos();
         let centreline =
             (std::f64::consts::FRAC_PI_4 - self.dedendum * self.normal_pressure_angle_rad.tan()) * cos / (1.0 - sin);
@@ -38,7 +38,7 @@ impl Cutter {
 
     /// Signed roll length at which the straight flank of the rack ends on the involute; negative: the tooth is undercut
     /// (ISO 21771, form diameter by a rack).
-    pub fn form_roll_m(&self) -> f64 {
+    pub(super) fn form_roll_m(&self) -> f64 {
         let sin_n = self.normal_pressure_angle_rad.sin();
         let sin_t = self.transverse_pressure_angle_rad.sin();
         let b = self.normal_module_m * (self.dedendum - self.profile_shift + self.fillet_radius * (sin_n - 1.0));
@@ -46,7 +46,7 @@ impl Cutter {
     }
 
     /// Least profile shift coefficient without undercut.
-    pub fn undercut_limit(&self) -> f64 {
+    pub(super) fn undercut_limit(&self) -> f64 {
         let sin_n = self.normal_pressure_angle_rad.sin();
         let sin_t = self.transverse_pressure_angle_rad.sin();
         self.dedendum
@@ -55,12 +55,12 @@ impl Cutter {
     }
 
     /// Radius of the root circle.
-    pub fn root_radius_m(&self) -> f64 {
+    pub(super) fn root_radius_m(&self) -> f64 {
         self.reference_radius_m() - self.normal_module_m * (self.dedendum - self.profile_shift)
     }
 
     /// Radius of the reference circle.
-    pub fn reference_radius_m(&self) -> f64 {
+    pub(super) fn reference_radius_m(&self) -> f64 {
         0.5 * f64::from(self.teeth) * self.normal_module_m / self.helix_angle_rad.cos()
     }
 }
@@ -95,7 +95,7 @@ const END_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
 impl ToothForm {
     /// The tooth cut by `cutter`. The cutter's fillet radius must be within its limit and the root circle positive.
-    pub fn new(cutter: &Cutter) -> ToothForm {
+    pub(super) fn new(cutter: &Cutter) -> ToothForm {
         let m = cutter.normal_module_m;
         let (sin_n, cos_n) = cutter.normal_pressure_angle_rad.sin_cos();
         let tan_n = cutter.normal_pressure_angle_rad.tan();
@@ -206,7 +206,7 @@ impl ToothForm {
     }
 
     /// Half angle of the tooth at a radius; below the root circle its value there, above the tip the involute goes on.
-    pub fn half_angle_rad(&self, r_m: f64) -> f64 {
+    pub(super) fn half_angle_rad(&self, r_m: f64) -> f64 {
         if r_m >= self.join_radius_m {
             self.involute_half_angle_rad(r_m)
         } else {
@@ -215,32 +215,32 @@ impl ToothForm {
     }
 
     /// Half angle of the tooth where the fillet ends on the root circle.
-    pub fn root_half_angle_rad(&self) -> f64 {
+    pub(super) fn root_half_angle_rad(&self) -> f64 {
         self.fillet_point(END_RAD).half_angle_rad
     }
 
     /// Radius at which fillet and involute join.
-    pub fn join_radius_m(&self) -> f64 {
+    pub(super) fn join_radius_m(&self) -> f64 {
         self.join_radius_m
     }
 
     /// Radius of the root circle.
-    pub fn root_radius_m(&self) -> f64 {
+    pub(super) fn root_radius_m(&self) -> f64 {
         self.root_radius_m
     }
 
     /// Radius of the base circle.
-    pub fn base_radius_m(&self) -> f64 {
+    pub(super) fn base_radius_m(&self) -> f64 {
         self.base_radius_m
     }
 
     /// Half angle of the tooth at the base circle.
-    pub fn base_half_angle_rad(&self) -> f64 {
+    pub(super) fn base_half_angle_rad(&self) -> f64 {
         self.base_half_angle_rad
     }
 
     /// Roll length at the join of fillet and involute.
-    pub fn join_roll_m(&self) -> f64 {
+    pub(super) fn join_roll_m(&self) -> f64 {
         roll_length_m(self.join_radius_m, self.base_radius_m)
     }
 }

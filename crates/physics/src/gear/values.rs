@@ -13,7 +13,7 @@ impl Findings {
     }
 
     /// Stated values one by one: finite, and in the range in which the formulas of this module hold.
-    pub fn check_values(&mut self, spec: &PairSpec) {
+    pub(super) fn check_values(&mut self, spec: &PairSpec) {
         let [least_angle, largest_angle, largest_helix] = [5f64, 45.0, 45.0 + 1e-9].map(f64::to_radians);
         self.range(SpecField::NormalModule, spec.normal_module_m, [1e-5, 0.2]);
         self.range(SpecField::NormalPressureAngle, spec.normal_pressure_angle_rad, [least_angle, largest_angle]);
