@@ -9,8 +9,8 @@ use crate::document::{
     StiffnessLaw,
 };
 use crate::result::Mesh;
+use crate::warning::Warning;
 use herringbone_physics::dynamics;
-use herringbone_physics::gear::Warning;
 use herringbone_physics::response::{Regime, Summary};
 
 /// Given inertias and masses more than this many times the geometry's, or less than its inverse, are told: beyond it a shaft, hub or web
