@@ -7,11 +7,13 @@ use axum::Router;
 use axum::body::Body;
 use axum::http::{HeaderName, HeaderValue, Request, StatusCode, Uri};
 use herringbone::api::{self, Access, AccessConfig, AppState, HttpConfig, Pages};
+use herringbone::store::{Store, StoreConfig};
+use herringbone::work::{Jobs, Solver, WorkConfig};
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
 use herringbone_job::result::JobResult;
 use herringbone::store::{Store, StoreConfig};
-use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveError, Surroundings};
+use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveError, SolveContext};
 use herringbone::work::{Jobs, Solver, WorkConfig};
 use http_body_util::BodyExt;
 use jiff::Timestamp;
@@ -33,7 +35,7 @@ impl Solver for AtOnce {
         study::input_hash(document)
     }
 
-    fn solve(&self, _: &CheckedJob, _: &Surroundings) -> Result<Outcome, SolveError> {
+    fn solve(&self, _: &CheckedJob, _: &SolveContext) -> Result<Outcome, SolveError> {
         let values = (0..5000).map(|index| f64::from(index).sin()).collect();
         let (quantity, unit) = ("acceleration".to_owned(), "m/s2".to_owned());
         let channel = Channel { name: "a_x_left".to_owned(), quantity, unit, t0_s: 0.5, dt_s: 1e-4, rms: 0.7, values };

@@ -6,7 +6,7 @@ use super::{problem, table};
 use clap::Args;
 use herringbone::api::{CsvField, Decimal, Problem};
 use herringbone_job::document::JobDocument;
-use herringbone_job::study::{self, Channel, CheckedJob, NoStageStore, SolveError, Stage, StageStore, Surroundings};
+use herringbone_job::study::{self, Channel, CheckedJob, NoStageStore, SolveContext, SolveError, Stage, StageStore};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -116,11 +116,11 @@ fn solve(job: &CheckedJob, stages: &dyn StageStore) -> Result<study::Outcome, So
     };
     let outcome = study::solve(
         job,
-        &Surroundings {
+        &SolveContext {
             stages,
             progress: &progress,
             clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,
-            ..Surroundings::none()
+            ..SolveContext::none()
         },
     );
     bar.finish_and_clear();

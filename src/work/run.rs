@@ -15,7 +15,7 @@ use crate::store::{
 use herringbone_job;
 use herringbone_job::document::JobDocument;
 use herringbone_job::result::JobResult;
-use herringbone_job::study::{Outcome, SolveError, Stage, Surroundings};
+use herringbone_job::study::{Outcome, SolveContext, SolveError, Stage};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -225,7 +225,7 @@ struct Work<'a> {
 impl Work<'_> {
     fn solve(&self, document: JobDocument, input_hash: String, progress: &watch::Sender<Progress>) -> Ending {
         let started = Instant::now();
-        let surroundings = Surroundings {
+        let context = SolveContext {
             stages: self.stages,
             points: self.points,
             progress: &|stage, fraction| {
@@ -235,7 +235,7 @@ impl Work<'_> {
             clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,
         };
         let solved = self.solver.check(document).map_err(SolveError::from);
-        match solved.and_then(|job| self.solver.solve(&job, &surroundings)) {
+        match solved.and_then(|job| self.solver.solve(&job, &context)) {
             Ok(outcome) => self.packed(outcome, input_hash).unwrap_or_else(|error| Ending::Failed(internal(&error))),
             Err(SolveError::Canceled(_)) => Ending::Stopped,
             Err(error) => Ending::Failed(failure_of(error)),

@@ -2,7 +2,7 @@
 
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
-use herringbone_job::study::{self, CheckedJob, Outcome, SolveError, Surroundings};
+use herringbone_job::study::{self, CheckedJob, Outcome, SolveContext, SolveError};
 
 /// Checks and solves documents. Called on plain threads; may take long and may panic.
 pub trait Solver: Send + Sync + 'static {
@@ -19,7 +19,7 @@ pub trait Solver: Send + Sync + 'static {
     ///
     /// # Errors
     /// Why there is no result.
-    fn solve(&self, job: &CheckedJob, surroundings: &Surroundings) -> Result<Outcome, SolveError>;
+    fn solve(&self, job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError>;
 
     /// Results and stages stored under another version are not reused.
     fn version(&self) -> &'static str;
@@ -38,8 +38,8 @@ impl Solver for StudySolver {
         study::input_hash(document)
     }
 
-    fn solve(&self, job: &CheckedJob, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
-        study::solve(job, surroundings)
+    fn solve(&self, job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError> {
+        study::solve(job, context)
     }
 
     fn version(&self) -> &'static str {

@@ -4,7 +4,7 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use herringbone_job::parse_value;
-use herringbone_job::study::{self, CheckedJob, Surroundings};
+use herringbone_job::study::{self, CheckedJob, SolveContext};
 use serde_json::{Value, json};
 use std::hint::black_box;
 
@@ -17,8 +17,8 @@ fn example(change: impl FnOnce(&mut Value)) -> CheckedJob {
 }
 
 fn solve(job: &CheckedJob) -> study::Outcome {
-    let surroundings = Surroundings::none();
-    study::solve(job, &surroundings).expect("the example solves")
+    let context = SolveContext::none();
+    study::solve(job, &context).expect("the example solves")
 }
 
 fn documents(criterion: &mut Criterion) {

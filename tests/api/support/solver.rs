@@ -5,7 +5,7 @@ use herringbone::work::Solver;
 use herringbone_job::DocumentError;
 use herringbone_job::document::{JobDocument, JobKind};
 use herringbone_job::result::{JobResult, Sweep, SweepPoint};
-use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveError, Stage, Surroundings};
+use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveContext, SolveError, Stage};
 use herringbone_physics::watch::Canceled;
 
 /// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every calculation passes the
@@ -24,12 +24,12 @@ impl Solver for ScriptedSolver {
         study::input_hash(document)
     }
 
-    fn solve(&self, job: &CheckedJob, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
+    fn solve(&self, job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError> {
         let document = job.document();
         let name = document.name.as_deref().unwrap_or("unnamed");
-        (surroundings.progress)(Stage::Mesh, 0.25);
+        (context.progress)(Stage::Mesh, 0.25);
         for point in ["solve", name] {
-            if !self.breakpoints.pass(point, surroundings.canceled) {
+            if !self.breakpoints.pass(point, context.canceled) {
                 return Err(SolveError::Canceled(Canceled));
             }
         }
@@ -49,14 +49,14 @@ impl Solver for ScriptedSolver {
                 step: None,
             }),
             "panic" => panic!("secret detail"),
-            "stage" => Ok(with_stage(surroundings)),
+            "stage" => Ok(with_stage(context)),
             "not finite" if document.kind != JobKind::Sweep => {
                 let mut outcome = outcome();
                 outcome.result.numerics.wall_ms.mesh = f64::NAN;
                 outcome.series[0].values[1] = f64::NAN;
                 Ok(outcome)
             }
-            _ if document.kind == JobKind::Sweep => self.sweep(document, surroundings),
+            _ if document.kind == JobKind::Sweep => self.sweep(document, context),
             _ => Ok(outcome()),
         }
     }
@@ -68,15 +68,15 @@ impl Solver for ScriptedSolver {
 
 impl ScriptedSolver {
     /// One point after the other, from those that are kept on; each passes the breakpoint `point N`.
-    fn sweep(&self, document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
-        let mut rows = surroundings.points.load().rows;
+    fn sweep(&self, document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
+        let mut rows = context.points.load().rows;
         let reused = if rows.is_empty() { Vec::new() } else { vec!["points".to_owned()] };
         let axis = &document.axes[0];
         for position in 0..axis.len() {
             if rows.contains_key(&position) {
                 continue;
             }
-            if !self.breakpoints.pass(&format!("point {position}"), surroundings.canceled) {
+            if !self.breakpoints.pass(&format!("point {position}"), context.canceled) {
                 return Err(SolveError::Canceled(Canceled));
             }
             let not_finite = document.name.as_deref() == Some("not finite");
@@ -86,7 +86,7 @@ impl ScriptedSolver {
                 error: (!not_finite).then(|| "no \"response\", scripted".to_owned()),
                 ..SweepPoint::default()
             };
-            surroundings.points.save(position, &row, None);
+            context.points.save(position, &row, None);
             rows.insert(position, row);
         }
         let mut result = JobResult::default();
@@ -98,14 +98,14 @@ impl ScriptedSolver {
 }
 
 /// Loads a stage if it is there, else saves it.
-fn with_stage(surroundings: &Surroundings) -> Outcome {
+fn with_stage(context: &SolveContext) -> Outcome {
     let mut outcome = outcome();
-    match surroundings.stages.load("key") {
+    match context.stages.load("key") {
         Some(bytes) => {
             assert_eq!(bytes, b"stage");
             outcome.result.numerics.reused = vec!["mesh".into()];
         }
-        None => surroundings.stages.save("key", Stage::Mesh, b"stage"),
+        None => context.stages.save("key", Stage::Mesh, b"stage"),
     }
     outcome
 }

@@ -8,7 +8,7 @@
 
 use herringbone_job::parse_value;
 use herringbone_job::result::SweepPoint;
-use herringbone_job::study::{self, CheckedJob, Surroundings};
+use herringbone_job::study::{self, CheckedJob, SolveContext};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ]);
         let job = parse_value(&value).and_then(CheckedJob::new).map_err(|e| format!("{e:?}"))?;
         let started = Instant::now();
-        let outcome = study::solve(&job, &Surroundings::none())?;
+        let outcome = study::solve(&job, &SolveContext::none())?;
         let seconds = started.elapsed().as_secs_f64();
         let points = outcome.result.sweep.ok_or("no sweep")?.points;
         report(name, &points, torques, speeds, seconds);

@@ -3,7 +3,7 @@
 //! `cargo run --release -p herringbone-tools --no-default-features --bin contact_motion -- FILE`
 
 use herringbone_job::parse_value;
-use herringbone_job::study::{self, CheckedJob, Surroundings};
+use herringbone_job::study::{self, CheckedJob, SolveContext};
 use serde_json::Value;
 use std::time::Instant;
 
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let started = Instant::now();
         let outcome = match study::solve(
             &job,
-            &Surroundings { clock_ms: &|| started.elapsed().as_secs_f64() * 1e3, ..Surroundings::none() },
+            &SolveContext { clock_ms: &|| started.elapsed().as_secs_f64() * 1e3, ..SolveContext::none() },
         ) {
             Ok(outcome) => outcome,
             Err(error) => {

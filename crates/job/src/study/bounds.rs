@@ -226,7 +226,7 @@ pub fn of_motion(document: &JobDocument, summary: &Summary) -> Vec<Warning> {
 mod tests {
     use super::*;
     use crate::parse_value;
-    use crate::study::Surroundings;
+    use crate::study::SolveContext;
     use crate::study::unchecked::{check, solve};
     use serde_json::{Value, json};
 
@@ -245,7 +245,7 @@ mod tests {
     }
 
     fn solved(value: &Value) -> crate::result::JobResult {
-        solve(&parse_value(value).expect("valid"), &Surroundings::none()).expect("solved").result
+        solve(&parse_value(value).expect("valid"), &SolveContext::none()).expect("solved").result
     }
 
     fn has(warnings: &[Warning], code: &str, pointer: &str) -> bool {

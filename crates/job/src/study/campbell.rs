@@ -1,7 +1,7 @@
 //! Campbell data of a sweep over the speed: at which speeds an order of the mesh frequency meets a natural frequency.
 
 use super::mesh::MeshMemo;
-use super::{SolveError, Surroundings, answer, point, row};
+use super::{SolveContext, SolveError, answer, point, row};
 use crate::document::{Axis, JobDocument};
 use crate::result::{Campbell, CampbellCrossing, NaturalMode};
 
@@ -18,7 +18,7 @@ const ORDERS: u32 = 10;
 pub fn run(
     base: &JobDocument,
     sweep: &JobDocument,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<Vec<Campbell>, SolveError> {
     let Some(at) = sweep.axes.iter().position(|axis| axis.pointers().any(|pointer| pointer == SPEED)) else {
@@ -26,7 +26,7 @@ pub fn run(
     };
     let speed = &sweep.axes[at];
     let other = sweep.axes.get(1 - at);
-    let quiet = Surroundings { progress: &|_, _| {}, ..*surroundings };
+    let quiet = SolveContext { progress: &|_, _| {}, ..*context };
     let mut found = Vec::new();
     for index in 0..other.map_or(1, Axis::len) {
         let other_axis_value = other.map(|axis| axis.value(index));

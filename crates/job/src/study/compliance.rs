@@ -2,7 +2,7 @@
 
 use super::hash::{compliance_hash, flank_hash};
 use super::mesh::ContactCase;
-use super::{SolveError, Stage, Surroundings};
+use super::{SolveContext, SolveError, Stage};
 use crate::document::Fidelity;
 use herringbone_physics::contact::Compliance;
 use herringbone_physics::fe::{FeError, FlankFlexibility, FlankInput};
@@ -34,7 +34,7 @@ pub struct Found {
 pub fn find(
     case: &ContactCase,
     pair: &Pair,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &ComplianceMemo,
 ) -> Result<Found, SolveError> {
     let key = compliance_hash(case);
@@ -47,8 +47,8 @@ pub fn find(
         Fidelity::Uniform => (Compliance::uniform(pair, &case.settings, case.line_stiffness_n_per_m2), false, 0.0),
         Fidelity::Fe => {
             let inputs = Compliance::finite_element_inputs(pair, &case.settings, case.resolution);
-            let (pinion, pinion_reused) = flank(&inputs[0], surroundings, (0.0, 0.4 * ELEMENTS_PART))?;
-            let (gear, gear_reused) = flank(&inputs[1], surroundings, (0.4 * ELEMENTS_PART, ELEMENTS_PART))?;
+            let (pinion, pinion_reused) = flank(&inputs[0], context, (0.0, 0.4 * ELEMENTS_PART))?;
+            let (gear, gear_reused) = flank(&inputs[1], context, (0.4 * ELEMENTS_PART, ELEMENTS_PART))?;
             let reused = pinion_reused && gear_reused;
             let compliance = Compliance::finite_elements(pair, &case.settings, [&pinion, &gear]);
             (compliance, reused, if reused { 0.0 } else { ELEMENTS_PART })
@@ -66,21 +66,20 @@ pub fn find(
 /// Finite elements of one gear, from the store or solved (over the given part of the stage's progress); and whether they were stored.
 fn flank(
     input: &FlankInput,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     (from, to): (f64, f64),
 ) -> Result<(FlankFlexibility, bool), SolveError> {
     let key = flank_hash(input.key());
-    let stored = surroundings.stages.load(&key).and_then(|bytes| FlankFlexibility::from_bytes(&bytes).ok());
+    let stored = context.stages.load(&key).and_then(|bytes| FlankFlexibility::from_bytes(&bytes).ok());
     if let Some(flank) = stored {
         return Ok((flank, true));
     }
-    let progress = |fraction: f64| (surroundings.progress)(Stage::Mesh, from + (to - from) * fraction);
-    let flank =
-        FlankFlexibility::new(input, Watch::new(&progress, surroundings.canceled)).map_err(|error| match error {
-            FeError::Canceled(canceled) => canceled.into(),
-            other => SolveError::failed(Stage::Mesh, "finite-elements-failed", &other),
-        })?;
-    surroundings.stages.save(&key, Stage::Mesh, &flank.to_bytes());
+    let progress = |fraction: f64| (context.progress)(Stage::Mesh, from + (to - from) * fraction);
+    let flank = FlankFlexibility::new(input, Watch::new(&progress, context.canceled)).map_err(|error| match error {
+        FeError::Canceled(canceled) => canceled.into(),
+        other => SolveError::failed(Stage::Mesh, "finite-elements-failed", &other),
+    })?;
+    context.stages.save(&key, Stage::Mesh, &flank.to_bytes());
     Ok((flank, false))
 }
 

@@ -1,7 +1,7 @@
 //! Documents with the contact in the equations of motion.
 
 use super::unchecked::solve;
-use super::{CheckedJob, Surroundings, mesh::MeshMemo, point};
+use super::{CheckedJob, SolveContext, mesh::MeshMemo, point};
 use crate::parse_value;
 use herringbone_oracle::Tolerance::{Absolute, Relative};
 use herringbone_oracle::{check, check_worst};
@@ -24,7 +24,7 @@ fn motions_agree_with_a_model_that_keeps_every_slice() {
         let mut input = case["input"].clone();
         input["analysis"]["channels"] = json!(["a_x_left"]);
         input["analysis"]["samples_per_mesh_period"] = json!(1024);
-        let outcome = solve(&parse_value(&input).expect("valid"), &Surroundings::none()).expect("solved");
+        let outcome = solve(&parse_value(&input).expect("valid"), &SolveContext::none()).expect("solved");
         let (mesh, response) = (outcome.result.mesh.expect("mesh"), outcome.result.response.expect("response"));
         let expected = |pointer: &str| case["expected"].pointer(pointer).and_then(Value::as_f64).expect("a number");
         let agrees = |what: &str, got: f64, pointer: &str, within| {
@@ -67,7 +67,7 @@ fn the_mean_tooth_force_is_the_static_one() {
     let errors = [(800.0, 2000.0), (800.0, 6500.0), (40.0, 9000.0), (3000.0, 1200.0)].map(|(torque_nm, rpm)| {
         let value = table1(|v| v["operation"] = json!({"pinion_torque_nm": torque_nm, "pinion_speed_rpm": rpm}));
         let job = parse_value(&value).and_then(CheckedJob::new).expect("feasible");
-        let staged = point::stage(&job, &Surroundings::none(), &MeshMemo::default()).expect("staged");
+        let staged = point::stage(&job, &SolveContext::none(), &MeshMemo::default()).expect("staged");
         let p = staged.parameters().expect("equations");
         let channels = vec![response::ChannelId::parse("f_n_left").expect("a channel")];
         let solved = response::solve(p, &Analysis { channels, ..Analysis::default() }, &Watch::none()).expect("solved");
@@ -91,7 +91,7 @@ fn rigid_supports_leave_one_degree_of_freedom() {
                 "pinion_halves_axial_n_per_um": 1e7, "gear_axial_n_per_um": 1e7, "gear_halves_axial_n_per_um": 1e7});
         });
         let job = parse_value(&value).and_then(CheckedJob::new).expect("feasible");
-        let staged = point::stage(&job, &Surroundings::none(), &MeshMemo::default()).expect("staged");
+        let staged = point::stage(&job, &SolveContext::none(), &MeshMemo::default()).expect("staged");
         let p = staged.parameters().expect("equations").clone();
         let solved = response::solve(&p, &Analysis::default(), &Watch::none()).expect("solved");
         let contact = p.halves[0].contact_force.clone().expect("a contact force");
@@ -134,7 +134,7 @@ fn rigid_supports_leave_one_degree_of_freedom() {
 fn no_pulse_is_applied_where_the_contact_is_in_the_equations() {
     let rms = |impact: Value| {
         let value = table1(|v| v["model"]["impact"] = impact);
-        let result = solve(&parse_value(&value).expect("valid"), &Surroundings::none()).expect("solved").result;
+        let result = solve(&parse_value(&value).expect("valid"), &SolveContext::none()).expect("solved").result;
         (
             result.response.expect("response").rms.mesh_circumferential_acceleration_m_s2.left,
             result.impact.map(|i| i.force_n),

@@ -1,7 +1,7 @@
 //! Documents at the limits of what geometry and compliance can do, through all stages.
 
 use super::unchecked::{check, solve};
-use super::{CheckedJob, Outcome, Surroundings};
+use super::{CheckedJob, Outcome, SolveContext};
 use crate::drawing::Drawing;
 use crate::result::JobResult;
 use crate::{DocumentError, Violation, parse_value};
@@ -58,7 +58,7 @@ fn large(center_distance_mm: f64) -> Value {
 
 fn solved(value: &Value) -> JobResult {
     let document = parse_value(value).expect("valid");
-    let Outcome { result, .. } = solve(&document, &Surroundings::none()).unwrap_or_else(|e| panic!("{e}: {value}"));
+    let Outcome { result, .. } = solve(&document, &SolveContext::none()).unwrap_or_else(|e| panic!("{e}: {value}"));
     result
 }
 

@@ -5,7 +5,7 @@ use super::equations::{MotionPlane, given_stiffness};
 use super::hash::mesh_hash;
 use super::mesh_force::{self, MeshForces};
 use super::prepare::Prepared;
-use super::{SolveError, Stage, Surroundings};
+use super::{SolveContext, SolveError, Stage};
 use crate::document::{
     BodyInput, Elements, Fidelity, JobDocument, JobKind, Ltca, MeshForce, MeshStiffness, StiffnessLaw,
 };
@@ -152,16 +152,16 @@ pub fn run(
     document: &JobDocument,
     prepared: &Prepared,
     plane: &MotionPlane,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<(MeshStage, Vec<&'static str>), SolveError> {
     match &document.model.mesh_stiffness {
         MeshStiffness::Ltca(ltca) => {
             let case = ContactCase::new(document, ltca, prepared);
-            let (contact, reused) = loaded_contact(&case, &prepared.pair, surroundings, memo)?;
+            let (contact, reused) = loaded_contact(&case, &prepared.pair, context, memo)?;
             let mut stage = from_contact(&contact, ltca, prepared, plane);
             if document.model.mesh_force == MeshForce::Contact && document.kind != JobKind::Mesh {
-                let forces = mesh_force::run(&case, &prepared.pair, plane, surroundings, memo)?;
+                let forces = mesh_force::run(&case, &prepared.pair, plane, context, memo)?;
                 stage.summary.contact_force = Some(forces.summary.clone());
                 stage.stiffness = tangent_stiffness(&contact, plane);
                 stage.stagger_included = false;
@@ -183,20 +183,20 @@ pub fn run(
 fn loaded_contact(
     case: &ContactCase,
     pair: &Pair,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<(Arc<LoadedContact>, Vec<&'static str>), SolveError> {
     let key = mesh_hash(case);
     if let Some(contact) = memo.contacts.get(&key) {
         return Ok((contact, vec![Stage::Mesh.as_str()]));
     }
-    let stored = surroundings.stages.load(&key).and_then(|bytes| serde_json::from_slice::<LoadedContact>(&bytes).ok());
+    let stored = context.stages.load(&key).and_then(|bytes| serde_json::from_slice::<LoadedContact>(&bytes).ok());
     let (contact, reused) = match stored {
         Some(contact) => (contact, vec![Stage::Mesh.as_str()]),
         None => {
-            let found = compliance::find(case, pair, surroundings, &memo.compliances)?;
-            let contact = solve_contact(case, pair, &found, surroundings)?;
-            surroundings.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&contact).unwrap_or_default());
+            let found = compliance::find(case, pair, context, &memo.compliances)?;
+            let contact = solve_contact(case, pair, &found, context)?;
+            context.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&contact).unwrap_or_default());
             (contact, if found.elements_reused { vec!["finite_elements"] } else { Vec::new() })
         }
     };
@@ -209,10 +209,10 @@ fn solve_contact(
     case: &ContactCase,
     pair: &Pair,
     found: &compliance::Found,
-    surroundings: &Surroundings,
+    context: &SolveContext,
 ) -> Result<LoadedContact, SolveError> {
-    let progress = |fraction: f64| (surroundings.progress)(Stage::Mesh, found.done + (1.0 - found.done) * fraction);
-    let watch = Watch::new(&progress, surroundings.canceled);
+    let progress = |fraction: f64| (context.progress)(Stage::Mesh, found.done + (1.0 - found.done) * fraction);
+    let watch = Watch::new(&progress, context.canceled);
     let (torque_nm, stagger) = (case.torque_nm, case.half_stagger);
     let solve = if torque_nm < 0.0 { contact::solve_coast_halves } else { contact::solve_pair_of_halves };
     solve(pair, torque_nm.abs(), stagger, &found.compliance, &case.settings, watch).map_err(contact_failed)

@@ -4,7 +4,7 @@ use super::compliance;
 use super::equations::MotionPlane;
 use super::hash::force_hash;
 use super::mesh::{ContactCase, MeshMemo, contact_failed};
-use super::{SolveError, Stage, Surroundings};
+use super::{SolveContext, SolveError, Stage};
 use crate::result::ContactForceTable;
 use herringbone_physics::contact::{ForceTable, SplineKnots, same_gaps};
 use herringbone_physics::dynamics::{ContactForce, FlankForce};
@@ -30,21 +30,20 @@ fn tables(
     case: &ContactCase,
     pair: &Pair,
     flanks: Flanks,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<Arc<Vec<ForceTable>>, SolveError> {
     let key = force_hash(case, flanks.are_idle);
     if let Some(tables) = memo.forces.get(&key) {
         return Ok(tables);
     }
-    let stored =
-        surroundings.stages.load(&key).and_then(|bytes| serde_json::from_slice::<Vec<ForceTable>>(&bytes).ok());
+    let stored = context.stages.load(&key).and_then(|bytes| serde_json::from_slice::<Vec<ForceTable>>(&bytes).ok());
     let tables = match stored {
         Some(tables) => tables,
         None => {
-            let found = compliance::find(case, pair, surroundings, &memo.compliances)?;
+            let found = compliance::find(case, pair, context, &memo.compliances)?;
             let quiet = |_: f64| {};
-            let watch = Watch::new(&quiet, surroundings.canceled);
+            let watch = Watch::new(&quiet, context.canceled);
             let force_n = case.half_force_n(pair).abs();
             let mut settings = case.settings;
             if flanks.are_idle {
@@ -56,7 +55,7 @@ fn tables(
                 .map(|&half| ForceTable::new(flanks.pair, half, force_n, &found.compliance, &settings, watch))
                 .collect();
             let tables = tables.map_err(contact_failed)?;
-            surroundings.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&tables).unwrap_or_default());
+            context.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&tables).unwrap_or_default());
             tables
         }
     };
@@ -81,17 +80,17 @@ pub fn run(
     case: &ContactCase,
     pair: &Pair,
     plane: &MotionPlane,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<MeshForces, SolveError> {
     let coast = pair.coast();
     let driven = case.torque_nm < 0.0;
     let (working, idle) = if driven { (&coast, pair) } else { (pair, &coast) };
-    let loaded = tables(case, pair, Flanks { pair: working, are_idle: false }, surroundings, memo)?;
+    let loaded = tables(case, pair, Flanks { pair: working, are_idle: false }, context, memo)?;
     let unloaded = if same_flanks(working, idle) {
         loaded.clone()
     } else {
-        tables(case, pair, Flanks { pair: idle, are_idle: true }, surroundings, memo)?
+        tables(case, pair, Flanks { pair: idle, are_idle: true }, context, memo)?
     };
     let of_half = |tables: &'_ Arc<Vec<ForceTable>>, half: usize| half.min(tables.len() - 1);
     let force = |half: usize| {

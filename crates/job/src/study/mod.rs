@@ -82,20 +82,22 @@ impl StageStore for NoStageStore {
     fn save(&self, _key: &str, _stage: Stage, _bytes: &[u8]) {}
 }
 
-/// What a solve is given from outside besides the document.
-pub struct Surroundings<'a> {
+/// Services that a solve uses besides its document: stored stages and points, progress, cancellation, a clock.
+pub struct SolveContext<'a> {
+    /// Results of stages, stored for reuse.
     pub stages: &'a dyn StageStore,
-    /// Points of this sweep.
+    /// Solved points of this sweep.
     pub points: &'a dyn PointStore,
     /// Receives (stage, fraction of the whole job done).
     pub progress: &'a (dyn Fn(Stage, f64) + Sync),
+    /// Whether the solve is to stop; asked at every checkpoint.
     pub canceled: &'a (dyn Fn() -> bool + Sync),
     /// Milliseconds since an arbitrary start; the physics itself has no clock.
     pub clock_ms: &'a (dyn Fn() -> f64 + Sync),
 }
 
-impl Surroundings<'static> {
-    /// Nothing is kept, nobody looks on, and no time passes.
+impl SolveContext<'static> {
+    /// A context that stores nothing, reports nothing, never cancels, and whose clock stands still.
     pub fn none() -> Self {
         Self {
             stages: &NoStageStore,
@@ -170,17 +172,17 @@ impl SolveError {
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn solve(job: &CheckedJob, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
+pub fn solve(job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError> {
     let document = job.document();
     let memo = MeshMemo::default();
     if document.kind != JobKind::Sweep {
-        let point = point::solve(job, surroundings, &memo, &Wanted::WHOLE)?;
+        let point = point::solve(job, context, &memo, &Wanted::WHOLE)?;
         return Ok(Outcome { result: point.result, series: point.series });
     }
-    let started_ms = (surroundings.clock_ms)();
-    let kept = surroundings.points.load();
+    let started_ms = (context.clock_ms)();
+    let kept = context.points.load();
     let reused = if kept.rows.is_empty() { Vec::new() } else { vec!["points".to_owned()] };
-    let sweep = sweep::run(document, kept, surroundings, &memo)?;
+    let sweep = sweep::run(document, kept, context, &memo)?;
     let report = job.report();
     let mut result = JobResult {
         geometry: Some(report.geometry),
@@ -192,14 +194,14 @@ pub fn solve(job: &CheckedJob, surroundings: &Surroundings) -> Result<Outcome, S
     };
     result.numerics.reused = reused;
     result.numerics.solver_version = SOLVER_VERSION.to_owned();
-    result.numerics.wall_ms.response = (surroundings.clock_ms)() - started_ms;
+    result.numerics.wall_ms.response = (context.clock_ms)() - started_ms;
     Ok(Outcome { result, series: Vec::new() })
 }
 
 /// Documents that tests check and solve in one go.
 #[cfg(test)]
 mod unchecked {
-    use super::{CheckReport, CheckedJob, Outcome, SolveError, Surroundings};
+    use super::{CheckReport, CheckedJob, Outcome, SolveContext, SolveError};
     use crate::DocumentError;
     use crate::document::JobDocument;
 
@@ -207,8 +209,8 @@ mod unchecked {
         CheckedJob::new(document.clone()).map(|job| job.report())
     }
 
-    pub fn solve(document: &JobDocument, surroundings: &Surroundings) -> Result<Outcome, SolveError> {
-        super::solve(&CheckedJob::new(document.clone())?, surroundings)
+    pub fn solve(document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
+        super::solve(&CheckedJob::new(document.clone())?, context)
     }
 }
 

@@ -4,7 +4,7 @@ use super::check::CheckedJob;
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
 use super::prepare::geometry;
-use super::{Channel, SolveError, Stage, Surroundings, accuracy, bounds, impact, vibration};
+use super::{Channel, SolveContext, SolveError, Stage, accuracy, bounds, impact, vibration};
 use crate::document::{JobDocument, JobKind, Recorded};
 use crate::result::{JobResult, Numerics, Poincare};
 use herringbone_physics::dynamics::{DynamicsError, Parameters};
@@ -44,7 +44,7 @@ impl Wanted<'_> {
 pub struct Staged<'a> {
     result: JobResult,
     parameters: Option<Parameters>,
-    clock: Lap<'a>,
+    stopwatch: Stopwatch<'a>,
 }
 
 impl Staged<'_> {
@@ -57,39 +57,34 @@ impl Staged<'_> {
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn solve(
-    job: &CheckedJob,
-    surroundings: &Surroundings,
-    memo: &MeshMemo,
-    wanted: &Wanted,
-) -> Result<Point, SolveError> {
-    let progress = |stage, fraction| (surroundings.progress)(stage, of_whole(job.document().kind, stage, fraction));
-    let surroundings = &Surroundings { progress: &progress, ..*surroundings };
-    let staged = stage(job, surroundings, memo)?;
-    respond(job.document(), staged, surroundings, wanted)
+pub fn solve(job: &CheckedJob, context: &SolveContext, memo: &MeshMemo, wanted: &Wanted) -> Result<Point, SolveError> {
+    let progress = |stage, fraction| (context.progress)(stage, of_whole(job.document().kind, stage, fraction));
+    let context = &SolveContext { progress: &progress, ..*context };
+    let staged = stage(job, context, memo)?;
+    respond(job.document(), staged, context, wanted)
 }
 
 /// Geometry, contact and impact of a point, and the equations of motion that follow.
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn stage<'a>(job: &CheckedJob, surroundings: &Surroundings<'a>, memo: &MeshMemo) -> Result<Staged<'a>, SolveError> {
+pub fn stage<'a>(job: &CheckedJob, context: &SolveContext<'a>, memo: &MeshMemo) -> Result<Staged<'a>, SolveError> {
     let (document, prepared) = (job.document(), job.prepared());
     let mut numerics = Numerics { solver_version: super::SOLVER_VERSION.to_owned(), ..Numerics::default() };
-    let mut clock = Lap::new(surroundings);
+    let mut stopwatch = Stopwatch::new(context);
     let mut warnings = prepared.warnings.clone();
-    numerics.wall_ms.geometry = clock.lap_ms();
-    (surroundings.progress)(Stage::Geometry, 1.0);
+    numerics.wall_ms.geometry = stopwatch.lap_ms();
+    (context.progress)(Stage::Geometry, 1.0);
 
     let plane = MotionPlane::new(document.model.plane, prepared);
-    let (mesh, reused) = mesh::run(document, prepared, &plane, surroundings, memo)?;
+    let (mesh, reused) = mesh::run(document, prepared, &plane, context, memo)?;
     numerics.reused.extend(reused.into_iter().map(str::to_owned));
     warnings.extend(bounds::of_mesh(document, &mesh.summary));
-    numerics.wall_ms.mesh = clock.lap_ms();
+    numerics.wall_ms.mesh = stopwatch.lap_ms();
 
     let impact = impact::run(document, prepared, &plane, &mesh, &mut warnings);
-    numerics.wall_ms.impact = clock.lap_ms();
-    (surroundings.progress)(Stage::Impact, 1.0);
+    numerics.wall_ms.impact = stopwatch.lap_ms();
+    (context.progress)(Stage::Impact, 1.0);
 
     let parameters = (document.kind != JobKind::Mesh).then(|| {
         let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
@@ -108,7 +103,7 @@ pub fn stage<'a>(job: &CheckedJob, surroundings: &Surroundings<'a>, memo: &MeshM
         numerics,
         ..JobResult::default()
     };
-    Ok(Staged { result, parameters, clock })
+    Ok(Staged { result, parameters, stopwatch })
 }
 
 /// The response of a staged point, where it has equations.
@@ -118,10 +113,10 @@ pub fn stage<'a>(job: &CheckedJob, surroundings: &Surroundings<'a>, memo: &MeshM
 pub fn respond(
     document: &JobDocument,
     staged: Staged,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     wanted: &Wanted,
 ) -> Result<Point, SolveError> {
-    let solve = |parameters| vibration::solve(document, parameters, wanted, surroundings);
+    let solve = |parameters| vibration::solve(document, parameters, wanted, context);
     let response = staged.parameters().map(solve).transpose()?;
     answered(document, staged, wanted, response)
 }
@@ -136,7 +131,7 @@ pub fn answered(
     wanted: &Wanted,
     response: Option<Result<Response, DynamicsError>>,
 ) -> Result<Point, SolveError> {
-    let Staged { mut result, parameters, mut clock } = staged;
+    let Staged { mut result, parameters, mut stopwatch } = staged;
     let (Some(parameters), Some(response)) = (parameters, response) else {
         result.accuracy = Some(accuracy::of(document, &result));
         return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });
@@ -145,7 +140,7 @@ pub fn answered(
     result.response = Some(vibration.summary);
     result.accuracy = Some(accuracy::of(document, &result));
     result.warnings.extend(vibration.warnings);
-    result.numerics.wall_ms.response = clock.lap_ms();
+    result.numerics.wall_ms.response = stopwatch.lap_ms();
     Ok(Point {
         result,
         series: vibration.series,
@@ -167,17 +162,18 @@ fn of_whole(kind: JobKind, stage: Stage, fraction: f64) -> f64 {
     start + (end - start) * fraction.clamp(0.0, 1.0)
 }
 
-/// Time from lap to lap by the clock of the surroundings.
-struct Lap<'a> {
+/// Times the stages of a point by the clock of the context.
+struct Stopwatch<'a> {
     clock_ms: &'a (dyn Fn() -> f64 + Sync),
     last_ms: f64,
 }
 
-impl<'a> Lap<'a> {
-    fn new(surroundings: &Surroundings<'a>) -> Self {
-        Self { clock_ms: surroundings.clock_ms, last_ms: (surroundings.clock_ms)() }
+impl<'a> Stopwatch<'a> {
+    fn new(context: &SolveContext<'a>) -> Self {
+        Self { clock_ms: context.clock_ms, last_ms: (context.clock_ms)() }
     }
 
+    /// Milliseconds since the last call, or since the stopwatch was made.
     fn lap_ms(&mut self) -> f64 {
         let now_ms = (self.clock_ms)();
         now_ms - std::mem::replace(&mut self.last_ms, now_ms)

@@ -4,7 +4,7 @@ use super::axes;
 use super::check::CheckedJob;
 use super::mesh::MeshMemo;
 use super::point::{self, Point, Wanted};
-use super::{SolveError, Surroundings, vibration};
+use super::{SolveContext, SolveError, vibration};
 use crate::DocumentError;
 use crate::document::JobDocument;
 use crate::result::{PerHalf, SweepPoint};
@@ -38,10 +38,10 @@ pub fn solve(
     sweep: &JobDocument,
     values: Vec<f64>,
     start: Option<&[f64]>,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<Solved, SolveError> {
-    let quiet = Surroundings { progress: &|_, _| {}, ..*surroundings };
+    let quiet = SolveContext { progress: &|_, _| {}, ..*context };
     let wanted = Wanted { start, whole: false, record: &sweep.record };
     let solved = job(base, sweep, &values).and_then(|job| point::solve(&job, &quiet, memo, &wanted));
     match solved {
@@ -58,10 +58,10 @@ pub fn solve_together(
     base: &JobDocument,
     sweep: &JobDocument,
     group: Vec<Vec<f64>>,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<Vec<Solved>, SolveError> {
-    let quiet = Surroundings { progress: &|_, _| {}, ..*surroundings };
+    let quiet = SolveContext { progress: &|_, _| {}, ..*context };
     let wanted = Wanted { start: None, whole: false, record: &sweep.record };
     let staged: Vec<_> = group
         .iter()
@@ -86,7 +86,7 @@ pub fn solve_together(
         }
     }
     let mut responses: Vec<Option<Result<Response, DynamicsError>>> = group.iter().map(|_| None).collect();
-    let watch = Watch::new(&|_| {}, surroundings.canceled);
+    let watch = Watch::new(&|_| {}, context.canceled);
     for (analysis, places, points) in asked {
         for (i, response) in places.into_iter().zip(response::solve_many(&points, analysis, &watch)?) {
             responses[i] = Some(response);

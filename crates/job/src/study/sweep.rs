@@ -5,7 +5,7 @@ use super::branches::{self, Way};
 use super::mesh::MeshMemo;
 use super::points::{KeptPoints, LineEnd};
 use super::row;
-use super::{SolveError, Stage, Surroundings, answer, campbell};
+use super::{SolveContext, SolveError, Stage, answer, campbell};
 use crate::document::{Axis, Continuation, JobDocument, MethodInput, Recorded};
 use crate::result::{Sweep, SweepAxis, SweepPoint};
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ const SIDE_BY_SIDE: usize = 32;
 pub fn run(
     document: &JobDocument,
     kept: KeptPoints,
-    surroundings: &Surroundings,
+    context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<Sweep, SolveError> {
     let base = base(document);
@@ -46,7 +46,7 @@ pub fn run(
     };
     let count = |solved: usize| {
         let count = done.fetch_add(solved, Ordering::Relaxed) + solved;
-        (surroundings.progress)(Stage::Sweep, count as f64 / all as f64);
+        (context.progress)(Stage::Sweep, count as f64 / all as f64);
     };
     let axes = document.axes.iter().map(|axis| SweepAxis {
         pointer: axis.pointer.clone(),
@@ -61,9 +61,9 @@ pub fn run(
     if ways.is_empty() {
         let solve = |points: &[usize]| -> Result<Vec<SweepPoint>, SolveError> {
             let group = points.iter().map(|position| values(*position)).collect();
-            let solved = row::solve_together(&base, document, group, surroundings, memo)?;
+            let solved = row::solve_together(&base, document, group, context, memo)?;
             let rows: Vec<SweepPoint> = solved.into_iter().map(|solved| solved.row).collect();
-            points.iter().zip(&rows).for_each(|(position, row)| surroundings.points.save(*position, row, None));
+            points.iter().zip(&rows).for_each(|(position, row)| context.points.save(*position, row, None));
             count(points.len());
             Ok(rows)
         };
@@ -80,10 +80,10 @@ pub fn run(
             count(followed.len());
             for &index in &order[followed.len()..] {
                 let position = line * length + index;
-                let mut solved = row::solve(&base, document, values(position), state.as_deref(), surroundings, memo)?;
+                let mut solved = row::solve(&base, document, values(position), state.as_deref(), context, memo)?;
                 solved.row.branch = Some(way.word().to_owned());
                 let end = LineEnd { line, position, state: solved.end_state };
-                surroundings.points.save(position, &solved.row, Some(&end));
+                context.points.save(position, &solved.row, Some(&end));
                 state = end.state;
                 followed.push(solved.row);
                 count(1);
@@ -110,7 +110,7 @@ pub fn run(
         }
         sweep.points = rows.into_iter().flatten().collect();
     }
-    sweep.campbell = campbell::run(&base, document, surroundings, memo)?;
+    sweep.campbell = campbell::run(&base, document, context, memo)?;
     Ok(sweep)
 }
 

@@ -109,8 +109,8 @@ fn a_hash_depends_on_what_decides_and_on_nothing_else() {
 }
 
 fn solved(value: &Value) -> Outcome {
-    let surroundings = Surroundings::none();
-    solve(&document(value), &surroundings).expect("solved")
+    let context = SolveContext::none();
+    solve(&document(value), &context).expect("solved")
 }
 
 /// Table 1 without what makes it vibrate.
@@ -217,8 +217,8 @@ fn a_sweep_that_leaves_the_range_is_refused_and_one_that_meets_an_impossible_gea
 
 #[test]
 fn a_canceled_job_stops() {
-    let surroundings = Surroundings { canceled: &|| true, ..Surroundings::none() };
-    let outcome = solve(&document(&example("table1")), &surroundings);
+    let context = SolveContext { canceled: &|| true, ..SolveContext::none() };
+    let outcome = solve(&document(&example("table1")), &context);
     assert!(matches!(outcome, Err(SolveError::Canceled(_))));
 }
 
@@ -236,11 +236,11 @@ impl StageStore for Memory {
 #[test]
 fn the_contact_analysis_is_kept_and_taken_again() {
     let memory = Memory::default();
-    let surroundings = Surroundings { stages: &memory, ..Surroundings::none() };
-    let first = solve(&document(&example("table1")), &surroundings).expect("solved").result;
+    let context = SolveContext { stages: &memory, ..SolveContext::none() };
+    let first = solve(&document(&example("table1")), &context).expect("solved").result;
     let mut faster = example("table1");
     faster["operation"]["pinion_speed_rpm"] = json!(2500.0);
-    let second = solve(&document(&faster), &surroundings).expect("solved").result;
+    let second = solve(&document(&faster), &context).expect("solved").result;
     assert_eq!((first.numerics.reused.len(), second.numerics.reused), (0, vec!["mesh".to_owned()]));
     assert_eq!(first.mesh, second.mesh);
 }
@@ -248,19 +248,19 @@ fn the_contact_analysis_is_kept_and_taken_again() {
 #[test]
 fn finite_elements_are_solved_once_per_gear() {
     let memory = Memory::default();
-    let surroundings = Surroundings { stages: &memory, ..Surroundings::none() };
+    let context = SolveContext { stages: &memory, ..SolveContext::none() };
     let mut value = example("table1");
     value["kind"] = json!("mesh");
     value["design"]["face_width_mm"] = json!(30.0);
     value["model"]["mesh_stiffness"] = json!({"source": "ltca", "fidelity": "fe", "elements": "coarse"});
     let mut solve_at = |torque_nm: f64| {
         value["operation"]["pinion_torque_nm"] = json!(torque_nm);
-        solve(&document(&value), &surroundings).expect("solved").result
+        solve(&document(&value), &context).expect("solved").result
     };
     let (first, second) = (solve_at(800.0), solve_at(400.0));
     assert_eq!((first.numerics.reused.len(), &second.numerics.reused), (0, &vec!["finite_elements".to_owned()]));
     value["model"]["mesh_stiffness"] = json!({"source": "ltca"});
-    let analytic = solve(&document(&value), &surroundings).expect("solved").result;
+    let analytic = solve(&document(&value), &context).expect("solved").result;
     let mean = |result: &crate::result::JobResult| result.mesh.as_ref().map_or(0.0, |m| m.stiffness_mean_n_per_um);
     let ratio = mean(&analytic) / mean(&second);
     check_value("Job: fidelities", "narrow source pair, mean stiffness, analytic over fe", ratio, 1.0, Absolute(0.05));
@@ -524,8 +524,8 @@ fn progress_is_that_of_the_whole_job_and_never_goes_back() {
         value["kind"] = json!(kind);
         let told = Mutex::new(Vec::new());
         let progress = |_: Stage, fraction: f64| told.lock().expect("unpoisoned").push(fraction);
-        let surroundings = Surroundings { progress: &progress, ..Surroundings::none() };
-        solve(&document(&value), &surroundings).expect("solved");
+        let context = SolveContext { progress: &progress, ..SolveContext::none() };
+        solve(&document(&value), &context).expect("solved");
         let told = told.into_inner().expect("unpoisoned");
         assert!(told.windows(2).all(|pair| pair[0] <= pair[1]), "{kind}: {told:?}");
         assert!(told[0] < 0.05 && told.iter().all(|fraction| (0.0..=1.0).contains(fraction)), "{kind}: {told:?}");
@@ -573,14 +573,14 @@ fn a_sweep_that_was_stopped_goes_on_where_it_was() {
             json!({"source": "given", "mean_n_per_um": 900.0, "harmonics": [{"amplitude": 0.2}]});
         value["model"]["impact"] = json!({"source": "none"});
         let document = document(&value);
-        let whole = solve(&document, &Surroundings::none()).expect("solved").result;
+        let whole = solve(&document, &SolveContext::none()).expect("solved").result;
         let points = Points::default();
         let mut runs = 0;
         let pieced = loop {
             let (before, limit) = (points.saved.load(Ordering::Relaxed), 1 + runs % 3);
             let canceled = || points.saved.load(Ordering::Relaxed) >= before + limit;
             runs += 1;
-            match solve(&document, &Surroundings { points: &points, canceled: &canceled, ..Surroundings::none() }) {
+            match solve(&document, &SolveContext { points: &points, canceled: &canceled, ..SolveContext::none() }) {
                 Ok(outcome) => break outcome.result,
                 Err(SolveError::Canceled(_)) => assert!(runs < 40, "no run gets further"),
                 Err(error) => panic!("{error}"),

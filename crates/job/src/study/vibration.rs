@@ -1,7 +1,7 @@
 //! The response stage: the steady vibration of the pair and its statistics.
 
 use super::point::Wanted;
-use super::{Channel, SolveError, Stage, Surroundings, answer, bounds};
+use super::{Channel, SolveContext, SolveError, Stage, answer, bounds};
 use crate::document::{IntegratorInput, JobDocument, MethodInput, Recorded};
 use crate::result::{self, Numerics};
 use crate::{DocumentError, Violation};
@@ -66,11 +66,11 @@ pub fn solve(
     document: &JobDocument,
     parameters: &Parameters,
     wanted: &Wanted,
-    surroundings: &Surroundings,
+    context: &SolveContext,
 ) -> Result<Result<response::Response, DynamicsError>, DocumentError> {
     let analysis = analysis(document, wanted)?;
-    let progress = |fraction: f64| (surroundings.progress)(Stage::Response, fraction);
-    let watch = Watch::new(&progress, surroundings.canceled);
+    let progress = |fraction: f64| (context.progress)(Stage::Response, fraction);
+    let watch = Watch::new(&progress, context.canceled);
     Ok(response::solve(parameters, &analysis, &watch))
 }
 

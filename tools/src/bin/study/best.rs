@@ -2,12 +2,12 @@
 
 use crate::Study;
 use crate::ask::{Outcome, number};
+use crate::contact::Answer;
 use crate::documents::{contact, table1, with, with_contact, without_corner_contact};
 use crate::mechanisms::{Curve, lowest};
 use crate::page::sig;
 use crate::svg::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
 use crate::ways::WAYS;
-use crate::contact::Answer;
 use serde_json::{Value, json};
 
 /// One way of changing the contact ratio with the contact in the equations.
