@@ -1,5 +1,5 @@
-//! Bytes as a job document: reading never panics; what is read reads back as itself when written out; whether the gear can
-//! exist is answered without a panic.
+//! Bytes as a job document: reading never panics; what is read reads back as itself when written out; whether the gear
+//! can exist is answered without a panic.
 
 #![no_main]
 

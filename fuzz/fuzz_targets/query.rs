@@ -1,5 +1,6 @@
-//! Bytes as the path, query and headers of requests that read: never a panic, never a failure of the service, and a problem
-//! whenever something is refused. The input's first byte chooses the path; then lines: the query, and headers as `name: value`.
+//! Bytes as the path, query and headers of requests that read: never a panic, never a failure of the service, and a
+//! problem whenever something is refused. The input's first byte chooses the path; then lines: the query, and headers
+//! as `name: value`.
 
 #![no_main]
 
@@ -12,9 +13,7 @@ use herringbone::work::{Jobs, Solver, WorkConfig};
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
 use herringbone_job::result::JobResult;
-use herringbone::store::{Store, StoreConfig};
-use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveError, SolveContext};
-use herringbone::work::{Jobs, Solver, WorkConfig};
+use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveContext, SolveError};
 use http_body_util::BodyExt;
 use jiff::Timestamp;
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! `herringbone check`: geometry and warnings of a document, nothing solved.
+//! `herringbone check`: checks a document without solving it.
 
 use super::input::{invalid, read_document};
 use clap::Args;
@@ -8,12 +8,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
-pub struct Check {
+pub struct CheckArguments {
     /// Job document (JSON); `-` reads standard input.
     file: PathBuf,
 }
 
-pub fn run(arguments: Check) -> ExitCode {
+pub fn run(arguments: CheckArguments) -> ExitCode {
     let document = match read_document(&arguments.file) {
         Ok(document) => document,
         Err(code) => return code,

@@ -1,57 +1,74 @@
-//! Stylesheets, script modules and the icon, built into the binary.
+//! Stylesheets, script modules and the icon, built into the binary, and the module that is made from the declarations
+//! of results.
 
+use super::quantities;
 use axum::extract::Path;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use headers::{HeaderMapExt, IfNoneMatch};
 use rust_embed::{EmbeddedFile, RustEmbed};
-use std::fmt::Write;
+use sha2::{Digest, Sha256};
+use std::borrow::Cow;
 
 #[derive(RustEmbed)]
 #[folder = "src/web/assets/"]
 struct Files;
 
-/// `/assets/{*file}`: revalidated by entity tag, so that a new version is seen at once.
+/// Module made by [`quantities`].
+const QUANTITIES: &str = "common/quantities.js";
+
+/// `/assets/{*file}`: revalidated by entity tag, so that a new version is used at once.
 pub async fn file(Path(name): Path<String>, headers: HeaderMap) -> Response {
-    let Some((file, media_type)) = find(&name) else {
+    let Some((content, media_type)) = find(&name) else {
         return super::not_found().await;
     };
-    let tag = entity_tag(&file);
-    let fresh = headers
-        .get(header::IF_NONE_MATCH)
-        .and_then(|value| value.to_str().ok())
-        .is_some_and(|known| known.split(',').any(|known| known.trim().trim_start_matches("W/") == tag));
+    let tag = entity_tag(&content);
+    let known: Option<IfNoneMatch> = headers.typed_get();
+    let is_known = known.zip(tag.parse().ok()).is_some_and(|(known, tag)| !known.precondition_passes(&tag));
     let caching = [(header::ETAG, tag), (header::CACHE_CONTROL, "no-cache".to_owned())];
-    if fresh {
+    if is_known {
         return (StatusCode::NOT_MODIFIED, caching).into_response();
     }
-    let content = [
+    let kind = [
         (header::CONTENT_TYPE, HeaderValue::from_static(media_type)),
         (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
     ];
-    (caching, content, file.data.into_owned()).into_response()
+    (caching, kind, content.data.into_owned()).into_response()
 }
 
 /// The text of a file.
 pub fn text(name: &str) -> Option<String> {
-    String::from_utf8(Files::get(name)?.data.into_owned()).ok()
+    String::from_utf8(find(name)?.0.data.into_owned()).ok()
 }
 
-fn find(name: &str) -> Option<(EmbeddedFile, &'static str)> {
+/// The bytes of a file, and the digest of which its entity tag is made.
+struct Content {
+    data: Cow<'static, [u8]>,
+    sha256: [u8; 32],
+}
+
+impl From<EmbeddedFile> for Content {
+    fn from(file: EmbeddedFile) -> Self {
+        Self { sha256: file.metadata.sha256_hash(), data: file.data }
+    }
+}
+
+fn find(name: &str) -> Option<(Content, &'static str)> {
     let media_type = match name.rsplit_once('.')?.1 {
         "css" => "text/css; charset=utf-8",
         "js" => "text/javascript; charset=utf-8",
         "svg" => "image/svg+xml",
         _ => return None,
     };
-    Some((Files::get(name)?, media_type))
+    let content = if name == QUANTITIES {
+        let data = quantities::module().as_bytes();
+        Content { sha256: Sha256::digest(data).into(), data: data.into() }
+    } else {
+        Files::get(name)?.into()
+    };
+    Some((content, media_type))
 }
 
-fn entity_tag(file: &EmbeddedFile) -> String {
-    let mut tag = String::from("\"");
-    for byte in &file.metadata.sha256_hash()[..12] {
-        // Writing to a String cannot fail.
-        let _ = write!(tag, "{byte:02x}");
-    }
-    tag.push('"');
-    tag
+fn entity_tag(content: &Content) -> String {
+    format!("\"{}\"", hex::encode(&content.sha256[..12]))
 }

@@ -62,12 +62,13 @@ async fn an_identifier_is_escaped() {
 #[tokio::test]
 async fn assets_are_revalidated_by_entity_tag() {
     let server = server();
-    let first = server.get("/assets/common/style.css").await;
-    first.assert_status_ok();
-    let again =
-        server.get("/assets/common/style.css").add_header(header::IF_NONE_MATCH, first.header(header::ETAG)).await;
-    assert_eq!(again.status_code(), StatusCode::NOT_MODIFIED);
-    assert!(again.text().is_empty());
+    for path in ["/assets/common/style.css", "/assets/common/quantities.js"] {
+        let first = server.get(path).await;
+        first.assert_status_ok();
+        let again = server.get(path).add_header(header::IF_NONE_MATCH, first.header(header::ETAG)).await;
+        assert_eq!(again.status_code(), StatusCode::NOT_MODIFIED, "{path}");
+        assert!(again.text().is_empty());
+    }
 }
 
 #[tokio::test]

@@ -1,31 +1,31 @@
-//! What a job is given to: the study room, or a double in tests.
+//! The interface to the calculation.
 
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
 use herringbone_job::study::{self, CheckedJob, Outcome, SolveContext, SolveError};
 
-/// Checks and solves documents. Called on plain threads; may take long and may panic.
+/// Checks and solves documents. Called on threads outside the async runtime; calls may take long and may panic.
 pub trait Solver: Send + Sync + 'static {
     /// Checks a document, in milliseconds.
     ///
     /// # Errors
-    /// Why the gear cannot exist or is not supported.
+    /// The gear is infeasible or not supported.
     fn check(&self, document: JobDocument) -> Result<CheckedJob, DocumentError>;
 
-    /// Content hash of everything that decides the result.
+    /// Hash of all inputs that determine the result.
     fn input_hash(&self, document: &JobDocument) -> String;
 
     /// Solves a job.
     ///
     /// # Errors
-    /// Why there is no result.
+    /// [`SolveError`].
     fn solve(&self, job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError>;
 
-    /// Results and stages stored under another version are not reused.
+    /// Version of the calculation; results and stages of other versions are not reused.
     fn version(&self) -> &'static str;
 }
 
-/// The study room.
+/// The calculation of the crate `herringbone-job`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct StudySolver;
 

@@ -77,10 +77,10 @@ async fn two_jobs_are_compared_and_a_third_is_added() {
 
         // The numbers are the API's; the differences are theirs.
         let rms = |result: &Value| result["response"]["rms"]["mesh_circumferential_acceleration_m_s2"]["left"].clone();
-        let (shown, by) = cell(browser, "circumferential-both", &a).await;
+        let (shown, by) = cell(browser, "/response/rms/mesh_circumferential_acceleration_m_s2/{half}-both", &a).await;
         near(shown, &rms(&first));
         assert_eq!(by, "", "the reference");
-        let (shown, by) = cell(browser, "circumferential-both", &b).await;
+        let (shown, by) = cell(browser, "/response/rms/mesh_circumferential_acceleration_m_s2/{half}-both", &b).await;
         near(shown, &rms(&second));
         let percent = 100.0 * (rms(&second).as_f64().unwrap() / rms(&first).as_f64().unwrap() - 1.0);
         let (relative, level) = by.split_once(" %, ").unwrap();
@@ -88,9 +88,9 @@ async fn two_jobs_are_compared_and_a_third_is_added() {
         assert!((said / percent - 1.0).abs() < 1e-2, "{by}, and it is {percent} %");
         assert!(level.ends_with(" dB"), "{by}");
         for (name, part, field) in [
-            ("force_n", "impact", "force_n"),
-            ("transmission_error_pp_um", "mesh", "transmission_error_pp_um"),
-            ("total_contact_ratio", "geometry", "total_contact_ratio"),
+            ("/impact/force_n", "impact", "force_n"),
+            ("/mesh/transmission_error_pp_um", "mesh", "transmission_error_pp_um"),
+            ("/geometry/total_contact_ratio", "geometry", "total_contact_ratio"),
         ] {
             near(cell(browser, name, &b).await.0, &second[part][field]);
         }
@@ -115,7 +115,10 @@ async fn two_jobs_are_compared_and_a_third_is_added() {
         );
         let expected = json!(["/design/helix_angle_deg", "/operation/pinion_speed_rpm", "/operation/pinion_torque_nm"]);
         assert_eq!(browser.value(pointers).await, expected);
-        near(cell(browser, "circumferential-both", &c).await.0, &rms(&third));
+        near(
+            cell(browser, "/response/rms/mesh_circumferential_acceleration_m_s2/{half}-both", &c).await.0,
+            &rms(&third),
+        );
         for figure in ["error", "series", "spectrum"] {
             browser
                 .until(&format!(
@@ -131,7 +134,7 @@ async fn two_jobs_are_compared_and_a_third_is_added() {
         // Another reference; then the first goes, and the way back leads to it.
         browser.element(&format!("[data-act='refer {b}']")).await.click().await.unwrap();
         browser.until(&format!("new URLSearchParams(location.search).get('reference') === '{b}'")).await;
-        let (_, by) = cell(browser, "circumferential-both", &a).await;
+        let (_, by) = cell(browser, "/response/rms/mesh_circumferential_acceleration_m_s2/{half}-both", &a).await;
         assert!(by.contains(" %"), "{by}");
         browser.element(&format!("[data-act='remove {a}']")).await.click().await.unwrap();
         browser.until(&format!("document.querySelector('#compare').dataset.ready === '{b},{c}'")).await;

@@ -211,7 +211,7 @@ fn is_number(pointer: &str) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 100, ..ProptestConfig::default() })]
 
     /// Parse, fill in, write out, parse: the same document, and the same text when written again.
     #[test]

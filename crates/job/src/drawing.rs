@@ -13,16 +13,16 @@ use serde::Serialize;
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
 pub struct Drawing {
     /// How far the pair stays from what is warned of or refused.
-    pub margins: Vec<Margin>,
-    pub section: Section,
+    pub margins: Vec<MarginResult>,
+    pub section: DrawnSection,
     pub plane_of_action: PlaneOfAction,
 }
 
 /// The transverse section: origin at the pitch point, second axis along the line of centres towards the gear. The pinion turns
 /// clockwise and drives.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
-pub struct Section {
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Section))]
+pub struct DrawnSection {
     /// The end of the pinion's axis, `left` or `right`, from which the section is seen: from there the pinion turns clockwise.
     #[cfg_attr(feature = "schema", schema(value_type = String))]
     pub seen_from: Half,
@@ -114,8 +114,8 @@ pub struct DrawnLine {
 
 /// A quantity of one gear that must stay above its limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
-pub struct Margin {
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Margin))]
+pub struct MarginResult {
     /// `tip-thickness` (normal section), `tip-clearance` (to the mate's root), `profile-shift` (coefficient; the rack undercuts
     /// below the limit), `active-profile` (diameter where contact ends; the involute starts at the limit, the root form diameter).
     pub code: String,

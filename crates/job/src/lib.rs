@@ -7,6 +7,7 @@ pub mod drawing;
 mod encoding;
 mod field;
 mod finite;
+pub mod gear_data;
 pub mod grid;
 mod hints;
 mod json;

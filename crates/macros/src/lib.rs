@@ -2,8 +2,10 @@
 
 mod input;
 mod result;
+mod units;
 
 use proc_macro::TokenStream;
+use syn::{DeriveInput, parse_macro_input};
 
 /// Declares the fields of an object of the job document: each field of the struct is one, its doc comment's first paragraph the help that
 /// people read. Implements `crate::field::Input`; see there what follows from it.
@@ -26,7 +28,7 @@ use proc_macro::TokenStream;
 /// fields and settles those that follow from others.
 #[proc_macro_derive(Input, attributes(input))]
 pub fn derive_input(item: TokenStream) -> TokenStream {
-    input::derive_input(syn::parse_macro_input!(item)).unwrap_or_else(|error| error.to_compile_error()).into()
+    input::derive_input(parse_macro_input!(item as DeriveInput)).unwrap_or_else(|error| error.to_compile_error()).into()
 }
 
 /// Declares a closed list of words as an enum: the variants in snake case, or as `#[words(rename = "…")]` says. Implements
@@ -34,5 +36,41 @@ pub fn derive_input(item: TokenStream) -> TokenStream {
 /// and value of each) and `as_str`. `#[words(label = "…")]` is what people read where it is not the word.
 #[proc_macro_derive(Words, attributes(words))]
 pub fn derive_words(item: TokenStream) -> TokenStream {
-    input::derive_words(syn::parse_macro_input!(item)).unwrap_or_else(|error| error.to_compile_error()).into()
+    input::derive_words(parse_macro_input!(item as DeriveInput)).unwrap_or_else(|error| error.to_compile_error()).into()
+}
+
+/// Declares the scalars of a struct of the result: numbers, words and flags, in nested structs too. A field with its
+/// name and its doc comment is the declaration; `#[scalar(…)]` adds to it:
+///
+/// - `label = "…"`: its name for people, in lower case; else the words of its name. On a nested struct: what is added
+///   to the labels of its fields.
+/// - `symbol = "…"`: its symbol, that of ISO 21771 where there is one; what follows an underscore is the index.
+/// - `unit = "…"`: else by the ending of its name.
+/// - `help = "…"`: what it means, for people; else the doc comment.
+/// - `headline`, `headline = N`: it stands among the few numbers that people look for first; N > 0 after those of its
+///   block with a smaller N.
+/// - `change = …`: how two results are compared, a `result::Change`.
+/// - `percent`: a share of 1 that people read in per cent.
+/// - `lower_is_better`: less of it is what a designer looks for.
+/// - `inherits`: the scalar that its struct stands for; label, unit and help are those of the field that holds the
+///   struct.
+///
+/// `#[scalar(halves)]` on a struct: its fields are the values of the left and the right half.
+#[proc_macro_derive(ResultFields, attributes(scalar))]
+pub fn result_fields(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    result::result_fields(&input).unwrap_or_else(syn::Error::into_compile_error).into()
+}
+
+/// Columns of the row of a sweep, a struct with a field `values`: `COLUMNS`, and `of_result`, which fills a row from
+/// the result of a point. `#[column(…)]` makes a field a column:
+///
+/// - `from = "/response/dynamic_factor"`: pointer of the quantity in the result that it holds. With `{half}` in it the
+///   field is an `Option<PerHalf>` and has a column for each half, their names with the half before the unit.
+/// - `on_request`: only in answers that name it.
+/// - `lists(a, b)`: fields of the value that are columns, each a list of numbers.
+#[proc_macro_derive(SweepColumns, attributes(column))]
+pub fn sweep_columns(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    result::sweep_columns(&input).unwrap_or_else(syn::Error::into_compile_error).into()
 }

@@ -1,1 +1,305 @@
-//! The derives of results.
+//! The derives of results: `ResultFields` for the structs of a result, `SweepColumns` for the row of a sweep.
+
+use super::units;
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+use syn::meta::ParseNestedMeta;
+use syn::spanned::Spanned;
+use syn::{Attribute, Data, DeriveInput, Error, Expr, ExprLit, Field, Fields, Lit, LitInt, LitStr, Meta, Result};
+
+/// See [`crate::result_fields`].
+pub fn result_fields(input: &DeriveInput) -> Result<TokenStream> {
+    let name = &input.ident;
+    let mut halves = false;
+    for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("scalar")) {
+        attribute.parse_nested_meta(|meta| {
+            halves = meta.path.is_ident("halves");
+            if halves { Ok(()) } else { Err(meta.error("expected `halves`")) }
+        })?;
+    }
+    let fields = named_fields(input)?;
+    let declarations = if halves {
+        // Both halves have the same fields: those of the left one stand for both.
+        let half = &fields.first().ok_or_else(|| Error::new(name.span(), "expected a field for each half"))?.ty;
+        quote! { <#half as crate::result::ResultFields>::declare(&place.half(), quantities); }
+    } else {
+        fields.iter().map(|field| declaration(field)).collect::<Result<TokenStream>>()?
+    };
+    Ok(quote! {
+        impl crate::result::ResultFields for #name {
+            fn declare(place: &crate::result::Place, quantities: &mut Vec<crate::result::Quantity>) {
+                #declarations
+            }
+        }
+
+        impl crate::result::Optional for #name {
+            type Value = Self;
+
+            fn value(&self) -> Option<&Self> {
+                Some(self)
+            }
+        }
+    })
+}
+
+/// The call by which a field declares its scalars.
+fn declaration(field: &Field) -> Result<TokenStream> {
+    let ty = &field.ty;
+    let name = serialized_name(field)?;
+    let (stem, _, derived_unit) = units::split(&name);
+    let mut attributes = ScalarAttributes::default();
+    for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("scalar")) {
+        attribute.parse_nested_meta(|meta| attributes.read(&meta))?;
+    }
+    let symbol = attributes.symbol.unwrap_or_default();
+    let unit = attributes.unit.unwrap_or_else(|| derived_unit.to_owned());
+    let help = attributes.help.unwrap_or_else(|| documentation(&field.attrs));
+    let (label, is_labelled) = match attributes.label {
+        Some(label) => (label, true),
+        None => (units::words(stem), false),
+    };
+    let headline = match attributes.headline {
+        Some(rank) => quote! { Some(#rank) },
+        None => quote! { None },
+    };
+    let change = match attributes.change {
+        Some(change) => quote! { Some(crate::result::Change::#change) },
+        None => quote! { None },
+    };
+    let (percent, lower_is_better, inherits) = (attributes.percent, attributes.lower_is_better, attributes.inherits);
+    Ok(quote! {
+        <#ty as crate::result::ResultFields>::declare(
+            &place.field(&crate::result::Declaration {
+                name: #name,
+                label: #label,
+                is_labelled: #is_labelled,
+                symbol: #symbol,
+                unit: #unit,
+                help: #help,
+                headline: #headline,
+                percent: #percent,
+                change: #change,
+                lower_is_better: #lower_is_better,
+                inherits: #inherits,
+            }),
+            quantities,
+        );
+    })
+}
+
+/// What `#[scalar(…)]` says of a field.
+#[derive(Default)]
+struct ScalarAttributes {
+    label: Option<String>,
+    symbol: Option<String>,
+    unit: Option<String>,
+    help: Option<String>,
+    headline: Option<u8>,
+    change: Option<Ident>,
+    percent: bool,
+    lower_is_better: bool,
+    inherits: bool,
+}
+
+impl ScalarAttributes {
+    fn read(&mut self, meta: &ParseNestedMeta) -> Result<()> {
+        let name = meta.path.require_ident()?.to_string();
+        match name.as_str() {
+            "label" => self.label = Some(text(meta)?),
+            "symbol" => self.symbol = Some(text(meta)?),
+            "unit" => self.unit = Some(text(meta)?),
+            "help" => self.help = Some(text(meta)?),
+            "headline" if meta.input.peek(syn::Token![=]) => {
+                self.headline = Some(meta.value()?.parse::<LitInt>()?.base10_parse()?);
+            }
+            "headline" => self.headline = Some(0),
+            "change" => self.change = Some(meta.value()?.parse()?),
+            "percent" => self.percent = true,
+            "lower_is_better" => self.lower_is_better = true,
+            "inherits" => self.inherits = true,
+            _ => {
+                return Err(meta.error(
+                    "expected one of label, symbol, unit, help, headline, change, percent, lower_is_better, inherits",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// See [`crate::sweep_columns`].
+pub fn sweep_columns(input: &DeriveInput) -> Result<TokenStream> {
+    let row = &input.ident;
+    let mut columns = TokenStream::new();
+    let mut values = TokenStream::new();
+    for field in named_fields(input)? {
+        let Some(attribute) = field.attrs.iter().find(|attribute| attribute.path().is_ident("column")) else {
+            continue;
+        };
+        let mut attributes = ColumnAttributes::default();
+        if matches!(attribute.meta, Meta::List(_)) {
+            attribute.parse_nested_meta(|meta| attributes.read(&meta))?;
+        }
+        columns.extend(columns_of(row, field, &attributes)?);
+        if let (Some(pointer), Some(name)) = (&attributes.from, &field.ident) {
+            let value = value_at(pointer)?;
+            values.extend(quote! { #name: #value, });
+        }
+    }
+    Ok(quote! {
+        impl #row {
+            /// Every column of the rows, in the order of the fields.
+            pub const COLUMNS: &'static [crate::result::Column] = &[#columns];
+
+            /// The row of a solved point: `values` of the axes, and of the result what has a column.
+            pub fn of_result(values: Vec<f64>, result: &crate::result::JobResult) -> Self {
+                Self { values, #values ..Self::default() }
+            }
+        }
+    })
+}
+
+/// What `#[column(…)]` says of a field.
+#[derive(Default)]
+struct ColumnAttributes {
+    /// Pointer of the quantity in the result.
+    from: Option<LitStr>,
+    on_request: bool,
+    /// Fields of the value that are columns, each a list.
+    lists: Vec<Ident>,
+}
+
+impl ColumnAttributes {
+    fn read(&mut self, meta: &ParseNestedMeta) -> Result<()> {
+        let name = meta.path.require_ident()?.to_string();
+        match name.as_str() {
+            "from" => self.from = Some(meta.value()?.parse()?),
+            "on_request" => self.on_request = true,
+            "lists" => meta.parse_nested_meta(|list| {
+                self.lists.push(list.path.require_ident()?.clone());
+                Ok(())
+            })?,
+            _ => return Err(meta.error("expected one of from, on_request, lists")),
+        }
+        Ok(())
+    }
+}
+
+const HALF: &str = "{half}";
+
+fn columns_of(row: &Ident, field: &Field, attributes: &ColumnAttributes) -> Result<TokenStream> {
+    let ident = field.ident.as_ref().ok_or_else(|| Error::new(field.span(), "expected a named field"))?;
+    let ty = &field.ty;
+    let name = serialized_name(field)?;
+    let on_request = attributes.on_request;
+    let quantity = match &attributes.from {
+        Some(pointer) => quote! { Some(#pointer) },
+        None => quote! { None },
+    };
+    let column = |column: &str, group: &str, half: TokenStream, ty: TokenStream, cell: TokenStream| {
+        quote! {
+            crate::result::Column {
+                name: #column,
+                group: #group,
+                quantity: #quantity,
+                half: #half,
+                kind: <#ty as crate::result::ToCell>::KIND,
+                on_request: #on_request,
+                cell: |row: &#row| #cell,
+            },
+        }
+    };
+    if !attributes.lists.is_empty() {
+        let lists = attributes.lists.iter().map(|list| {
+            let name = format!("{name}_{list}");
+            let cell = quote! { crate::result::Cell::Numbers(row.#ident.as_ref().map(|value| value.#list.as_slice())) };
+            column(&name, &name, quote! { None }, quote! { Option<Vec<f64>> }, cell)
+        });
+        return Ok(lists.collect());
+    }
+    if attributes.from.as_ref().is_some_and(|pointer| pointer.value().contains(HALF)) {
+        let (stem, ending, _) = units::split(&name);
+        let halves = ["left", "right"].map(|half| {
+            let name = format!("{stem}_{half}{ending}");
+            let place = format_ident!("{half}");
+            let cell = quote! { crate::result::Cell::Number(row.#ident.map(|halves| halves.#place)) };
+            column(&name, stem, quote! { Some(#half) }, quote! { Option<f64> }, cell)
+        });
+        return Ok(halves.into_iter().collect());
+    }
+    let cell = quote! { crate::result::ToCell::to_cell(&row.#ident) };
+    Ok(column(&name, &name, quote! { None }, quote! { #ty }, cell))
+}
+
+/// The value at a pointer of the result, as an option; that of both halves where the pointer has `{half}`.
+fn value_at(pointer: &LitStr) -> Result<TokenStream> {
+    let text = pointer.value();
+    if !text.contains(HALF) {
+        return path_value(&text, pointer);
+    }
+    let [left, right] = ["left", "right"].map(|half| path_value(&text.replace(HALF, half), pointer));
+    let (left, right) = (left?, right?);
+    Ok(quote! {
+        match (#left, #right) {
+            (Some(left), Some(right)) => Some(crate::result::PerHalf { left, right }),
+            _ => None,
+        }
+    })
+}
+
+fn path_value(text: &str, pointer: &LitStr) -> Result<TokenStream> {
+    let Some(path) = text.strip_prefix('/') else {
+        return Err(Error::new(pointer.span(), "expected a JSON pointer"));
+    };
+    let mut value = quote! { Some(result) };
+    for segment in path.split('/') {
+        let mut segment = syn::parse_str::<Ident>(segment)
+            .map_err(|_| Error::new(pointer.span(), format!("{segment} is no field")))?;
+        segment.set_span(pointer.span());
+        value = quote! { #value.and_then(|block| crate::result::Optional::value(&block.#segment)) };
+    }
+    Ok(quote! { #value.cloned() })
+}
+
+fn named_fields(input: &DeriveInput) -> Result<Vec<&Field>> {
+    match &input.data {
+        Data::Struct(data) => match &data.fields {
+            Fields::Named(fields) => Ok(fields.named.iter().collect()),
+            _ => Err(Error::new(input.span(), "expected named fields")),
+        },
+        _ => Err(Error::new(input.span(), "expected a struct")),
+    }
+}
+
+/// The name in JSON: that of the field, or of its `#[serde(rename = "…")]`.
+fn serialized_name(field: &Field) -> Result<String> {
+    let mut name = field.ident.as_ref().map(ToString::to_string).unwrap_or_default();
+    for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("serde")) {
+        attribute.parse_nested_meta(|meta| {
+            if meta.path.is_ident("rename") {
+                name = text(&meta)?;
+            } else if meta.input.peek(syn::Token![=]) {
+                meta.value()?.parse::<Expr>()?;
+            }
+            Ok(())
+        })?;
+    }
+    Ok(name)
+}
+
+/// The text of the doc comment, its lines joined.
+fn documentation(attributes: &[Attribute]) -> String {
+    let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
+        Meta::NameValue(meta) if meta.path.is_ident("doc") => match &meta.value {
+            Expr::Lit(ExprLit { lit: Lit::Str(line), .. }) => Some(line.value().trim().to_owned()),
+            _ => None,
+        },
+        _ => None,
+    });
+    lines.collect::<Vec<_>>().join(" ")
+}
+
+/// The string literal of `name = "…"`.
+fn text(meta: &ParseNestedMeta) -> Result<String> {
+    Ok(meta.value()?.parse::<LitStr>()?.value())
+}

@@ -4,12 +4,12 @@ use super::Breakpoints;
 use herringbone::work::Solver;
 use herringbone_job::DocumentError;
 use herringbone_job::document::{JobDocument, JobKind};
-use herringbone_job::result::{JobResult, Sweep, SweepPoint};
+use herringbone_job::result::{JobResult, ReusedStage, SweepPoint, SweepResult};
 use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveContext, SolveError, Stage};
 use herringbone_physics::watch::Canceled;
 
-/// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every calculation passes the
-/// breakpoint `solve`, and the one of its own name.
+/// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every
+/// calculation passes the breakpoint `solve`, and the one of its own name.
 #[derive(Default)]
 pub struct ScriptedSolver {
     pub breakpoints: Breakpoints,
@@ -70,7 +70,7 @@ impl ScriptedSolver {
     /// One point after the other, from those that are kept on; each passes the breakpoint `point N`.
     fn sweep(&self, document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
         let mut rows = context.points.load().rows;
-        let reused = if rows.is_empty() { Vec::new() } else { vec!["points".to_owned()] };
+        let reused = if rows.is_empty() { Vec::new() } else { vec![ReusedStage::Points] };
         let axis = &document.axes[0];
         for position in 0..axis.len() {
             if rows.contains_key(&position) {
@@ -92,7 +92,7 @@ impl ScriptedSolver {
         let mut result = JobResult::default();
         result.numerics.reused = reused;
         let points = (0..axis.len()).filter_map(|position| rows.remove(&position)).collect();
-        result.sweep = Some(Sweep { points, ..Sweep::default() });
+        result.sweep = Some(SweepResult { points, ..SweepResult::default() });
         Ok(Outcome { result, series: Vec::new() })
     }
 }
@@ -103,7 +103,7 @@ fn with_stage(context: &SolveContext) -> Outcome {
     match context.stages.load("key") {
         Some(bytes) => {
             assert_eq!(bytes, b"stage");
-            outcome.result.numerics.reused = vec!["mesh".into()];
+            outcome.result.numerics.reused = vec![ReusedStage::Mesh];
         }
         None => context.stages.save("key", Stage::Mesh, b"stage"),
     }

@@ -4,11 +4,14 @@
 
 use herringbone_job::parse_value;
 use herringbone_job::study::{self, CheckedJob, SolveContext};
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::Arguments;
 use serde_json::Value;
 use std::time::Instant;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let path = std::env::args().nth(1).ok_or("the file of cases is missing")?;
+fn main() -> Result<(), Failure> {
+    let arguments = Arguments::of_process();
+    let path = arguments.word(0).ok_or("the file of cases is missing")?;
     let cases: Value = serde_json::from_slice(&std::fs::read(path)?)?;
     println!(
         "{:55} {:>9} {:>8} {:>8} {:>9} {:>9} {:>8} {:>9} {:>8}",
@@ -55,7 +58,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             (1.0 - response.fraction_in_contact) - expected["fraction_without_contact"].as_f64().unwrap_or(f64::NAN),
             of(mesh.transmission_error_mean_um, "/static/transmission_error_mean_um"),
             of(mesh.transmission_error_harmonics_um[0], "/static/transmission_error_harmonics_um/0"),
-            response.regime,
+            response.regime.as_str(),
             response.rms.mesh_circumferential_acceleration_m_s2.left,
             response.error_estimate,
             numerics.steps,

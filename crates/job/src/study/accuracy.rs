@@ -1,7 +1,7 @@
 //! What a result says of its own errors: of the solution of the equations, and of the model of the mesh.
 
 use crate::document::{BodyInput, DesignInput, Elements, Fidelity, FlankInput, JobDocument, Ltca, MeshStiffness};
-use crate::result::{Accuracy, JobResult, Mesh, ModelError, Sweep};
+use crate::result::{Accuracy, JobResult, Mesh, ModelError, SweepResult};
 
 /// Largest differences that the comparisons with references found, in per cent.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,7 +92,7 @@ pub fn of(document: &JobDocument, result: &JobResult) -> Accuracy {
 }
 
 /// The accuracy of a sweep: the largest numerical error of its points, and the model's for its base document.
-pub fn of_sweep(document: &JobDocument, sweep: &Sweep) -> Accuracy {
+pub fn of_sweep(document: &JobDocument, sweep: &SweepResult) -> Accuracy {
     let errors = sweep.points.iter().filter_map(|point| point.error_estimate).filter(|error| error.is_finite());
     Accuracy { numerical: errors.reduce(f64::max), model: model(document, None) }
 }
@@ -110,10 +110,10 @@ fn model(document: &JobDocument, mesh: Option<&Mesh>) -> ModelError {
             transmission_error_harmonic_percent: None,
             basis: "the mesh stiffness is given: how near it is to the gear's is not known here".to_owned(),
         },
-        MeshStiffness::Iso6336 => told(measured::ISO_6336, ""),
+        MeshStiffness::Iso6336 => model_error(measured::ISO_6336, ""),
         MeshStiffness::Ltca(ltca) => match ltca.fidelity {
             Fidelity::Fe => {
-                told(if ltca.elements == Elements::Coarse { measured::FE_COARSE } else { measured::FE }, "")
+                model_error(if ltca.elements == Elements::Coarse { measured::FE_COARSE } else { measured::FE }, "")
             }
             Fidelity::Analytic => analytic(&document.design, ltca, mesh),
             Fidelity::Uniform => ModelError {
@@ -127,7 +127,7 @@ fn model(document: &JobDocument, mesh: Option<&Mesh>) -> ModelError {
     }
 }
 
-fn told(bound: Bound, notes: &str) -> ModelError {
+fn model_error(bound: Bound, notes: &str) -> ModelError {
     ModelError {
         mesh_stiffness_percent: Some(bound.stiffness),
         transmission_error_harmonic_percent: Some(bound.harmonic),
@@ -166,7 +166,7 @@ fn analytic(design: &DesignInput, ltca: &Ltca, mesh: Option<&Mesh>) -> ModelErro
             notes += note;
         }
     }
-    told(bound, &notes)
+    model_error(bound, &notes)
 }
 
 /// Largest tip relief of any flank.

@@ -155,11 +155,15 @@ pub fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
 }
 
 /// What the pulse of a half does to the equations: longer than the mesh period, or of more than the load.
-pub fn of_pulses(document: &JobDocument, plane: &MotionPlane, pulses: &[Option<dynamics::Impact>; 2]) -> Vec<Warning> {
+pub fn of_pulses(
+    document: &JobDocument,
+    plane: &MotionPlane,
+    pulses: &[Option<dynamics::ImpactExcitation>; 2],
+) -> Vec<Warning> {
     let mut found = Vec::new();
     let longest = pulses.iter().flatten().filter_map(|pulse| match pulse {
-        dynamics::Impact::HalfSine { duration_mesh_periods, .. } => Some(*duration_mesh_periods),
-        dynamics::Impact::Harmonics { .. } => None,
+        dynamics::ImpactExcitation::HalfSine { duration_mesh_periods, .. } => Some(*duration_mesh_periods),
+        dynamics::ImpactExcitation::Harmonics { .. } => None,
     });
     let longest = longest.fold(0.0, f64::max);
     let calculated = match &document.model.impact {
@@ -178,7 +182,7 @@ pub fn of_pulses(document: &JobDocument, plane: &MotionPlane, pulses: &[Option<d
         );
         found.push(warning("pulse-longer-than-period", pointer, detail));
     }
-    let mean_n = pulses.iter().flatten().map(dynamics::Impact::mean_n).fold(0.0, f64::max);
+    let mean_n = pulses.iter().flatten().map(dynamics::ImpactExcitation::mean_n).fold(0.0, f64::max);
     let load_n = (document.operation.pinion_torque_nm / 2.0 / plane.pinion_radius_m).abs();
     if mean_n > load_n {
         let pointer = if calculated.is_some() { "/model/impact" } else { "/model/impact/force_n" };

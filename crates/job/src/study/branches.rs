@@ -1,23 +1,7 @@
 //! Branches of a continuation: where they jump, and where up and down lead to different motions.
 
 use crate::document::Axis;
-use crate::result::{Hysteresis, Jump, SweepPoint};
-
-/// The direction of a branch.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
-    Up,
-    Down,
-}
-
-impl Way {
-    pub fn word(self) -> &'static str {
-        match self {
-            Way::Up => "up",
-            Way::Down => "down",
-        }
-    }
-}
+use crate::result::{BranchDifference, BranchDirection, Hysteresis, Jump, SweepPoint};
 
 /// Relative difference of two RMS values above which two motions are different ones.
 const DIFFERENT: f64 = 0.01;
@@ -32,19 +16,24 @@ const ERRORS: f64 = 3.0;
 const STILL_M_S2: f64 = 1e-9;
 
 /// Positions on an axis from its least value up, or from its greatest down.
-pub fn order(axis: &Axis, way: Way) -> Vec<usize> {
+pub fn order(axis: &Axis, direction: BranchDirection) -> Vec<usize> {
     let values: Vec<f64> = (0..axis.len()).map(|index| axis.value(index)).collect();
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-    if way == Way::Down {
+    if direction == BranchDirection::Down {
         order.reverse();
     }
     order
 }
 
 /// Where a branch jumps between neighbours; `line` in the order of the axis.
-pub fn jumps(axis: &Axis, way: Way, second_axis_value: Option<f64>, line: &[SweepPoint]) -> Vec<Jump> {
-    let order = order(axis, way);
+pub fn jumps(
+    axis: &Axis,
+    direction: BranchDirection,
+    second_axis_value: Option<f64>,
+    line: &[SweepPoint],
+) -> Vec<Jump> {
+    let order = order(axis, direction);
     let changes: Vec<Option<f64>> = order.windows(2).map(|two| change(&line[two[0]], &line[two[1]])).collect();
     let mut found = Vec::new();
     for (at, two) in order.windows(2).enumerate() {
@@ -56,7 +45,7 @@ pub fn jumps(axis: &Axis, way: Way, second_axis_value: Option<f64>, line: &[Swee
         };
         if change > JUMP.max(uncertainty(before, after)) && change > STANDS_OUT * usual {
             found.push(Jump {
-                branch: way.word().to_owned(),
+                branch: direction,
                 second_axis_value,
                 from: axis.value(two[0]),
                 to: axis.value(two[1]),
@@ -77,7 +66,7 @@ pub fn hysteresis(
 ) -> Vec<Hysteresis> {
     let mut found: Vec<Hysteresis> = Vec::new();
     let mut open = false;
-    for at in order(axis, Way::Up) {
+    for at in order(axis, BranchDirection::Up) {
         let differ = differences(&up[at], &down[at]);
         if differ.is_empty() {
             open = false;
@@ -93,9 +82,9 @@ pub fn hysteresis(
             interval.to = value;
             let ratio = change(&up[at], &down[at]).map_or(1.0, f64::exp);
             interval.largest_rms_ratio = interval.largest_rms_ratio.max(ratio);
-            for what in differ {
-                if !interval.differ.iter().any(|word| word == what) {
-                    interval.differ.push(what.to_owned());
+            for difference in differ {
+                if !interval.differ.contains(&difference) {
+                    interval.differ.push(difference);
                 }
             }
         }
@@ -103,19 +92,19 @@ pub fn hysteresis(
     found
 }
 
-fn differences(a: &SweepPoint, b: &SweepPoint) -> Vec<&'static str> {
+fn differences(a: &SweepPoint, b: &SweepPoint) -> Vec<BranchDifference> {
     let Some(change) = change(a, b) else { return Vec::new() };
     let uncertain = uncertainty(a, b);
     let mut differ = Vec::new();
     if change > DIFFERENT.max(uncertain) {
-        differ.push("rms");
+        differ.push(BranchDifference::Rms);
     }
     if change > DIFFERENT_WORDS.max(uncertain) {
         if a.regime != b.regime {
-            differ.push("regime");
+            differ.push(BranchDifference::Regime);
         }
         if a.contact != b.contact {
-            differ.push("contact");
+            differ.push(BranchDifference::Contact);
         }
     }
     differ
@@ -163,14 +152,14 @@ mod tests {
     #[test]
     fn a_jump_stands_out_and_a_steep_slope_does_not() {
         let axis = axis(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-        let found = jumps(&axis, Way::Up, None, &line(&[10.0, 11.0, 12.0, 30.0, 29.0, 28.0]));
+        let found = jumps(&axis, BranchDirection::Up, None, &line(&[10.0, 11.0, 12.0, 30.0, 29.0, 28.0]));
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].from, found[0].to, found[0].rms_after_m_s2), (3.0, 4.0, 30.0));
-        assert_eq!(jumps(&axis, Way::Up, None, &line(&[10.0, 13.0, 18.0, 26.0, 36.0, 48.0])), []);
+        assert_eq!(jumps(&axis, BranchDirection::Up, None, &line(&[10.0, 13.0, 18.0, 26.0, 36.0, 48.0])), []);
         // Downwards the same place is met from above; a point without a response is no jump.
-        let found = jumps(&axis, Way::Down, Some(7.0), &line(&[10.0, 11.0, 12.0, 30.0, 29.0, 28.0]));
+        let found = jumps(&axis, BranchDirection::Down, Some(7.0), &line(&[10.0, 11.0, 12.0, 30.0, 29.0, 28.0]));
         assert_eq!((found[0].from, found[0].to, found[0].second_axis_value), (4.0, 3.0, Some(7.0)));
-        assert_eq!(jumps(&axis, Way::Up, None, &line(&[10.0, 11.0, 0.0, 30.0, 29.0, 28.0])), []);
+        assert_eq!(jumps(&axis, BranchDirection::Up, None, &line(&[10.0, 11.0, 0.0, 30.0, 29.0, 28.0])), []);
     }
 
     #[test]
@@ -179,7 +168,10 @@ mod tests {
         let (up, down) = (line(&[5.0, 5.0, 2.0, 1.0]), line(&[5.0, 10.0, 4.0, 1.001]));
         let found = hysteresis(&axis, None, &up, &down);
         assert_eq!(found.len(), 1);
-        assert_eq!((found[0].from, found[0].to, found[0].differ.as_slice()), (2.0, 3.0, ["rms".to_owned()].as_slice()));
+        assert_eq!(
+            (found[0].from, found[0].to, found[0].differ.as_slice()),
+            (2.0, 3.0, [BranchDifference::Rms].as_slice())
+        );
         assert!((found[0].largest_rms_ratio - 2.0).abs() < 1e-12);
         // Means of a finite record scatter by their errors.
         let mut noisy = up.clone();

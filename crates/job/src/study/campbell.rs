@@ -1,7 +1,7 @@
 //! Campbell data of a sweep over the speed: at which speeds an order of the mesh frequency meets a natural frequency.
 
 use super::mesh::MeshMemo;
-use super::{SolveContext, SolveError, answer, point, row};
+use super::{SolveContext, SolveError, point, response_result, row};
 use crate::document::{Axis, JobDocument};
 use crate::result::{Campbell, CampbellCrossing, NaturalMode};
 
@@ -35,7 +35,11 @@ pub fn run(
         other_axis_value.into_iter().for_each(|value| values.insert(1 - at, value));
         let modes = row::job(base, sweep, &values).and_then(|job| {
             let staged = point::stage(&job, &quiet, memo)?;
-            let modes = staged.parameters().map(answer::natural_modes).transpose().map_err(super::vibration::failed)?;
+            let modes = staged
+                .parameters()
+                .map(response_result::natural_modes)
+                .transpose()
+                .map_err(super::vibration::failed)?;
             Ok((modes, job.document().design.pinion.teeth))
         });
         match modes {

@@ -4,7 +4,7 @@ use super::bounds;
 use super::equations::MotionPlane;
 use super::mesh::MeshStage;
 use super::prepare::Prepared;
-use crate::document::{CornerImpactInput, ImpactDuration, ImpactInput, JobDocument, MeshForce};
+use crate::document::{ActsOn, CornerImpactInput, ImpactDuration, ImpactInput, JobDocument, MeshForce};
 use crate::result;
 use herringbone_physics::dynamics;
 use herringbone_physics::gear::{Half, Warning};
@@ -12,8 +12,8 @@ use herringbone_physics::impact::{self, Entry, Inertia};
 
 /// What the impact stage leaves: its block of the result, and the pulse of each half.
 pub struct ImpactStage {
-    pub summary: Option<result::Impact>,
-    pub pulses: [Option<dynamics::Impact>; 2],
+    pub summary: Option<result::ImpactResult>,
+    pub pulses: [Option<dynamics::ImpactExcitation>; 2],
 }
 
 /// Whether the impact of a document is put on the equations of motion, or only reported. The one place where that is decided.
@@ -37,7 +37,10 @@ pub fn run(
     }
     if let Some(summary) = &mut stage.summary {
         summary.applied = applied;
-        summary.acts_on = document.model.impact.acts_on().as_str().to_owned();
+        summary.acts_on = match document.model.impact.acts_on() {
+            ActsOn::Torsion => result::ActsOnResult::Torsion,
+            ActsOn::All => result::ActsOnResult::All,
+        };
     }
     warnings.extend(bounds::of_pulses(document, plane, &stage.pulses));
     stage
@@ -56,17 +59,17 @@ fn found(
     match &document.model.impact {
         ImpactInput::None => ImpactStage { summary: None, pulses: [None, None] },
         ImpactInput::Given(given) => {
-            let pulse = |shift: f64| dynamics::Impact::HalfSine {
+            let pulse = |shift: f64| dynamics::ImpactExcitation::HalfSine {
                 force_n: given.force_n,
                 duration_mesh_periods: given.duration_mesh_periods,
                 start_mesh_periods: given.start_mesh_periods + shift,
             };
-            let summary = result::Impact {
+            let summary = result::ImpactResult {
                 force_n: given.force_n,
                 duration_us: given.duration_mesh_periods / prepared.mesh_frequency_hz * 1e6,
                 start_mesh_periods: given.start_mesh_periods,
-                source: "given".to_owned(),
-                ..result::Impact::default()
+                source: result::ImpactSource::Given,
+                ..result::ImpactResult::default()
             };
             ImpactStage { summary: Some(summary), pulses: [Some(pulse(0.0)), Some(pulse(shift))] }
         }
@@ -146,7 +149,7 @@ fn calculated(
         let (duration_s, start) = timing(impact);
         // Shorter than this the pulse has no effect that could be computed.
         let duration_mesh_periods = duration_s * prepared.mesh_frequency_hz;
-        (force > 0.0 && duration_mesh_periods >= 1e-9).then_some(dynamics::Impact::HalfSine {
+        (force > 0.0 && duration_mesh_periods >= 1e-9).then_some(dynamics::ImpactExcitation::HalfSine {
             force_n: force * plane.force_factor,
             duration_mesh_periods,
             start_mesh_periods: start + shift,
@@ -154,7 +157,7 @@ fn calculated(
     };
     let (duration_s, start_mesh_periods) = timing(&left);
     let deflection_m = mesh.entry[0].deflection_m(left.overrun_m);
-    let summary = result::Impact {
+    let summary = result::ImpactResult {
         force_n: left.force_n,
         zhou2008_force_n: Some(left.zhou2008_force_n),
         reduction_percent: Some(left.reduction_percent),
@@ -168,8 +171,8 @@ fn calculated(
         corner_deflection_um: Some(deflection_m * 1e6),
         corner_overrun_mm: Some(left.overrun_m * 1e3),
         start_mesh_periods,
-        source: if buffered { "corner_contact" } else { "zhou2008" }.to_owned(),
-        ..result::Impact::default()
+        source: if buffered { result::ImpactSource::CornerContact } else { result::ImpactSource::Zhou2008 },
+        ..result::ImpactResult::default()
     };
     ImpactStage { summary: Some(summary), pulses: [pulse(&left, 0.0), pulse(&right, shift)] }
 }

@@ -9,14 +9,13 @@ use super::{SolveContext, SolveError, Stage};
 use crate::document::{
     BodyInput, Elements, Fidelity, JobDocument, JobKind, Ltca, MeshForce, MeshStiffness, StiffnessLaw,
 };
-use crate::result::{ApexSensitivity, Convergence, FlankLoad, Mesh, MeshCurve, PerHalf};
-use herringbone_physics::contact::iso6336::{Blank, MethodB};
-use herringbone_physics::contact::{
-    self, BodyHold, ContactError, ForceTable, HalfCycle, LoadedContact, MESH_IN_PHASE, Settings,
-};
+use crate::result::{ApexSensitivity, Convergence, FlankLoad, Mesh, MeshCurve, PerHalf, ReusedStage, StiffnessSource};
+use herringbone_physics::compliance::{BodyHold, Settings};
+use herringbone_physics::contact::{self, ContactError, ForceTable, HalfCycle, LoadedContact, MESH_IN_PHASE};
 use herringbone_physics::dynamics::Stiffness;
 use herringbone_physics::fe::Resolution;
 use herringbone_physics::gear::{Pair, PairSpec};
+use herringbone_physics::iso6336::{Blank, MethodB};
 use herringbone_physics::watch::Watch;
 use serde::Serialize;
 use std::collections::HashMap;
@@ -154,7 +153,7 @@ pub fn run(
     plane: &MotionPlane,
     context: &SolveContext,
     memo: &MeshMemo,
-) -> Result<(MeshStage, Vec<&'static str>), SolveError> {
+) -> Result<(MeshStage, Vec<ReusedStage>), SolveError> {
     match &document.model.mesh_stiffness {
         MeshStiffness::Ltca(ltca) => {
             let case = ContactCase::new(document, ltca, prepared);
@@ -173,7 +172,7 @@ pub fn run(
         MeshStiffness::Given(given) => {
             let stiffness = given_stiffness(given);
             let curve = |phase: f64| stiffness.at(phase) / plane.stiffness_factor;
-            let mut stage = closed_form("given", prepared, curve);
+            let mut stage = closed_form(StiffnessSource::Given, prepared, curve);
             stage.stiffness = [stiffness.clone(), stiffness];
             Ok((stage, Vec::new()))
         }
@@ -185,19 +184,19 @@ fn loaded_contact(
     pair: &Pair,
     context: &SolveContext,
     memo: &MeshMemo,
-) -> Result<(Arc<LoadedContact>, Vec<&'static str>), SolveError> {
+) -> Result<(Arc<LoadedContact>, Vec<ReusedStage>), SolveError> {
     let key = mesh_hash(case);
     if let Some(contact) = memo.contacts.get(&key) {
-        return Ok((contact, vec![Stage::Mesh.as_str()]));
+        return Ok((contact, vec![ReusedStage::Mesh]));
     }
     let stored = context.stages.load(&key).and_then(|bytes| serde_json::from_slice::<LoadedContact>(&bytes).ok());
     let (contact, reused) = match stored {
-        Some(contact) => (contact, vec![Stage::Mesh.as_str()]),
+        Some(contact) => (contact, vec![ReusedStage::Mesh]),
         None => {
             let found = compliance::find(case, pair, context, &memo.compliances)?;
             let contact = solve_contact(case, pair, &found, context)?;
             context.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&contact).unwrap_or_default());
-            (contact, if found.elements_reused { vec!["finite_elements"] } else { Vec::new() })
+            (contact, if found.elements_reused { vec![ReusedStage::FiniteElements] } else { Vec::new() })
         }
     };
     let contact = Arc::new(contact);
@@ -281,7 +280,7 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
             slices: left.slices as u32,
             slice_error_percent: 100.0 * most(&|half| half.slice_error),
         }),
-        source: "ltca".to_owned(),
+        source: StiffnessSource::Ltca,
         contact_force: None,
         curve: curve(left, &|i| left.transmission_error_m[i]),
         right_curve: (!contact.equal_halves).then(|| curve(right, &|i| right.transmission_error_m[i])),
@@ -369,7 +368,7 @@ fn iso6336(prepared: &Prepared, plane: &MotionPlane) -> Result<MeshStage, SolveE
         None => method.at_n_per_m(pair, foot_m(pair, phase)),
         Some(coast) => method.at_n_per_m(coast, foot_m(coast, pair.coast_phase(phase))),
     };
-    let mut stage = closed_form("iso6336", prepared, curve);
+    let mut stage = closed_form(StiffnessSource::Iso6336, prepared, curve);
     let samples = stage.summary.curve.stiffness_n_per_um.iter().map(|k| k * 1e6 * plane.stiffness_factor).collect();
     let stiffness = Stiffness::Samples { values_n_per_m: samples };
     stage.stiffness = [stiffness.clone(), stiffness];
@@ -383,7 +382,7 @@ fn foot_m(pair: &Pair, phase: f64) -> f64 {
 
 /// A stage from a stiffness curve k_bt(phase) alone: deflection F/k; the entering pair's share by the length of its line of
 /// contact (uniform line load).
-fn closed_form(source: &str, prepared: &Prepared, curve: impl Fn(f64) -> f64) -> MeshStage {
+fn closed_form(source: StiffnessSource, prepared: &Prepared, curve: impl Fn(f64) -> f64) -> MeshStage {
     let force_n = prepared.half_force_n;
     let phase: Vec<f64> = (0..CURVE_POSITIONS).map(|i| i as f64 / CURVE_POSITIONS as f64).collect();
     let stiffness: Vec<f64> = phase.iter().map(|&phase| curve(phase)).collect();
@@ -409,7 +408,7 @@ fn closed_form(source: &str, prepared: &Prepared, curve: impl Fn(f64) -> f64) ->
         transmission_error_harmonics_um: contact::harmonics(&error).iter().map(|a| a * 1e6).collect(),
         force_n,
         axial_force_n: PerHalf { left: axial, right: axial },
-        source: source.to_owned(),
+        source,
         curve: MeshCurve {
             phase,
             stiffness_n_per_um: stiffness.iter().map(|k| k * 1e-6).collect(),

@@ -2,9 +2,8 @@
 //! meet physics.
 
 mod accuracy;
-mod answer;
 mod axes;
-mod bounds;
+pub(crate) mod bounds;
 mod branches;
 mod campbell;
 mod check;
@@ -17,7 +16,8 @@ mod mesh;
 mod mesh_force;
 mod point;
 mod points;
-mod prepare;
+pub(crate) mod prepare;
+mod response_result;
 mod row;
 mod supports;
 mod sweep;
@@ -25,7 +25,7 @@ mod vibration;
 
 use crate::DocumentError;
 use crate::document::JobKind;
-use crate::result::{Geometry, JobResult};
+use crate::result::{Geometry, JobResult, ReusedStage};
 use herringbone_physics::gear::Warning;
 
 use herringbone_physics::watch::Canceled;
@@ -155,7 +155,7 @@ pub enum SolveError {
 pub struct CheckReport {
     pub geometry: Geometry,
     /// Springs of the equations of motion; null for a job without a response.
-    pub supports: Option<crate::result::Supports>,
+    pub supports: Option<crate::result::SupportsResult>,
     /// Memory that the calculation takes at most (an estimate).
     pub memory_mib: f64,
     #[cfg_attr(feature = "schema", schema(value_type = Vec<crate::result::WarningEntry>))]
@@ -181,7 +181,7 @@ pub fn solve(job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveE
     }
     let started_ms = (context.clock_ms)();
     let kept = context.points.load();
-    let reused = if kept.rows.is_empty() { Vec::new() } else { vec!["points".to_owned()] };
+    let reused = if kept.rows.is_empty() { Vec::new() } else { vec![ReusedStage::Points] };
     let sweep = sweep::run(document, kept, context, &memo)?;
     let report = job.report();
     let mut result = JobResult {

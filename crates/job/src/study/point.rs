@@ -6,7 +6,7 @@ use super::mesh::{self, MeshMemo};
 use super::prepare::geometry;
 use super::{Channel, SolveContext, SolveError, Stage, accuracy, bounds, impact, vibration};
 use crate::document::{JobDocument, JobKind, Recorded};
-use crate::result::{JobResult, Numerics, Poincare};
+use crate::result::{JobResult, NumericsResult, Poincare};
 use herringbone_physics::dynamics::{DynamicsError, Parameters};
 use herringbone_physics::response::Response;
 
@@ -70,7 +70,7 @@ pub fn solve(job: &CheckedJob, context: &SolveContext, memo: &MeshMemo, wanted: 
 /// [`SolveError`].
 pub fn stage<'a>(job: &CheckedJob, context: &SolveContext<'a>, memo: &MeshMemo) -> Result<Staged<'a>, SolveError> {
     let (document, prepared) = (job.document(), job.prepared());
-    let mut numerics = Numerics { solver_version: super::SOLVER_VERSION.to_owned(), ..Numerics::default() };
+    let mut numerics = NumericsResult { solver_version: super::SOLVER_VERSION.to_owned(), ..NumericsResult::default() };
     let mut stopwatch = Stopwatch::new(context);
     let mut warnings = prepared.warnings.clone();
     numerics.wall_ms.geometry = stopwatch.lap_ms();
@@ -78,7 +78,7 @@ pub fn stage<'a>(job: &CheckedJob, context: &SolveContext<'a>, memo: &MeshMemo) 
 
     let plane = MotionPlane::new(document.model.plane, prepared);
     let (mesh, reused) = mesh::run(document, prepared, &plane, context, memo)?;
-    numerics.reused.extend(reused.into_iter().map(str::to_owned));
+    numerics.reused.extend(reused);
     warnings.extend(bounds::of_mesh(document, &mesh.summary));
     numerics.wall_ms.mesh = stopwatch.lap_ms();
 
@@ -136,7 +136,7 @@ pub fn answered(
         result.accuracy = Some(accuracy::of(document, &result));
         return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });
     };
-    let vibration = vibration::told(document, &parameters, wanted, response, &mut result.numerics)?;
+    let vibration = vibration::to_result(document, &parameters, wanted, response, &mut result.numerics)?;
     result.response = Some(vibration.summary);
     result.accuracy = Some(accuracy::of(document, &result));
     result.warnings.extend(vibration.warnings);

@@ -2,10 +2,10 @@
 
 use super::{bounds, supports};
 use crate::document::{self as doc, JobDocument, PressureAnglePlane};
-use crate::result::{GearGeometry, Geometry, Supports};
+use crate::result::{GearGeometry, Geometry, SupportsResult};
 use crate::{DocumentError, Violation};
-use herringbone_physics::contact;
 use herringbone_physics::gear::{self, Infeasibility, Pair, PairSpec, Warning};
+use herringbone_physics::{compliance, contact};
 
 /// Default bore as a fraction of the reference diameter, where none is given.
 const DEFAULT_BORE_FRACTION: f64 = 0.4;
@@ -19,7 +19,7 @@ pub struct Prepared {
     pub mass_kg: [f64; 2],
     pub inertia_kg_m2: [f64; 2],
     /// Supports and couplings of the equations of motion.
-    pub supports: Supports,
+    pub supports: SupportsResult,
     pub mesh_frequency_hz: f64,
     pub pinion_speed_rad_s: f64,
     /// Base-tangent force of one half, T/2 / r_b1; negative on the coast flanks.
@@ -202,7 +202,7 @@ fn held_elsewhere(document: &JobDocument, pair: &Pair) -> Vec<Warning> {
     [("pinion", &pair.pinion), ("gear", &pair.gear)]
         .into_iter()
         .filter_map(|(name, member)| {
-            let held_m = contact::hold_radius_m(member, contact::BodyHold::Bore, pair.spec.normal_module_m);
+            let held_m = compliance::hold_radius_m(member, compliance::BodyHold::Bore, pair.spec.normal_module_m);
             (held_m > member.bore_radius_m * (1.0 + 1e-9)).then(|| Warning {
                 code: "held-above-bore".to_owned(),
                 pointer: format!("/design/{name}/bore_diameter_mm"),

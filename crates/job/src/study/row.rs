@@ -7,7 +7,7 @@ use super::point::{self, Point, Wanted};
 use super::{SolveContext, SolveError, vibration};
 use crate::DocumentError;
 use crate::document::JobDocument;
-use crate::result::{PerHalf, SweepPoint};
+use crate::result::SweepPoint;
 use herringbone_physics::dynamics::{DynamicsError, Parameters};
 use herringbone_physics::response::{self, Analysis, Response};
 use herringbone_physics::watch::Watch;
@@ -102,29 +102,12 @@ pub fn solve_together(
     solved.collect()
 }
 
-/// What is kept of a solved point.
+/// The row of a solved point.
 pub fn of_point(values: Vec<f64>, point: Point) -> Solved {
-    let result = &point.result;
-    let response = result.response.as_ref();
     let row = SweepPoint {
-        values,
-        mesh_circumferential_acceleration_rms_m_s2: response.map(|r| r.rms.mesh_circumferential_acceleration_m_s2),
-        pinion_axial_acceleration_rms_m_s2: response.map(|r| r.rms.pinion_axial_acceleration_m_s2),
-        dynamic_factor: response.and_then(|r| r.dynamic_factor),
-        regime: response.map(|r| r.regime.clone()),
-        contact: response.map(|r| r.contact.clone()),
-        min_displacement_um: response.map(|r| r.min_displacement_um),
-        stiffness_mean_n_per_um: result.mesh.as_ref().map(|mesh| mesh.stiffness_mean_n_per_um),
-        impact_force_n: result.impact.as_ref().map(|impact| impact.force_n),
-        total_contact_ratio: result.geometry.as_ref().map(|geometry| geometry.total_contact_ratio),
-        loaded_contact_ratio: result.mesh.as_ref().and_then(|mesh| mesh.loaded_contact_ratio),
-        error_estimate: response.map(|r| r.error_estimate),
-        tooth_force_max_n: response
-            .map(|r| PerHalf { left: r.tooth_force_n.left.max_n, right: r.tooth_force_n.right.max_n }),
-        error: None,
-        branch: None,
         poincare: point.poincare,
         acceleration_spectrum_m_s2: point.bands,
+        ..SweepPoint::of_result(values, &point.result)
     };
     Solved { row, end_state: point.end_state }
 }

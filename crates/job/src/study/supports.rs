@@ -1,7 +1,7 @@
 //! The springs outside the mesh: what the document gives, what follows from the gear bodies, and what is assumed after the size of the pair.
 
 use crate::document::{self as doc, JobDocument, JobKind};
-use crate::result::{SpringValue, Supports};
+use crate::result::{SpringOrigin, SpringValue, SupportsResult};
 use herringbone_physics::gear::{BodyStiffness, Material, Pair, Warning};
 
 /// Lateral support of a half over E a, E that of steel (bearings are steel whatever the gears are of) and a the centre distance.
@@ -17,20 +17,16 @@ const LATERAL_PER_MODULUS_AND_DISTANCE: f64 = 0.0145;
 /// Axial over lateral stiffness of a support: 200 to 600 N/µm in the dynamic reference cases.
 const AXIAL_OVER_LATERAL: f64 = 1.0 / 3.0;
 
-const GIVEN: &str = "given";
-const ASSUMED: &str = "assumed";
-const DERIVED: &str = "derived";
-
 /// The springs in use.
-pub fn used(supports: &doc::SupportsInput, pair: &Pair) -> Supports {
+pub fn used(supports: &doc::SupportsInput, pair: &Pair) -> SupportsResult {
     let lateral = LATERAL_PER_MODULUS_AND_DISTANCE * Material::STEEL.youngs_modulus_pa * pair.center_distance_m * 1e-6;
-    let assumed = |given: Option<f64>, n_per_um: f64| value(given, n_per_um, ASSUMED);
-    let derived = |given: Option<f64>, derived: f64| value(given, derived, DERIVED);
+    let assumed = |given: Option<f64>, n_per_um: f64| value(given, n_per_um, SpringOrigin::Assumed);
+    let derived = |given: Option<f64>, derived: f64| value(given, derived, SpringOrigin::Derived);
     // Between the middles of the halves; the common face width lies in the middle of either gear's own.
     let length_m = middle_distance_m(pair);
     let [pinion, gear]: [BodyStiffness; 2] =
         [&pair.pinion, &pair.gear].map(|member| member.body_stiffness(&member.material, length_m));
-    Supports {
+    SupportsResult {
         pinion_lateral_n_per_um: assumed(supports.pinion_lateral_n_per_um, lateral),
         gear_lateral_n_per_um: assumed(supports.gear_lateral_n_per_um, lateral),
         gear_axial_n_per_um: assumed(supports.gear_axial_n_per_um, AXIAL_OVER_LATERAL * lateral),
@@ -50,12 +46,15 @@ fn middle_distance_m(pair: &Pair) -> f64 {
     pair.spec.face_width_m + pair.spec.gap_width_m
 }
 
-fn value(given: Option<f64>, otherwise: f64, origin: &str) -> SpringValue {
-    SpringValue { value: given.unwrap_or(otherwise), origin: if given.is_some() { GIVEN } else { origin }.to_owned() }
+fn value(given: Option<f64>, otherwise: f64, origin: SpringOrigin) -> SpringValue {
+    SpringValue {
+        value: given.unwrap_or(otherwise),
+        origin: if given.is_some() { SpringOrigin::Given } else { origin },
+    }
 }
 
 /// Every spring with the name of its field.
-pub fn named(supports: &Supports) -> [(&'static str, &SpringValue); 9] {
+pub fn named(supports: &SupportsResult) -> [(&'static str, &SpringValue); 9] {
     [
         ("pinion_lateral_n_per_um", &supports.pinion_lateral_n_per_um),
         ("gear_lateral_n_per_um", &supports.gear_lateral_n_per_um),
@@ -70,17 +69,17 @@ pub fn named(supports: &Supports) -> [(&'static str, &SpringValue); 9] {
 }
 
 /// What was not given, with the values used; nothing where no equations of motion are solved. What a sweep varies is given.
-pub fn assumed(document: &JobDocument, used: &Supports) -> Option<Warning> {
+pub fn assumed(document: &JobDocument, used: &SupportsResult) -> Option<Warning> {
     if document.kind == JobKind::Mesh {
         return None;
     }
     let swept =
         |name: &str| document.axes.iter().any(|axis| axis.pointer.strip_prefix("/design/supports/") == Some(name));
-    let list = |origin: &str| {
+    let list = |origin: SpringOrigin| {
         let found = named(used).into_iter().filter(|(name, spring)| spring.origin == origin && !swept(name));
         found.map(|(name, spring)| format!("{name} {}", shown(spring.value))).collect::<Vec<_>>().join(", ")
     };
-    let (assumed, derived) = (list(ASSUMED), list(DERIVED));
+    let (assumed, derived) = (list(SpringOrigin::Assumed), list(SpringOrigin::Derived));
     let mut parts = Vec::new();
     if !assumed.is_empty() {
         parts.push(format!(
@@ -170,7 +169,10 @@ mod tests {
             [("pinion_lateral_n_per_um", 600.0), ("gear_lateral_n_per_um", 600.0), ("gear_axial_n_per_um", 200.0)]
         {
             let (_, spring) = named(&used).into_iter().find(|(known, _)| *known == name).expect("a spring");
-            assert!((spring.value / expected - 1.0).abs() < 0.01 && spring.origin == "assumed", "{name} {spring:?}");
+            assert!(
+                (spring.value / expected - 1.0).abs() < 0.01 && spring.origin == SpringOrigin::Assumed,
+                "{name} {spring:?}"
+            );
         }
         // By hand: root diameter 97.03 mm, bore 60 mm, 105 mm between the middles of the halves.
         let d = 2.0 * scaled(1.0).pinion.root_radius_m;
@@ -201,10 +203,10 @@ mod tests {
             ..NOTHING
         };
         let used = used(&given, &scaled(1.0));
-        assert_eq!(used.pinion_lateral_n_per_um, value(Some(123.0), 1.0, ASSUMED));
+        assert_eq!(used.pinion_lateral_n_per_um, value(Some(123.0), 1.0, SpringOrigin::Assumed));
         let torsional = &used.gear_halves_torsional_nm_per_rad;
-        assert_eq!((torsional.value, torsional.origin.as_str()), (0.0, "given"));
-        assert_eq!(used.gear_halves_axial_n_per_um.origin, "derived");
+        assert_eq!((torsional.value, torsional.origin), (0.0, SpringOrigin::Given));
+        assert_eq!(used.gear_halves_axial_n_per_um.origin, SpringOrigin::Derived);
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! A response over the values of one or two inputs.
 
 use super::axes::base;
-use super::branches::{self, Way};
+use super::branches;
 use super::mesh::MeshMemo;
 use super::points::{KeptPoints, LineEnd};
 use super::row;
-use super::{SolveContext, SolveError, Stage, answer, campbell};
+use super::{SolveContext, SolveError, Stage, campbell, response_result};
 use crate::document::{Axis, Continuation, JobDocument, MethodInput, Recorded};
-use crate::result::{Sweep, SweepAxis, SweepPoint};
+use crate::result::{BranchDirection, SweepAxis, SweepPoint, SweepResult};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -25,16 +25,16 @@ pub fn run(
     kept: KeptPoints,
     context: &SolveContext,
     memo: &MeshMemo,
-) -> Result<Sweep, SolveError> {
+) -> Result<SweepResult, SolveError> {
     let base = base(document);
     let (first, second) = (&document.axes[0], document.axes.get(1));
     let lines = second.map_or(1, Axis::len);
     let length = first.len();
-    let ways: &[Way] = match document.continuation.unwrap_or(Continuation::None) {
+    let ways: &[BranchDirection] = match document.continuation.unwrap_or(Continuation::None) {
         Continuation::None => &[],
-        Continuation::Up => &[Way::Up],
-        Continuation::Down => &[Way::Down],
-        Continuation::Both => &[Way::Up, Way::Down],
+        Continuation::Up => &[BranchDirection::Up],
+        Continuation::Down => &[BranchDirection::Down],
+        Continuation::Both => &[BranchDirection::Up, BranchDirection::Down],
     };
     let all = lines * length * ways.len().max(1);
     let done = AtomicUsize::new(0);
@@ -53,10 +53,10 @@ pub fn run(
         also: axis.also.clone(),
         values: (0..axis.len()).map(|index| axis.value(index)).collect(),
     });
-    let mut sweep = Sweep {
+    let mut sweep = SweepResult {
         axes: axes.collect(),
-        spectrum_mesh_orders: document.record.contains(&Recorded::Spectrum).then(answer::band_orders),
-        ..Sweep::default()
+        spectrum_mesh_orders: document.record.contains(&Recorded::Spectrum).then(response_result::band_orders),
+        ..SweepResult::default()
     };
     if ways.is_empty() {
         let solve = |points: &[usize]| -> Result<Vec<SweepPoint>, SolveError> {
@@ -81,7 +81,7 @@ pub fn run(
             for &index in &order[followed.len()..] {
                 let position = line * length + index;
                 let mut solved = row::solve(&base, document, values(position), state.as_deref(), context, memo)?;
-                solved.row.branch = Some(way.word().to_owned());
+                solved.row.branch = Some(way);
                 let end = LineEnd { line, position, state: solved.end_state };
                 context.points.save(position, &solved.row, Some(&end));
                 state = end.state;

@@ -1,9 +1,9 @@
 //! The response stage: the steady vibration of the pair and its statistics.
 
 use super::point::Wanted;
-use super::{Channel, SolveContext, SolveError, Stage, answer, bounds};
+use super::{Channel, SolveContext, SolveError, Stage, bounds, response_result};
 use crate::document::{IntegratorInput, JobDocument, MethodInput, Recorded};
-use crate::result::{self, Numerics};
+use crate::result::{NumericsResult, Poincare, ResponseResult};
 use crate::{DocumentError, Violation};
 use herringbone_physics::dynamics::{self, DynamicsError, Parameters};
 use herringbone_physics::gear::Warning;
@@ -12,12 +12,12 @@ use herringbone_physics::watch::Watch;
 
 /// What the response stage leaves.
 pub struct Vibration {
-    pub summary: result::Response,
+    pub summary: ResponseResult,
     pub series: Vec<Channel>,
     pub warnings: Vec<Warning>,
     pub end_state: Option<Vec<f64>>,
     /// What the row of a sweep carries beside its numbers.
-    pub poincare: Option<result::Poincare>,
+    pub poincare: Option<Poincare>,
     pub bands: Option<Vec<f64>>,
 }
 
@@ -78,32 +78,33 @@ pub fn solve(
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn told(
+pub fn to_result(
     document: &JobDocument,
     parameters: &Parameters,
     wanted: &Wanted,
     response: Result<response::Response, DynamicsError>,
-    numerics: &mut Numerics,
+    numerics: &mut NumericsResult,
 ) -> Result<Vibration, SolveError> {
     let mut response = response.map_err(failed)?;
     let summary = &response.summary;
-    numerics.steps = summary.numerics.steps;
-    numerics.rejected_steps = summary.numerics.rejected_steps;
-    numerics.force_evaluations = summary.numerics.force_evaluations;
+    numerics.steps = summary.counts.steps;
+    numerics.rejected_steps = summary.counts.rejected_steps;
+    numerics.force_evaluations = summary.counts.force_evaluations;
     numerics.degrees_of_freedom = summary.degrees_of_freedom;
-    let mut block = answer::block(document, parameters, &response);
+    let mut block = response_result::summary(document, parameters, &response);
     if wanted.whole {
-        block.poincare = answer::poincare(&response, usize::MAX);
-        block.spectrum = answer::spectrum(&response, parameters.mesh_frequency_hz);
-        block.natural_modes = answer::natural_modes(parameters).map_err(failed)?;
+        block.poincare = response_result::poincare(&response, usize::MAX);
+        block.spectrum = response_result::spectrum(&response, parameters.mesh_frequency_hz);
+        block.natural_modes = response_result::natural_modes(parameters).map_err(failed)?;
     }
-    let poincare = wanted.records(Recorded::Poincare).then(|| answer::poincare(&response, POINCARE_POINTS));
-    let bands = wanted.records(Recorded::Spectrum).then(|| answer::bands(&response, parameters.mesh_frequency_hz));
+    let poincare = wanted.records(Recorded::Poincare).then(|| response_result::poincare(&response, POINCARE_POINTS));
+    let bands =
+        wanted.records(Recorded::Spectrum).then(|| response_result::bands(&response, parameters.mesh_frequency_hz));
     // Moved, not copied: a long record is most of what a job holds.
     let channels = std::mem::take(&mut response.channels);
     let channel = |channel: response::Channel| Channel {
         rms: response.summary.rms.channels.get(&channel.name).copied().unwrap_or(0.0),
-        quantity: answer::word(&channel.quantity),
+        quantity: word(&channel.quantity),
         name: channel.name,
         unit: channel.unit,
         t0_s: channel.t0_s,
@@ -121,6 +122,14 @@ pub fn told(
     })
 }
 
+/// The word of a unit-only enum in its serialised form.
+fn word(value: &impl serde::Serialize) -> String {
+    match serde_json::to_value(value) {
+        Ok(serde_json::Value::String(word)) => word,
+        _ => String::new(),
+    }
+}
+
 /// What is asked of the equations of motion.
 ///
 /// # Errors
@@ -130,16 +139,16 @@ pub fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, Doc
     let state = wanted.start.or(asked.initial_state.as_deref());
     let mut channels = channels(document)?;
     if wanted.records(Recorded::Spectrum) {
-        channels.extend(ChannelId::parse(answer::SPECTRUM_CHANNEL));
+        channels.extend(ChannelId::parse(response_result::SPECTRUM_CHANNEL));
     }
     Ok(Analysis {
         method: match asked.method {
-            MethodInput::Integrate => response::Method::Integrate {
+            MethodInput::Integrate => response::SolutionMethod::Integrate {
                 mesh_periods: u64::from(asked.mesh_periods),
                 record_mesh_periods: u64::from(asked.record_mesh_periods),
             },
-            MethodInput::Periodic => response::Method::Periodic,
-            MethodInput::Auto => response::Method::Auto,
+            MethodInput::Periodic => response::SolutionMethod::Periodic,
+            MethodInput::Auto => response::SolutionMethod::Auto,
         },
         integrator: match asked.integrator {
             IntegratorInput::Taylor => dynamics::Integrator::Taylor,

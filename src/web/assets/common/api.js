@@ -4,6 +4,7 @@ const BASE = "/api/v1";
 
 /** A failed request: `problem` is the problem+json body, made up where the server gave none. */
 export class Problem extends Error {
+  /** @param {ProblemBody} problem */
   constructor(problem) {
     super(problem.title ?? "The request failed");
     this.problem = problem;
@@ -12,7 +13,19 @@ export class Problem extends Error {
   }
 }
 
+/**
+ * @typedef {{ body?: unknown, headers?: Record<string, string>, signal?: AbortSignal, base?: string }} RequestOptions
+ */
+
+/**
+ * @param {string} method
+ * @param {string} path
+ * @param {RequestOptions} [options]
+ * @returns {Promise<any>} the JSON of the answer
+ * @throws {Problem}
+ */
 async function request(method, path, { body, headers = {}, signal, base = BASE } = {}) {
+  /** @type {RequestInit & { headers: Record<string, string> }} */
   const options = { method, headers: { Accept: "application/json, application/problem+json", ...headers }, signal };
   if (body !== undefined) {
     options.body = JSON.stringify(body);
@@ -22,7 +35,7 @@ async function request(method, path, { body, headers = {}, signal, base = BASE }
   try {
     response = await fetch(base + path, options);
   } catch (error) {
-    if (error.name === "AbortError") throw error;
+    if (error instanceof DOMException && error.name === "AbortError") throw error;
     throw new Problem({ title: "The server does not answer", status: 0, code: "unreachable" });
   }
   if (response.ok) return response.status === 204 ? null : response.json();
@@ -42,41 +55,72 @@ function logIn() {
   window.location.assign(`/login?${new URLSearchParams({ next: here })}`);
 }
 
+/** @param {string} id */
 const at = (id) => `/jobs/${encodeURIComponent(id)}`;
 
+/** @param {Record<string, any>} parameters those without a value are left out */
 function query(parameters) {
   const given = Object.entries(parameters).filter(([, value]) => value !== undefined && value !== null && value !== "");
   return given.length ? `?${new URLSearchParams(given)}` : "";
 }
 
-/** Checks a document; with `drawing` the answer has what a drawing of the pair needs. */
+/**
+ * Checks a document; with `drawing` the answer has what a drawing of the pair needs.
+ * @type {(document: JobInput, options?: { drawing?: boolean, signal?: AbortSignal }) => Promise<CheckedDocument>}
+ */
 export const validate = (document, { drawing, signal } = {}) =>
   request("POST", `/jobs/validate${query({ drawing })}`, { body: document, signal });
+/** @type {() => Promise<{ id: string, title: string, about: string, document: JobInput }[]>} */
 export const presets = () => request("GET", "/assets/presets.json", { base: "" });
+/** @type {(document: JobInput, key: string) => Promise<Job>} */
 export const submit = (document, key) =>
   request("POST", "/jobs", { body: document, headers: { "Idempotency-Key": key } });
+/** @type {(parameters: Record<string, any>, signal?: AbortSignal) => Promise<JobList>} */
 export const jobs = (parameters, signal) => request("GET", `/jobs${query(parameters)}`, { signal });
+/** @type {() => Promise<KindList>} */
 export const kinds = () => request("GET", "/kinds");
+/** @type {(id: string) => Promise<Job>} */
 export const job = (id) => request("GET", at(id));
+/** @type {(id: string) => Promise<Job>} */
 export const cancel = (id) => request("POST", `${at(id)}/cancel`);
+/** @type {(id: string) => Promise<null>} */
 export const remove = (id) => request("DELETE", at(id));
+/** @type {(id: string) => Promise<JobInput>} */
 export const input = (id) => request("GET", inputUrl(id).slice(BASE.length));
+/** @type {(id: string) => Promise<JobResult>} */
 export const result = (id) => request("GET", resultUrl(id).slice(BASE.length));
+/**
+ * The gear data of a job's pair (ISO 21771), calculated from its document.
+ * @type {(id: string) => Promise<GearData>}
+ */
+export const gearData = (id) => request("GET", `${at(id)}/gear-data`);
+/** @type {(id: string) => Promise<{ items: SeriesChannel[] }>} */
 export const catalogue = (id) => request("GET", `${at(id)}/series`);
+/**
+ * @type {(id: string, channel: string, parameters: Record<string, any>, signal?: AbortSignal) => Promise<SeriesData>}
+ */
 export const series = (id, channel, parameters, signal) =>
   request("GET", `${at(id)}/series/${encodeURIComponent(channel)}${query(parameters)}`, { signal });
 
-/** The result of a sweep without its rows, which may be many megabytes. */
+/**
+ * The result of a sweep without its rows, which may be many megabytes.
+ * @type {(id: string) => Promise<JobResult>}
+ */
 export const resultWithoutRows = (id) => request("GET", `${at(id)}/result?rows=false`);
-export const points = (id, parameters, signal) => request("GET", `${at(id)}/points${query(parameters)}`, { signal });
+/** @type {(id: string, parameters: Record<string, any>, signal?: AbortSignal) => Promise<PointColumns>} */
 export const pointColumns = (id, parameters, signal) => request("GET", `${at(id)}/points/columns${query(parameters)}`, { signal });
+/** @type {(id: string, position: number) => Promise<JobInput>} */
 export const pointInput = (id, position) => request("GET", `${at(id)}/points/${position}/input`);
 
+/** @param {string} id */
 export const inputUrl = (id) => `${BASE}${at(id)}/input`;
+/** @param {string} id */
 export const resultUrl = (id) => `${BASE}${at(id)}/result`;
-export const seriesUrl = (id, channel) => `${BASE}${at(id)}/series/${encodeURIComponent(channel)}`;
+/** @type {(id: string, channel: string) => string} */
+const seriesUrl = (id, channel) => `${BASE}${at(id)}/series/${encodeURIComponent(channel)}`;
 export const submitUrl = () => `${window.location.origin}${BASE}/jobs`;
 
+/** @param {Job} job */
 export const isEnded = (job) => ["succeeded", "failed", "canceled"].includes(job.state);
 
 /** A new idempotency key; `crypto.randomUUID` exists only on secure origins. */
@@ -85,15 +129,25 @@ export function newKey() {
   return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
-/** Where the CSV file of a whole channel is; `decimal` is "point" or "comma". */
+/**
+ * Address of the CSV file of a whole channel; `decimal` is "point" or "comma".
+ * @type {(id: string, channel: string, decimal: string) => string}
+ */
 export const seriesCsvUrl = (id, channel, decimal) => `${seriesUrl(id, channel)}?method=none&decimal=${decimal}`;
 
-/** The CSV file of a whole channel. */
+/**
+ * The CSV file of a whole channel.
+ * @type {(id: string, channel: string, decimal: string) => Promise<Blob>}
+ */
 export const seriesCsv = (id, channel, decimal) => csv(seriesCsvUrl(id, channel, decimal));
 
-/** The CSV file of all points of a sweep, as far as they are solved. */
+/**
+ * The CSV file of all points of a sweep that are solved.
+ * @type {(id: string, decimal: string) => Promise<Blob>}
+ */
 export const pointsCsv = (id, decimal) => csv(`${BASE}${at(id)}/points?decimal=${decimal}`);
 
+/** @param {string} address */
 async function csv(address) {
   const response = await fetch(address, { headers: { Accept: "text/csv" } });
   if (response.status === 401) logIn();

@@ -1,5 +1,5 @@
-// Tables as text files, in the dialect that this browser remembers: with a decimal point (RFC 4180), or as spreadsheets read it whose
-// language writes a decimal comma.
+// Tables as text files, in the dialect that this browser remembers: with a decimal point (RFC 4180), or as
+// spreadsheets read it whose language writes a decimal comma.
 
 const KEY = "herringbone.csv-decimal";
 const COMMA = "comma";
@@ -36,7 +36,7 @@ function field(value, sign) {
 }
 
 /** The choice in the footer, on pages that offer such files. */
-const choice = document.getElementById("csv-decimal");
+const choice = /** @type {HTMLSelectElement | null} */ (document.getElementById("csv-decimal"));
 if (choice) {
   choice.value = chosen;
   choice.hidden = false;

@@ -1,9 +1,33 @@
-// Small helpers for building the page. Text goes in as text nodes only: nothing from a job is ever read as HTML.
+// Building and filling elements. Text goes in as text nodes only: nothing from a job is ever read as HTML.
 
-export const byId = (id) => document.getElementById(id);
+/**
+ * The element of the page's template with this id.
+ * @template {keyof TemplateElements} Id
+ * @param {Id} id
+ * @returns {TemplateElements[Id]}
+ */
+export const byId = (id) => byAnyId(id);
 
-/** An element with properties and children (strings become text). */
+/**
+ * The element with an id that is put together at run time; its kind is known to the caller.
+ * @param {string} id
+ * @returns {any}
+ */
+export const byAnyId = (id) => document.getElementById(id);
+
+/** The first body of a table. @param {HTMLElement} table */
+export const bodyOf = (table) => /** @type {HTMLTableElement} */ (table).tBodies[0];
+
+/**
+ * An element with properties or attributes, and children (strings become text).
+ * @template {keyof HTMLElementTagNameMap} Tag
+ * @param {Tag} tag
+ * @param {Record<string, any>} [properties]
+ * @param {Child[]} children
+ * @returns {HTMLElementTagNameMap[Tag]}
+ */
 export function el(tag, properties = {}, ...children) {
+  /** @type {any} */
   const node = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
     if (value === undefined || value === null || value === false) continue;
@@ -15,11 +39,27 @@ export function el(tag, properties = {}, ...children) {
   return node;
 }
 
+/**
+ * Shows or hides an element.
+ * @param {{ hidden: boolean | string }} node
+ * @param {boolean} [visible]
+ */
 export function show(node, visible = true) {
   node.hidden = !visible;
 }
 
-/** Fills a `dl` with [term, value, unit] rows; rows without a value are left out. */
+/**
+ * Shows or hides the figure that a plot's box is in.
+ * @param {Element} box
+ * @param {boolean} visible
+ */
+export const showFigureOf = (box, visible) => show(/** @type {HTMLElement} */ (box.closest("figure")), visible);
+
+/**
+ * Fills a `dl` with [term, value, unit] rows; rows without a value are left out.
+ * @param {HTMLElement} list
+ * @param {ValueRow[]} rows
+ */
 export function fillValues(list, rows) {
   list.replaceChildren(
     ...rows
@@ -28,17 +68,26 @@ export function fillValues(list, rows) {
   );
 }
 
-/** Fills a table body; each row is an array of cells (strings or nodes), the first of which heads the row. */
+/**
+ * Fills a table body; each row is an array of cells (strings or nodes), the first of which heads the row.
+ * @param {HTMLTableSectionElement} body
+ * @param {Child[][]} rows
+ */
 export function fillRows(body, rows) {
   body.replaceChildren(
     ...rows.map(([head, ...cells]) => el("tr", {}, el("th", { scope: "row" }, head), ...cells.map((cell) => el("td", {}, cell)))),
   );
 }
 
-/** Shows a failure in a notice, or hides the notice when there is none. */
+/**
+ * Shows a failure in a notice, or hides the notice when there is none.
+ * @param {HTMLElement} node
+ * @param {any} error
+ */
 export function notify(node, error) {
   show(node, Boolean(error));
   if (!error) return;
+  /** @type {ProblemBody} */
   const problem = error.problem ?? { title: String(error.message ?? error) };
   const details = (problem.errors ?? []).map((entry) => el("li", {}, [entry.pointer, entry.detail].filter(Boolean).join(" ")));
   node.replaceChildren(
@@ -49,7 +98,11 @@ export function notify(node, error) {
   );
 }
 
-/** Warnings of a check or a result. */
+/**
+ * Fills a list with the warnings of a check or a result.
+ * @param {HTMLElement} list
+ * @param {WarningEntry[] | null | undefined} warnings
+ */
 export function fillWarnings(list, warnings) {
   list.replaceChildren(
     ...(warnings ?? []).map((warning) =>
@@ -58,6 +111,12 @@ export function fillWarnings(list, warnings) {
   );
 }
 
+/**
+ * Saves a file under a name.
+ * @param {string} name
+ * @param {string | Blob} text
+ * @param {string} [type] media type
+ */
 export function download(name, text, type = "application/json") {
   const url = URL.createObjectURL(new Blob([text], { type }));
   const link = el("a", { href: url, download: name });

@@ -1,4 +1,5 @@
-// The values of a range, as the service counts them (src/job/grid.rs): both ends and the round values between them are met exactly.
+// The values of a range, as the service counts them (crates/job/src/grid.rs): both ends and the round values between
+// them are met exactly.
 
 /** Significant decimal digits up to which a value of a logarithmic grid counts as round. */
 const ROUND_DIGITS = 12;
@@ -16,7 +17,10 @@ export function gridOf({ from, to, points, spacing }) {
   });
 }
 
-/** With both ends as whole multiples of the same power of ten the value is a quotient of two whole numbers: rounded once. */
+/**
+ * With both ends as whole multiples of the same power of ten the value is a quotient of two whole numbers: rounded
+ * once.
+ */
 function linearGrid(from, to, last) {
   const plain = (index) => from + (to - from) * (index / last);
   const ends = [decimal(from), decimal(to)];

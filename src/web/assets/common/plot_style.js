@@ -11,14 +11,18 @@ const UNITS = ["N/µm", "N/mm", "kg·m²", "m/s²", "m/s", "µm", "mm", "m", "N"
 /** Colours that plots have asked for by name. */
 const NAMED = new Set();
 
-/** Colours of the page, or those of paper. */
+/** Colours of the page, or those of paper. @param {boolean} [paper] */
 export function palette(paper = false) {
   const source = paper ? el("div", { class: "paper", hidden: true }) : document.documentElement;
   if (paper) document.body.append(source);
   const style = getComputedStyle(source);
   const value = (name) => style.getPropertyValue(name).trim();
   const lines = ["--plot-1", "--plot-2", "--plot-3", "--plot-4", "--plot-5", "--plot-6"].map(value).filter(Boolean);
-  const colours = { text: value("--text"), muted: value("--muted"), grid: value("--line"), surface: value("--surface"), lines };
+  /**
+   * @type {{ text: string, muted: string, grid: string, surface: string, lines: string[], of: (name: string) =>
+   *   string }}
+   */
+  const colours = { of: value, text: value("--text"), muted: value("--muted"), grid: value("--line"), surface: value("--surface"), lines };
   // Any other colour of the stylesheets by its name. What is read from paper is read now.
   const known = paper ? new Map([...NAMED].map((name) => [name, value(name)])) : null;
   colours.of = (name) => {
@@ -39,12 +43,18 @@ export function parts(axis) {
   return comma > 0 && (UNITS.includes(unit) || unit.length <= 8) ? { label: axis.slice(0, comma), unit } : { label: axis, unit: "" };
 }
 
-export const titleOf = (axis) => {
+const titleOf = (axis) => {
   const { label, unit } = parts(axis);
   return [label, unit].filter(Boolean).join(", ");
 };
 
-/** The traces in the page's colours and dashes, with what hovering shows; bands first, so that lines lie above them. */
+/**
+ * The traces in the page's colours and dashes, with what hovering shows; bands first, so that lines lie above them.
+ * @param {Trace[]} traces
+ * @param {PlotAxes} axes
+ * @param {ReturnType<typeof palette>} colours
+ * @param {{ width?: number }} [size]
+ */
 export function styled(traces, axes, colours, { width = 900 } = {}) {
   const unified = hoverMode(traces, axes) === "x unified";
   let place = 0;
@@ -102,18 +112,27 @@ function broken(text, room) {
   const most = Math.max(10, Math.floor(room / 6.6));
   const lines = [""];
   for (const word of text.split(" ")) {
-    if (lines.at(-1) && lines.at(-1).length + word.length >= most) lines.push(word);
-    else lines.push([lines.pop(), word].filter(Boolean).join(" "));
+    const last = lines[lines.length - 1];
+    if (last && last.length + word.length >= most) lines.push(word);
+    else lines[lines.length - 1] = [last, word].filter(Boolean).join(" ");
   }
   return lines.join("<br>");
 }
 
+/**
+ * The layout of a plot for plotly.js.
+ * @param {PlotAxes} axes
+ * @param {Trace[]} traces
+ * @param {ReturnType<typeof palette>} colours
+ * @param {{ width: number, height: number }} size
+ */
 export function layoutOf(axes, traces, colours, { width, height }) {
   const { range, yRange, y2Range, title, fromZero, equal, log, top, zoomX, marks = [], levels = [] } = axes;
   const axis = (text) => ({
     title: { text, standoff: 8 }, gridcolor: colours.grid, zerolinecolor: colours.grid, linecolor: colours.grid, automargin: true, exponentformat: "power", minexponent: 5, separatethousands: true,
   });
   const named = traces.some((trace) => trace.showlegend);
+  /** @type {Record<string, any>} */
   const layout = {
     autosize: true,
     height,
@@ -153,19 +172,23 @@ export function layoutOf(axes, traces, colours, { width, height }) {
   return whole;
 }
 
+/** @param {{ x: number, dash?: string, colour?: string }} mark @param {ReturnType<typeof palette>} colours */
 function markLine({ x, dash = "dot", colour }, colours) {
   return { type: "line", x0: x, x1: x, y0: 0, y1: 1, yref: "paper", layer: "below", line: { color: colour ?? colours.muted, width: 1, dash } };
 }
 
+/** @param {{ x: number, text?: string, at?: number }} mark @param {ReturnType<typeof palette>} colours */
 function markText({ x, text, at = 1 }, colours) {
   if (!text) return null;
   return { x, y: at, yref: "paper", yanchor: "top", xanchor: "left", text, showarrow: false, font: { size: 11, color: colours.muted } };
 }
 
+/** @param {{ y: number, dash?: string }} level @param {ReturnType<typeof palette>} colours */
 function levelLine({ y, dash = "dash" }, colours) {
   return { type: "line", x0: 0, x1: 1, xref: "paper", y0: y, y1: y, layer: "below", line: { color: colours.muted, width: 1, dash } };
 }
 
+/** @param {{ y: number, text?: string }} level @param {ReturnType<typeof palette>} colours */
 function levelText({ y, text }, colours) {
   if (!text) return null;
   return { x: 1, xref: "paper", xanchor: "right", y, yanchor: "bottom", text, showarrow: false, font: { size: 11, color: colours.muted } };

@@ -10,7 +10,8 @@ const MAX_ROWS = 500;
 
 /** Puts the tools below the box. `current` tells what is drawn, `picture` makes an image of it. */
 export function toolsOf(node, current, picture) {
-  const table = el("table", { class: "numbers" }, el("caption", { class: "visually-hidden" }), el("thead"), el("tbody"));
+  const head = el("thead");
+  const table = el("table", { class: "numbers" }, el("caption", { class: "visually-hidden" }), head, el("tbody"));
   const sentence = el("p", { class: "help" });
   const details = el("details", {}, el("summary", {}, "Data"), sentence, el("div", { class: "scroll", tabIndex: 0, role: "region" }, table));
   details.addEventListener("toggle", () => details.open && fill());
@@ -29,7 +30,7 @@ export function toolsOf(node, current, picture) {
   node.after(bar);
   const fill = () => {
     const { names, rows } = tableOf(current());
-    table.tHead.replaceChildren(el("tr", {}, ...names.map((name) => el("th", { scope: "col" }, name))));
+    head.replaceChildren(el("tr", {}, ...names.map((name) => el("th", { scope: "col" }, name))));
     fillRows(table.tBodies[0], rows.slice(0, MAX_ROWS).map((row) => row.map((value) => (value === null || value === undefined ? "" : number(value, 6)))));
     const more = rows.length > MAX_ROWS ? ` The first ${MAX_ROWS} of ${number(rows.length)} rows; the CSV file has all.` : "";
     sentence.textContent = summary(current()) + more;
@@ -57,7 +58,7 @@ function nameOf({ node, axes }) {
 
 function fileName(figure) {
   const words = (figure.axes.csvName ?? nameOf(figure)).toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");
-  const job = document.querySelector("[data-id]")?.dataset.id;
+  const job = /** @type {HTMLElement | null} */ (document.querySelector("[data-id]"))?.dataset.id;
   return job ? `${words}-${job.slice(-8)}` : words;
 }
 
@@ -85,7 +86,10 @@ export function summary(figure) {
 
 const shown = (value) => (typeof value === "number" ? number(value, 4) : String(value));
 
-/** Columns of what is drawn: traces over the same places share the first, others have their own. A heat map is a list of its cells. */
+/**
+ * Columns of what is drawn: traces over the same places share the first, others have their own. A heat map is a list
+ * of its cells.
+ */
 function tableOf(figure) {
   const { axes } = figure;
   const [x, y] = [parts(axes.x), parts(axes.y)];

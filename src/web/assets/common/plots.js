@@ -1,19 +1,7 @@
 // Plots with Plotly: loaded on first use, drawn when scrolled near, coloured by the stylesheet.
 //
-// `draw(node, traces, axes)` draws into a box of class `plot`; traces come from `line`, `points`, `stems`, `bars`, `heatMap`. `axes`:
-//   x, y, y2   titles with their unit after the last comma ("Time, s"), or { label, unit }
-//   name       what the plot is called, for people who do not see it and for file names; the figure's caption or heading if left out
-//   csvName    name of its files without ending
-//   range      [from, to] of x if it is not all of it;  yRange, y2Range the same of y and y2
-//   log        y is logarithmic
-//   bands      [{ x, low, high, name }]: filled between two curves
-//   marks      [{ x, text }]: vertical lines;  levels [{ y, text }]: horizontal ones
-//   top        { title, factor }: a second x axis above, `factor` times the first
-//   fromZero   both axes start at zero;  equal: a unit is as long on both axes
-//   zoomX      dragging zooms x only;  link: plots with the same word zoom x together
-//   hover      "closest" or "x unified"; chosen by the traces if left out
-//   shapes, annotations, layout   passed on to Plotly;  more(layout, colour) has the last word on the layout
-//   click      called with Plotly's event when a point is clicked
+// `draw(node, traces, axes)` draws into a box of class `plot`; traces come from `line`, `points`, `stems`, `bars`,
+// `heatMap`; the members of `axes` are those of `PlotAxes` (src/web/types.d.ts).
 
 import { el } from "./dom.js";
 import { layoutOf, palette, styled } from "./plot_style.js";
@@ -22,16 +10,17 @@ import { describe, toolsOf } from "./plot_tools.js";
 export { bars, heatMap, line, points, stems } from "./plot_traces.js";
 
 const CONFIG = { displaylogo: false, displayModeBar: true, doubleClick: "autosize", modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "toImage"] };
-/** What is this near to the window is drawn, px. */
+/** Distance from the window below which a plot is drawn, px. */
 const NEAR = 400;
-/** Of every box: what is to be drawn, and what was. */
+/** The figure of every box: what is to be drawn, and whether it was. @type {Map<Element, any>} */
 const figures = new Map();
+/** @type {Promise<any> | null} */
 let loading = null;
 
 /** Plots follow the width of their boxes. */
 const fit = new ResizeObserver((changes) => {
   for (const { target, contentRect } of changes) {
-    const width = target._fullLayout?.width;
+    const width = /** @type {any} */ (target)._fullLayout?.width;
     if (contentRect.width > 0 && width && Math.abs(width - contentRect.width) > 1) window.Plotly.Plots.resize(target);
   }
 });
@@ -53,6 +42,7 @@ const nearby = new IntersectionObserver(
  */
 function allowStyleAttributes() {
   const { setAttribute } = Element.prototype;
+  /** @this {Element & { style?: CSSStyleDeclaration }} @param {string} name @param {string} value */
   Element.prototype.setAttribute = function (name, value) {
     if (name === "style" && this.style) this.style.cssText = value;
     else setAttribute.call(this, name, value);
@@ -62,7 +52,8 @@ function allowStyleAttributes() {
 function load() {
   loading ??= new Promise((resolve, reject) => {
     allowStyleAttributes();
-    const script = el("script", { src: document.querySelector("[data-plotly]").dataset.plotly, async: true });
+    const page = /** @type {HTMLElement} */ (document.querySelector("[data-plotly]"));
+    const script = el("script", { src: page.dataset.plotly, async: true });
     script.addEventListener("load", () => resolve(window.Plotly));
     script.addEventListener("error", () => reject(new Error("The plotting script could not be loaded")));
     document.head.append(script);
@@ -71,8 +62,11 @@ function load() {
 }
 
 /**
- * Draws traces into a box, at once when it is near the window and otherwise when it comes near. Below the box stand the plot's tools: its
- * data as a table and as files.
+ * Draws traces into a box, at once when it is near the window and otherwise when it comes near. Below the box stand
+ * the plot's tools: its data as a table and as files.
+ * @param {HTMLElement} node
+ * @param {Trace[]} traces
+ * @param {PlotAxes} axes
  */
 export async function draw(node, traces, axes) {
   let figure = figures.get(node);
@@ -89,25 +83,28 @@ export async function draw(node, traces, axes) {
   return node;
 }
 
-/** Calls `zoomed` with [from, to] when the user changes the range of x, and with null when it is set free. */
+/**
+ * Calls `zoomed` with [from, to] when the user changes the range of x, and with null when it is set free.
+ * @param {HTMLElement} node
+ * @param {(range: Span | null) => void} zoomed
+ */
 export function onZoom(node, zoomed) {
   const figure = figures.get(node);
   if (figure) figure.zoomed = zoomed;
 }
 
-/** A figure with its box: `{ figure, plot }`. Its height is reserved from the start. */
-export function figure({ id, title, height }) {
-  const plot = el("div", { class: "plot", id });
-  if (height) plot.style.height = `${height}px`;
-  return { figure: el("figure", {}, el("figcaption", {}, title), plot), plot };
-}
-
 /** Everything that waits to be scrolled near. */
-export async function drawAll() {
+async function drawAll() {
   for (const waiting of figures.values()) if (!waiting.drawn) await render(waiting);
 }
 
-/** The plot as an image, in the colours of paper: `format` `svg` (text) or `png` (base64). */
+/**
+ * The plot as an image, in the colours of paper: `format` `svg` (text) or `png` (base64).
+ * @param {Trace[]} traces
+ * @param {PlotAxes} axes
+ * @param {{ format?: "svg" | "png", width?: number, height?: number }} [options]
+ * @returns {Promise<string>}
+ */
 export async function picture(traces, axes, { format = "svg", width = 900, height = 480 } = {}) {
   const plotly = await load();
   const colours = palette(true);

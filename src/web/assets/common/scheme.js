@@ -1,4 +1,5 @@
-// Light or dark: as the system has it, or as chosen in the footer. A plain script that runs before the first paint, so that no page flashes.
+// Light or dark: as the system has it, or as chosen in the footer. A plain script that runs before the first paint, so
+// that no page flashes.
 
 (() => {
   const KEY = "herringbone.scheme";
@@ -34,7 +35,7 @@
   apply(stored());
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", tell);
   document.addEventListener("DOMContentLoaded", () => {
-    const choice = document.getElementById("scheme");
+    const choice = /** @type {HTMLSelectElement | null} */ (document.getElementById("scheme"));
     if (!choice) return;
     choice.value = root.dataset.scheme ?? "";
     choice.addEventListener("change", () => choose(choice.value));

@@ -28,11 +28,11 @@ function watch(box) {
 document.querySelectorAll(BOXES).forEach(watch);
 new MutationObserver((changes) => {
   for (const { target, addedNodes } of changes) {
-    if (target.matches(BOXES)) watch(target);
+    if (target instanceof Element && target.matches(BOXES)) watch(target);
     for (const node of addedNodes) {
       if (!(node instanceof HTMLElement)) continue;
       if (node.matches(BOXES)) watch(node);
       node.querySelectorAll(BOXES).forEach(watch);
     }
   }
-}).observe(document.getElementById("main"), { childList: true, subtree: true });
+}).observe(/** @type {HTMLElement} */ (document.getElementById("main")), { childList: true, subtree: true });

@@ -4,11 +4,17 @@ import * as api from "./api.js";
 
 const POLL_MS = 1000;
 
-/** Calls `onJob` with each new state of the job until it has ended. Returns a function that stops it. */
+/**
+ * Calls `onJob` with each new state of the job until it has ended. Returns a function that stops it.
+ * @param {string} id
+ * @param {(job: Job) => void} onJob
+ */
 export function watchJob(id, onJob) {
   let stopped = false;
+  /** @type {EventSource | null} */
   let source = null;
-  let timer = null;
+  /** @type {number | undefined} */
+  let timer;
 
   function stop() {
     stopped = true;
@@ -26,18 +32,19 @@ export function watchJob(id, onJob) {
     try {
       take(await api.job(id));
     } catch (error) {
-      if (error.status === 404) stop();
+      if (error instanceof api.Problem && error.status === 404) stop();
     }
     if (!stopped) timer = setTimeout(ask, POLL_MS);
   }
 
   function listen() {
-    source = new EventSource(`/api/v1/jobs/${encodeURIComponent(id)}/events`);
+    const stream = new EventSource(`/api/v1/jobs/${encodeURIComponent(id)}/events`);
     // The data of every event is the whole job.
-    for (const name of ["state", "progress", "done"]) source.addEventListener(name, (event) => take(JSON.parse(event.data)));
-    source.addEventListener("error", () => {
+    for (const name of ["state", "progress", "done"]) stream.addEventListener(name, (event) => take(JSON.parse(event.data)));
+    source = stream;
+    stream.addEventListener("error", () => {
       // The browser reconnects by itself unless the server refused.
-      if (stopped || source.readyState !== EventSource.CLOSED) return;
+      if (stopped || stream.readyState !== EventSource.CLOSED) return;
       ask();
     });
   }

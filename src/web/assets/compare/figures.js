@@ -1,7 +1,7 @@
 // The curves of all jobs, one above the other: the same colour and dash for a job in every figure.
 
 import * as api from "../common/api.js";
-import { byId, el, show } from "../common/dom.js";
+import { byAnyId, byId, el, show } from "../common/dom.js";
 import { number, shownUnit } from "../common/format.js";
 import { bars, draw, line, points, stems } from "../common/plots.js";
 
@@ -13,27 +13,32 @@ const PHASE_PERIODS = 40;
 /** A spectrum with more lines than this is drawn as a curve. */
 const MAX_BARS = 48;
 
-const plotOf = (id) => byId(id).querySelector(".plot");
+/** @param {string} id @returns {HTMLElement} */
+const plotOf = (id) => byAnyId(id).querySelector(".plot");
 const options = () => ({
-  half: document.querySelector("#half input:checked").value,
+  half: /** @type {HTMLInputElement} */ (document.querySelector("#half input:checked")).value,
   isMeanRemoved: byId("mean-removed").checked,
   channel: byId("channel").value,
   periods: Number(byId("periods").value),
   isLogarithmic: byId("spectrum-log").checked,
 });
 
+/** @typedef {ComparedJob & { result: JobResult }} SolvedJob */
+
+/** @type {SolvedJob[]} */
 let jobs = [];
-/** Series that were read: job and channel and window to the answer on its way. */
+/** Requests of series by job, channel and window. @type {Map<string, Promise<SeriesData>>} */
 let series = new Map();
 let drawing = 0;
 
+/** @param {(error: unknown) => void} failed */
 export function watchOptions(failed) {
-  for (const id of ["half", "mean-removed", "channel", "periods", "spectrum-log"]) byId(id).addEventListener("change", () => update().catch(failed));
+  for (const id of /** @type {const} */ (["half", "mean-removed", "channel", "periods", "spectrum-log"])) byId(id).addEventListener("change", () => update().catch(failed));
 }
 
-/** Draws the curves of these jobs, as far as they have them. */
+/** Draws the curves of these jobs, as far as they have them. @param {ComparedJob[]} all */
 export async function showCurves(all) {
-  jobs = all.filter(({ result }) => result);
+  jobs = all.filter(isSolved);
   series = new Map([...series].filter(([key]) => jobs.some(({ id }) => key.startsWith(id))));
   const symmetric = jobs.every(isSymmetric);
   show(byId("half"), !symmetric);
@@ -43,6 +48,10 @@ export async function showCurves(all) {
   await update();
 }
 
+/** @type {(job: ComparedJob) => job is SolvedJob} */
+const isSolved = (job) => job.result !== undefined;
+
+/** @param {SolvedJob} job */
 function isSymmetric({ result }) {
   const rms = result.response?.rms?.mesh_circumferential_acceleration_m_s2;
   const alike = !rms || Math.abs(rms.left - rms.right) <= 1e-6 * Math.abs(rms.left);
@@ -52,7 +61,7 @@ function isSymmetric({ result }) {
 /** Channels that some job has, by the name that they have in either half. */
 function fillChannels() {
   const known = new Map();
-  for (const { channels } of jobs) for (const { name, quantity, unit } of channels) if (name.endsWith("_left")) known.set(name.slice(0, -5), { quantity, unit });
+  for (const { channels = [] } of jobs) for (const { name, quantity, unit } of channels) if (name.endsWith("_left")) known.set(name.slice(0, -5), { quantity, unit });
   const choice = byId("channel");
   const chosen = choice.value || "a_x";
   choice.replaceChildren(...[...known].map(([name, { quantity, unit }]) => el("option", { value: name }, `${name}${quantity ? ` – ${quantity.replaceAll("_", " ")}` : ""}, ${inUnit(unit).unit}`)));
@@ -68,39 +77,51 @@ async function update() {
   if (turn === drawing) byId("curves").dataset.ready = String(turn);
 }
 
-/** Shows a figure, or hides it where no job has anything for it. */
+/**
+ * Shows a figure, or hides it where no job has anything for it.
+ * @param {string} id
+ * @param {Trace[]} traces
+ * @param {PlotAxes} axes
+ */
 async function put(id, traces, axes) {
   const present = traces.filter(({ x }) => x?.length);
-  show(byId(id), present.length > 0);
+  show(byAnyId(id), present.length > 0);
   if (present.length) await draw(plotOf(id), present, axes);
 }
 
+/** @type {(job: ComparedJob, trace: Trace) => Trace} */
 const styledFor = ({ slot }, trace) => ({ ...trace, colour: slot });
+/** @param {SolvedJob} job @param {string} half */
 const curveOf = ({ result }, half) => (half === "right" ? result.mesh?.right_curve : null) ?? result.mesh?.curve;
 
+/** @param {number[]} values @param {boolean} isMeanRemoved */
 function withoutMean(values, isMeanRemoved) {
-  if (!isMeanRemoved || !values?.length) return values;
+  if (!isMeanRemoved || !values.length) return values;
   const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
   return values.map((value) => value - mean);
 }
 
+/** @typedef {ReturnType<typeof options>} Options */
+
+/** @param {string} id @param {string} unit @param {(curve: MeshCurve) => number[]} pick @param {Options} options */
 function meshCurve(id, unit, pick, { half, isMeanRemoved }) {
   const traces = jobs.map((job) => {
     const curve = curveOf(job, half);
-    const values = curve && withoutMean(pick(curve), isMeanRemoved);
-    if (!values?.length) return { x: [] };
+    const values = curve ? withoutMean(pick(curve), isMeanRemoved) : [];
+    if (!curve || !values.length) return { x: [] };
     // The period closes: its end is its beginning.
     return styledFor(job, line([...curve.phase, curve.phase[0] + 1], [...values, values[0]], job.short));
   });
   return put(id, traces, { x: PHASE, y: isMeanRemoved ? `From the mean, ${unit}` : unit, link: "mesh", csvName: `compare-${id}` });
 }
 
+/** @param {Options} options */
 function share({ half }) {
   const traces = jobs.map((job) => {
-    const { curve } = job.result.mesh ?? {};
+    const curve = job.result.mesh?.curve;
     const shares = curve?.load_share ?? [];
     const values = shares[half === "right" && shares.length > 1 ? 1 : 0];
-    return values ? styledFor(job, line(curve.load_share_phase, values, job.short)) : { x: [] };
+    return curve && values ? styledFor(job, line(curve.load_share_phase, values, job.short)) : { x: [] };
   });
   return put("share", traces, { x: "Base pitches from the theoretical start of contact", y: "Share", csvName: "compare-load-share" });
 }
@@ -109,18 +130,23 @@ function share({ half }) {
 function impact() {
   const traces = jobs.map((job) => {
     const { impact: found, geometry, response } = job.result;
-    const { force_n: force, duration_us: duration, start_mesh_periods: start } = found ?? {};
     const frequency = response?.mesh_frequency_hz ?? geometry?.mesh_frequency_hz;
-    if (![force, duration, frequency].every((value) => typeof value === "number")) return { x: [] };
+    if (!found || typeof frequency !== "number") return { x: [] };
+    const { force_n: force, duration_us: duration, start_mesh_periods: start } = found;
     const length = duration * 1e-6 * frequency;
     const steps = Array.from({ length: 61 }, (_, index) => index / 60);
-    return styledFor(job, line(steps.map((step) => (start ?? 0) + step * length), steps.map((step) => force * Math.sin(Math.PI * step)), job.short));
+    return styledFor(job, line(steps.map((step) => start + step * length), steps.map((step) => force * Math.sin(Math.PI * step)), job.short));
   });
   return put("impact", traces, { x: "Mesh periods from the theoretical start of contact", y: "N", csvName: "compare-impact" });
 }
 
+/** @param {Options} options */
 function spectrum({ isLogarithmic }) {
-  const found = jobs.map((job) => ({ job, frequency: job.result.response?.mesh_frequency_hz, spectrum: job.result.response?.spectrum })).filter(({ frequency, spectrum: lines }) => frequency > 0 && lines?.frequency_hz?.length);
+  const found = jobs.flatMap((job) => {
+    const { spectrum: lines, mesh_frequency_hz: frequency = 0 } = job.result.response ?? {};
+    return lines?.frequency_hz.length && frequency > 0 ? [{ job, frequency, spectrum: lines }] : [];
+  });
+  /** @param {{ frequency_hz: number[] }} lines */
   const isFew = (lines) => lines.frequency_hz.length <= MAX_BARS;
   const areFew = found.every(({ spectrum: lines }) => isFew(lines));
   const traces = found.map(({ job, frequency, spectrum: lines }) => {
@@ -131,9 +157,14 @@ function spectrum({ isLogarithmic }) {
   return put("spectrum", traces, { x: "Mesh order", y: "m/s²", log: isLogarithmic, csvName: "compare-spectrum", hover: "closest" });
 }
 
-/** Time series and phase plane: both need records of the motion. */
+/**
+ * Time series and phase plane: both need records of the motion.
+ * @param {Options} options
+ * @param {() => boolean} isCurrent
+ */
 async function records({ half, isMeanRemoved, channel, periods }, isCurrent) {
-  const moving = jobs.filter(({ channels }) => channels.length > 0);
+  const moving = jobs.filter(({ channels = [] }) => channels.length > 0);
+  /** @param {string[]} names @param {number} count */
   const read = (names, count) => Promise.all(moving.map((job) => Promise.all(names.map((name) => record(job, `${name}_${half}`, count)))));
   const [chosen, planes] = await Promise.all([read([channel], periods), read(["x", "v_x"], PHASE_PERIODS)]);
   if (!isCurrent()) return;
@@ -155,17 +186,23 @@ async function records({ half, isMeanRemoved, channel, periods }, isCurrent) {
   await put("phase", paths, { x: `x_${half}, µm`, y: `v_x_${half}, m/s`, hover: "closest", csvName: "compare-phase-plane" });
 }
 
-const channelOf = ({ channels }, name) => channels.find((channel) => channel.name === name);
+/** @param {ComparedJob} job @param {string} name */
+const channelOf = ({ channels = [] }, name) => channels.find((channel) => channel.name === name);
 
-/** Metres are shown as micrometres, other units as they are. */
+/** Metres are shown as micrometres, other units as they are. @param {string} [unit] */
 const inUnit = (unit) => (unit === "m" ? { unit: "µm", factor: 1e6 } : { unit: shownUnit(unit), factor: 1 });
 
-/** The last mesh periods of a channel: { phase, values, isPeriodic, span }, phase in mesh periods from the start of one. */
+/**
+ * The last mesh periods of a channel; the phase is in mesh periods from the start of one.
+ * @param {SolvedJob} job
+ * @param {string} name
+ * @param {number} periods
+ */
 async function record(job, name, periods) {
   const channel = channelOf(job, name);
   const { response } = job.result;
-  const frequency = response?.mesh_frequency_hz;
-  if (!channel || !(frequency > 0)) return null;
+  if (!channel || !response || !(response.mesh_frequency_hz > 0)) return null;
+  const frequency = response.mesh_frequency_hz;
   const { t0, dt, n } = channel;
   const isPeriodic = response.method === "periodic";
   const span = Math.round(n * dt * frequency);
@@ -173,21 +210,30 @@ async function record(job, name, periods) {
   const start = t0 + (span - count) / frequency;
   const window = isPeriodic ? { method: "none" } : { from: Math.max(t0, start - dt / 4), to: t0 + (n - 1) * dt, max_points: MAX_POINTS };
   const key = `${job.id} ${name} ${count}`;
-  if (!series.has(key)) series.set(key, api.series(job.id, name, window));
+  const answer = series.get(key) ?? api.series(job.id, name, window);
+  series.set(key, answer);
   try {
-    const { t, y } = await series.get(key);
-    return { phase: t.map((time) => (time - start) * frequency), values: y, isPeriodic, span: count };
+    const { t, y } = await answer;
+    return { phase: t.map((time) => (time - start) * frequency), values: /** @type {number[]} */ (y), isPeriodic, span: count };
   } catch (error) {
     series.delete(key);
     throw error;
   }
 }
 
-/** A periodic record as often as it takes. */
+/**
+ * A periodic record, repeated until it covers `periods`.
+ * @param {NonNullable<Awaited<ReturnType<typeof record>>>} record
+ * @param {number[]} values
+ * @param {number} periods
+ * @returns {[number[], number[]]}
+ */
 function repeated({ phase, values: { length }, isPeriodic, span }, values, periods) {
   if (!isPeriodic || span === 0) return [phase, values];
   const times = Math.max(1, Math.ceil(periods / span));
+  /** @type {number[]} */
   const x = [];
+  /** @type {number[]} */
   const y = [];
   for (let turn = 0; turn < times; turn += 1) {
     for (let index = 0; index < length; index += 1) {
@@ -196,8 +242,9 @@ function repeated({ phase, values: { length }, isPeriodic, span }, values, perio
       y.push(values[index]);
     }
   }
-  x.push(Math.min(periods, times * span));
-  y.push(values[Math.round((x.at(-1) % span) / span * length) % length]);
+  const end = Math.min(periods, times * span);
+  x.push(end);
+  y.push(values[Math.round((end % span) / span * length) % length]);
   return [x, y];
 }
 

@@ -6,7 +6,10 @@ import { number, pointerLabel } from "../common/format.js";
 const NAMES = ["/name", "/label"];
 const PER_HALF = ["tip_relief", "lead_crowning_um", "helix_slope_um", "end_relief"];
 
-/** Rows { pointer, label, unit, values } of the inputs that are not the same in all documents, and how many there are in all. */
+/**
+ * Rows { pointer, label, unit, values } of the inputs that are not the same in all documents, and how many there are
+ * in all.
+ */
 export function differing(documents) {
   const flat = documents.map((document) => leaves(withHalves(document)));
   const pointers = [...new Set(flat.flatMap((leaf) => [...leaf.keys()]))].filter((pointer) => !NAMES.includes(pointer));

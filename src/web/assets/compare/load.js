@@ -1,17 +1,24 @@
-// What is known of a compared job: the job, its document, and what it found.
+// Reads a compared job: the job, its document and its result.
 
 import * as api from "../common/api.js";
 import { Grid } from "../sweep/axes.js";
 import { SweepData } from "../sweep/data.js";
 import { columnsOf, QUANTITIES } from "../sweep/quantities.js";
 
-/** Reads everything about a job as it stands; `known` is what was read before. */
+/**
+ * Reads everything about a job as it stands; `known` is what was read before.
+ * @param {string} id
+ * @param {LoadedJob} [known]
+ * @returns {Promise<LoadedJob>}
+ *
+ * @typedef {Pick<ComparedJob, "id" | "job" | "input" | "result" | "channels" | "sweep">} LoadedJob
+ */
 export async function load(id, known) {
   let job;
   try {
     job = await api.job(id);
   } catch (error) {
-    if (error.status === 404) return { id, job: null };
+    if (error instanceof api.Problem && error.status === 404) return { id, job: null };
     throw error;
   }
   const same = known?.job && known.job.revision === job.revision ? known : null;
@@ -24,7 +31,7 @@ export async function load(id, known) {
   return { id, job, input, result, channels };
 }
 
-/** The rows of a sweep, by columns; nothing when it has none. */
+/** The rows of a sweep, by columns; nothing when it has none. @param {string} id @param {JobInput} input */
 async function sweepOf(id, input) {
   const grid = new Grid(input);
   const data = new SweepData(id, grid.total);

@@ -1,115 +1,126 @@
 // The headline numbers of each job, in groups, and how they differ from the reference's.
 
 import { number } from "../common/format.js";
+import { SCALARS, areAlike, isPerHalf, scalarAt, valueOf, valuesPerHalf } from "../common/scalars.js";
 import { valueText } from "../sweep/axes.js";
+import { QUANTITIES } from "../sweep/quantities.js";
 
-/** A quantity: what it is called, its unit, and where it is found. `change` says how differences are told: in `percent`, as a `level` as well, in
- *  `points` of a percentage, `absolute`, or (a `word`) not at all. */
-const quantity = (name, label, unit, pick, options = {}) => ({ name, label, unit, pick, change: "percent", ...options });
+/**
+ * A row of the table: name, label, unit, and the function that finds its value in a job.
+ * @typedef {import("../common/scalars.js").Quantity} Scalar
+ * @typedef {Scalar["change"]} Change
+ * @typedef {{ value: number, at: string }} Finding a value with its place in a sweep
+ * @typedef {Finding | number | string | null | undefined} Found
+ * @typedef {{ left: Found, right: Found } | null | undefined} FoundPerHalf
+ * @typedef {{ name: string, label: string, unit: string, change?: Change }} Described
+ * @typedef {Described & { pick: (job: ComparedJob) => Found }} Quantity
+ * @typedef {Described & { pickBoth: (job: ComparedJob) => FoundPerHalf }} QuantityPerHalf one row when the halves are alike in all jobs
+ */
 
-/** A value per half: one row when the halves are alike in all jobs. */
-const halves = (name, label, unit, pick, options) => ({ name, label, unit, pickBoth: pick, ...options });
+/** @param {Scalar} scalar @returns {Quantity | QuantityPerHalf} */
+function ofResult(scalar) {
+  const { pointer, label, symbol, unit, change } = scalar;
+  const described = { name: pointer, label: symbol ? `${label} ${symbol}` : label, unit, change };
+  if (isPerHalf(scalar)) return { ...described, pickBoth: ({ result }) => valuesPerHalf(result, scalar) };
+  return { ...described, pick: ({ result }) => valueOf(result, scalar) };
+}
 
-const of = (part, name) => ({ result }) => result?.[part]?.[name];
+/** The largest value of a quantity of a sweep. @param {SweepQuantity} quantity @returns {Quantity | QuantityPerHalf} */
+function ofSweep({ name, label, unit, change, columns: { both, left, right } }) {
+  const described = { name: `sweep ${name}`, label: `${label}, largest of the sweep`, unit, change };
+  if (both) return { ...described, pick: ({ sweep }) => largest(sweep, both) };
+  return { ...described, pickBoth: ({ sweep }) => (sweep && left && right ? { left: largest(sweep, left), right: largest(sweep, right) } : null) };
+}
 
-const GROUPS = [
+/** Scalars of the result by their pointers, and rows of other origin. @type {[string, (string | Quantity | QuantityPerHalf)[]][]} */
+const CHOSEN = [
   ["Vibration", [
-    halves("circumferential", "Circumferential acceleration of the mesh, RMS", "m/s²", ({ result }) => result?.response?.rms?.mesh_circumferential_acceleration_m_s2, { change: "level" }),
-    halves("axial", "Axial acceleration of the pinion, RMS", "m/s²", ({ result }) => result?.response?.rms?.pinion_axial_acceleration_m_s2, { change: "level" }),
-    quantity("dynamic_factor", "Dynamic factor", "", of("response", "dynamic_factor")),
-    halves("tooth_force_max_n", "Largest tooth force", "N", ({ result }) => extremeOfHalves(result, "max")),
-    halves("tooth_force_min_n", "Least tooth force", "N", ({ result }) => extremeOfHalves(result, "min"), { change: "absolute" }),
-    quantity("regime", "Motion", "", of("response", "regime"), { change: "word" }),
-    quantity("contact", "Contact", "", of("response", "contact"), { change: "word" }),
-    quantity("min_displacement_um", "Least mesh displacement", "µm", of("response", "min_displacement_um"), { change: "absolute" }),
-    quantity("mesh_frequency_hz", "Mesh frequency", "Hz", ({ result }) => result?.response?.mesh_frequency_hz ?? result?.geometry?.mesh_frequency_hz),
+    "/response/rms/mesh_circumferential_acceleration_m_s2/{half}", "/response/rms/pinion_axial_acceleration_m_s2/{half}", "/response/dynamic_factor",
+    "/response/tooth_force_n/{half}/max", "/response/tooth_force_n/{half}/min", "/response/regime", "/response/contact", "/response/min_displacement_um",
+    "/geometry/mesh_frequency_hz",
   ]],
-  ["Mesh-in impact", [
-    quantity("force_n", "Impact force", "N", of("impact", "force_n")),
-    quantity("zhou2008_force_n", "Impact force after Zhou 2008", "N", of("impact", "zhou2008_force_n")),
-    quantity("reduction_percent", "Reduction by the pairs in mesh", "%", of("impact", "reduction_percent"), { change: "points" }),
-    quantity("velocity_m_s", "Impact velocity", "m/s", of("impact", "velocity_m_s")),
-    quantity("duration_us", "Impact duration", "µs", of("impact", "duration_us")),
-  ]],
+  ["Mesh-in impact", ["/impact/force_n", "/impact/zhou2008_force_n", "/impact/reduction_percent", "/impact/velocity_m_s", "/impact/duration_us"]],
   ["Mesh of one half", [
-    quantity("stiffness_mean_n_per_um", "Mean mesh stiffness", "N/µm", of("mesh", "stiffness_mean_n_per_um")),
-    quantity("stiffness_swing", "Mesh stiffness, peak to peak", "N/µm", ({ result }) => swing(result?.mesh)),
-    quantity("transmission_error_pp_um", "Transmission error, peak to peak", "µm", of("mesh", "transmission_error_pp_um")),
-    quantity("transmission_error_mean_um", "Transmission error, mean", "µm", of("mesh", "transmission_error_mean_um")),
-    quantity("load_share_at_mesh_in", "Load share at mesh-in", "", of("mesh", "load_share_at_mesh_in"), { change: "absolute" }),
-    quantity("max_line_load_n_per_mm", "Largest line load", "N/mm", of("mesh", "max_line_load_n_per_mm")),
-    quantity("max_contact_pressure_mpa", "Largest contact pressure", "MPa", of("mesh", "max_contact_pressure_mpa")),
+    "/mesh/stiffness_mean_n_per_um",
+    { name: "stiffness_swing", label: "Mesh stiffness of one half, peak to peak", unit: scalarAt("/mesh/stiffness_mean_n_per_um").unit, pick: ({ result }) => swing(result?.mesh) },
+    "/mesh/transmission_error_pp_um", "/mesh/transmission_error_mean_um", "/mesh/load_share_at_mesh_in", "/mesh/max_line_load_n_per_mm", "/mesh/max_contact_pressure_mpa",
   ]],
   ["Geometry", [
-    quantity("transverse_contact_ratio", "Transverse contact ratio ε_α", "", of("geometry", "transverse_contact_ratio")),
-    quantity("overlap_ratio", "Overlap ratio ε_β", "", of("geometry", "overlap_ratio")),
-    quantity("total_contact_ratio", "Total contact ratio ε_γ", "", of("geometry", "total_contact_ratio")),
-    quantity("loaded_contact_ratio", "Total contact ratio under load", "", of("mesh", "loaded_contact_ratio")),
-    quantity("working_pressure_angle_deg", "Working transverse pressure angle α_wt", "°", of("geometry", "working_pressure_angle_deg"), { change: "absolute" }),
-    quantity("center_distance_mm", "Centre distance a", "mm", of("geometry", "center_distance_mm")),
+    "/geometry/transverse_contact_ratio", "/geometry/overlap_ratio", "/geometry/total_contact_ratio", "/mesh/loaded_contact_ratio", "/geometry/working_pressure_angle_deg",
+    "/geometry/center_distance_mm",
   ]],
   ["Sweep", [
-    halves("sweep_circumferential", "Largest circumferential acceleration, RMS", "m/s²", ({ sweep }) => largestOfHalves(sweep, "mesh_circumferential_acceleration_rms"), { change: "level" }),
-    halves("sweep_axial", "Largest axial acceleration of the pinion, RMS", "m/s²", ({ sweep }) => largestOfHalves(sweep, "pinion_axial_acceleration_rms"), { change: "level" }),
-    quantity("sweep_dynamic_factor", "Largest dynamic factor", "", ({ sweep }) => largest(sweep, "dynamic_factor")),
-    halves("sweep_tooth_force", "Largest tooth force", "N", ({ sweep }) => largestOfHalves(sweep, "tooth_force_max", "n")),
-    quantity("sweep_separated", "Points at which the teeth separate", "", ({ sweep }) => sweep?.data.column("contact").filter((word) => word && word !== "continuous").length, { change: "absolute" }),
-    quantity("sweep_points", "Points solved", "", ({ sweep }) => sweep?.data.n, { change: "absolute" }),
+    ...QUANTITIES.filter(({ least }) => least).map(ofSweep),
+    { name: "sweep_separated", label: "Points at which the teeth separate", unit: "", change: "absolute", pick: ({ sweep }) => sweep?.data.column("contact").filter((word) => word && word !== "continuous").length },
+    { name: "sweep_points", label: "Points solved", unit: "", change: "absolute", pick: ({ sweep }) => sweep?.data.n },
   ]],
 ];
 
-function extremeOfHalves(result, which) {
-  const forces = result?.response?.tooth_force_n;
-  return forces ? { left: forces.left[which], right: forces.right[which] } : null;
-}
+const chosen = new Set(CHOSEN.flatMap(([, entries]) => entries));
 
+/** @type {{ title: string, isFolded: boolean, entries: (Quantity | QuantityPerHalf)[] }[]} */
+const GROUPS = [
+  ...CHOSEN.map(([title, entries]) => ({ title, isFolded: false, entries: entries.map((entry) => (typeof entry === "string" ? ofResult(scalarAt(entry)) : entry)) })),
+  { title: "All other values", isFolded: true, entries: SCALARS.filter(({ pointer }) => !chosen.has(pointer)).map(ofResult) },
+];
+
+/** @param {MeshResult | null | undefined} mesh */
 function swing(mesh) {
   const [least, most] = [mesh?.stiffness_min_n_per_um, mesh?.stiffness_max_n_per_um];
   return typeof least === "number" && typeof most === "number" ? most - least : null;
 }
 
-/** The largest value of a column, and where it is. */
+/**
+ * The largest value of a column, and where it is.
+ * @param {ComparedJob["sweep"]} sweep
+ * @param {string} name
+ * @returns {Finding | null}
+ */
 function largest(sweep, name) {
   const values = sweep?.data.column(name) ?? [];
   let found = -1;
   values.forEach((value, position) => {
     if (found < 0 ? !Number.isNaN(value) : value > values[found]) found = position;
   });
-  if (found < 0) return null;
+  if (found < 0 || !sweep) return null;
   const places = sweep.grid.valuesAt(found).map((value, index) => valueText(sweep.grid.axes[index], value));
   return { value: values[found], at: `at ${places.join(", ")}` };
 }
 
-function largestOfHalves(sweep, name, unit = "m_s2") {
-  const [left, right] = ["left", "right"].map((half) => largest(sweep, `${name}_${half}_${unit}`));
-  return left || right ? { left, right } : null;
-}
-
+/** @type {(found: Found) => found is Finding} */
 const isFinding = (found) => found !== null && typeof found === "object";
-const valueOf = (found) => (isFinding(found) ? found.value : found);
-const alike = (a, b) => a === b || Math.abs(a - b) <= 1e-9 * Math.abs(a);
+/** @param {Found} found */
+const plain = (found) => (isFinding(found) ? found.value : found);
 
-/** Groups { title, rows: [{ name, label, unit, cells: [{ value, at }], change }] } of what at least one job has. */
+/** Groups of the quantities that at least one job has. @param {ComparedJob[]} jobs */
 export function groupsOf(jobs) {
-  return GROUPS.map(([title, quantities]) => ({ title, rows: quantities.flatMap((entry) => rowsOf(entry, jobs)) })).filter(({ rows }) => rows.length > 0);
+  return GROUPS.map(({ title, isFolded, entries }) => ({ title, isFolded, rows: entries.flatMap((entry) => rowsOf(entry, jobs)) })).filter(({ rows }) => rows.length > 0);
 }
 
+/** @param {Quantity | QuantityPerHalf} entry @param {ComparedJob[]} jobs */
 function rowsOf(entry, jobs) {
-  if (!entry.pickBoth) return row(entry, entry.label, jobs.map(entry.pick));
+  if ("pick" in entry) return row(entry, entry.label, jobs.map(entry.pick));
   const both = jobs.map((job) => entry.pickBoth(job));
-  const symmetric = both.every((pair) => !pair || alike(valueOf(pair.left), valueOf(pair.right)));
-  if (symmetric) return row({ ...entry, name: `${entry.name}-both` }, `${entry.label}, both halves`, both.map((pair) => pair?.left));
-  return ["left", "right"].flatMap((half) => row({ ...entry, name: `${entry.name}-${half}` }, `${entry.label}, ${half}`, both.map((pair) => pair?.[half])));
+  const isSymmetric = both.every((pair) => !pair || areAlike(plain(pair.left), plain(pair.right)));
+  if (isSymmetric) return row({ ...entry, name: `${entry.name}-both` }, `${entry.label}, both halves`, both.map((pair) => pair?.left));
+  return /** @type {const} */ (["left", "right"]).flatMap((half) => row({ ...entry, name: `${entry.name}-${half}` }, `${entry.label}, ${half}`, both.map((pair) => pair?.[half])));
 }
 
+/** @param {Described} entry @param {string} label @param {Found[]} found */
 function row({ name, unit, change = "percent" }, label, found) {
-  const cells = found.map((one) => ({ value: valueOf(one) ?? null, at: isFinding(one) ? one.at : null }));
+  const cells = found.map((one) => ({ value: plain(one) ?? null, at: isFinding(one) ? one.at : null }));
   return cells.every(({ value }) => value === null) ? [] : [{ name, label, unit, change, cells }];
 }
 
-/** How a value differs from the reference's, as text; empty where that means nothing. */
+/**
+ * The difference of a value from the reference's, as text; empty where there is none to give.
+ * @param {unknown} value
+ * @param {unknown} reference
+ * @param {Change} change
+ * @param {string} unit
+ */
 export function difference(value, reference, change, unit) {
-  if (typeof value !== "number" || typeof reference !== "number" || change === "word") return "";
+  if (typeof value !== "number" || typeof reference !== "number" || change === "none") return "";
   const by = value - reference;
   if (by === 0) return "=";
   const sign = by > 0 ? "+" : "";

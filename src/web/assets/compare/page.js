@@ -18,23 +18,28 @@ const NAME_LENGTHS = [34, 34, 34, 26, 20, 18];
 
 const notice = byId("notice");
 let view = address.read();
+/** @type {Map<string, import("./load.js").LoadedJob>} */
 let known = new Map();
-/** Which line stands for which job: kept as long as the job is here. */
+/** Line of each job: kept as long as the job is here. @type {Map<string, number>} */
 let slots = new Map();
 let turn = 0;
+/** @type {(() => void) | null} */
 let stopFollowing = null;
 
+/** @param {unknown} error */
 function failed(error) {
   notice.classList.add("bad");
   notify(notice, error);
 }
 
+/** @param {string} id */
 function slotOf(id) {
-  if (!slots.has(id)) slots.set(id, [...LETTERS].findIndex((_, slot) => ![...slots.values()].includes(slot)));
-  return slots.get(id);
+  const slot = slots.get(id) ?? [...LETTERS].findIndex((_, slot) => ![...slots.values()].includes(slot));
+  slots.set(id, slot);
+  return slot;
 }
 
-/** The jobs in their order, with what they are called here. */
+/** The jobs in their order, with their names and lines. @returns {ComparedJob[]} */
 function entries() {
   slots = new Map([...slots].filter(([id]) => view.ids.includes(id)));
   return view.ids.map((id) => {
@@ -76,12 +81,12 @@ async function render() {
   byId("compare").dataset.ready = view.ids.join(",");
 }
 
-/** While a job lives, its end is waited for; a stream costs a place, so none is kept open without need. */
+/** Follows the jobs while one of them is live; the number of streams is limited, so none is kept open without need. */
 function follow() {
   const isLive = [...known.values()].some(({ job }) => job && !api.isEnded(job));
   if (isLive && !stopFollowing) {
     stopFollowing = followJobs({}, {
-      onReload: () => turn > 0 && refresh(),
+      onReload: () => (turn > 0 ? refresh() : undefined),
       onJob: (job) => known.has(job.id) && take(job),
       onDeleted: (id) => known.has(id) && refresh(),
     });
@@ -91,9 +96,10 @@ function follow() {
   }
 }
 
+/** Takes up a new state of a job. @param {Job} job */
 function take(job) {
   const entry = known.get(job.id);
-  if (!entry.job || entry.job.revision >= job.revision) return;
+  if (!entry?.job || entry.job.revision >= job.revision) return;
   if (api.isEnded(job)) {
     byId("said").textContent = `${nameOf(job)} ${job.state}`;
     refresh();
@@ -104,6 +110,7 @@ function take(job) {
   showChosen(jobs, jobs.find(({ id }) => id === view.reference) ?? jobs[0], { add, replace, remove, refer });
 }
 
+/** Compares other jobs. @param {{ ids: string[], reference: string }} next */
 function go(next) {
   view = { surplus: 0, ...next };
   if (!view.ids.includes(view.reference)) view.reference = view.ids[0];
@@ -113,6 +120,7 @@ function go(next) {
 
 const add = () => pick("Add a job", view.ids, (id) => go({ ...view, ids: [...view.ids, id] }), failed);
 
+/** @param {string} old */
 function replace(old) {
   pick("Replace the job by", view.ids, (id) => {
     slots.set(id, slotOf(old));
@@ -121,8 +129,10 @@ function replace(old) {
   }, failed);
 }
 
+/** @param {string} gone */
 const remove = (gone) => go({ ...view, ids: view.ids.filter((id) => id !== gone) });
 
+/** @param {string} reference */
 function refer(reference) {
   view = { ...view, reference };
   address.write(view, true);

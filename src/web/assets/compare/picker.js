@@ -8,14 +8,24 @@ import { nameOf } from "../jobs/words.js";
 const PAGE = 100;
 const MAX_SHOWN = 60;
 
+/** @type {Job[]} */
 let seen = [];
+/** @type {string | null} */
 let cursor = null;
-let chosen = () => {};
+/** @type {string[]} */
 let taken = [];
+/** @type {{ chosen: (id: string) => void, failed: (error: unknown) => void }} */
+let listeners = { chosen: () => {}, failed: () => {} };
 
-/** Asks for a job that is not among `ids`, and hands its id to `onChoice`. */
-export async function pick(title, ids, onChoice, failed) {
-  chosen = onChoice;
+/**
+ * Asks for a job that is not among `ids`.
+ * @param {string} title
+ * @param {string[]} ids
+ * @param {(id: string) => void} chosen
+ * @param {(error: unknown) => void} failed
+ */
+export async function pick(title, ids, chosen, failed) {
+  listeners = { chosen, failed };
   taken = ids;
   byId("picker-title").textContent = title;
   byId("picker-search").value = "";
@@ -23,18 +33,24 @@ export async function pick(title, ids, onChoice, failed) {
   byId("picker").showModal();
   seen = [];
   cursor = null;
-  await more().catch(failed);
+  await more();
 }
 
+/** Reads the next page of older jobs. */
 async function more() {
-  const page = await api.jobs({ limit: PAGE, cursor });
-  seen = seen.concat(page.items);
-  cursor = page.next_cursor ?? null;
-  fill();
+  try {
+    const page = await api.jobs({ limit: PAGE, cursor });
+    seen = seen.concat(page.items);
+    cursor = page.next_cursor ?? null;
+    fill();
+  } catch (error) {
+    listeners.failed(error);
+  }
 }
 
 function fill() {
   const words = byId("picker-search").value.trim().toLowerCase().split(/\s+/).filter(Boolean);
+  /** @param {Job} job */
   const fits = (job) => words.every((word) => [nameOf(job), job.label ?? "", job.kind, job.state, job.id].some((text) => text.toLowerCase().includes(word)));
   const fitting = seen.filter((job) => !taken.includes(job.id) && fits(job));
   byId("picker-jobs").replaceChildren(...fitting.slice(0, MAX_SHOWN).map(entry));
@@ -43,12 +59,13 @@ function fill() {
   show(byId("picker-older"), cursor !== null);
 }
 
+/** @param {Job} job */
 function entry(job) {
   const facts = [job.kind, job.state === "succeeded" ? "" : job.state, age(job.submitted_at)].filter(Boolean).join(" · ");
   const button = el("button", { type: "button", "data-id": job.id }, el("span", {}, nameOf(job), job.label ? el("span", { class: "label" }, job.label) : null), el("span", { class: "help" }, facts));
   button.addEventListener("click", () => {
     byId("picker").close();
-    chosen(job.id);
+    listeners.chosen(job.id);
   });
   return el("li", {}, button);
 }

@@ -6,7 +6,10 @@ import { number } from "../common/format.js";
 import { differing, shown } from "./inputs.js";
 import { difference, groupsOf } from "./numbers.js";
 
-/** `jobs` in their order, each with its letter; `reference` is one of them. */
+/** Whether the values that belong to no group are shown. */
+let areOthersShown = false;
+
+/** @param {ComparedJob[]} jobs in their order @param {ComparedJob} reference one of them */
 export function showTables(jobs, reference) {
   const known = jobs.filter(({ input }) => input);
   show(byId("inputs"), known.length > 1);
@@ -44,11 +47,13 @@ function showInputs(jobs, reference) {
 function showNumbers(groups, jobs, reference) {
   const table = byId("numbers-table");
   head(table, "Quantity", jobs, reference);
-  for (const body of [...table.tBodies]) body.remove();
+  for (const body of Array.from(table.tBodies)) body.remove();
   const at = jobs.indexOf(reference);
-  for (const { title, rows } of groups) {
-    const heading = el("tr", { class: "group-title" }, el("th", { scope: "rowgroup", colSpan: jobs.length + 2 }, el("span", {}, title)));
-    table.append(el("tbody", {}, heading, ...rows.map((row) => numberRow(row, jobs, at))));
+  for (const { title, isFolded, rows } of groups) {
+    const shownRows = rows.map((row) => numberRow(row, jobs, at));
+    const name = el("span", {}, isFolded ? foldButton(title, shownRows) : title);
+    const heading = el("tr", { class: "group-title" }, el("th", { scope: "rowgroup", colSpan: jobs.length + 2 }, name));
+    table.append(el("tbody", {}, heading, ...shownRows));
   }
   const isMixed = new Set(jobs.map(({ job }) => job.kind)).size > 1;
   const said = (words, which) => (isMixed && jobs.some(which) ? `${words}: ${jobs.filter(which).map(({ letter }) => letter).join(", ")}.` : "");
@@ -59,6 +64,22 @@ function showNumbers(groups, jobs, reference) {
     said("No vibration was asked for in", ({ job }) => job.kind === "mesh"),
     missing.length ? `Without a result: ${missing.join(", ")}.` : "",
   ].filter(Boolean).join(" ");
+}
+
+/** Rows that a button shows, for all tables from then on. @param {string} title @param {HTMLElement[]} rows */
+function foldButton(title, rows) {
+  const button = el("button", { type: "button", class: "quiet" });
+  const update = () => {
+    button.setAttribute("aria-expanded", String(areOthersShown));
+    button.textContent = `${areOthersShown ? "−" : "+"} ${title} (${rows.length})`;
+    rows.forEach((row) => show(row, areOthersShown));
+  };
+  button.addEventListener("click", () => {
+    areOthersShown = !areOthersShown;
+    update();
+  });
+  update();
+  return button;
 }
 
 function numberRow({ name, label, unit, change, cells }, jobs, at) {

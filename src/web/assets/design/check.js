@@ -1,4 +1,4 @@
-// The live check: asks the server what it thinks of the document, and shows the answer beside the form.
+// The check while the form is edited: sends the document to the server and shows the answer beside the form.
 
 import * as api from "../common/api.js";
 import { byId, el, fillValues } from "../common/dom.js";
@@ -7,19 +7,24 @@ import { initDrawing } from "./drawing.js";
 import { fieldAt, fieldsOf } from "./document.js";
 import { clearErrors, linkTo, showErrors, showWarnings } from "./errors.js";
 
+/** @type {["transverse_contact_ratio" | "overlap_ratio" | "total_contact_ratio", string, string][]} */
 const HEADLINE = [
   ["transverse_contact_ratio", "Transverse", "εα"],
   ["overlap_ratio", "Overlap", "εβ"],
   ["total_contact_ratio", "Total", "εγ"],
 ];
+/** @type {(Exclude<keyof Geometry, "pinion" | "gear">)[]} */
 const VALUES = ["center_distance_mm", "working_pressure_angle_deg", "transverse_pressure_angle_deg", "base_helix_angle_deg", "path_of_contact_mm", "mesh_frequency_hz"];
+/** @type {[keyof Geometry["pinion"], string][]} */
 const DIAMETERS = [
   ["tip_diameter_mm", "Tip ø"],
   ["reference_diameter_mm", "Reference ø"],
   ["base_diameter_mm", "Base ø"],
   ["root_diameter_mm", "Root ø"],
 ];
-/** Margins as the check names them: label, unit, whether being below the limit is an error rather than a matter of care. */
+/** @type {("pinion" | "gear")[]} */
+const SIDES = ["pinion", "gear"];
+/** Label and unit of the margins by the codes of the check. */
 const MARGINS = {
   "tip-thickness": ["Tip thickness", "m_n"],
   "tip-clearance": ["Tip clearance", "m_n"],
@@ -27,9 +32,13 @@ const MARGINS = {
   "active-profile": ["Active profile from ø", "mm"],
 };
 
-/** `run(document)` checks; what it finds is shown. */
+/**
+ * Sets up the check; `run(document)` checks and shows the answer.
+ * @param {HTMLFormElement} form
+ */
 export function initCheck(form) {
   const drawing = initDrawing();
+  /** @type {AbortController | null} */
   let asking = null;
 
   function stop() {
@@ -37,6 +46,7 @@ export function initCheck(form) {
     asking = null;
   }
 
+  /** @param {JobInput} document */
   async function run(document) {
     stop();
     asking = new AbortController();
@@ -48,10 +58,10 @@ export function initCheck(form) {
       clearErrors(form);
       showReport(report);
       showWarnings(form, report.warnings);
-      drawing.show(report.drawing);
+      if (report.drawing) drawing.show(report.drawing);
     } catch (error) {
       if (signal.aborted) return;
-      if (!error.problem) throw error;
+      if (!(error instanceof api.Problem)) throw error;
       const count = error.errors.length;
       setState("bad", count ? `${count} ${count === 1 ? "field needs" : "fields need"} attention` : error.message);
       fade();
@@ -62,7 +72,7 @@ export function initCheck(form) {
     }
   }
 
-  /** The submission was refused: for what is in the document, or for another reason. */
+  /** Shows that the submission was refused: for its document, or for another reason. @param {any} error */
   function notSubmitted(error) {
     byId("check-bar").removeAttribute("aria-busy");
     setState("bad", "Not submitted");
@@ -74,6 +84,7 @@ export function initCheck(form) {
   return { run, stop, notSubmitted };
 }
 
+/** @param {string} kind @param {string} text */
 function setState(kind, text) {
   const state = byId("check-state");
   // The same words again would be read out again.
@@ -82,7 +93,9 @@ function setState(kind, text) {
   state.textContent = text;
 }
 
-function showReport({ geometry, drawing: { margins }, memory_mib: memory, warnings }) {
+/** @param {CheckedDocument} report */
+function showReport({ geometry, drawing, memory_mib: memory, warnings }) {
+  const margins = drawing?.margins ?? [];
   const count = warnings.length;
   setState(count ? "good warned" : "good", count ? `Can be solved, ${count} ${count === 1 ? "warning" : "warnings"}` : "Can be solved");
   byId("checked").classList.remove("stale");
@@ -94,19 +107,23 @@ function showReport({ geometry, drawing: { margins }, memory_mib: memory, warnin
     ),
   );
   fillValues(byId("check-values"), [
-    ...VALUES.map((name) => [labelOf(name), number(geometry[name], 6), unitOf(name)]),
+    ...VALUES.map((name) => /** @type {ValueRow} */ ([labelOf(name), number(geometry[name], 6), unitOf(name)])),
     ["Memory, at most", memory < 1 ? "1" : number(memory, 3), "MiB"],
   ]);
   byId("check-gears").tBodies[0].replaceChildren(
-    ...DIAMETERS.map(([name, label]) => row(label, "mm", ["pinion", "gear"].map((side) => el("td", {}, number(geometry[side][name], 6))))),
-    ...Object.entries(MARGINS).map(([code, [label, unit]]) => row(label, unit, ["pinion", "gear"].map((side) => marginCell(margins.find((one) => one.code === code && one.member === side))))),
+    ...DIAMETERS.map(([name, label]) => row(label, "mm", SIDES.map((side) => el("td", {}, number(geometry[side][name], 6))))),
+    ...Object.entries(MARGINS).map(([code, [label, unit]]) => row(label, unit, SIDES.map((side) => marginCell(margins.find((one) => one.code === code && one.member === side))))),
   );
   listWarnings(byId("check-warnings"), warnings);
 }
 
+/** @param {string} label @param {string} unit @param {Node[]} cells */
 const row = (label, unit, cells) => el("tr", {}, el("th", { scope: "row" }, label, unit ? el("span", { class: "unit" }, ` ${unit === "m_n" ? "/ mₙ" : unit}`) : null), ...cells);
 
-/** The value with its limit; below the limit it is marked, in words too. */
+/**
+ * The value with its limit; below the limit it is marked, in words too.
+ * @param {PairDrawing["margins"][number]} [margin]
+ */
 function marginCell(margin) {
   if (!margin) return el("td", {}, "–");
   const low = margin.value < margin.limit;
@@ -114,7 +131,7 @@ function marginCell(margin) {
   return el("td", { class: low ? "low" : null }, number(margin.value, 4), " ", limit);
 }
 
-/** Warnings in full, with the way to their fields. */
+/** Warnings in full, with links to their fields. @param {HTMLElement} list @param {WarningEntry[]} warnings */
 function listWarnings(list, warnings) {
   const fields = fieldsOf(byId("design"));
   list.replaceChildren(
@@ -126,7 +143,7 @@ function listWarnings(list, warnings) {
   );
 }
 
-/** A ratio with four decimals: it keeps its width while one types. */
+/** A ratio with four decimals: it keeps its width while the form is edited. @param {number} value */
 const fixed = (value, decimals = 4) => (Number.isFinite(value) ? value.toFixed(decimals) : "–");
 
 function fade() {

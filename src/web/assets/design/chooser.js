@@ -1,4 +1,4 @@
-// A box that finds one of many things by typing parts of its name: a combobox with a grouped list, as WAI-ARIA describes it.
+// A box that finds an entry by parts of its name: a combobox with a grouped list after the WAI-ARIA pattern.
 
 import { el, show } from "../common/dom.js";
 
@@ -6,8 +6,9 @@ import { el, show } from "../common/dom.js";
 const MOST = 200;
 
 /**
- * `entries()` gives [{ value, label, group, note }] in order; `chosen(value)` is told what was taken. Returns the node to put in and
- * `set(value)`, which shows a value that came from elsewhere.
+ * Makes the box; `chosen` is called with the value of an entry that was taken. `set(value)` shows a value.
+ * @typedef {{ value: string, label: string, group: string, note?: string }} Entry
+ * @param {{ id: string, entries: () => Entry[], chosen: (value: string) => void }} options
  */
 export function chooser({ id, entries, chosen }) {
   const input = el("input", { type: "text", id, autocomplete: "off", spellcheck: false, placeholder: "type to search" });
@@ -16,6 +17,7 @@ export function chooser({ id, entries, chosen }) {
   list.setAttribute("aria-label", "Inputs that can vary");
   for (const [name, value] of [["role", "combobox"], ["aria-autocomplete", "list"], ["aria-expanded", "false"], ["aria-controls", list.id]]) input.setAttribute(name, value);
   let value = "";
+  /** @type {Entry[]} */
   let shown = [];
   let active = -1;
 
@@ -26,13 +28,12 @@ export function chooser({ id, entries, chosen }) {
     const found = entries().filter(({ label, group, value: pointer }) => words.every((word) => `${label} ${group} ${pointer}`.toLowerCase().includes(word)));
     shown = found.slice(0, MOST);
     active = shown.findIndex((entry) => entry.value === value);
-    const groups = Map.groupBy ? Map.groupBy(shown, ({ group }) => group) : grouped(shown);
-    list.replaceChildren(...[...groups].map(([group, members], place) => {
+    list.replaceChildren(...[...grouped(shown)].map(([group, members], place) => {
       const title = el("span", { class: "chooser-group", id: `${list.id}-${place}` }, group);
       const part = el("li", {}, title, el("ul", {}, ...members.map((entry) => option(entry, shown.indexOf(entry)))));
       part.setAttribute("role", "group");
       part.setAttribute("aria-labelledby", title.id);
-      part.lastElementChild.setAttribute("role", "presentation");
+      part.lastElementChild?.setAttribute("role", "presentation");
       return part;
     }));
     if (!shown.length) {
@@ -113,6 +114,8 @@ export function chooser({ id, entries, chosen }) {
 
   return {
     node: el("span", { class: "chooser" }, input, list),
+    input,
+    /** @param {string} next */
     set(next) {
       if (next === value && document.activeElement === input) return;
       value = next;
@@ -121,6 +124,7 @@ export function chooser({ id, entries, chosen }) {
   };
 }
 
+/** @param {Entry[]} entries @returns {Map<string, Entry[]>} */
 function grouped(entries) {
   const groups = new Map();
   for (const entry of entries) groups.set(entry.group, [...(groups.get(entry.group) ?? []), entry]);

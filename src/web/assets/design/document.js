@@ -1,25 +1,36 @@
-// Between the form and the job document: which value each field has, and where in the document it stands.
+// Between the form and the job document: the value of each field, and its place in the document.
 
+import { byAnyId, byId } from "../common/dom.js";
 import { pointerLabel } from "../common/format.js";
 import { readField, readList } from "./typed.js";
 
-/** The fields of the form, in order. */
+/**
+ * The fields of the form, in order.
+ * @typedef {{
+ *   box: HTMLElement, pointer: string, label: string, row: string | undefined, unit: string, control: string,
+ *   default: string, required: boolean, input: any,
+ * }} Field `row` is the row that fields of pinion and gear share
+ * @param {HTMLElement} form
+ * @returns {Field[]}
+ */
 export function fieldsOf(form) {
-  return [...form.querySelectorAll("[data-pointer]")].map((box) => ({
+  return [...form.querySelectorAll("[data-pointer]")].map((node) => /** @type {HTMLElement} */ (node)).map((box) => ({
     box,
-    pointer: box.dataset.pointer,
-    label: box.querySelector("label").firstChild.textContent.trim(),
-    /** What fields of pinion and gear share a row for. */
+    pointer: box.dataset.pointer ?? "",
+    label: box.querySelector("label")?.firstChild?.textContent?.trim() ?? "",
     row: box.dataset.row,
     unit: box.dataset.unit ?? "",
-    control: box.dataset.control,
-    default: box.dataset.default,
+    control: box.dataset.control ?? "",
+    default: box.dataset.default ?? "",
     required: box.dataset.required !== undefined,
     input: box.querySelector("input, select, textarea"),
   }));
 }
 
-/** The text in a field as a JSON value; what cannot be read goes in as text, for the server to say what is wrong. */
+/**
+ * The text in a field as a JSON value; unreadable text is passed on, so that the server says what is wrong.
+ * @param {Field} field
+ */
 function valueOf(field) {
   const text = field.input.value.trim();
   switch (field.control) {
@@ -45,17 +56,23 @@ function valueOf(field) {
 
 const ofAnAxis = /^(\/axes\/\d+)\/(from|to|values)$/;
 
-/** What the numbers in a field are in; on an axis of a sweep, the unit of the input that varies. */
+/** Unit of the numbers in a field; on an axis of a sweep, that of the input that varies. @param {Field} field */
 function unitOf(field) {
   const axis = field.pointer.match(ofAnAxis)?.[1];
   if (!axis) return field.unit;
   const form = field.box.closest("form");
-  const varied = form.querySelector(`[data-pointer='${axis}/pointer'] input`)?.value.trim() ?? "";
-  const box = [...form.querySelectorAll("[data-pointer]")].find(({ dataset }) => dataset.pointer === varied);
+  const pointerInput = /** @type {HTMLInputElement | null | undefined} */ (form?.querySelector(`[data-pointer='${axis}/pointer'] input`));
+  const varied = pointerInput?.value.trim() ?? "";
+  const boxes = /** @type {HTMLElement[]} */ ([...(form?.querySelectorAll("[data-pointer]") ?? [])]);
+  const box = boxes.find(({ dataset }) => dataset.pointer === varied);
   return box?.dataset.unit ?? pointerLabel(varied).unit;
 }
 
-/** The numbers typed into a field: { value } or { values }, or { refused } with the reason. */
+/**
+ * The numbers typed into a field, or why they are refused.
+ * @param {Field} field
+ * @returns {{ value?: number, values?: (number | string)[], refused?: string }}
+ */
 function readTyped(field) {
   const text = field.input.value;
   if (text.trim() === "") return {};
@@ -64,10 +81,10 @@ function readTyped(field) {
   return {};
 }
 
-/** Why the numbers typed into a field are not taken, if they are not. */
+/** Why the numbers typed into a field are refused, if they are. @param {Field} field */
 export const refusalOf = (field) => readTyped(field).refused ?? null;
 
-/** How the numbers typed into a field are read, where that is not what stands there. */
+/** How the numbers typed into a field are read, where that differs from the text. @param {Field} field */
 export function readingOf(field) {
   const text = field.input.value.trim();
   const { value, values } = readTyped(field);
@@ -75,7 +92,7 @@ export function readingOf(field) {
   return value === undefined || (/^[+-]?[\d.]+(e[+-]?\d+)?$/i.test(text) && Number(text) === value) ? "" : String(value);
 }
 
-/** Whether a field says what leaving it out says. */
+/** Whether a field has its default. @param {Field} field */
 export function isDefault(field) {
   if (field.control === "boolean") return String(field.input.checked) === field.default;
   const text = field.input.value.trim();
@@ -85,11 +102,12 @@ export function isDefault(field) {
   return text === field.default;
 }
 
-/** What documents had that the form has no field for: kept, so that the server says what is wrong with it. */
+/** Members of documents without a field in the form: kept, so that the server says what is wrong with them. */
 const extras = new Map();
 
-/** The job document that the form describes; what has its default is left out. */
+/** The job document of the form; what has its default is left out. @param {HTMLElement} form */
 export function readDocument(form) {
+  /** @type {JobInput} */
   const root = {};
   for (const field of fieldsOf(form)) {
     if (!field.box.hidden && !isDefault(field)) put(root, field.pointer, valueOf(field));
@@ -104,7 +122,11 @@ export function readDocument(form) {
   return root;
 }
 
-/** Fills the form from a document. What has no place in it is kept for the documents read later. */
+/**
+ * Fills the form from a document. Members without a field are kept for the documents read later.
+ * @param {HTMLElement} form
+ * @param {JobInput} document
+ */
 export function writeDocument(form, document) {
   const known = new Set();
   for (const field of fieldsOf(form)) {
@@ -122,7 +144,7 @@ export function writeDocument(form, document) {
   }
 }
 
-/** Pointers of what is kept though the form has no field for it. */
+/** Pointers of the members that are kept without a field. */
 export const extraPointers = () => [...extras.keys()];
 
 export const dropExtras = () => extras.clear();
@@ -166,22 +188,26 @@ function set(place, name, value) {
   Object.defineProperty(place, name, { value, writable: true, enumerable: true, configurable: true });
 }
 
-/** Shows the fields whose conditions hold; hidden fields do not count. */
+/** Shows the fields whose conditions hold; hidden fields do not count. @param {HTMLElement} form */
 export function applyConditions(form) {
   const fields = fieldsOf(form);
   for (const { box } of fields) {
     if (box.dataset.when === undefined) continue;
     const other = fields.find((field) => field.pointer === box.dataset.when);
-    box.hidden = !other || other.box.hidden || !box.dataset.whenValues.split(" ").includes(other.input.value);
+    box.hidden = !other || other.box.hidden || !(box.dataset.whenValues ?? "").split(" ").includes(other.input.value);
   }
-  for (const block of form.querySelectorAll(".block, .group")) {
-    const boxes = [...block.querySelectorAll("[data-pointer]")];
+  for (const block of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll(".block, .group"))) {
+    const boxes = [.../** @type {NodeListOf<HTMLElement>} */ (block.querySelectorAll("[data-pointer]"))];
     block.hidden = boxes.length > 0 && boxes.every((box) => box.hidden);
   }
-  document.getElementById("to-sweep").hidden = document.getElementById("group-sweep").hidden;
+  byId("to-sweep").hidden = byAnyId("group-sweep").hidden;
 }
 
-/** The field that a pointer of the server's is about: itself, the nearest around it, or the first in it. */
+/**
+ * The field of a pointer in an answer: itself, the nearest around it, or the first in it.
+ * @param {Field[]} fields
+ * @param {string} pointer
+ */
 export function fieldAt(fields, pointer) {
   for (let place = pointer; place; place = place.slice(0, place.lastIndexOf("/"))) {
     const field = fields.find((field) => field.pointer === place && !field.box.hidden);

@@ -1,17 +1,20 @@
-// What this browser remembers: the form as it was left, and what was submitted last. Without storage nothing is kept.
+// The form as it was left and the document submitted last, in the storage of the browser. Without storage nothing is
+// kept.
 
 const DRAFT = "herringbone.draft";
 const SUBMITTED = "herringbone.submitted";
 
+/** @param {string} key @returns {{ document: JobInput, at: string } | null} */
 function read(key) {
   try {
-    const kept = JSON.parse(localStorage.getItem(key));
+    const kept = JSON.parse(localStorage.getItem(key) ?? "null");
     return kept && typeof kept.document === "object" ? kept : null;
   } catch {
     return null;
   }
 }
 
+/** @param {string} key @param {JobInput} document */
 function write(key, document) {
   try {
     localStorage.setItem(key, JSON.stringify({ document, at: new Date().toISOString() }));
@@ -21,10 +24,11 @@ function write(key, document) {
 }
 
 export const draft = () => read(DRAFT);
+/** @param {JobInput} document */
 export const keepDraft = (document) => write(DRAFT, document);
 export const submitted = () => read(SUBMITTED);
 
-/** After a submission the draft has become a job. */
+/** Keeps what was submitted and removes the draft. @param {JobInput} document */
 export function keepSubmitted(document) {
   write(SUBMITTED, document);
   dropDraft();

@@ -1,5 +1,5 @@
-// The pair to scale: the teeth in the transverse section with the path of contact. All geometry comes from the server; here it
-// is turned, shifted and scaled.
+// The pair to scale: the teeth in the transverse section with the path of contact. All geometry comes from the
+// server; here it is turned, shifted and scaled.
 
 import { byId } from "../common/dom.js";
 import { number } from "../common/format.js";
@@ -16,7 +16,9 @@ export function initDrawing() {
   const slider = byId("drawing-phase");
   const play = byId("drawing-play");
   const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
+  /** @type {((phase: number) => void)[]} */
   let movers = [];
+  /** @type {number | null} */
   let frame = null;
 
   const place = () => {
@@ -26,7 +28,7 @@ export function initDrawing() {
   };
 
   function stop() {
-    cancelAnimationFrame(frame);
+    if (frame !== null) cancelAnimationFrame(frame);
     frame = null;
     play.textContent = "Turn";
     play.setAttribute("aria-pressed", "false");
@@ -35,6 +37,7 @@ export function initDrawing() {
   function turn() {
     if (frame !== null) return stop();
     const from = performance.now() - Number(slider.value) * PERIOD_MS;
+    /** @param {number} now */
     const step = (now) => {
       slider.value = (((now - from) / PERIOD_MS) % 1).toFixed(3);
       place();
@@ -58,6 +61,7 @@ export function initDrawing() {
   play.addEventListener("click", turn);
 
   return {
+    /** @param {PairDrawing} drawing */
     show(drawing) {
       movers = [drawSection(section, drawing.section), drawPlane(plane, drawing)];
       byId("drawing").classList.remove("stale");
@@ -71,23 +75,29 @@ export function initDrawing() {
 
 const PERIOD_MS = 4000;
 
-/** Draws the section; the answer moves it to a phase of the mesh period. */
+/**
+ * Draws the section; the function returned moves it to a phase of the mesh period.
+ * @param {SVGSVGElement} root
+ * @param {SectionDrawing} section
+ */
 function drawSection(root, section) {
   const { pinion, gear, points } = section;
+  /** @type {Points} */
   const at = Object.fromEntries(points.map((point) => [point.name, point]));
   const pitch = Math.abs(pinion.turn_rad) * pinion.working_pitch_radius_mm;
   const left = Math.max(-2.4 * pitch, Math.min(at.T1.at_mm[0] - 0.25 * pitch, -1.25 * pitch));
   const right = Math.min(2.4 * pitch, Math.max(at.T2.at_mm[0] + 0.25 * pitch, 1.25 * pitch));
   const scale = WIDTH / (right - left);
   const shown = { left, right, top: (0.5 * HEIGHT) / scale, scale };
+  /** @param {number[]} point */
   const toScreen = ([x, y]) => [(x - left) * scale, 0.5 * HEIGHT - y * scale];
 
   root.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
   const world = group("world", { transform: `translate(${-left * scale} ${0.5 * HEIGHT}) scale(${scale} ${-scale})` });
   const bodies = [drawGear(pinion, "pinion", 0.5 * Math.PI, shown), drawGear(gear, "gear", -0.5 * Math.PI, shown)];
   put(world, ...bodies.map((body) => body.node));
-  for (const [body, name] of [[pinion, "pinion"], [gear, "gear"]]) {
-    for (const kind of ["root", "tip", "base", "reference", "working_pitch"]) {
+  for (const [body, name] of /** @type {[SectionDrawing["pinion"], string][]} */ ([[pinion, "pinion"], [gear, "gear"]])) {
+    for (const kind of /** @type {const} */ (["root", "tip", "base", "reference", "working_pitch"])) {
       put(world, svg("circle", { class: `circle ${kind} ${name}`, cx: body.center_mm[0], cy: body.center_mm[1], r: body[`${kind}_radius_mm`] }));
     }
   }
@@ -114,7 +124,7 @@ function drawSection(root, section) {
   put(contacts, ...dots);
   const seen = text("note", WIDTH - 6, HEIGHT - 8, `seen from the ${section.seen_from} end`, "end");
   const names = [text("member", 8, 16, `Gear, z ${gear.teeth} ↺`), text("member", 8, HEIGHT - 24, `Pinion, z ${pinion.teeth}, drives ↻`)];
-  root.replaceChildren(title(root, section, at), describe(root, section, at), world, labels, contacts, seen, ...names);
+  root.replaceChildren(title(root, section), describe(root, section, at), world, labels, contacts, seen, ...names);
 
   const [from, to] = [at.A, at.E];
   return (phase) => {
@@ -125,17 +135,28 @@ function drawSection(root, section) {
       dots[index].classList.toggle("away", !on);
       if (!on) return;
       const [x, y] = toScreen([0, 1].map((axis) => from.at_mm[axis] + part * (to.at_mm[axis] - from.at_mm[axis])));
-      dots[index].setAttribute("cx", x);
-      dots[index].setAttribute("cy", y);
+      dots[index].setAttribute("cx", String(x));
+      dots[index].setAttribute("cy", String(y));
     });
   };
 }
 
+/** @typedef {Record<string, SectionDrawing["points"][number]>} Points points of the line of action by name */
+
+/** @param {Points} at */
 const angle = (at) => Math.atan2(at.T2.at_mm[1] - at.T1.at_mm[1], at.T2.at_mm[0] - at.T1.at_mm[0]);
+/** @param {string} name */
 const subscripted = (name) => name.replace("1", "₁").replace("2", "₂");
+/** @param {string} name @param {number[]} from @param {number[]} to */
 const line = (name, [x1, y1], [x2, y2]) => svg("line", { class: name, x1, y1, x2, y2 });
 
-/** A gear: as many of its teeth as can be seen, turned about its axis. */
+/**
+ * A gear: its visible teeth, turned about its axis.
+ * @param {SectionDrawing["pinion"]} gear
+ * @param {string} name
+ * @param {number} towardsMate angle of the line of centres
+ * @param {{ left: number, right: number }} shown
+ */
 function drawGear(gear, name, towardsMate, shown) {
   const pitch = Math.abs(gear.turn_rad);
   // Half the angle under which the picture is seen from the axis, and a tooth more that comes in while turning.
@@ -157,15 +178,16 @@ function drawGear(gear, name, towardsMate, shown) {
   put(turning, svg("path", { class: "body", d: whole ? `${path}Z` : `${path}L0 0Z` }), svg("path", { class: "flanks", d: whole ? `${path}Z` : path }));
   put(node, turning);
   if (gear.bore_radius_mm > 0) put(node, svg("circle", { class: "bore", r: gear.bore_radius_mm }));
+  /** @param {number} phase */
   const turn = (phase) => turning.setAttribute("transform", `rotate(${((gear.angle_rad - off + gear.turn_rad * phase) * 180) / Math.PI})`);
   return { node, turn };
 }
 
-/** A bar of a round length in mm. */
+/** A bar of a round length in mm. @param {number} scale px per mm */
 function scaleBar(scale) {
   const most = 80 / scale;
   const decade = 10 ** Math.floor(Math.log10(most));
-  const length = [5, 2, 1].map((step) => step * decade).find((step) => step <= most);
+  const length = [5, 2, 1].map((step) => step * decade).find((step) => step <= most) ?? decade;
   const [x, y, end] = [8, HEIGHT - 9, 8 + length * scale];
   return [
     svg("path", { class: "scale-bar", d: `M${x} ${y - 4}V${y}H${end}V${y - 4}` }),
@@ -173,12 +195,14 @@ function scaleBar(scale) {
   ];
 }
 
+/** @param {SVGElement} root @param {SectionDrawing} section */
 function title(root, section) {
   const node = svg("title", { id: `${root.id}-title` });
   node.textContent = `Tooth pair in the transverse section: ${section.pinion.teeth} and ${section.gear.teeth} teeth, to scale`;
   return node;
 }
 
+/** @param {SVGElement} root @param {SectionDrawing} section @param {Points} at */
 function describe(root, section, at) {
   const node = svg("desc", { id: `${root.id}-desc` });
   const path = number(at.E.roll_mm - at.A.roll_mm, 4);

@@ -1,8 +1,9 @@
-// What the server says of the document, shown at the fields it is about: violations and warnings.
+// Violations and warnings in answers of the server, shown at the fields they are about.
 
 import { byId, el, show } from "../common/dom.js";
 import { fieldAt, fieldsOf, readingOf, refusalOf } from "./document.js";
 
+/** @param {HTMLElement} form */
 export function clearErrors(form) {
   for (const field of fieldsOf(form)) {
     say(field, "error", "");
@@ -12,7 +13,7 @@ export function clearErrors(form) {
   show(byId("problems"), false);
 }
 
-/** Says below each field how its numbers are read, where that is not what was typed. */
+/** Says below each field how its numbers are read, where that differs from the text. @param {HTMLElement} form */
 export function showReadings(form) {
   for (const field of fieldsOf(form)) {
     if (!["number", "integer", "numbers"].includes(field.control)) continue;
@@ -21,7 +22,7 @@ export function showReadings(form) {
   }
 }
 
-/** Marks the fields that warnings are about. */
+/** Marks the fields that warnings are about. @param {HTMLElement} form @param {WarningEntry[]} warnings */
 export function showWarnings(form, warnings) {
   const fields = fieldsOf(form);
   for (const { pointer, detail } of warnings) {
@@ -30,11 +31,18 @@ export function showWarnings(form, warnings) {
   }
 }
 
-/** Marks the fields named in the error; `summary` also lists everything at the top and goes there. */
+/**
+ * Marks the fields named in the error; `summary` also lists everything at the top and goes there.
+ * @param {HTMLElement} form
+ * @param {any} error
+ * @param {{ summary: boolean }} options
+ */
 export function showErrors(form, error, { summary }) {
   clearErrors(form);
   const fields = fieldsOf(form);
-  const entries = (error.errors ?? []).map((entry) => {
+  /** @type {Violation[]} */
+  const violations = error.errors ?? [];
+  const entries = violations.map((entry) => {
     const field = fieldAt(fields, entry.pointer ?? "");
     // What was not taken for a number went in as text; why says the form itself.
     const refused = field?.pointer === entry.pointer ? refusalOf(field) : null;
@@ -54,12 +62,12 @@ export function showErrors(form, error, { summary }) {
   }
 }
 
-/** Opens the sections around a field. */
-export function unfold(field) {
-  for (let place = field.box.closest("details"); place; place = place.parentElement.closest("details")) place.open = true;
+/** Opens the sections around a field. @param {Field} field */
+function unfold(field) {
+  for (let place = field.box.closest("details"); place; place = place.parentElement?.closest("details") ?? null) place.open = true;
 }
 
-/** A link that leads to a field and opens what it is in. */
+/** A link to a field that opens the sections around it. @param {Field} field */
 export function linkTo(field) {
   const link = el("a", { href: `#${field.input.id}` }, field.label);
   link.addEventListener("click", (event) => {
@@ -70,11 +78,21 @@ export function linkTo(field) {
   return link;
 }
 
+/** @typedef {import("./document.js").Field} Field */
+
+/**
+ * @param {Field} field
+ * @param {string} kind class of the text
+ * @param {string} text
+ * @param {{ add?: boolean }} [options]
+ */
 function say(field, kind, text, { add = false } = {}) {
   const node = field.box.querySelector(`.${kind}`);
+  if (!node) return;
   node.textContent = add && node.textContent ? `${node.textContent}; ${text}` : text;
 }
 
+/** @param {any} error @param {{ field: Field | null, pointer: string, detail: string }[]} entries */
 function listProblems(error, entries) {
   const box = byId("problems");
   const items = entries.map(({ field, pointer, detail }) => {

@@ -1,4 +1,4 @@
-// The page with the design form: what happens when a field changes, and submission.
+// The page with the design form: reactions to changes of its fields, and submission.
 
 import * as api from "../common/api.js";
 import { byId, download, el, show } from "../common/dom.js";
@@ -15,10 +15,11 @@ const CHECK_AFTER_MS = 250;
 
 const form = byId("design");
 const check = initCheck(form);
-let timer = null;
+/** @type {number | undefined} */
+let timer;
 let touched = false;
 
-/** Brings the page in line with the fields, and asks for a check a moment later. */
+/** Brings the page in line with the fields, and starts a check a moment later. */
 function refresh() {
   applyConditions(form);
   showWhatIsSet(form);
@@ -38,7 +39,7 @@ function changed() {
   refresh();
 }
 
-/** What the form has no field for is kept in the document until it is removed. */
+/** Shows the members of the document without a field: they are kept until they are removed. */
 function showExtras() {
   const names = extraPointers();
   const note = byId("extras");
@@ -53,7 +54,7 @@ function showExtras() {
   note.replaceChildren(`Not in this form, kept in the document: ${names.join(", ")} `, remove);
 }
 
-/** Fills the form from a document; without one it stays as it is. */
+/** Fills the form from a document; without one it stays as it is. @param {JobInput} document */
 function fill(document) {
   if (document) {
     writeDocument(form, document);
@@ -63,6 +64,7 @@ function fill(document) {
   }
 }
 
+/** @param {Event} event */
 async function submit(event) {
   event.preventDefault();
   clearTimeout(timer);
@@ -71,7 +73,7 @@ async function submit(event) {
   button.disabled = true;
   const document = readDocument(form);
   try {
-    const job = await api.submit(document, newKey());
+    const job = await api.submit(document, api.newKey());
     keepSubmitted(document);
     window.location.assign(`/jobs/${encodeURIComponent(job.id)}`);
   } catch (error) {
@@ -80,12 +82,6 @@ async function submit(event) {
     showErrors(form, error, { summary: true });
     button.disabled = false;
   }
-}
-
-/** A new idempotency key; `crypto.randomUUID` exists only on secure origins. */
-function newKey() {
-  const bytes = crypto.getRandomValues(new Uint8Array(16));
-  return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
 async function copyCurl() {
@@ -104,7 +100,7 @@ async function copyCurl() {
   }
 }
 
-/** "Table 1 of the source" becomes "table-1-of-the-source.json". */
+/** "Table 1 of the source" becomes "table-1-of-the-source.json". @param {JobInput} document */
 function fileName({ name }) {
   const words = String(name ?? "").normalize("NFKD").toLowerCase().match(/[a-z0-9]+/g) ?? [];
   return `${words.join("-").slice(0, 60) || "herringbone-job"}.json`;
@@ -115,18 +111,23 @@ function save() {
   download(fileName(document), `${JSON.stringify(document, null, 2)}\n`);
 }
 
-/** A column of a spreadsheet goes into a list with its lines kept apart; the input itself would run them together. */
+/**
+ * Pastes a column of a spreadsheet into a list with its lines separated; the input itself would join them.
+ * @param {ClipboardEvent} event
+ */
 function pasteList(event) {
   const text = event.clipboardData?.getData("text/plain") ?? "";
-  const list = event.target.closest("[data-control='numbers']");
+  const input = /** @type {HTMLInputElement} */ (event.target);
+  const list = input.closest("[data-control='numbers']");
   if (!list || !/[\r\n\t]/.test(text.trim())) return;
   event.preventDefault();
-  const { value, selectionStart, selectionEnd } = event.target;
-  event.target.setRangeText(text.trim().replace(/\s*[\r\n\t]+\s*/g, "; "), selectionStart ?? value.length, selectionEnd ?? value.length, "end");
+  const { value, selectionStart, selectionEnd } = input;
+  input.setRangeText(text.trim().replace(/\s*[\r\n\t]+\s*/g, "; "), selectionStart ?? value.length, selectionEnd ?? value.length, "end");
   changed();
 }
 
-const isOfAField = (event) => event.target.closest("[data-pointer]") !== null;
+/** @param {Event} event */
+const isOfAField = (event) => /** @type {Element} */ (event.target).closest("[data-pointer]") !== null;
 form.addEventListener("input", (event) => isOfAField(event) && changed());
 form.addEventListener("paste", pasteList);
 form.addEventListener("submit", submit);
@@ -136,8 +137,8 @@ form.addEventListener("keydown", (event) => {
 byId("copy-curl").addEventListener("click", copyCurl);
 byId("download").addEventListener("click", save);
 byId("sections").addEventListener("click", (event) => {
-  const link = event.target.closest("a");
-  if (link) document.querySelector(link.hash).open = true;
+  const link = /** @type {Element} */ (event.target).closest("a");
+  if (link) /** @type {HTMLDetailsElement} */ (document.querySelector(link.hash)).open = true;
 });
 show(byId("problems"), false);
 initHelp(form);

@@ -6,10 +6,14 @@ import { group, put, svg, text } from "./svg.js";
 const WIDTH = 352;
 const HEIGHT = 132;
 const MARGIN = { left: 22, right: 8, top: 22, bottom: 26 };
-/** Least height of the zone on the screen: below it the roll direction is drawn larger than the axial one. */
+/** Least height of the zone, px: below it the roll direction is drawn larger than the axial one. */
 const LEAST_PX = 40;
 
-/** Draws the plane; the answer moves the lines to a phase of the mesh period. */
+/**
+ * Draws the plane; the function returned moves the lines to a phase of the mesh period.
+ * @param {SVGSVGElement} root
+ * @param {PairDrawing} drawing
+ */
 export function drawPlane(root, { plane_of_action: plane, section }) {
   const [start, end] = plane.path_roll_mm;
   const [low, high] = [plane.left.axial_mm[0], plane.right.axial_mm[1]];
@@ -19,13 +23,15 @@ export function drawPlane(root, { plane_of_action: plane, section }) {
   const stretch = Math.max(1, Math.min(Math.ceil(LEAST_PX / ((end - start) * scale)), Math.floor(roomY / ((end - start) * scale))));
   const offset = MARGIN.left + 0.5 * (roomX - (high - low) * scale);
   const bottom = MARGIN.top + 0.5 * (roomY + (end - start) * scale * stretch);
+  /** @param {number} axial */
   const x = (axial) => offset + (axial - low) * scale;
+  /** @param {number} roll */
   const y = (roll) => bottom - (roll - start) * scale * stretch;
 
   root.setAttribute("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
   const parts = [];
   const moving = [];
-  for (const [name, half] of [["left", plane.left], ["right", plane.right]]) {
+  for (const [name, half] of /** @type {[string, PairDrawing["plane_of_action"]["left"]][]} */ ([["left", plane.left], ["right", plane.right]])) {
     const [from, to] = half.axial_mm.map(x);
     const zone = { x: from, y: y(end), width: to - from, height: y(start) - y(end) };
     const cut = svg("clipPath", { id: `zone-${name}` });
@@ -52,15 +58,17 @@ export function drawPlane(root, { plane_of_action: plane, section }) {
   root.replaceChildren(title(root), describe(root, plane, section), ...parts);
 
   const period = section.base_pitch_mm * scale * stretch;
-  return (phase) => moving.forEach((lines) => lines.setAttribute("transform", `translate(0 ${-phase * period})`));
+  return (/** @type {number} */ phase) => moving.forEach((lines) => lines.setAttribute("transform", `translate(0 ${-phase * period})`));
 }
 
+/** @param {SVGElement} root */
 function title(root) {
   const node = svg("title", { id: `${root.id}-title` });
   node.textContent = "Plane of action of both halves with the lines of contact";
   return node;
 }
 
+/** @param {SVGElement} root @param {PairDrawing["plane_of_action"]} plane @param {SectionDrawing} section */
 function describe(root, plane, section) {
   const node = svg("desc", { id: `${root.id}-desc` });
   const [least, greatest] = plane.left.contact_length_mm.map((length) => number(length, 4));

@@ -1,4 +1,4 @@
-// Where the form starts from: an example, what was submitted last, a file, a draft of this browser, a job.
+// What the form starts from: an example, the document submitted last, a file, a draft of this browser, a job.
 
 import * as api from "../common/api.js";
 import { byId, el } from "../common/dom.js";
@@ -9,14 +9,17 @@ import { draft, dropDraft, submitted } from "./draft.js";
 const SUBMITTED = "submitted";
 
 /**
- * Sets up the choice and the files. `fill(document)` fills the form, `read()` gives its document, `failed(error)` shows what
- * could not be loaded.
+ * Sets up the choice and the files. `fill(document)` fills the form, `read()` gives its document, `failed(error)`
+ * shows an error. The function returned fills the form at first.
+ * @param {{ fill: (document: JobInput) => void, read: () => JobInput, failed: (error: unknown) => void }} form
  */
 export function initStart({ fill, read, failed }) {
   const choice = byId("start-from");
   const note = byId("start-note");
+  /** @type {Awaited<ReturnType<typeof api.presets>> | null} */
   let presets = null;
 
+  /** @param {string} text @param {(() => void) | null} [undo] @param {string} [label] */
   const say = (text, undo = null, label = "Undo") => {
     note.replaceChildren(text);
     if (!undo) return;
@@ -30,6 +33,7 @@ export function initStart({ fill, read, failed }) {
     note.append(" ", button);
   };
 
+  /** @param {JobInput} document @param {string} text */
   const replace = (document, text) => {
     const before = read();
     fill(document);
@@ -39,7 +43,7 @@ export function initStart({ fill, read, failed }) {
   async function startFrom() {
     const { value } = choice;
     if (value === "") return;
-    const label = choice.selectedOptions[0].textContent.trim();
+    const label = choice.selectedOptions[0].label;
     try {
       if (value === SUBMITTED) {
         const kept = submitted();
@@ -50,10 +54,11 @@ export function initStart({ fill, read, failed }) {
       const preset = presets.find(({ id }) => id === value);
       if (preset && choice.value === value) replace(preset.document, preset.about);
     } catch (error) {
-      say(`${label} could not be loaded: ${error.message}`);
+      say(`${label} could not be loaded: ${messageOf(error)}`);
     }
   }
 
+  /** @param {File} file */
   async function open(file) {
     try {
       const document = JSON.parse(textOf(await file.arrayBuffer()));
@@ -61,19 +66,19 @@ export function initStart({ fill, read, failed }) {
       choice.value = "";
       replace(document, `From the file ${file.name}.`);
     } catch (error) {
-      say(`${file.name} is not a job document: ${error.message}`);
+      say(`${file.name} is not a job document: ${messageOf(error)}`);
     }
   }
 
   choice.addEventListener("change", startFrom);
   const upload = byId("upload");
   upload.addEventListener("change", () => {
-    const [file] = upload.files;
+    const [file] = upload.files ?? [];
     if (file) open(file);
     upload.value = "";
   });
   initDrop(open);
-  choice.querySelector(`[value=${SUBMITTED}]`).disabled = !submitted();
+  for (const option of choice.options) if (option.value === SUBMITTED) option.disabled = !submitted();
 
   /** The first contents: the job named in the address, else the draft, else the example that the page came with. */
   return async function start() {
@@ -102,11 +107,16 @@ export function initStart({ fill, read, failed }) {
   };
 }
 
-/** A file may be dropped anywhere on the page. */
+/** @param {unknown} error */
+const messageOf = (error) => (error instanceof Error ? error.message : String(error));
+
+/** Opens a file that is dropped anywhere on the page. @param {(file: File) => void} open */
 function initDrop(open) {
   const target = byId("drop-target");
+  /** @param {DragEvent} event */
   const hasFile = (event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
   let depth = 0;
+  /** @param {boolean} visible */
   const shown = (visible) => {
     if (!visible) depth = 0;
     target.hidden = !visible;
@@ -129,7 +139,7 @@ function initDrop(open) {
     if (!hasFile(event)) return;
     event.preventDefault();
     shown(false);
-    const [file] = event.dataTransfer.files;
+    const [file] = event.dataTransfer?.files ?? [];
     if (file) open(file);
   });
 }

@@ -1,15 +1,16 @@
-// What is set: resets beside fields that differ from their defaults, and a line in each section's heading.
+// Fields that differ from their defaults: a reset beside each, and a line in each section's heading.
 
 import { fieldsOf, isDefault } from "./document.js";
 
 const MOST = 4;
 
-/** Resets of single fields; `changed` is called after one. */
+/** Resets of single fields; `changed` is called after one. @param {HTMLElement} form @param {() => void} changed */
 export function initResets(form, changed) {
   form.addEventListener("click", (event) => {
-    const button = event.target.closest?.(".reset");
+    const button = /** @type {Element} */ (event.target).closest(".reset");
     if (!button) return;
     const field = fieldsOf(form).find(({ box }) => box.contains(button));
+    if (!field) return;
     if (field.control === "boolean") field.input.checked = field.default === "true";
     else field.input.value = field.default;
     field.input.focus();
@@ -17,7 +18,7 @@ export function initResets(form, changed) {
   });
 }
 
-/** Marks what differs from its default, and says it in the headings. */
+/** Marks what differs from its default, and lists it in the headings. @param {HTMLElement} form */
 export function showWhatIsSet(form) {
   const fields = fieldsOf(form);
   const visible = new Map();
@@ -27,13 +28,16 @@ export function showWhatIsSet(form) {
     visible.set(field.box, changed);
   }
   for (const section of form.querySelectorAll("details.group")) {
-    const gist = section.querySelector(".gist");
+    const gist = /** @type {HTMLElement} */ (section.querySelector(".gist"));
     const changed = fields.filter((field) => section.contains(field.box) && visible.get(field.box));
-    gist.textContent = changed.length ? gistOf(changed) : gist.dataset.nothing;
+    gist.textContent = changed.length ? gistOf(changed) : (gist.dataset.nothing ?? "");
   }
 }
 
-/** "Teeth 17 / 44, normal module 6 mm": fields of pinion and gear with the same name share an entry. */
+/**
+ * "Teeth 17 / 44, normal module 6 mm": fields of pinion and gear with the same name share an entry.
+ * @param {Field[]} fields
+ */
 function gistOf(fields) {
   const entries = new Map();
   for (const field of fields) {
@@ -50,6 +54,9 @@ function gistOf(fields) {
   return texts.slice(0, MOST).join(", ") + (more > 0 ? ` and ${more} more` : "");
 }
 
+/** @typedef {import("./document.js").Field} Field */
+
+/** @param {Field} field */
 function valueText({ control, input }) {
   if (control === "boolean") return input.checked ? "yes" : "no";
   if (control === "choice") return input.selectedOptions[0]?.textContent ?? "";

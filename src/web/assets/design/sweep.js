@@ -1,7 +1,7 @@
-// The form's section on sweeps: inputs are chosen by their names, a range or a list of values, a second axis when it is wanted, and
-// what the sweep will cost. The fields of the document stay what they are; this only makes them easier to fill.
+// The form's section on sweeps: the choice of inputs by their names, a range or a list of values, a second axis, and
+// the cost of the sweep. The fields of the document stay in the form; this fills them.
 
-import { byId, el, show } from "../common/dom.js";
+import { byAnyId, byId, el, show } from "../common/dom.js";
 import { number, pointerLabel } from "../common/format.js";
 import { chooser } from "./chooser.js";
 import { costOf } from "./sweep_cost.js";
@@ -9,12 +9,23 @@ import { costOf } from "./sweep_cost.js";
 const RANGE = ["from", "to", "points", "spacing"];
 
 /**
- * Sets the section up. `readDocument()` gives the job document that the form describes now; `changed()` tells the form that
- * its fields were set by a script.
+ * Sets the section up. `readDocument()` gives the present job document of the form; `changed()` tells the form that its
+ * fields were set by a script.
+ * @param {HTMLFormElement} form
+ * @param {{ readDocument: () => JobInput, changed: () => void }} options
+ *
+ * @typedef {{
+ *   form: HTMLFormElement,
+ *   inputOf: (pointer: string) => any,
+ *   fieldOf: (pointer: string) => any,
+ *   changed: () => void,
+ * }} Fields the fields of the form by their pointers
  */
 export function initSweep(form, { readDocument, changed }) {
-  const group = byId("group-sweep");
+  const group = byAnyId("group-sweep");
+  /** @param {string} pointer @returns {any} */
   const fieldOf = (pointer) => form.querySelector(`[data-pointer='${pointer}']`);
+  /** @param {string} pointer @returns {any} */
   const inputOf = (pointer) => fieldOf(pointer)?.querySelector("input, select, textarea");
   if (!group || !inputOf("/axes/0/pointer")) return;
   const axes = [0, 1].map((place) => axisOf(place, { form, inputOf, fieldOf, changed }));
@@ -36,6 +47,7 @@ export function initSweep(form, { readDocument, changed }) {
   update();
 }
 
+/** @type {Record<string, string>} */
 const CONTINUATION = {
   none: "Each point starts from rest and is solved for itself, several at a time: the quickest. Where two motions exist only one is found.",
   up: "Each point goes on from its neighbour below, as when the input is raised slowly: shows up to where a motion lasts, and where it jumps.",
@@ -43,13 +55,18 @@ const CONTINUATION = {
   both: "Up, then down: twice the points. Shows jumps, and the ranges in which two motions exist and which of them runs depends on the past.",
 };
 
-/** What the rows can carry beside their numbers. */
+/** Optional contents of the rows. */
 const RECORDED = [
   ["poincare", "Positions at the starts of mesh periods: a bifurcation diagram, which tells period 1, period n and chaos apart"],
   ["spectrum", "Spectrum of the acceleration: a map of the mesh orders over the first axis"],
 ];
 
-/** A sentence below a field that says what its value means. */
+/**
+ * A sentence below a field about its present value.
+ * @param {string} pointer
+ * @param {Fields["fieldOf"]} fieldOf
+ * @param {Record<string, string>} texts
+ */
 function explanation(pointer, fieldOf, texts) {
   const box = fieldOf(pointer);
   if (!box) return () => {};
@@ -60,7 +77,12 @@ function explanation(pointer, fieldOf, texts) {
   return () => { text.textContent = texts[input.value] ?? texts[""] ?? ""; };
 }
 
-/** A box to tick for each thing that can be recorded, in place of their names in a line. */
+/**
+ * A check box for each optional content of the rows, in place of the text field.
+ * @param {string} pointer
+ * @param {Fields["fieldOf"]} fieldOf
+ * @param {() => void} changed
+ */
 function recording(pointer, fieldOf, changed) {
   const box = fieldOf(pointer);
   if (!box) return () => {};
@@ -83,19 +105,20 @@ function recording(pointer, fieldOf, changed) {
   return () => {
     const known = words();
     for (const { word, input } of ticks) input.checked = known.includes(word);
-    // A word that nobody knows stays in sight, for the service to say so.
+    // An unknown word stays visible, so that the error of the service has a field.
     raw.closest(".input").classList.toggle("off", known.every((word) => ticks.some((tick) => tick.word === word)));
   };
 }
 
-/** Numbers of the form that can vary: their names, groups, units and present values. */
+/** Numbers of the form that can vary: their names, groups, units and present values. @param {HTMLFormElement} form */
 function sweepable(form) {
-  return [...form.querySelectorAll("[data-control='number'], [data-control='integer']")]
-    .filter(({ dataset }) => !/^\/(axes|analysis)\//.test(dataset.pointer))
+  const boxes = /** @type {HTMLElement[]} */ ([...form.querySelectorAll("[data-control='number'], [data-control='integer']")]);
+  return boxes
+    .filter(({ dataset }) => !/^\/(axes|analysis)\//.test(dataset.pointer ?? ""))
     .map((box) => {
-      const { pointer } = box.dataset;
+      const { pointer = "" } = box.dataset;
       const { label, unit } = pointerLabel(pointer);
-      const value = box.querySelector("input").value.trim();
+      const value = box.querySelector("input")?.value.trim() ?? "";
       const known = unit || box.dataset.unit || "";
       return {
         value: pointer, label: known ? `${label}, ${known}` : label, unit: known, now: value, hidden: box.hidden,
@@ -104,8 +127,13 @@ function sweepable(form) {
     });
 }
 
-/** One axis: a box for the input's name, and a switch between a range and a list. */
+/**
+ * One axis: a box for the input's name, and a switch between a range and a list.
+ * @param {number} place
+ * @param {Fields} fields
+ */
 function axisOf(place, { form, inputOf, fieldOf, changed }) {
+  /** @param {string} name */
   const at = (name) => `/axes/${place}/${name}`;
   const raw = inputOf(at("pointer"));
   const box = fieldOf(at("pointer"));
@@ -115,7 +143,7 @@ function axisOf(place, { form, inputOf, fieldOf, changed }) {
     chosen: (pointer) => { raw.value = pointer; changed(); },
   });
   const now = el("p", { class: "help axis-now", id: `axis-${place}-now` });
-  pick.node.firstElementChild.setAttribute("aria-describedby", now.id);
+  pick.input.setAttribute("aria-describedby", now.id);
   const choice = el("div", { class: "field axis-input" }, el("label", { htmlFor: `axis-${place}-input` }, "Input that varies"), pick.node, now);
   box.before(choice);
   box.classList.add("axis-pointer");
@@ -134,9 +162,11 @@ function axisOf(place, { form, inputOf, fieldOf, changed }) {
   const mode = el("div", { class: "field axis-mode" }, segments);
   fieldOf(at("from")).before(mode);
 
-  /** What the other way of giving values had is kept aside, for a change of mind. */
+  /** Values of the other mode, restored when the mode is switched back. @type {Record<string, string[] | null>} */
   const aside = { range: null, list: null };
+  /** @param {string} to */
   function turn(to) {
+    /** @type {Record<string, string[]>} */
     const of = { range: RANGE, list: ["values"] };
     const from = to === "list" ? "range" : "list";
     aside[from] = of[from].map((name) => inputOf(at(name)).value);
@@ -146,7 +176,9 @@ function axisOf(place, { form, inputOf, fieldOf, changed }) {
     changed();
   }
 
+  /** @type {string | null} */
   let wanted = null;
+  /** @param {string} name */
   const isFilled = (name) => inputOf(at(name)).value.trim() !== "";
   const modeNow = () => {
     if (isFilled("values")) return "list";
@@ -159,12 +191,14 @@ function axisOf(place, { form, inputOf, fieldOf, changed }) {
       for (const name of ["pointer", "from", "to", "values"]) inputOf(at(name)).value = "";
       changed();
     },
+    /** @type {HTMLElement} */
     block: box.closest(".block, fieldset"),
-    focus: () => pick.node.firstElementChild.focus(),
+    focus: () => pick.input.focus(),
+    /** @param {JobInput} document */
     update(document) {
       const mine = modeNow();
       for (const { input } of modes) input.checked = input.value === mine;
-      // Only out of sight: what stands in them counts, and errors bring them back.
+      // Hidden by a class only: their values count, and errors show them again.
       for (const name of RANGE) fieldOf(at(name)).classList.toggle("off", mine === "list" && !isFilled("from") && !isFilled("to"));
       fieldOf(at("values")).classList.toggle("off", mine === "range");
       choice.hidden = box.hidden;
@@ -178,27 +212,29 @@ function axisOf(place, { form, inputOf, fieldOf, changed }) {
   };
 }
 
+/** @param {string} text */
 const shown = (text) => (Number.isFinite(Number(text)) ? number(Number(text), 8) : text);
 
-/** The unit of the input that varies, beside a field of the axis. */
+/** The unit of the input that varies, beside a field of the axis. @param {HTMLElement} box @param {string} text */
 function unit(box, text) {
   const place = box.querySelector(".input") ?? box;
   let node = place.querySelector(".axis-unit");
   if (!node) {
     node = el("span", { class: "unit axis-unit" });
-    place.querySelector("input, textarea").after(node);
+    place.querySelector("input, textarea")?.after(node);
   }
-  for (const other of place.querySelectorAll(".unit:not(.axis-unit)")) other.hidden = true;
+  for (const other of place.querySelectorAll(".unit:not(.axis-unit)")) /** @type {HTMLElement} */ (other).hidden = true;
   node.textContent = text;
 }
 
-/** The second axis stays out of the way until it is wanted. */
+/** The second axis, hidden until it is added. @param {ReturnType<typeof axisOf>} axis @param {() => void} changed */
 function secondAxis(axis, changed) {
   const { block } = axis;
   let wanted = false;
   const add = el("button", { type: "button", id: "axis-add" }, "Add a second axis");
   const remove = el("button", { type: "button", id: "axis-remove", class: "quiet" }, "Remove the second axis");
-  block.before(el("p", { class: "actions axis-add" }, add));
+  const adding = el("p", { class: "actions axis-add" }, add);
+  block.before(adding);
   block.append(el("p", { class: "actions" }, remove));
   add.addEventListener("click", () => {
     wanted = true;
@@ -214,7 +250,7 @@ function secondAxis(axis, changed) {
   function update() {
     const there = wanted || axis.isUsed();
     block.classList.toggle("off", !there);
-    show(add.parentElement, !there && !block.hidden);
+    show(adding, !there && !block.hidden);
   }
   return { update };
 }

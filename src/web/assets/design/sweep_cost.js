@@ -1,4 +1,4 @@
-// What a sweep will cost, said before it is submitted: points, size of its rows, and the least time.
+// The cost of a sweep before it is submitted: points, size of its rows, and the least time.
 
 import { number } from "../common/format.js";
 
@@ -7,8 +7,12 @@ const MOST_POINTS = 100_000;
 const MOST_RECORDED = 5_000;
 /** Size of a row, and what recording adds to it at most, kB. */
 const ROW_KB = 0.55;
+/** @type {Record<string, number>} */
 const RECORD_KB = { poincare: 8, spectrum: 1.6 };
-/** Measured on two cores (docs/BENCHMARKS.md): a periodic point, an integrated one for each mesh period, and a mesh, ms. */
+/**
+ * Measured on two cores (docs/BENCHMARKS.md): a periodic point, an integrated one for each mesh period, and a mesh,
+ * ms.
+ */
 const PERIODIC_MS = 2;
 const MESH_PERIOD_MS = 0.02;
 const MESH_MS = 14;
@@ -16,6 +20,7 @@ const THREADS = 2;
 /** Inputs that leave the mesh as it is: one solution of it serves all points. */
 const NOT_OF_THE_MESH = [/^\/operation\/pinion_speed_rpm$/, /^\/design\/supports\//, /\/(inertia_kg_m2|mass_kg|backlash_um|mesh_damping_ratio)$/, /^\/model\/impact\//];
 
+/** @param {JobInput} document */
 export function costOf(document) {
   const axes = document.axes ?? [];
   const lengths = axes.map(lengthOf);

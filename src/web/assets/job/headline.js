@@ -2,39 +2,50 @@
 
 import { byId, el, show } from "../common/dom.js";
 import { number } from "../common/format.js";
+import { scalarAt } from "../common/scalars.js";
 import { nearestResonance } from "./motion_plots.js";
 import { IMPACTS, STIFFNESS, contactWords, regimeWords } from "./words.js";
 
 /** Standard gravity, m/s². */
 const GRAVITY = 9.80665;
 
-/** [name, number, unit, note, explanation] of each; what a result does not have is left out. */
+/**
+ * Name, number, unit, note and explanation of each headline; what a result does not have is left out.
+ * @param {JobResult} result
+ */
 export function headlines({ geometry, mesh, impact, response, numerics, accuracy }) {
+  /** @type {[name: string, shown: string, unit: string, note: Child | Child[], meaning: string][]} */
   const tiles = [];
+  /** @param {typeof tiles[number]} tile */
   const add = (...tile) => tiles.push(tile);
+  /** The tile of a scalar. @param {string} pointer @param {string} shown @param {Child | Child[]} note */
+  const addScalar = (pointer, shown, note) => {
+    const { label, unit, help } = scalarAt(pointer);
+    add(label, shown, unit, note, help);
+  };
   if (response) {
     const { rms } = response;
     const [contact, contactNote] = contactWords(response, mesh?.contact_force);
     const [regime, regimeNote] = regimeWords(response);
-    add("Contact", contact, "", contactNote, "Whether the working flanks keep touching while the pair vibrates. Separation makes the system nonlinear: several motions may be possible at one speed, and impacts load the teeth.");
-    add("Motion", regime, "", regimeNote, "How the steady motion repeats. Period 1 follows the mesh; longer periods, quasi-periodic and chaotic motions come with separation.");
-    if (typeof response.dynamic_factor === "number") add("Dynamic factor", number(response.dynamic_factor, 4), "", "largest tooth force over the static one", "Greatest normal force between the flanks over one period (or the record), impact included where one is applied, divided by the force that the torque alone needs; that of the half where it is larger. Never below 1.");
-    add("Circumferential acceleration, RMS", pair(rms.mesh_circumferential_acceleration_m_s2), "m/s²", sidesNote(rms.mesh_circumferential_acceleration_m_s2), "Root mean square of the relative acceleration of pinion and gear at the mesh, along the circumference, mean removed; exact over a whole number of periods.");
-    add("Axial acceleration of the pinion, RMS", pair(rms.pinion_axial_acceleration_m_s2), "m/s²", sidesNote(rms.pinion_axial_acceleration_m_s2), "Root mean square of the axial acceleration of each half of the pinion. Equal halves move against each other, so that their axial forces cancel on the shaft.");
+    addScalar("/response/contact", contact, contactNote);
+    addScalar("/response/regime", regime, regimeNote);
+    if (typeof response.dynamic_factor === "number") addScalar("/response/dynamic_factor", number(response.dynamic_factor, 4), "largest tooth force over the static one");
+    addScalar("/response/rms/mesh_circumferential_acceleration_m_s2/{half}", pair(rms.mesh_circumferential_acceleration_m_s2), sidesNote(rms.mesh_circumferential_acceleration_m_s2));
+    addScalar("/response/rms/pinion_axial_acceleration_m_s2/{half}", pair(rms.pinion_axial_acceleration_m_s2), sidesNote(rms.pinion_axial_acceleration_m_s2));
   }
-  if (impact) add("Mesh-in impact force", number(impact.force_n, 4), "N", impactNote(impact), "Peak of the half-sine pulse when the loaded teeth already in mesh let the next pair touch too early, at its tip corner. The pairs in mesh buffer it; Zhou's law of 2008 leaves that out.");
+  if (impact) addScalar("/impact/force_n", number(impact.force_n, 4), impactNote(impact));
   if (mesh) {
     const { transmission_error_pp_um: span, transmission_error_mean_um: mean } = mesh;
-    add("Transmission error, peak to peak", number(span, 3), "µm", mean ? `${number((100 * span) / mean, 3)} % of the mean of ${number(mean, 3)} µm` : "", "How much the loaded deflection along the base tangent varies over a mesh period: what excites the vibration of a pair whose teeth stay in contact.");
+    addScalar("/mesh/transmission_error_pp_um", number(span, 3), mean ? `${number((100 * span) / mean, 3)} % of the mean of ${number(mean, 3)} µm` : "");
   }
   if (geometry) {
     const loaded = mesh?.loaded_contact_ratio;
     const parts = ["ε", el("sub", {}, "α"), ` ${number(geometry.transverse_contact_ratio, 4)} + ε`, el("sub", {}, "β"), ` ${number(geometry.overlap_ratio, 4)}`, loaded ? `; loaded ${number(loaded, 4)}` : ""];
-    add("Total contact ratio", number(geometry.total_contact_ratio, 4), "", parts, "Transverse contact ratio plus overlap ratio of one half, from the geometry. The loaded one counts the contact that deflection adds before and after the theoretical path, and what modifications take away.");
+    addScalar("/geometry/total_contact_ratio", number(geometry.total_contact_ratio, 4), parts);
   }
   if (mesh) {
     const { stiffness_mean_n_per_um: mean, stiffness_min_n_per_um: low, stiffness_max_n_per_um: high } = mesh;
-    add("Mesh stiffness of a half, mean", number(mean, 4), "N/µm", `${number(low, 4)} to ${number(high, 4)}, ${STIFFNESS[mesh.source] ?? mesh.source}`, "Change of the tooth force with the deflection along the transverse base tangent (the tangent at the working load), mean over the mesh period.");
+    addScalar("/mesh/stiffness_mean_n_per_um", number(mean, 4), `${number(low, 4)} to ${number(high, 4)}, ${STIFFNESS[mesh.source] ?? mesh.source}`);
   }
   const nearest = response && nearestResonance(response, numerics);
   if (nearest) {
@@ -45,7 +56,11 @@ export function headlines({ geometry, mesh, impact, response, numerics, accuracy
   return tiles;
 }
 
-/** [number, unit, note, explanation]: how far the model may be from the gear, beside how far the numbers may be from the model. */
+/**
+ * Number, unit, note and explanation of the error of the model, with the numerical error beside it.
+ * @param {Accuracy} accuracy
+ * @returns {[shown: string, unit: string, note: string, meaning: string]}
+ */
 export function accuracyTexts({ numerical, model }) {
   const { mesh_stiffness_percent: stiffness, transmission_error_harmonic_percent: harmonic, basis } = model;
   const claims = typeof stiffness === "number";
@@ -53,10 +68,11 @@ export function accuracyTexts({ numerical, model }) {
   const notes = [claims ? `of the mesh stiffness; ${number(harmonic, 2)} % of the transmission error's first harmonic` : "the mesh stiffness is given", solved];
   return [
     claims ? number(stiffness, 2) : "Not known", claims ? "%" : "", notes.filter(Boolean).join("; "),
-    `The numerical error is relative and says how well the equations were solved; it says nothing about the gear. The error of the model is the largest that comparisons with references found in pairs of this kind. Basis: ${basis}. Supports, damping, friction and manufacture are not in it.`,
+    `${scalarAt("/accuracy/numerical").help} ${scalarAt("/accuracy/model/mesh_stiffness_percent").help} Basis: ${basis}.`,
   ];
 }
 
+/** @param {JobResult} result */
 export function showHeadline(result) {
   const tiles = headlines(result);
   const box = byId("headline");
@@ -74,6 +90,7 @@ export function showHeadline(result) {
   show(box, tiles.length > 0);
 }
 
+/** @param {string} name @param {string} meaning */
 function tip(name, meaning) {
   const summary = el("summary", { title: meaning }, "?");
   summary.setAttribute("aria-label", `What is: ${name}?`);
@@ -82,11 +99,12 @@ function tip(name, meaning) {
     if (event.key === "Escape") details.open = false;
   });
   details.addEventListener("focusout", (event) => {
-    if (!details.contains(event.relatedTarget)) details.open = false;
+    if (!details.contains(/** @type {Node | null} */ (event.relatedTarget))) details.open = false;
   });
   return details;
 }
 
+/** @param {ImpactResult} impact */
 function impactNote({ force_n: force, source, applied, zhou2008_force_n: zhou, reduction_percent: reduction }) {
   if (applied === false) return "only reported: the mesh force in the equations already holds it";
   if (force === 0) return "no early contact: the teeth enter without a blow";
@@ -95,9 +113,11 @@ function impactNote({ force_n: force, source, applied, zhou2008_force_n: zhou, r
   return `${number(reduction, 3)} % below Zhou 2008 (${number(zhou, 4)} N)${used}`;
 }
 
+/** @param {PerHalf} sides */
 const alike = ({ left, right }) => Math.abs(left - right) <= 1e-9 * Math.max(Math.abs(left), Math.abs(right));
-/** One number where both halves have the same. */
+/** One number where both halves have the same. @param {PerHalf} sides */
 const pair = (sides) => (alike(sides) ? number(sides.left, 4) : `${number(sides.left, 4)} / ${number(sides.right, 4)}`);
+/** @param {PerHalf} sides */
 const sidesNote = (sides) => {
   const most = number(Math.max(sides.left, sides.right) / GRAVITY, 3);
   return alike(sides) ? `each half, left and right alike; ${most} g` : `left / right; at most ${most} g`;

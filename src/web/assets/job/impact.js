@@ -1,20 +1,22 @@
 // The mesh-in impact: the forces beside each other, the pulse, what they come from.
 
-import { byId, fillRows, fillValues, show } from "../common/dom.js";
+import { byId, fillRows, fillValues, show, showFigureOf } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { draw } from "../common/plots.js";
+import { rowsFrom, scalarAt } from "../common/scalars.js";
 import { pulsePlot } from "./impact_plots.js";
 import { ACTS_ON, IMPACTS } from "./words.js";
 
+/** @param {JobContext} context */
 export async function showImpact({ result: { impact, geometry, response, mesh }, input }) {
   if (!impact) return;
   fillRows(byId("impact-table").tBodies[0], impactRows(impact));
   fillValues(byId("impact-values"), impactValues(impact));
   show(byId("impact"));
   const frequency = response?.mesh_frequency_hz ?? geometry?.mesh_frequency_hz;
-  const pulse = pulsePlot(impact, frequency);
-  show(byId("impact-plot").closest("figure"), Boolean(pulse));
-  if (!pulse) return;
+  const pulse = pulsePlot(impact, frequency ?? null);
+  showFigureOf(byId("impact-plot"), Boolean(pulse));
+  if (!pulse || !frequency) return;
   const stagger = input?.design?.half_stagger;
   byId("impact-note").textContent = [
     `Once per mesh period (${number(1e6 / frequency, 4)} µs) and half.`,
@@ -24,6 +26,7 @@ export async function showImpact({ result: { impact, geometry, response, mesh },
   await draw(byId("impact-plot"), pulse.traces, pulse.axes);
 }
 
+/** @param {ImpactResult} impact @returns {Child[][]} */
 export function impactRows(impact) {
   const calculated = typeof impact.zhou2008_force_n === "number";
   const first = impact.source === "given" ? "Given" : "Corner contact, buffered by the pairs in mesh";
@@ -33,20 +36,22 @@ export function impactRows(impact) {
   ];
 }
 
+/** @param {ImpactResult} impact @returns {ValueRow[]} */
 export function impactValues(impact) {
-  const value = (shown, digits = 4) => (typeof shown === "number" ? number(shown, digits) : null);
+  const row = rowsFrom({ impact });
   return [
-    ["Excites the response", impact.applied === false ? "no: only reported" : (IMPACTS[impact.source] ?? impact.source)],
-    ["Moves", impact.applied === false ? null : (ACTS_ON[impact.acts_on] ?? null)],
-    ["Impact velocity", value(impact.velocity_m_s), "m/s"],
-    ["Length of the pulse", value(impact.duration_us), "µs"],
-    ["Length by the balance of energy", value(impact.energy_balance_duration_us), "µs"],
-    ["Start", value(impact.start_mesh_periods), "mesh periods"],
-    ["Inclination of the line of action θ", value(impact.theta_deg), "°"],
-    ["Equivalent mass", value(impact.equivalent_mass_kg), "kg"],
-    ["Stiffness of the entering pair", value(impact.single_pair_stiffness_n_per_um), "N/µm"],
-    ["Stiffness of the pairs in mesh", value(impact.other_pairs_stiffness_n_per_um), "N/µm"],
-    ["Deflection at the first touch", value(impact.corner_deflection_um), "µm"],
-    ["Roll before the theoretical start", value(impact.corner_overrun_mm), "mm"],
+    [scalarAt("/impact/source").label, IMPACTS[impact.source] ?? impact.source],
+    [scalarAt("/impact/applied").label, impact.applied === false ? "no: only reported" : "yes"],
+    [scalarAt("/impact/acts_on").label, impact.applied === false ? null : (ACTS_ON[impact.acts_on] ?? null)],
+    row("/impact/velocity_m_s", 4),
+    row("/impact/duration_us", 4),
+    row("/impact/energy_balance_duration_us", 4),
+    row("/impact/start_mesh_periods", 4),
+    row("/impact/theta_deg", 4),
+    row("/impact/equivalent_mass_kg", 4),
+    row("/impact/single_pair_stiffness_n_per_um", 4),
+    row("/impact/other_pairs_stiffness_n_per_um", 4),
+    row("/impact/corner_deflection_um", 4),
+    row("/impact/corner_overrun_mm", 4),
   ];
 }

@@ -1,7 +1,7 @@
-// The life of a job: its state, the stages on the way, why it failed, and what can be done with it.
+// The state of a job: its stages, why it failed, and its actions.
 
 import * as api from "../common/api.js";
-import { byId, el, fillValues, notify, show } from "../common/dom.js";
+import { byAnyId, byId, el, fillValues, notify, show } from "../common/dom.js";
 import { instant, number, percent, seconds, sentence } from "../common/format.js";
 
 const STAGES = { geometry: "Geometry", mesh: "Tooth contact", impact: "Mesh-in impact", response: "Vibration" };
@@ -9,10 +9,16 @@ const STAGES_OF = { mesh: ["geometry", "mesh", "impact"], response: ["geometry",
 const STATES = { queued: "Waiting for a worker", canceled: "Canceled" };
 
 export class Life {
+  /**
+   * @param {string} id
+   * @param {(job: Job) => void} onChange called with the state that a cancellation is answered with
+   */
   constructor(id, onChange) {
     this.id = id;
     this.notice = byId("notice");
     this.onChange = onChange;
+    /** @type {Job | null} */
+    this.job = null;
     byId("cancel").addEventListener("click", () => this.cancel());
     byId("copy-link").addEventListener("click", () => this.copyLink());
     byId("delete").addEventListener("click", () => byId("delete-dialog").showModal());
@@ -20,6 +26,7 @@ export class Life {
     setInterval(() => this.tick(), 1000);
   }
 
+  /** @param {Job} job */
   show(job) {
     const before = this.job;
     this.job = job;
@@ -35,7 +42,7 @@ export class Life {
     show(byId("cancel"), !ended);
     byId("cancel").disabled = Boolean(job.cancel_requested_at);
     show(byId("delete"), ended);
-    for (const name of ["compare", "download-result"]) show(byId(name), job.state === "succeeded");
+    for (const name of ["compare", "download-result"]) show(byAnyId(name), job.state === "succeeded");
     show(byId("report"), job.state === "succeeded" && job.kind !== "sweep");
     byId("download-input").href = api.inputUrl(this.id);
     byId("download-result").href = api.resultUrl(this.id);
@@ -46,6 +53,7 @@ export class Life {
     this.tick();
   }
 
+  /** @param {Job} job */
   showValues(job) {
     const solved = job.started_at && job.ended_at && !job.reused_from ? seconds(job.started_at, job.ended_at) : null;
     fillValues(byId("life-values"), [
@@ -59,13 +67,14 @@ export class Life {
     ]);
   }
 
+  /** @param {Job} job */
   showProgress(job) {
     const progress = byId("progress");
     show(byId("live"), !api.isEnded(job));
     if (job.state === "queued") progress.removeAttribute("value");
     else progress.value = job.progress ?? 0;
     const stages = STAGES_OF[job.kind] ?? [];
-    const at = stages.indexOf(job.stage);
+    const at = stages.indexOf(job.stage ?? "");
     byId("stages").replaceChildren(
       ...stages.map((stage, index) => {
         const state = index < at ? "done" : index === at ? "current" : "ahead";
@@ -83,20 +92,21 @@ export class Life {
       byId("elapsed").textContent = "";
       return;
     }
-    const since = job.state === "running" ? job.started_at : job.submitted_at;
+    const since = (job.state === "running" && job.started_at) || job.submitted_at;
     const span = Math.max(0, Math.round((Date.now() - Date.parse(since)) / 1000));
     byId("elapsed").textContent = `${job.state === "running" ? "for" : "waiting for"} ${span < 90 ? `${span} s` : `${Math.floor(span / 60)} min ${span % 60} s`}`;
   }
 
-  /** How many jobs of its class come before it; single jobs and sweeps have workers of their own. */
+  /** Shows how many jobs of its class come before it; single jobs and sweeps have workers of their own. */
   async askPlace() {
     try {
       const { items } = await api.jobs({ state: "queued", limit: 200 });
-      if (this.job.state !== "queued") return;
-      const sweep = (job) => job.kind === "sweep";
-      const before = items.filter((other) => sweep(other) === sweep(this.job) && other.submitted_at < this.job.submitted_at).length;
+      const { job } = this;
+      if (job?.state !== "queued") return;
+      const isSweep = job.kind === "sweep";
+      const before = items.filter((other) => (other.kind === "sweep") === isSweep && other.submitted_at < job.submitted_at).length;
       byId("stage").textContent = before ? `${before === 1 ? "1 job is" : `${before} jobs are`} before this one` : "next in the queue";
-      setTimeout(() => this.job.state === "queued" && this.askPlace(), 3000);
+      setTimeout(() => this.job?.state === "queued" && this.askPlace(), 3000);
     } catch {
       // It is only said where it is known.
     }
@@ -128,11 +138,12 @@ export class Life {
       note.textContent = "The link is on the clipboard.";
     } catch {
       note.textContent = link;
-      window.getSelection().selectAllChildren(note);
+      window.getSelection()?.selectAllChildren(note);
     }
   }
 }
 
+/** @param {Job} job */
 function describe(job) {
   if (job.cancel_requested_at && !api.isEnded(job)) return "canceling …";
   if (job.state === "running") return [STAGES[job.stage] ?? job.stage, percent(job.progress)].filter(Boolean).join(", ");
@@ -140,7 +151,7 @@ function describe(job) {
   return STATES[job.state] ?? "";
 }
 
-/** Why a job failed: where, when, and what helps. Done when all of it is there. */
+/** Shows why a job failed: stage, time, and advice. @param {Job} job */
 async function showFailure({ error }) {
   const box = byId("failure");
   if (!error || !box.hidden) return;
@@ -158,6 +169,7 @@ async function showFailure({ error }) {
   await explain(error);
 }
 
+/** @param {ProblemBody & { type: string }} error */
 async function explain({ type }) {
   try {
     const answer = await fetch(type, { headers: { Accept: "application/json" } });

@@ -1,5 +1,5 @@
-// Plots of the mesh, from the result: stiffness, transmission error, load sharing, load on the flank. Each is { traces, axes }, or null where the
-// result has nothing for it.
+// Plots of the mesh, from the result: stiffness, transmission error, load sharing, load on the flank. Each is {
+// traces, axes }, or null where the result has nothing for it.
 
 import { number } from "../common/format.js";
 import { bars, heatMap, line, points } from "../common/plot_traces.js";
@@ -8,12 +8,16 @@ const PHASE = "Position in the mesh period";
 /** A pair is looked at so far after its start, in base pitches, for its share at mesh-in. */
 const MESH_IN = 0.05;
 
+/** @param {MeshResult} mesh @returns {[string, MeshCurve][]} */
 const halves = ({ curve, right_curve: right }) => (right ? [["left", curve], ["right", right]] : [["", curve]]);
-/** The first value again at 1: a mesh period begins where the last one ended. */
+/** The first value again at 1: a mesh period begins where the last one ended. @param {number[]} values */
 const closed = (values) => [...values, values[0]];
+/** @param {MeshCurve} curve */
 const phaseOf = ({ phase }) => [...phase, phase[0] + 1];
+/** @param {number[]} values */
 const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
+/** @param {MeshResult | null | undefined} mesh @returns {Plot | null} */
 export function stiffnessPlot(mesh) {
   if (!mesh?.curve?.stiffness_n_per_um?.length) return null;
   const solved = mesh.source === "ltca";
@@ -25,17 +29,26 @@ export function stiffnessPlot(mesh) {
   return { traces, axes: { x: PHASE, y: "Mesh stiffness, N/µm", csvName: "mesh-stiffness", range: [0, 1], levels, link: "mesh" } };
 }
 
+/** @param {MeshResult | null | undefined} mesh @returns {Plot | null} */
 export function errorPlot(mesh) {
   if (!mesh?.curve?.transmission_error_um?.length) return null;
   const traces = halves(mesh).map(([half, curve]) => line(phaseOf(curve), closed(curve.transmission_error_um), half));
+  /** @type {PlotAxes} */
   const axes = { x: PHASE, y: "Transmission error, µm", csvName: "transmission-error", range: [0, 1], link: "mesh" };
   if (!mesh.right_curve) axes.levels = [{ y: mesh.transmission_error_mean_um, text: `mean ${number(mesh.transmission_error_mean_um, 4)}` }];
   else apart(mesh, traces, axes);
   return { traces, axes };
 }
 
-/** Where an error of assembly parts the halves by much more than they vary, each has an axis of its own, of the same length. */
+/**
+ * Where an assembly error separates the halves by much more than they vary, each has an axis of its own, of the same
+ * length.
+ * @param {MeshResult} mesh
+ * @param {Trace[]} traces
+ * @param {PlotAxes} axes
+ */
 function apart({ curve, right_curve: right }, traces, axes) {
+  if (!right) return;
   const ends = [curve, right].map(({ transmission_error_um: values }) => [Math.min(...values), Math.max(...values)]);
   const span = 1.2 * Math.max(...ends.map(([low, high]) => high - low));
   const middles = ends.map(([low, high]) => (low + high) / 2);
@@ -45,6 +58,7 @@ function apart({ curve, right_curve: right }, traces, axes) {
   Object.assign(axes, { y: "Transmission error, left, µm", y2: "right, µm", yRange: range, y2Range: range2 });
 }
 
+/** @param {MeshResult | null | undefined} mesh @returns {Plot | null} */
 export function harmonicsPlot(mesh) {
   const amplitudes = mesh?.transmission_error_harmonics_um;
   if (!amplitudes?.length) return null;
@@ -52,23 +66,29 @@ export function harmonicsPlot(mesh) {
   return { traces: [bars(orders, amplitudes)], axes: { x: "Mesh order", y: "Amplitude, µm", csvName: "transmission-error-harmonics", layout: { bargap: .5 } } };
 }
 
-export function sharePlot(mesh, geometry) {
+/** @param {MeshResult | null | undefined} mesh @param {GearData | null} gearData @returns {Plot | null} */
+export function sharePlot(mesh, gearData) {
   if (!mesh?.curve?.load_share?.[0]?.length) return null;
   const traces = halves(mesh).map(([half, curve]) => line(curve.load_share_phase, positive(curve.load_share[0]), half));
-  const { transverse_contact_ratio: alpha, total_contact_ratio: gamma, overlap_ratio: beta } = geometry ?? {};
-  const places = alpha > 1 ? [[0, "A"], [alpha - 1, "B"], [1, "D"], [alpha, "E"], ...(beta > 0.01 ? [[gamma, "end"]] : [])] : [];
-  const marks = places.map(([x, text]) => ({ x, text }));
+  const marks = (gearData?.path_points ?? []).map(({ name, base_pitches: x }) => ({ x, text: name }));
+  if (gearData && gearData.overlap_ratio > 0.01) marks.push({ x: gearData.total_contact_ratio, text: "end" });
   if (typeof mesh.load_share_at_mesh_in === "number") traces.push({ ...points([MESH_IN], [mesh.load_share_at_mesh_in], "mesh-in"), colour: 3 });
   return { traces, axes: { x: "Base pitches since the theoretical start of contact", y: "Share of the load", csvName: "load-share", marks, hover: "closest" } };
 }
 
-/** Values where nothing touches are zeros, some of them negative ones. */
+/** Values where nothing touches are zeros, some of them negative ones. @param {number[]} values */
 const positive = (values) => values.map((value) => (value > 0 ? value : 0));
 
-/** Every pair in mesh over one mesh period: one pair's path, cut into base pitches. */
+/**
+ * Every pair in mesh over one mesh period: one pair's path, cut into base pitches.
+ * @param {MeshResult | null | undefined} mesh
+ * @returns {Plot | null}
+ */
 export function sharingPlot(mesh) {
-  const { load_share: shares, load_share_phase: phase } = mesh?.curve ?? {};
-  if (!shares?.[0]?.length) return null;
+  if (!mesh) return null;
+  const { load_share: shares = [], load_share_phase: phase = [] } = mesh.curve;
+  if (!shares[0]?.length) return null;
+  /** @param {number} place */
   const at = (place) => {
     const next = phase.findIndex((x) => x >= place);
     if (next < 0) return 0;
@@ -78,7 +98,7 @@ export function sharingPlot(mesh) {
   };
   const steps = Array.from({ length: 101 }, (_, index) => index / 100);
   const traces = [];
-  for (let pair = Math.floor(phase[0]); pair < phase.at(-1); pair += 1) {
+  for (let pair = Math.floor(phase[0]); pair < phase[phase.length - 1]; pair += 1) {
     const values = positive(steps.map((step) => at(step + pair)));
     if (Math.max(...values) > 1e-4) traces.push({ ...line(steps, values, nameOfPair(pair)), stackgroup: "pairs" });
   }
@@ -86,65 +106,55 @@ export function sharingPlot(mesh) {
   return { traces: traces.reverse(), axes: { x: PHASE, y: "Share of the load", name: `Sharing of the load between all pairs${half}`, csvName: "load-sharing", range: [0, 1], yRange: [0, 1.001], link: "mesh", hover: "x unified" } };
 }
 
-/** Pairs by when they entered; the next one touches early, at its corner. */
+/** Pairs by when they entered; the next one touches early, at its corner. @param {number} pair */
 const nameOfPair = (pair) => (pair < 0 ? "next pair" : ["entering pair", "2nd", "3rd"][pair] ?? `${pair + 1}th`);
 
-/** The flanks of one tooth of the pinion, both halves, true to scale: along the axis and along the path of contact. */
-export function flankPlot(mesh, geometry, input) {
-  const left = mesh?.curve?.flank;
-  if (!left?.line_load_n_per_mm?.length) return null;
-  const right = mesh.right_curve?.flank ?? left;
-  const width = geometry?.face_width_mm ?? input?.design?.face_width_mm ?? left.face_mm.at(-1) + left.face_mm[0];
-  const gap = geometry?.gap_width_mm ?? input?.design?.gap_width_mm ?? 0;
+/**
+ * Line load on the flanks of one tooth of the pinion, both halves, true to scale: along the axis and along the path of
+ * contact, with the lines of contact.
+ * @param {MeshResult | null | undefined} mesh
+ * @param {GearData | null} gearData
+ * @returns {Plot | null}
+ */
+export function flankPlot(mesh, gearData) {
+  const left = mesh?.curve.flank;
+  if (!left?.line_load_n_per_mm.length) return null;
+  const right = mesh?.right_curve?.flank ?? left;
+  const { face_width_mm: width = left.face_mm[0] + left.face_mm[left.face_mm.length - 1], gap_width_mm: gap = 0 } = gearData ?? {};
   const most = Math.max(...[left, right].flatMap(({ line_load_n_per_mm: load }) => load.flat()));
+  /** @param {number} side -1 left, 1 right @param {number} face distance from the inner end */
   const place = (side, face) => side * (gap / 2 + face);
+  /** @param {number} side @param {FlankLoad} flank @param {string} name */
   const map = (side, flank, name) => {
     const faces = side < 0 ? [...flank.face_mm].reverse() : flank.face_mm;
     const rows = flank.line_load_n_per_mm.map((row) => (side < 0 ? [...row].reverse() : row));
     return { ...heatMap(faces.map((face) => place(side, face)), flank.roll_mm, rows, "N/mm"), name, zmin: 0, zmax: most, showscale: side > 0 };
   };
-  const traces = [map(-1, left, "left half"), map(1, right, "right half")];
-  traces.push(...contactLines(left, geometry, input, width, place));
-  const [side, flank, row, column] = greatest(left, right, most);
-  traces.push({ ...points([place(side, flank.face_mm[column])], [flank.roll_mm[row]], ""), aside: true, hovertemplate: `greatest: ${number(most, 4)} N/mm<extra></extra>`, marker: { size: 12, symbol: "circle-open", color: "#ffffff", line: { width: 2, color: "#ffffff" } } });
-  const axes = { x: "Along the axis, mm", y: "Roll path of the pinion, mm", z: "Line load", csvName: "line-load", equal: true, hover: "closest",
-    annotations: [-1, 1].map((side) => ({ x: side * (gap + width) / 2, y: 1, yref: "paper", yanchor: "bottom", text: side < 0 ? "left half" : "right half", showarrow: false })),
-    layout: { margin: { l: 56, r: 16, t: 28, b: 44 } },
+  const { side, flank, row, column } = greatest(left, right, most);
+  const mark = { size: 12, symbol: "circle-open", color: "#ffffff", line: { width: 2, color: "#ffffff" } };
+  /** @type {Trace[]} */
+  const traces = [
+    map(-1, left, "left half"), map(1, right, "right half"),
+    ...(gearData?.contact_lines ?? []).map(({ axial_mm: axial, roll_mm: roll }) => ({ ...line(axial, roll), aside: true, hoverinfo: "skip", line: { width: 1.2, color: "#ffffff", dash: "dash" } })),
+    { ...points([place(side, flank.face_mm[column])], [flank.roll_mm[row]], ""), aside: true, hovertemplate: `greatest: ${number(most, 4)} N/mm<extra></extra>`, marker: mark },
+  ];
+  return {
+    traces,
+    axes: {
+      x: "Along the axis, mm", y: "Roll path of the pinion, mm", z: "Line load", csvName: "line-load", equal: true, hover: "closest",
+      annotations: [-1, 1].map((side) => ({ x: side * (gap + width) / 2, y: 1, yref: "paper", yanchor: "bottom", text: side < 0 ? "left half" : "right half", showarrow: false })),
+      layout: { margin: { l: 56, r: 16, t: 28, b: 44 } },
+    },
   };
-  return { traces, axes, most };
 }
 
+/** The cell with the greatest load. @param {FlankLoad} left @param {FlankLoad} right @param {number} most */
 function greatest(left, right, most) {
-  for (const [side, flank] of [[-1, left], [1, right]]) {
+  for (const [side, flank] of /** @type {[number, FlankLoad][]} */ ([[-1, left], [1, right]])) {
     for (const [row, loads] of flank.line_load_n_per_mm.entries()) {
       const column = loads.indexOf(most);
-      if (column >= 0) return [side, flank, row, column];
+      if (column >= 0) return { side, flank, row, column };
     }
   }
-  return [-1, left, 0, 0];
-}
-
-/** The lines of contact of all pairs when a pair enters, in both halves. */
-function contactLines({ roll_mm: roll }, geometry, input, width, place) {
-  const { base_helix_angle_deg: helix, transverse_base_pitch_mm: pitch } = geometry ?? {};
-  if (!pitch || !input?.operation) return [];
-  const step = roll[1] - roll[0];
-  const [start, end] = [roll[0] - step / 2, roll.at(-1) + step / 2];
-  const slope = Math.tan((helix * Math.PI) / 180);
-  // Coast flanks are the drive flanks of the mirrored pair, run backwards: the other rotation, and pairs enter where they left.
-  const coast = input.operation.pinion_torque_nm < 0;
-  const entry = (face) => ((input.operation.rotation === "apex_trailing") !== coast ? face : width - face);
-  const lines = [];
-  const lowest = start - width * slope;
-  for (let foot = coast ? end - Math.floor((end - lowest) / pitch) * pitch : lowest; foot < end; foot += pitch) {
-    // Distances from the end where teeth leave at which the line lies on the path of contact.
-    const from = slope > 0 ? Math.max(0, (start - foot) / slope) : 0;
-    const to = slope > 0 ? Math.min(width, (end - foot) / slope) : width;
-    if (to - from < 1e-6 || (slope === 0 && foot < start)) continue;
-    for (const side of [-1, 1]) {
-      const ends = [from, to].map((distance) => [place(side, entry(distance)), foot + distance * slope]);
-      lines.push({ ...line(ends.map(([x]) => x), ends.map(([, y]) => y)), aside: true, hoverinfo: "skip", line: { width: 1.2, color: "#ffffff", dash: "dash" } });
-    }
-  }
-  return lines;
+  return { side: -1, flank: left, row: 0, column: 0 };
 }

@@ -5,7 +5,9 @@ import { number } from "../common/format.js";
 import { draw } from "../common/plots.js";
 import { meshShare, modesPlot, nearestOrder, nearestResonance } from "./motion_plots.js";
 
+/** @param {JobContext} context */
 export async function showModes({ result: { response, numerics }, input }) {
+  if (!response) return;
   const picture = modesPlot(response, numerics);
   if (!picture) return;
   show(byId("modes"));
@@ -20,8 +22,14 @@ export async function showModes({ result: { response, numerics }, input }) {
   await draw(byId("modes-plot"), picture.traces, picture.axes);
 }
 
-/** [number, frequency, damping, share of the meshes, nearest order, its ratio, speed of the resonance, name] of each mode. */
-export function modeRows({ natural_modes: modes, mesh_frequency_hz: mesh }, input) {
+/**
+ * Number, frequency, damping, share of the meshes, nearest order, its ratio, speed of the resonance and name of each
+ * mode.
+ * @param {ResponseResult} response
+ * @param {JobInput} input
+ * @returns {string[][]}
+ */
+export function modeRows({ natural_modes: modes = [], mesh_frequency_hz: mesh }, input) {
   const speed = input?.operation?.pinion_speed_rpm;
   return modes.map((mode, at) => {
     const nearest = nearestOrder(mode.frequency_hz, mesh);

@@ -12,12 +12,20 @@ const EXCITED = 0.01;
 /** Mesh orders that excitation is looked for in. */
 const ORDERS = 20;
 
-export const levelOf = (amplitude) => 20 * Math.log10(Math.max(amplitude, 1e-300) / REFERENCE);
+/** Level of an acceleration, dB. @param {number} amplitude m/s² */
+const levelOf = (amplitude) => 20 * Math.log10(Math.max(amplitude, 1e-300) / REFERENCE);
 
-/** Amplitudes of the left half's circumferential acceleration over mesh orders; `decibel` shows levels. */
+/**
+ * Amplitudes of the left half's circumferential acceleration over mesh orders; `decibel` shows levels.
+ * @param {ResponseResult | null | undefined} response
+ * @param {Numerics} numerics
+ * @param {{ decibel?: boolean }} [options]
+ * @returns {Plot | null}
+ */
 export function spectrumPlot(response, numerics, { decibel = false } = {}) {
-  const { spectrum, mesh_frequency_hz: mesh } = response ?? {};
-  if (!spectrum?.frequency_hz?.length || !(mesh > 0)) return null;
+  if (!response) return null;
+  const { spectrum, mesh_frequency_hz: mesh } = response;
+  if (!spectrum?.frequency_hz.length || !(mesh > 0)) return null;
   const orders = spectrum.frequency_hz.map((hertz) => hertz / mesh);
   const top = decibel ? levelOf(Math.max(...spectrum.amplitude_m_s2)) : 0;
   const floor = Math.floor((top - DEPTH) / 10) * 10;
@@ -42,14 +50,17 @@ export function spectrumPlot(response, numerics, { decibel = false } = {}) {
   };
 }
 
-/** The strongest lines: [{ order, hertz, amplitude }], mesh orders and what lies between them. */
+/**
+ * The strongest lines of the spectrum, at mesh orders or between them.
+ * @param {ResponseResult} response
+ */
 export function strongestLines({ spectrum, mesh_frequency_hz: mesh }, count = 8) {
   if (!spectrum?.frequency_hz?.length) return [];
   const all = spectrum.frequency_hz.map((hertz, at) => ({ hertz, order: hertz / mesh, amplitude: spectrum.amplitude_m_s2[at] }));
   return all.sort((a, b) => b.amplitude - a.amplitude).slice(0, count);
 }
 
-/** An order as people write it: 3, 1/2, 5/2, 1.37. */
+/** An order as text: 3, 1/2, 5/2, 1.37. @param {number} order @param {number | null} [periods] */
 export function orderWords(order, periods = 1) {
   for (const parts of [1, periods ?? 1]) {
     const times = order * parts;
@@ -58,18 +69,27 @@ export function orderWords(order, periods = 1) {
   return number(order, 4);
 }
 
+/** Share of a mode's strain energy in the meshes. @param {NaturalMode} mode */
 export const meshShare = ({ strain_energy: energy }) => (energy?.mesh_left ?? 0) + (energy?.mesh_right ?? 0);
 
-/** Whether the halves have to do the opposite of each other in a mode: equal halves do not excite it. */
-const isOpposed = ({ name }) => /opposed$/.test(name);
-/** Whether the halves mirror each other, so that half of the equations was solved. */
+/** Whether the halves move against each other in a mode: equal halves do not excite it. @param {NaturalMode} mode */
+const isOpposed = ({ name }) => name.endsWith("opposed");
+/** Whether the halves mirror each other, so that half of the equations was solved. @param {Numerics} [numerics] */
 export const halvesAlike = (numerics) => numerics?.degrees_of_freedom === 6;
 
-/** Modes that the mesh excites, with their number in the list, from 1. */
+/**
+ * Modes that the mesh excites, with their number in the list, from 1.
+ * @param {ResponseResult} response
+ * @param {Numerics} numerics
+ */
 const excitedModes = ({ natural_modes: modes = [] }, numerics) =>
   modes.map((mode, at) => ({ ...mode, index: at + 1 })).filter((mode) => mode.frequency_hz > 0 && meshShare(mode) >= EXCITED && !(halvesAlike(numerics) && isOpposed(mode)));
 
-/** Of a mode, the mesh order that lies nearest to it: { order, ratio } with ratio = order·f_mesh / f_mode. */
+/**
+ * Of a mode, the mesh order that lies nearest to it: { order, ratio } with ratio = order·f_mesh / f_mode.
+ * @param {number} hertz
+ * @param {number} mesh
+ */
 export function nearestOrder(hertz, mesh) {
   if (!(hertz > 0) || !(mesh > 0)) return null;
   const exact = hertz / mesh;
@@ -78,15 +98,24 @@ export function nearestOrder(hertz, mesh) {
   return { order, ratio: order / exact };
 }
 
-/** The excited mode that a mesh order is nearest to. */
+/** The excited mode that a mesh order is nearest to. @param {ResponseResult} response @param {Numerics} numerics */
 export function nearestResonance(response, numerics) {
-  const all = excitedModes(response, numerics).map((mode) => ({ mode, ...nearestOrder(mode.frequency_hz, response.mesh_frequency_hz) })).filter(({ order }) => order);
+  const all = excitedModes(response, numerics).flatMap((mode) => {
+    const nearest = nearestOrder(mode.frequency_hz, response.mesh_frequency_hz);
+    return nearest ? [{ mode, ...nearest }] : [];
+  });
   return all.length ? all.reduce((best, next) => (Math.abs(next.ratio - 1) < Math.abs(best.ratio - 1) ? next : best)) : null;
 }
 
-/** Natural modes by frequency, as high as the meshes' share of their strain energy, against the mesh orders. */
+/**
+ * Natural modes by frequency, as high as the meshes' share of their strain energy, against the mesh orders.
+ * @param {ResponseResult | null | undefined} response
+ * @param {Numerics} numerics
+ * @returns {Plot | null}
+ */
 export function modesPlot(response, numerics) {
-  const { natural_modes: modes = [], mesh_frequency_hz: mesh } = response ?? {};
+  if (!response) return null;
+  const { natural_modes: modes = [], mesh_frequency_hz: mesh } = response;
   const held = modes.map((mode, at) => ({ ...mode, index: at + 1 })).filter((mode) => mode.frequency_hz > 0);
   if (!held.length || !(mesh > 0)) return null;
   const end = 1.06 * Math.max(...held.map((mode) => mode.frequency_hz));
@@ -113,7 +142,13 @@ export function modesPlot(response, numerics) {
   };
 }
 
-/** The motion in the phase plane; `ends` are the edges of the gap, where the displacement is the normal one. */
+/**
+ * The motion in the phase plane; `edge` is half the backlash, where the displacement is the normal one.
+ * @param {{ half: string, place: number[], velocity: number[], dots?: { place: number[], velocity: number[] } }[]}
+ * paths
+ * @param {{ x: string, y: string, edge?: number | null }} options
+ * @returns {Plot}
+ */
 export function phasePlot(paths, { x, y, edge = null }) {
   const traces = paths.flatMap(({ half, place, velocity, dots }, index) => [
     { ...line(place, velocity, half), colour: index, line: { width: 1.4, dash: index ? "dash" : "solid" } },
@@ -123,6 +158,7 @@ export function phasePlot(paths, { x, y, edge = null }) {
   const [low, high] = [places.reduce((a, b) => Math.min(a, b), Infinity), places.reduce((a, b) => Math.max(a, b), -Infinity)];
   const margin = 0.06 * (high - low || 1);
   const near = edge === null ? [] : [edge, -edge].filter((at) => at > low - (high - low) && at < high + (high - low));
+  /** @type {PlotAxes} */
   const axes = { x, y, hover: "closest", marks: near.map((at) => ({ x: at, text: at < 0 ? "−b: back flanks" : "b: flanks touch", dash: "dash" })), csvName: "phase-plane" };
   if (near.length) axes.range = [Math.min(low, ...near) - margin, Math.max(high, ...near) + margin];
   return { traces, axes };

@@ -2,13 +2,16 @@
 
 import { byId, el, fillValues, show } from "../common/dom.js";
 import { number } from "../common/format.js";
+import { scalarAt } from "../common/scalars.js";
 import { METHODS } from "./words.js";
 
+/** Stages with the names of their times. @type {[keyof Numerics["wall_ms"], string][]} */
 const STAGES = [["geometry", "Geometry"], ["mesh", "Tooth contact"], ["impact", "Mesh-in impact"], ["response", "Vibration"]];
 const REUSED = { result: "the whole result of an equal job", mesh: "tooth contact", finite_elements: "finite elements", points: "points of a sweep" };
 /** Shares of the time too small to be seen in the bar. */
 const VISIBLE = 0.004;
 
+/** @param {JobContext} context */
 export function showNumerics({ job, input, result: { numerics, response, mesh } }) {
   if (!numerics) return;
   showAccuracy(response, input);
@@ -17,11 +20,13 @@ export function showNumerics({ job, input, result: { numerics, response, mesh } 
   show(byId("numerics"));
 }
 
+/** @param {ResponseResult | null | undefined} response @param {JobInput} input */
 function showAccuracy(response, input) {
   const [reached, asked] = [response?.error_estimate, input?.analysis?.accuracy];
   const line = byId("accuracy");
-  show(line, typeof reached === "number" && typeof asked === "number");
-  if (line.hidden) return;
+  const known = typeof reached === "number" && typeof asked === "number";
+  show(line, known);
+  if (!known) return;
   const good = reached <= asked;
   line.replaceChildren(
     el("strong", { class: good ? "better" : "worse" }, good ? "✓ Accuracy reached: " : "✗ Accuracy not reached: "),
@@ -29,6 +34,7 @@ function showAccuracy(response, input) {
   );
 }
 
+/** @param {Partial<Numerics["wall_ms"]>} wall */
 function showTimes(wall) {
   const total = STAGES.reduce((sum, [name]) => sum + (wall[name] ?? 0), 0);
   const box = byId("times");
@@ -36,38 +42,44 @@ function showTimes(wall) {
   if (box.hidden) return;
   const bar = el("div", { class: "times-bar" });
   bar.setAttribute("aria-hidden", "true");
-  const keys = STAGES.filter(([name]) => wall[name] > 0).map(([name, label], index) => {
+  const keys = STAGES.filter(([name]) => wall[name]).map(([name, label], index) => {
     const part = el("span", { class: `stage-${index + 1}` });
-    part.style.flexGrow = String(Math.max(wall[name] / total, VISIBLE));
+    part.style.flexGrow = String(Math.max((wall[name] ?? 0) / total, VISIBLE));
     bar.append(part);
     return el("li", { class: "key" }, el("span", { class: `swatch stage-${index + 1}` }), `${label} ${number(wall[name], 3)} ms`);
   });
   box.replaceChildren(bar, el("ul", { class: "times-keys" }, ...keys, el("li", { class: "muted" }, `${number(total, 3)} ms in all`)));
 }
 
+/** @param {Pick<JobResult, "numerics" | "response" | "mesh"> & { job: Job | null }} solved @returns {ValueRow[]} */
 export function numericsValues({ job, numerics, response, mesh }) {
   const convergence = mesh?.convergence;
   const { reused = [], degrees_of_freedom: freedom } = numerics;
-  const halves = freedom === 6 ? "6 of 12 (the halves mirror each other)" : freedom === 12 ? "12 of 12" : freedom > 0 ? number(freedom) : null;
-  const states = freedom > 0 ? `${number(2 * freedom)} of 24` : null;
-  const count = (shown) => (shown > 0 ? number(shown, 9) : null);
+  const halves = freedom === 6 ? "6 of 12 (the halves mirror each other)" : freedom === 12 ? "12 of 12" : freedom ? number(freedom) : null;
+  const states = freedom ? `${number(2 * freedom)} of 24` : null;
+  /** @param {number | null | undefined} shown */
+  const count = (shown) => (shown && shown > 0 ? number(shown, 9) : null);
+  /** @param {number | null | undefined} error */
+  const small = (error) => (typeof error === "number" ? number(error, 2) : null);
+  /** A row by the scalar's label and unit. @type {(pointer: string, shown: Child) => ValueRow} */
+  const row = (pointer, shown) => [scalarAt(pointer).label, shown, scalarAt(pointer).unit];
   return [
     ["Method", response ? (METHODS[response.method] ?? response.method) : null],
-    ["Degrees of freedom solved", halves],
+    row("/numerics/degrees_of_freedom", halves),
     ["States of the equations", states],
-    ["Mesh periods in the means", count(response?.averaged_mesh_periods)],
-    ["Steps", count(numerics.steps)],
-    ["Rejected steps", count(numerics.rejected_steps)],
-    ["Evaluations of the forces", count(numerics.force_evaluations)],
-    ["Contact: positions per mesh period, slices", convergence ? `${number(convergence.positions)}, ${number(convergence.slices)}` : null],
-    ["Contact: change with finer positions", typeof convergence?.position_error_percent === "number" ? number(convergence.position_error_percent, 2) : null, "%"],
+    [scalarAt("/response/averaged_mesh_periods").label, count(response?.averaged_mesh_periods)],
+    row("/numerics/steps", count(numerics.steps)),
+    row("/numerics/rejected_steps", count(numerics.rejected_steps)),
+    row("/numerics/force_evaluations", count(numerics.force_evaluations)),
+    ["Contact analysis: positions per mesh period, slices", convergence ? `${number(convergence.positions)}, ${number(convergence.slices)}` : null],
+    row("/mesh/convergence/position_error_percent", small(convergence?.position_error_percent)),
     ["Contact force: levels, phases tabulated", mesh?.contact_force ? `${number(mesh.contact_force.levels)}, ${number(mesh.contact_force.phases)}` : null],
-    ["Contact force: largest difference from the contact", mesh?.contact_force ? number(mesh.contact_force.error_percent, 2) : null, "%"],
-    ["Contact: change with half the slices", convergence ? number(convergence.slice_error_percent, 2) : null, "%"],
-    ["Balance of work and energy, residual", typeof response?.energy_balance_residual === "number" ? number(response.energy_balance_residual, 2) : null],
+    row("/mesh/contact_force/error_percent", small(mesh?.contact_force?.error_percent)),
+    row("/mesh/convergence/slice_error_percent", small(convergence?.slice_error_percent)),
+    row("/response/energy_balance_residual", small(response?.energy_balance_residual)),
     ["Reused", reused.length ? reused.map((name) => REUSED[name] ?? name).join(", ") : "nothing"],
-    ["Solver version", numerics.solver_version],
+    row("/numerics/solver_version", numerics.solver_version),
     ["Input hash", job?.input_hash ? el("code", { class: "hash" }, job.input_hash) : null],
-    ...(numerics.not_finite ?? []).map(({ pointer, reason }) => [`Not finite: ${pointer}`, reason]),
+    ...(numerics.not_finite ?? []).map(({ pointer, reason }) => /** @type {ValueRow} */ ([`Not finite: ${pointer}`, reason])),
   ];
 }

@@ -2,6 +2,7 @@
 
 import * as api from "../common/api.js";
 import { byId, el, fillWarnings, notify, show } from "../common/dom.js";
+import { gearDataOf } from "../common/gear_data.js";
 import { watchJob } from "../common/watch.js";
 import { showSweep } from "../sweep/panel.js";
 import { showHeadline } from "./headline.js";
@@ -15,13 +16,15 @@ import { showResponse } from "./response.js";
 import { showSeries } from "./series.js";
 import { showSpectrum } from "./spectrum.js";
 import { showGeometry } from "./tables.js";
+import { showValues } from "./values.js";
 
-const { id } = byId("job").dataset;
+const id = byId("job").dataset.id ?? "";
 const notice = byId("notice");
 const life = new Life(id, follow);
 let shown = false;
 let revision = -1;
 
+/** @param {Job} job */
 function follow(job) {
   // Events and answers may overtake each other; what is older than what is shown does not count.
   if (job.revision < revision) return;
@@ -35,21 +38,24 @@ function follow(job) {
   }
 }
 
-/** What a sweep shows is its own affair: its result may be large, and it can be watched while it grows. */
+/** The panel of a sweep reads its rows itself, while they are solved. @param {Job} job */
 async function showSweepOf(job) {
   await showSweep({ id, job });
   if (job.state === "succeeded") byId("job").dataset.ready = "true";
 }
 
+/** @param {Job} job */
 async function showResult(job) {
-  const [result, input] = await Promise.all([api.result(id), api.input(id)]);
+  const [result, input, gearData] = await Promise.all([api.result(id), api.input(id), gearDataOf(id)]);
   const catalogue = result.response ? (await api.catalogue(id)).items : [];
-  const all = { id, job, result, input, catalogue };
+  /** @type {JobContext} */
+  const all = { id, job, result, input, catalogue, gearData };
   fillWarnings(byId("warnings"), result.warnings);
   showHeadline(result);
   showResponse(all);
   showGeometry(all);
   showNumerics(all);
+  showValues(all);
   const drawn = [showSeries(all), showPhase(all), showSpectrum(all), showModes(all), showMesh(all), showImpact(all)];
   // With the sections, so that nothing moves when their plots are drawn.
   showContents();
@@ -59,8 +65,10 @@ async function showResult(job) {
 
 /** Links to the sections that there are. */
 function showContents() {
-  const sections = [...document.querySelectorAll("#job section[aria-labelledby]")].filter((section) => !section.hidden);
-  byId("contents").replaceChildren(...sections.map((section) => el("a", { href: `#${section.id}` }, section.dataset.short ?? section.querySelector("h2").textContent)));
+  /** @type {HTMLElement[]} */
+  const all = [...document.querySelectorAll("#job section[aria-labelledby]")].map((node) => /** @type {HTMLElement} */ (node));
+  const sections = all.filter((section) => !section.hidden);
+  byId("contents").replaceChildren(...sections.map((section) => el("a", { href: `#${section.id}` }, section.dataset.short ?? section.querySelector("h2")?.textContent)));
   show(byId("contents"), sections.length > 1);
 }
 

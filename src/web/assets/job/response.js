@@ -2,14 +2,18 @@
 
 import { byId, fillRows, fillValues, show } from "../common/dom.js";
 import { number, sentence, shownUnit } from "../common/format.js";
+import { rowsFrom, scalarAt } from "../common/scalars.js";
 import { channelWords, contactWords, regimeWords } from "./words.js";
 
+/** @param {JobContext} context */
 export function showResponse({ result: { response }, catalogue, input }) {
   if (!response) return;
   const { rms, confidence_interval_95: intervals } = response;
+  /** @param {{ low?: number | null, high?: number | null }} [interval] */
   const unsure = ({ low, high } = {}) => (typeof low === "number" ? ` (${number(low, 4)} to ${number(high, 4)})` : "");
-  const row = (name, quantity) => [name, ...["left", "right"].map((half) => number(rms[quantity]?.[half]) + unsure(intervals?.[quantity]?.[half])), "m/s²"];
-  fillRows(byId("rms").tBodies[0], [row("Circumferential, mesh", "mesh_circumferential_acceleration_m_s2"), row("Axial, pinion", "pinion_axial_acceleration_m_s2")]);
+  /** @param {"mesh_circumferential_acceleration_m_s2" | "pinion_axial_acceleration_m_s2"} quantity */
+  const row = (quantity) => [scalarAt(`/response/rms/${quantity}/{half}`).label, .../** @type {const} */ (["left", "right"]).map((half) => number(rms[quantity]?.[half]) + unsure(intervals?.[quantity]?.[half])), scalarAt(`/response/rms/${quantity}/{half}`).unit];
+  fillRows(byId("rms").tBodies[0], [row("mesh_circumferential_acceleration_m_s2"), row("pinion_axial_acceleration_m_s2")]);
   byId("rms-note").textContent = intervals ? "In brackets: where the true values lie with 95 % probability; the motion does not repeat, and the record is finite." : "";
   fillValues(byId("response-values"), responseValues(response, input));
   const known = new Map(catalogue.map((channel) => [channel.name, channel]));
@@ -20,32 +24,37 @@ export function showResponse({ result: { response }, catalogue, input }) {
   show(byId("response"));
 }
 
-/** Normal force on the teeth, impact included: one row for each half, or one for both where they are alike. */
+/**
+ * Normal force on the teeth, impact included: one row for each half, or one for both where they are alike.
+ * @param {ResponseResult["tooth_force_n"]} forces
+ * @returns {ValueRow[]}
+ */
 function toothForces(forces) {
   if (!forces) return [];
-  const row = (name, { static: still, max, min }) => [name, `${number(min, 4)} to ${number(max, 4)} (static ${number(still, 4)})`, "N"];
+  /** @type {(name: string, force: NonNullable<typeof forces>["left"]) => ValueRow} */
+  const row = (name, { static: still, max, min }) => [name, `${number(min, 4)} to ${number(max, 4)} (static ${number(still, 4)})`, scalarAt("/response/tooth_force_n/{half}/max").unit];
   const { left, right } = forces;
   const alike = ["static", "max", "min"].every((key) => Math.abs(left[key] - right[key]) <= 1e-9 * Math.abs(left.max));
   return alike ? [row("Tooth force, each half", left)] : [row("Tooth force, left", left), row("Tooth force, right", right)];
 }
 
+/** @param {ResponseResult} response @param {JobInput} input @returns {ValueRow[]} */
 export function responseValues(response, input) {
-  const value = (shown, digits = 4) => (typeof shown === "number" ? number(shown, digits) : null);
-  const share = response.contact_share;
+  const row = rowsFrom({ response });
   const gap = response.backlash_um ?? input?.design?.backlash_um;
   return [
-    ["Motion", regimeWords(response)[0]],
-    ["Contact", contactWords(response)[0]],
-    ["Dynamic factor", value(response.dynamic_factor, 5)],
+    [scalarAt("/response/regime").label, regimeWords(response)[0]],
+    [scalarAt("/response/contact").label, contactWords(response)[0]],
+    row("/response/dynamic_factor"),
     ...toothForces(response.tooth_force_n),
-    ["Least displacement s", value(response.min_displacement_um), "µm"],
-    ["Flanks touch from s = b on", typeof gap === "number" ? number(gap / 2, 4) : null, "µm"],
-    ["In contact, left / right", share ? `${number(100 * share.left, 4)} / ${number(100 * share.right, 4)}` : null, "% of time"],
-    ["Mesh frequency", value(response.mesh_frequency_hz, 5), "Hz"],
-    ["Repeats after", response.period_mesh_periods ? number(response.period_mesh_periods) : null, response.period_mesh_periods === 1 ? "mesh period" : "mesh periods"],
-    ["Largest Floquet multiplier", value(response.floquet_modulus_per_mesh_period), "per mesh period"],
-    ["Lyapunov exponent", value(response.lyapunov_per_mesh_period, 3), "per mesh period"],
-    ["Plane of the equations", response.plane],
-    ["Mesh damper in the gap", response.damping_in_gap ? "acts (the source's law)" : "does not act"],
+    row("/response/min_displacement_um", 4),
+    ["Flanks touch from s = b on", typeof gap === "number" ? number(gap / 2, 4) : null, scalarAt("/response/backlash_um").unit],
+    row("/response/contact_share/{half}", 4),
+    row("/response/mesh_frequency_hz"),
+    row("/response/period_mesh_periods"),
+    row("/response/floquet_modulus_per_mesh_period", 4),
+    row("/response/lyapunov_per_mesh_period", 3),
+    row("/response/plane"),
+    [scalarAt("/response/damping_in_gap").label, response.damping_in_gap ? "yes (the source's law)" : "no"],
   ];
 }

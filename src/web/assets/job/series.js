@@ -1,4 +1,5 @@
-// Time series of one or two channels. Zooming in fetches finer data; the record of a periodic motion is shown several times.
+// Time series of one or two channels. Zooming in fetches finer data; the record of a periodic motion is shown several
+// times.
 
 import * as api from "../common/api.js";
 import { decimal } from "../common/csv.js";
@@ -15,6 +16,7 @@ const PERIODS = 3;
 const MAX_LINES = 40;
 const QUANTITIES = ["displacement", "velocity", "acceleration", "force", "rotation", "angular_velocity", "angular_acceleration"];
 
+/** @param {JobContext} context */
 export async function showSeries({ id, result: { response, numerics }, catalogue }) {
   if (!catalogue.length) return;
   show(byId("series"));
@@ -22,10 +24,18 @@ export async function showSeries({ id, result: { response, numerics }, catalogue
 }
 
 class SeriesPanel {
+  /**
+   * @param {string} id
+   * @param {SeriesChannel[]} catalogue
+   * @param {ResponseResult | null | undefined} response
+   * @param {boolean} alike whether the halves have the same curves
+   */
   constructor(id, catalogue, response, alike) {
     this.id = id;
     this.channels = new Map(catalogue.map((channel) => [channel.name, channel]));
+    /** @type {Span | null} */
     this.window = null;
+    /** @type {AbortController | null} */
     this.asking = null;
     this.plot = byId("series-plot");
     this.first = byId("channel");
@@ -40,7 +50,7 @@ class SeriesPanel {
     this.second.addEventListener("change", () => this.load());
     byId("whole").addEventListener("click", () => this.zoom(null));
     byId("series-csv").addEventListener("click", (event) => this.save(event));
-    const { mesh_frequency_hz: frequency } = response ?? {};
+    const frequency = response?.mesh_frequency_hz ?? 0;
     this.meshPeriod = frequency > 0 ? 1 / frequency : null;
     const { n, dt, t0 } = catalogue[0];
     this.start = t0;
@@ -48,10 +58,11 @@ class SeriesPanel {
     // What repeats is shown often enough to see how it goes on.
     const repeats = response?.method === "periodic" && this.meshPeriod;
     this.copies = repeats ? Math.max(1, Math.ceil(PERIODS / Math.max(1, response.period_mesh_periods ?? 1))) : 1;
+    /** @type {Span} */
     this.whole = [t0, t0 + this.copies * this.length];
   }
 
-  /** Shows a window [from, to] in seconds, or all. */
+  /** Shows a window [from, to] in seconds, or all. @param {Span | null} window */
   zoom(window) {
     this.window = window;
     return this.load();
@@ -74,9 +85,13 @@ class SeriesPanel {
     }
   }
 
-  /** The part of the record that the window needs, put where it is shown: { t, y, source, returned, method }. */
+  /**
+   * The part of the record that the window needs, put where it is shown.
+   * @param {string} name
+   * @param {AbortSignal} signal
+   */
   async fetch(name, signal) {
-    const [from, to] = this.window ?? [];
+    const [from, to] = this.window ?? this.whole;
     const copy = this.window ? Math.floor((from - this.start) / this.length) : 0;
     const shift = copy * this.length;
     const within = this.window && (this.copies === 1 || to <= this.start + shift + this.length);
@@ -90,13 +105,15 @@ class SeriesPanel {
     return { t: [...copies.flatMap((index) => t.map((time) => time + index * this.length)), this.whole[1]], y: [...copies.flatMap(() => y), y[0]], ...told };
   }
 
+  /** @param {string[]} names @param {Awaited<ReturnType<SeriesPanel["fetch"]>>[]} answers */
   async show(names, answers) {
-    const scales = names.map((name) => channelScale(this.channels.get(name).unit));
+    const scales = names.map((name) => channelScale(this.channel(name).unit));
     const traces = answers.map(({ t, y }, index) => ({
       ...line(t.map((time) => time * 1e3), y.map((value) => (value === null ? null : value * scales[index].factor)), channelWords(names[index])),
       yaxis: scales[index].unit === scales[0].unit ? "y" : "y2",
     }));
-    const [from, to] = this.window ?? (this.copies > 1 ? this.whole : [answers[0].t[0], answers[0].t.at(-1)]);
+    const [from, to] = this.window ?? (this.copies > 1 ? this.whole : [answers[0].t[0], answers[0].t[answers[0].t.length - 1]]);
+    /** @type {PlotAxes} */
     const axes = {
       x: "Time, ms",
       y: { label: this.quantityOf(names[0]), unit: scales[0].unit },
@@ -108,20 +125,30 @@ class SeriesPanel {
     };
     if (this.meshPeriod) axes.top = { title: "Mesh periods", factor: 1e-3 / this.meshPeriod };
     await draw(this.plot, traces, axes);
-    onZoom(this.plot, (window) => this.zoom(window && window.map((time) => time / 1e3)));
+    onZoom(this.plot, (window) => this.zoom(window && [window[0] / 1e3, window[1] / 1e3]));
     this.note(answers[0], to - from);
   }
 
-  quantityOf(name) {
-    return sentence((this.channels.get(name).quantity ?? "").replaceAll("_", " "));
+  /** @param {string} name */
+  channel(name) {
+    const channel = this.channels.get(name);
+    if (!channel) throw new Error(`there is no channel ${name}`);
+    return channel;
   }
 
+  /** @param {string} name */
+  quantityOf(name) {
+    return sentence(this.channel(name).quantity.replaceAll("_", " "));
+  }
+
+  /** @param {number} from @param {number} to */
   periodsBetween(from, to) {
-    if (!this.meshPeriod) return [];
-    const first = Math.ceil((from - this.start) / this.meshPeriod - 1e-9);
-    const last = Math.floor((to - this.start) / this.meshPeriod + 1e-9);
+    const { meshPeriod: period } = this;
+    if (!period) return [];
+    const first = Math.ceil((from - this.start) / period - 1e-9);
+    const last = Math.floor((to - this.start) / period + 1e-9);
     if (last - first > MAX_LINES) return [];
-    return Array.from({ length: Math.max(0, last - first + 1) }, (_, index) => ({ x: (this.start + (first + index) * this.meshPeriod) * 1e3 }));
+    return Array.from({ length: Math.max(0, last - first + 1) }, (_, index) => ({ x: (this.start + (first + index) * period) * 1e3 }));
   }
 
   note({ source, returned, method }, span) {
@@ -135,6 +162,7 @@ class SeriesPanel {
     this.plot.dataset.points = String(returned);
   }
 
+  /** @param {Event} event */
   async save(event) {
     event.preventDefault();
     try {
@@ -145,8 +173,9 @@ class SeriesPanel {
   }
 }
 
-/** Options by quantity, in the units in which they are shown. */
+/** Options by quantity, in the units in which they are shown. @param {SeriesChannel[]} catalogue */
 function groups(catalogue) {
+  /** @param {SeriesChannel} channel */
   const rank = ({ quantity }) => (QUANTITIES.indexOf(quantity) + 1 || QUANTITIES.length + 1);
   const quantities = [...new Set([...catalogue].sort((a, b) => rank(a) - rank(b)).map(({ quantity }) => quantity))];
   return quantities.map((quantity) => {

@@ -5,13 +5,14 @@ import { number } from "../common/format.js";
 import { draw } from "../common/plots.js";
 import { orderWords, spectrumPlot, strongestLines } from "./motion_plots.js";
 
+/** @param {JobContext} context */
 export async function showSpectrum({ result: { response, numerics } }) {
-  if (!spectrumPlot(response)) return;
+  if (!response || !spectrumPlot(response, numerics)) return;
   show(byId("spectrum"));
   const choices = [...byId("spectrum-scale").querySelectorAll("input")];
   const update = () => {
-    const { traces, axes } = spectrumPlot(response, numerics, { decibel: byId("scale-db").checked });
-    return draw(byId("spectrum-plot"), traces, axes);
+    const plot = spectrumPlot(response, numerics, { decibel: byId("scale-db").checked });
+    return plot && draw(byId("spectrum-plot"), plot.traces, plot.axes);
   };
   for (const choice of choices) choice.addEventListener("change", update);
   const { mesh_frequency_hz: mesh, period_mesh_periods: periods } = response;

@@ -1,19 +1,24 @@
-// What states, channels and modes are called, for people.
+// Names and explanations of regimes, contact, methods and channels.
 
 import { number } from "../common/format.js";
 
-/** How the motion repeats: [name, sentence]. */
+/** How the motion repeats: name and sentence. @param {ResponseResult} response @returns {[string, string]} */
 export function regimeWords({ regime, period_mesh_periods: periods, lyapunov_per_mesh_period: lyapunov }) {
   if (regime === "period-1") return ["Period 1", "The motion repeats every mesh period: its spectrum has mesh orders only."];
-  if (periods > 1) return [`Period ${periods}`, `The motion repeats every ${periods} mesh periods: subharmonics at multiples of 1/${periods} of the mesh frequency.`];
+  if (periods && periods > 1) return [`Period ${periods}`, `The motion repeats every ${periods} mesh periods: subharmonics at multiples of 1/${periods} of the mesh frequency.`];
   if (regime === "quasi-periodic") return ["Quasi-periodic", "The motion never repeats exactly: it holds frequencies that are no fractions of the mesh frequency."];
   if (regime === "chaotic") return ["Chaotic", `The motion never repeats: small differences grow (Lyapunov exponent ${number(lyapunov, 3)} per mesh period). Its numbers are means over the record.`];
   if (regime === "not-settled") return ["Not settled", "The record ended before the motion had settled: its numbers are those of this record, not of a steady state."];
-  if (regime === "unstable") return ["Unstable", `The vibration grows without bound, by a factor of ${number(Math.exp(lyapunov), 4)} per mesh period: its numbers mean nothing.`];
+  if (regime === "unstable") return ["Unstable", `The vibration grows without bound, by a factor of ${number(Math.exp(lyapunov ?? 0), 4)} per mesh period: its numbers mean nothing.`];
   return [sentenceOf(regime), ""];
 }
 
-/** How the teeth touch: [name, sentence]; `table` is the mesh's contact force, where the equations contain that. */
+/**
+ * How the teeth touch: name and sentence; `table` is the mesh's contact force, where the equations contain that.
+ * @param {ResponseResult} response
+ * @param {MeshResult["contact_force"]} [table]
+ * @returns {[string, string]}
+ */
 export function contactWords({ contact, contact_share: share, fraction_in_contact: fraction }, table) {
   const touching = share ? Math.min(share.left, share.right) : fraction;
   const apart = number(100 * (1 - touching), 3);
@@ -24,6 +29,7 @@ export function contactWords({ contact, contact_share: share, fraction_in_contac
   return [sentenceOf(contact), ""];
 }
 
+/** @param {string} word */
 const sentenceOf = (word) => (word ? `${word.charAt(0).toUpperCase()}${word.slice(1).replaceAll("_", " ")}` : "");
 
 export const METHODS = { periodic: "periodic solution, solved for directly", integrate: "integrated in time", "integrate (event-exact)": "integrated in time" };
@@ -40,14 +46,18 @@ const SOURCES = {
   tooth_force: "tooth force, normal, impact included",
 };
 
-/** A channel's name as words: "mesh, along the circumference (x), left". */
+/** A channel's name as words: "mesh, along the circumference (x), left". @param {string} name */
 export function channelWords(name) {
   const [, source, half] = /^(?:[va]_)?(.+)_(left|right)$/.exec(name) ?? [];
   return SOURCES[source] ? `${SOURCES[source]}, ${half}` : name;
 }
 
-/** The unit that a channel is shown in, and what its values are multiplied by: micrometres rather than metres. */
+/**
+ * Unit in which a channel is shown, and the factor of its values: micrometres rather than metres.
+ * @param {string} unit
+ */
 export function channelScale(unit) {
+  /** @type {Record<string, [string, number]>} */
   const scales = { m: ["µm", 1e6], "m/s": ["mm/s", 1e3], "m/s2": ["m/s²", 1], rad: ["µrad", 1e6], "rad/s2": ["rad/s²", 1] };
   const [shown, factor] = scales[unit] ?? [unit, 1];
   return { unit: shown, factor };

@@ -15,25 +15,29 @@ const TYPING_MS = 300;
 
 const body = byId("jobs").tBodies[0];
 const notice = byId("notice");
+/** @type {Map<string, Row>} */
 const rows = new Map();
-/** Ids of deleted jobs: what is told of them later is old. */
-const gone = new Set();
-/** Jobs heard of since the list was asked for. */
-let heard = new Map();
+/** Ids of deleted jobs: later messages about them are ignored. */
+const deletedIds = new Set();
+/** Jobs with an event since the list was requested. @type {Map<string, Job>} */
+let changed = new Map();
 const labels = new Set();
 let view = address.read();
+/** @type {string | null} */
 let nextCursor = null;
 let newer = new Set();
-/** The question that is under way, and whether its answer will be old when it comes. */
-let asking = null;
-let again = false;
+/** The request under way. @type {AbortController | null} */
+let request = null;
+/** Whether its answer will be outdated when it comes. */
+let isOutdated = false;
 /** Whether the rows are those of this view. */
 let isFilled = false;
 let stopFollowing = () => {};
 
-const shown = () => [...body.rows].map((node) => rows.get(node.dataset.id));
-const selection = new Selection({ rows: shown, changed: take, removed: remove, failed });
+const shown = () => [...body.rows].flatMap((node) => rows.get(node.dataset.id ?? "") ?? []);
+const selection = new Selection({ rows: shown, changed: onJob, removed: remove, failed });
 
+/** @param {any[]} errors */
 function failed(errors) {
   if (errors.length === 0) return notify(notice, null);
   const [first] = errors;
@@ -43,46 +47,49 @@ function failed(errors) {
 
 /** Reads this page of the list; one question at a time. */
 async function refresh() {
-  again = asking !== null;
-  if (again) return;
-  asking = new AbortController();
-  const { signal } = asking;
-  heard = new Map();
+  isOutdated = request !== null;
+  if (isOutdated) return;
+  request = new AbortController();
+  const { signal } = request;
+  changed = new Map();
   const { states, kind, label, cursor } = view;
   try {
     const page = await api.jobs({ limit: LIMIT, state: states.join(","), kind, label, cursor }, signal);
     if (signal.aborted) return;
     notify(notice, null);
     nextCursor = page.next_cursor ?? null;
-    fill(page.items.filter((job) => !gone.has(job.id)));
+    fill(page.items.filter((job) => !deletedIds.has(job.id)));
     isFilled = true;
     if (cursor === "") newer = new Set();
-    for (const job of heard.values()) take(job);
+    for (const job of changed.values()) onJob(job);
   } catch (error) {
     if (signal.aborted) return;
     // A cursor that came with a shared address may belong to other filters: the first page is what is left.
-    if (error.problem?.code === "invalid-cursor") return step({ ...view, cursor: "", trail: [] }, false);
+    if (error instanceof api.Problem && error.problem.code === "invalid-cursor") return navigate({ ...view, cursor: "", trail: [] }, false);
     notify(notice, error);
   }
-  asking = null;
-  settle();
-  if (again) await refresh();
+  request = null;
+  updatePage();
+  if (isOutdated) await refresh();
 }
 
-/** Puts the rows in order: those that stay keep their places in the document, and with them the focus. */
+/**
+ * Puts the rows in order: those that stay keep their places in the document, and with them the focus.
+ * @param {Job[]} jobs
+ */
 function fill(jobs) {
   const wanted = new Set(jobs.map((job) => job.id));
   for (const id of [...rows.keys()].filter((id) => !wanted.has(id))) drop(id);
   let at = body.firstElementChild;
   for (const job of jobs) {
-    const row = known(job);
-    if (row.node === at) at = at.nextElementSibling;
+    const row = rowOf(job);
+    if (at && row.node === at) at = at.nextElementSibling;
     else body.insertBefore(row.node, at);
   }
 }
 
-/** The row of a job, up to date. */
-function known(job) {
+/** The row of a job, updated. @param {Job} job */
+function rowOf(job) {
   const present = rows.get(job.id);
   if (present) {
     if (present.update(job)) announce(present.job);
@@ -91,7 +98,7 @@ function known(job) {
   }
   const row = new Row(job, {
     select: (picked, isRange) => selection.pick(picked, isRange),
-    filter: (label) => step({ ...view, label, cursor: "", trail: [] }, true),
+    filter: (label) => navigate({ ...view, label, cursor: "", trail: [] }, true),
     cancel: (asked) => selection.each([asked], (job) => selection.stop(job)),
     remove: (asked) => selection.remove([asked]),
   });
@@ -101,41 +108,43 @@ function known(job) {
   return row;
 }
 
+/** Removes a row. @param {string} id */
 function drop(id) {
   const row = rows.get(id);
   if (!row) return;
-  const next = row.node.nextElementSibling ?? row.node.previousElementSibling;
-  const handOn = row.held;
+  const next = /** @type {HTMLElement | null} */ (row.node.nextElementSibling ?? row.node.previousElementSibling);
+  const hadFocus = row.hasFocus;
   row.node.remove();
   rows.delete(id);
-  if (handOn) (next ? rows.get(next.dataset.id).link : byId("select-all")).focus();
+  if (hadFocus) (rows.get(next?.dataset.id ?? "")?.link ?? byId("select-all")).focus();
 }
 
-/** A job has changed, or is new. Ids sort by the time of submission. */
-function take(job) {
-  if (gone.has(job.id)) return;
-  heard.set(job.id, job);
+/** Takes up a job that has changed or is new. Ids sort by the time of submission. @param {Job} job */
+function onJob(job) {
+  if (deletedIds.has(job.id)) return;
+  changed.set(job.id, job);
   selection.know(job);
-  // Its place is known when the list is: it is taken then.
+  // Its place is known once the list is: its row is added then.
   if (!isFilled) return;
   const row = rows.get(job.id);
   const fits = address.fits(job, view);
   if (row) {
-    known(job);
+    rowOf(job);
     row.node.classList.toggle("past", !fits);
-    if (!fits && !row.held && !row.box.checked) drop(job.id);
+    if (!fits && !row.hasFocus && !row.box.checked) drop(job.id);
   } else if (fits) {
     add(job);
   }
-  settle();
-  fitLength();
+  updatePage();
+  refillPage();
 }
 
-/** Reads the list again when what came and went leaves too much or too little of this page. */
-function fitLength() {
-  if (asking === null && (rows.size > 2 * LIMIT || (nextCursor !== null && rows.size < LIMIT / 2))) refresh();
+/** Reads the list again when additions and removals leave too many or too few rows on this page. */
+function refillPage() {
+  if (request === null && (rows.size > 2 * LIMIT || (nextCursor !== null && rows.size < LIMIT / 2))) refresh();
 }
 
+/** Adds the row of a new job. @param {Job} job */
 function add(job) {
   const present = shown();
   const isFirst = view.cursor === "";
@@ -146,27 +155,28 @@ function add(job) {
     return;
   }
   // It belongs to a later page.
-  if (nextCursor !== null && present.length > 0 && job.id < present.at(-1).job.id) return;
+  if (nextCursor !== null && present.length > 0 && job.id < present[present.length - 1].job.id) return;
   const after = present.find((row) => row.job.id < job.id);
-  body.insertBefore(known(job).node, after?.node ?? null);
-  if (isFirst && job.id > (present[0]?.job.id ?? "")) say(`New job: ${nameOf(job)}`);
+  body.insertBefore(rowOf(job).node, after?.node ?? null);
+  if (isFirst && job.id > (present[0]?.job.id ?? "")) announceText(`New job: ${nameOf(job)}`);
 }
 
+/** Takes up that a job was deleted. @param {string} id */
 function remove(id) {
-  gone.add(id);
+  deletedIds.add(id);
   newer.delete(id);
   selection.forget(id);
   drop(id);
-  settle();
-  fitLength();
+  updatePage();
+  refillPage();
 }
 
-/** What follows from the rows. */
-function settle() {
+/** Brings the rest of the page in line with the rows. */
+function updatePage() {
   const empty = isFilled && rows.size === 0;
   show(byId("empty"), empty);
   show(byId("jobs"), !empty);
-  if (empty) byId("empty").replaceChildren(...nothing());
+  if (empty) byId("empty").replaceChildren(...emptyTexts());
   if (isFilled) byId("jobs").setAttribute("aria-busy", "false");
   byId("older").disabled = nextCursor === null;
   byId("newer").disabled = view.cursor === "";
@@ -179,7 +189,7 @@ function settle() {
   selection.show();
 }
 
-function nothing() {
+function emptyTexts() {
   if (view.cursor !== "") return [el("strong", {}, "No older jobs."), " They may have been deleted meanwhile."];
   if (!address.isFiltered(view)) return [el("strong", {}, "No jobs yet."), " ", el("a", { href: "/" }, "Describe a gear pair"), " and submit it: it appears here, and its result stays until it is deleted."];
   const clear = el("button", { type: "button", class: "quiet" }, "Clear filters");
@@ -187,21 +197,24 @@ function nothing() {
   return [el("strong", {}, "No job fits these filters."), " Jobs that come to fit appear here. ", clear];
 }
 
-/** Ends of jobs, for those who listen: collected, so that a batch is one sentence. */
+/** Jobs that ended, for screen readers: collected, so that a batch is one sentence. @type {Job[]} */
 const ends = [];
+/** @type {number | null} */
 let saying = null;
 
+/** @param {Job} job */
 function announce(job) {
   ends.push(job);
   saying ??= setTimeout(() => {
     const [only] = ends;
-    say(ends.length === 1 ? `${nameOf(only)} ${only.state}` : `${ends.length} jobs ended`);
+    announceText(ends.length === 1 ? `${nameOf(only)} ${only.state}` : `${ends.length} jobs ended`);
     ends.length = 0;
     saying = null;
   }, 1000);
 }
 
-function say(text) {
+/** @param {string} text */
+function announceText(text) {
   byId("announcement").textContent = text;
 }
 
@@ -211,7 +224,7 @@ function follow() {
   stopFollowing();
   stopFollowing = followJobs(view, {
     onReload: refresh,
-    onJob: take,
+    onJob,
     onDeleted: remove,
     onMode: (mode) => {
       const node = byId("mode");
@@ -221,17 +234,22 @@ function follow() {
   });
 }
 
-/** Another view of the list, as a step that leads back, or in place of the present one. */
-function step(next, isStep) {
+/**
+ * Shows another view of the list, as an entry of its own in the history or in place of the present one.
+ * @param {ListView} next
+ * @param {boolean} isStep
+ */
+function navigate(next, isStep) {
   address.write(next, isStep);
-  turn(next);
+  showView(next);
 }
 
-function turn(next) {
+/** @param {ListView} next */
+function showView(next) {
   const other = next.kind !== view.kind || next.label !== view.label;
   view = next;
-  asking?.abort();
-  asking = null;
+  request?.abort();
+  request = null;
   isFilled = false;
   newer = new Set();
   address.fillForm(view);
@@ -240,24 +258,25 @@ function turn(next) {
 }
 
 const filters = byId("filters");
-let typing = null;
+/** @type {number | undefined} */
+let typing;
 filters.addEventListener("input", (event) => {
   clearTimeout(typing);
-  // Letter by letter is one step.
-  if (event.target.name === "label") typing = setTimeout(() => step(address.readForm(), false), TYPING_MS);
+  // All letters typed without a pause are one step.
+  if (event.target === address.label) typing = setTimeout(() => navigate(address.readForm(), false), TYPING_MS);
 });
 filters.addEventListener("change", () => {
   clearTimeout(typing);
-  step(address.readForm(), true);
+  navigate(address.readForm(), true);
 });
 filters.addEventListener("reset", (event) => {
   event.preventDefault();
-  step({ states: [], kind: "", label: "", cursor: "", trail: [] }, true);
+  navigate({ states: [], kind: "", label: "", cursor: "", trail: [] }, true);
 });
 filters.addEventListener("submit", (event) => event.preventDefault());
 
 /** Labels to choose from: of the jobs seen, and of the newest ones. */
-filters.elements.label.addEventListener("focus", async () => {
+address.label.addEventListener("focus", async () => {
   try {
     for (const { label } of (await api.jobs({ limit: LABELS_FROM })).items) if (label) labels.add(label);
   } catch {
@@ -267,16 +286,16 @@ filters.elements.label.addEventListener("focus", async () => {
 }, { once: true });
 
 byId("older").addEventListener("click", () => {
-  step({ ...view, cursor: nextCursor, trail: [...(view.trail ?? []), view.cursor] }, true);
+  navigate({ ...view, cursor: nextCursor ?? "", trail: [...(view.trail ?? []), view.cursor] }, true);
   top();
 });
 byId("newer").addEventListener("click", () => {
   const trail = view.trail ?? [];
-  step({ ...view, cursor: trail.at(-1) ?? "", trail: trail.slice(0, -1) }, true);
+  navigate({ ...view, cursor: trail.at(-1) ?? "", trail: trail.slice(0, -1) }, true);
   top();
 });
 byId("new-jobs").addEventListener("click", () => {
-  step({ ...view, cursor: "", trail: [] }, true);
+  navigate({ ...view, cursor: "", trail: [] }, true);
   top();
 });
 
@@ -284,7 +303,7 @@ function top() {
   byId("main").scrollIntoView({ block: "start" });
 }
 
-window.addEventListener("popstate", () => turn(address.read()));
+window.addEventListener("popstate", () => showView(address.read()));
 setInterval(() => {
   if (document.hidden) return;
   const now = Date.now();

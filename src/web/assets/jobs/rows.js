@@ -5,9 +5,20 @@ import { el, show } from "../common/dom.js";
 import { age, instant } from "../common/format.js";
 import { duration, durationOf, nameOf } from "./words.js";
 
-/** One row. `actions` has what its buttons do: `select`, `filter`, `cancel`, `remove`. */
+/** One row of the list. */
 export class Row {
+  /**
+   * @param {Job} job
+   * @param {{
+   *   select: (row: Row, isRange: boolean) => void,
+   *   filter: (label: string) => void,
+   *   cancel: (job: Job) => void,
+   *   remove: (job: Job) => void,
+   * }} actions of its buttons
+   */
   constructor(job, actions) {
+    this.job = job;
+    this.isFilled = false;
     this.link = el("a", {});
     this.label = el("button", { type: "button", class: "label" });
     this.kind = el("td", { class: "kind" });
@@ -32,17 +43,18 @@ export class Row {
       el("td", { class: "row-actions" }, this.clone, this.cancel, this.remove),
     );
     this.box.addEventListener("click", (event) => actions.select(this, event.shiftKey));
-    this.label.addEventListener("click", () => actions.filter(this.job.label));
+    this.label.addEventListener("click", () => actions.filter(this.job.label ?? ""));
     this.cancel.addEventListener("click", () => actions.cancel(this.job));
     this.remove.addEventListener("click", () => actions.remove(this.job));
     this.update(job);
   }
 
-  /** Shows a newer state of the job; an older one changes nothing. True when it has ended just now. */
+  /** Shows a newer state of the job; an older one changes nothing. True when it has ended just now. @param {Job} job */
   update(job) {
-    if (this.job && job.revision < this.job.revision) return false;
-    const ended = Boolean(this.job) && !api.isEnded(this.job) && api.isEnded(job);
+    if (job.revision < this.job.revision) return false;
+    const ended = this.isFilled && !api.isEnded(this.job) && api.isEnded(job);
     this.job = job;
+    this.isFilled = true;
     const name = nameOf(job);
     write(this.link, name);
     this.link.href = `/jobs/${encodeURIComponent(job.id)}`;
@@ -70,13 +82,15 @@ export class Row {
     show(this.cancel, live);
     show(this.remove, !live);
     this.cancel.disabled = Boolean(job.cancel_requested_at);
-    for (const [node, verb] of [[this.clone, "Clone"], [this.cancel, "Cancel"], [this.remove, "Delete"]]) node.setAttribute("aria-label", `${verb} ${name}`);
+    this.clone.setAttribute("aria-label", `Clone ${name}`);
+    this.cancel.setAttribute("aria-label", `Cancel ${name}`);
+    this.remove.setAttribute("aria-label", `Delete ${name}`);
     this.box.setAttribute("aria-label", `Select ${name}`);
     this.tick();
     return ended;
   }
 
-  /** What changes with time alone. */
+  /** Updates what changes with time alone. */
   tick(now = Date.now()) {
     const { job } = this;
     write(this.age, age(job.submitted_at, now));
@@ -84,13 +98,13 @@ export class Row {
     write(this.duration, span === null ? "" : duration(span));
   }
 
-  /** Whether somebody is at this row: it does not go away under their hands. */
-  get held() {
+  /** Whether the focus is in this row, which then is not removed. */
+  get hasFocus() {
     return this.node.contains(document.activeElement);
   }
 }
 
-/** What goes on, or what became of the job, and its full text. */
+/** What a live job does or how it ended, and the full text. @param {Job} job @returns {[string, string]} */
 function stageOf(job) {
   if (!api.isEnded(job) && job.cancel_requested_at) return ["canceling …", ""];
   if (job.state === "running") return [[percent(job.progress ?? 0), job.stage].filter(Boolean).join(" · "), ""];
@@ -100,13 +114,13 @@ function stageOf(job) {
   return ["", ""];
 }
 
-/** A long job's first percents count, too. */
+/** Progress, with a decimal below 10 %. @param {number} fraction */
 function percent(fraction) {
   if (fraction > 0 && fraction < .0005) return "below 0.1 %";
   return `${fraction > 0 && fraction < .0995 ? (100 * fraction).toFixed(1) : Math.round(100 * fraction)} %`;
 }
 
-/** Changes a text only when it differs: selections in the page stay. */
+/** Changes a text only when it differs: selections in the page stay. @param {HTMLElement} node @param {string} text */
 function write(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }

@@ -1,4 +1,4 @@
-// The selected jobs, over the pages of the list, and what can be done with them together.
+// The selected jobs, over the pages of the list, and the actions on all of them.
 
 import * as api from "../common/api.js";
 import { byId, el, show } from "../common/dom.js";
@@ -11,12 +11,25 @@ const MAX_NAMES = 8;
 const AT_ONCE = 4;
 
 export class Selection {
-  /** `rows` gives the rows shown, in order; `changed` is told of jobs, `removed` of ids, `failed` of errors. */
+  /**
+   * `rows` gives the rows shown, in order.
+   * @param {{
+   *   rows: () => import("./rows.js").Row[],
+   *   changed: (job: Job) => void,
+   *   removed: (id: string) => void,
+   *   failed: (errors: unknown[]) => void,
+   * }} list
+   */
   constructor({ rows, changed, removed, failed }) {
-    Object.assign(this, { rows, changed, removed, failed });
+    this.rows = rows;
+    this.changed = changed;
+    this.removed = removed;
+    this.failed = failed;
+    /** @type {Map<string, Job>} */
     this.jobs = new Map();
+    /** @type {import("./rows.js").Row | null} */
     this.last = null;
-    byId("select-all").addEventListener("click", (event) => this.all(event.target.checked));
+    byId("select-all").addEventListener("click", () => this.all(byId("select-all").checked));
     byId("clear-selection").addEventListener("click", () => {
       this.jobs.clear();
       this.show();
@@ -29,32 +42,39 @@ export class Selection {
     byId("delete-selected").addEventListener("click", () => this.remove([...this.jobs.values()]));
   }
 
-  /** A click on the box of a row; with Shift, on all boxes since the last click. */
+  /**
+   * A click on the box of a row; with Shift, on all boxes since the last click.
+   * @param {import("./rows.js").Row} row
+   * @param {boolean} isRange
+   */
   pick(row, isRange) {
     const rows = this.rows();
-    const [from, to] = [rows.indexOf(this.last), rows.indexOf(row)].sort((a, b) => a - b);
+    const [from, to] = [this.last ? rows.indexOf(this.last) : -1, rows.indexOf(row)].sort((a, b) => a - b);
     const picked = isRange && from >= 0 ? rows.slice(from, to + 1) : [row];
     for (const { job } of picked) this.set(job, row.box.checked);
     this.last = row;
     this.show();
   }
 
+  /** @param {boolean} isSelected */
   all(isSelected) {
     for (const { job } of this.rows()) this.set(job, isSelected);
     this.show();
   }
 
+  /** @param {Job} job @param {boolean} isSelected */
   set(job, isSelected) {
     if (isSelected) this.jobs.set(job.id, job);
     else this.jobs.delete(job.id);
   }
 
-  /** A selected job has changed. */
+  /** Takes up that a selected job has changed. @param {Job} job */
   know(job) {
     const known = this.jobs.get(job.id);
     if (known && known.revision <= job.revision) this.jobs.set(job.id, job);
   }
 
+  /** @param {string} id */
   forget(id) {
     this.jobs.delete(id);
   }
@@ -76,7 +96,7 @@ export class Selection {
     const live = [...this.jobs.values()].filter((job) => !api.isEnded(job)).length;
     byId("cancel-selected").disabled = live === 0;
     byId("delete-selected").disabled = total - live === 0;
-    byId("compare").disabled = total < MIN_COMPARED || total > MAX_COMPARED;
+    /** @type {HTMLButtonElement} */ (byId("compare")).disabled = total < MIN_COMPARED || total > MAX_COMPARED;
     byId("compare-hint").textContent = hint(total);
     show(byId("clear-selection"), total > 0);
   }
@@ -94,11 +114,12 @@ export class Selection {
     if (live.length && (await confirmed(question))) await this.each(live, (job) => this.stop(job));
   }
 
+  /** @param {Job} job */
   async stop(job) {
     this.changed(await api.cancel(job.id));
   }
 
-  /** Deletes those that have ended, after a question. */
+  /** Deletes those that have ended, after a question. @param {Job[]} jobs */
   async remove(jobs) {
     const ended = jobs.filter(api.isEnded);
     const left = jobs.length - ended.length;
@@ -114,19 +135,25 @@ export class Selection {
     if (ended.length && (await confirmed(question))) await this.each(ended, (job) => this.drop(job));
   }
 
+  /** @param {Job} job */
   async drop({ id }) {
     try {
       await api.remove(id);
     } catch (error) {
-      // Gone already, by somebody else's hand.
-      if (error.status !== 404) throw error;
+      // Another client has deleted it.
+      if (!(error instanceof api.Problem && error.status === 404)) throw error;
     }
     this.removed(id);
   }
 
-  /** Does the same with many jobs, a few at a time; the first error is told with how many failed. */
+  /**
+   * Does the same with many jobs, a few at a time; all errors are reported at the end.
+   * @param {Job[]} jobs
+   * @param {(job: Job) => Promise<void>} run
+   */
   async each(jobs, run) {
     const waiting = [...jobs];
+    /** @type {unknown[]} */
     const errors = [];
     const work = async () => {
       for (let job = waiting.shift(); job; job = waiting.shift()) {
@@ -142,13 +169,18 @@ export class Selection {
   }
 }
 
+/** @param {number} total */
 function hint(total) {
   if (total > MAX_COMPARED) return `At most five jobs can be compared; clear ${total - MAX_COMPARED} of them.`;
   if (total === 1) return "Select one more job to compare.";
   return total === 0 ? "Select two to five jobs to compare." : "";
 }
 
-/** Asks in a dialog; Escape and the button that has the focus mean no. */
+/**
+ * Asks in a dialog; Escape and the button that has the focus mean no.
+ * @param {{ title: string, jobs: Job[], text: string, yes: string, no?: string }} question
+ * @returns {Promise<boolean>}
+ */
 function confirmed({ title, jobs, text, yes, no = "Keep" }) {
   const dialog = byId("confirm");
   const names = jobs.slice(0, MAX_NAMES).map((job) => el("li", {}, nameOf(job)));

@@ -7,18 +7,25 @@ const GROUPS = [
   ["Assembly errors", "/design/assembly"], ["Model", "/model"], ["Analysis", "/analysis"],
 ];
 
-/** Groups { title, rows } of rows { label, value, unit, differs, usual, help }; what is null is derived and left out. */
+/**
+ * Groups of rows; what is null is derived and left out.
+ * @typedef {{ label: string, value: string, unit: string, differs: boolean, usual: string | null, help: string }}
+ * InputRow
+ * @param {JobInput} input
+ * @param {any} schema JSON Schema of the document's kind
+ */
 export function inputGroups(input, schema) {
+  /** @type {Map<string, { title: string, rows: InputRow[] }>} */
   const groups = new Map(GROUPS.map(([title, pointer]) => [pointer, { title, rows: [] }]));
   walk(input, schema, "", (pointer, value, about) => {
     const home = [...groups.keys()].filter((key) => pointer.startsWith(`${key}/`)).sort((a, b) => b.length - a.length)[0];
     if (!home) return;
     const steps = pointer.slice(home.length + 1).split("/");
-    const name = steps.at(-1);
+    const name = steps[steps.length - 1];
     const where = steps.slice(0, -1).map((step) => step.replaceAll("_", " "));
     const usual = about?.default;
     const unit = unitOf(name.replace("_per_rad", "")) + (name.endsWith("_per_rad") ? "/rad" : "") || (about?.["x-unit"] && about["x-unit"] !== "1" ? shownUnit(about["x-unit"]) : "");
-    groups.get(home).rows.push({
+    groups.get(home)?.rows.push({
       label: sentence([...where, wordsOf(name)].join(", ")), value: shown(value), unit, help: about?.description ?? "",
       differs: usual !== undefined && usual !== null && JSON.stringify(usual) !== JSON.stringify(value), usual: usual === undefined || usual === null ? null : shown(usual),
     });
@@ -26,9 +33,16 @@ export function inputGroups(input, schema) {
   return [...groups.values()].filter(({ rows }) => rows.length);
 }
 
-/** A field's name as words; names of people keep their capitals. */
+/** A field's name as words; proper names keep their capitals. @param {string} name */
 const wordsOf = (name) => labelOf(name.replace("_per_rad", "")).toLowerCase().replace("youngs", "Young's").replace("poissons", "Poisson's");
 
+/**
+ * Calls `found` with pointer, value and schema of every value that is not an object.
+ * @param {unknown} value
+ * @param {any} schema
+ * @param {string} pointer
+ * @param {(pointer: string, value: unknown, schema: any) => void} found
+ */
 function walk(value, schema, pointer, found) {
   if (value === null || value === undefined) return;
   if (typeof value === "object" && !Array.isArray(value)) {
@@ -38,6 +52,7 @@ function walk(value, schema, pointer, found) {
   }
 }
 
+/** @param {any} value @returns {string} */
 function shown(value) {
   if (Array.isArray(value)) {
     if (value.length > 8) return `${value.length} values`;

@@ -1,11 +1,13 @@
 // The report of one job: everything on paper, plots as drawings.
 
 import * as api from "../common/api.js";
-import { byId, el, fillRows, fillValues, fillWarnings, notify, show } from "../common/dom.js";
+import { bodyOf, byId, el, fillRows, fillValues, fillWarnings, notify, show } from "../common/dom.js";
 import { instant, number } from "../common/format.js";
+import { gearDataOf, memberRows, pairRows, symbolOf } from "../common/gear_data.js";
 import { line } from "../common/plot_traces.js";
 import { summary } from "../common/plot_tools.js";
 import { picture } from "../common/plots.js";
+import { scalarAt } from "../common/scalars.js";
 import { accuracyTexts, headlines } from "../job/headline.js";
 import { impactRows, impactValues } from "../job/impact.js";
 import { pulsePlot } from "../job/impact_plots.js";
@@ -16,10 +18,9 @@ import { halvesAlike, modesPlot, phasePlot, spectrumPlot } from "../job/motion_p
 import { numericsValues } from "../job/numerics.js";
 import { responseValues } from "../job/response.js";
 import { channelScale, channelWords } from "../job/words.js";
-import { gearData, symbolOf } from "./iso21771.js";
 import { inputGroups } from "./inputs.js";
 
-const { id } = byId("report").dataset;
+const id = byId("report").dataset.id ?? "";
 /** Points of a series on paper. */
 const POINTS = 1500;
 /** Mesh periods of a series on paper. */
@@ -28,6 +29,7 @@ const PERIODS = 8;
 const HALF = { width: 460, height: 280 };
 const WHOLE = { width: 930, height: 250 };
 
+/** @param {Job} job */
 function showHead(job) {
   show(byId("head"));
   const name = job.name ?? `Job ${job.id.slice(-8)}`;
@@ -44,19 +46,20 @@ function showHead(job) {
   ]);
 }
 
-function showGearData({ geometry, response }, input) {
-  if (!geometry) return;
-  const { pair, members } = gearData({ geometry, input, response });
-  fillRows(byId("members").tBodies[0], members.filter(({ pinion, gear }) => pinion !== null && gear !== null).map(({ symbol, name, pinion, gear, unit }) => [name, symbolOf(symbol) ?? "", number(pinion, 6), number(gear, 6), unit]));
-  fillRows(byId("pair").tBodies[0], pair.filter(({ value }) => value !== null).map(({ symbol, name, value, unit }) => [name, symbolOf(symbol) ?? "", number(value, 6), unit]));
+/** @param {GearData} gearData */
+function showGearData(gearData) {
+  fillRows(byId("members").tBodies[0], memberRows(gearData).map(({ symbol, name, pinion, gear, unit }) => [name, symbolOf(symbol) ?? "", number(pinion, 6), number(gear, 6), unit]));
+  fillRows(byId("pair").tBodies[0], pairRows(gearData).map(({ symbol, name, value, unit }) => [name, symbolOf(symbol) ?? "", number(value, 6), unit]));
   show(byId("gear-data"));
 }
 
+/** @param {JobResult} result @param {JobInput} input */
 function showResults({ mesh, impact, response }, input) {
   show(byId("results"), Boolean(mesh || impact || response));
   if (response) {
-    const row = (name, { left, right }) => [name, number(left), number(right), "m/s²"];
-    fillRows(byId("rms").tBodies[0], [row("Circumferential, mesh", response.rms.mesh_circumferential_acceleration_m_s2), row("Axial, pinion", response.rms.pinion_axial_acceleration_m_s2)]);
+    /** @param {string} pointer @param {PerHalf} sides */
+    const row = (pointer, { left, right }) => [scalarAt(pointer).label, number(left), number(right), scalarAt(pointer).unit];
+    fillRows(byId("rms").tBodies[0], [row("/response/rms/mesh_circumferential_acceleration_m_s2/{half}", response.rms.mesh_circumferential_acceleration_m_s2), row("/response/rms/pinion_axial_acceleration_m_s2/{half}", response.rms.pinion_axial_acceleration_m_s2)]);
     fillValues(byId("response-values"), responseValues(response, input));
     show(byId("response-block"));
   }
@@ -71,22 +74,25 @@ function showResults({ mesh, impact, response }, input) {
   }
 }
 
-async function showPlots({ geometry, mesh, impact, response, numerics }, input, catalogue) {
+/** @param {JobContext} context */
+async function showPlots({ result: { geometry, mesh, impact, response, numerics }, input, catalogue, gearData }) {
   const motion = response ? await motionPlots(response, numerics, input, catalogue) : [];
+  /** @type {[string, Plot | null | undefined, typeof HALF?][]} */
   const plots = [
     ["Mesh stiffness of one half", stiffnessPlot(mesh)],
     ["Loaded transmission error of one half", errorPlot(mesh)],
-    ["Share of the load of one pair over its path", sharePlot(mesh, geometry)],
+    ["Share of the load of one pair over its path", sharePlot(mesh, gearData)],
     ["Sharing of the load between all pairs in mesh", sharingPlot(mesh)],
-    ["Line load on the flanks of a pinion tooth, true to scale", flankPlot(mesh, geometry, input), WHOLE],
+    ["Line load on the flanks of a pinion tooth, true to scale", flankPlot(mesh, gearData), WHOLE],
     ["Harmonics of the transmission error", harmonicsPlot(mesh)],
     ["Impact pulse", pulsePlot(impact, geometry?.mesh_frequency_hz)],
     ...motion,
     ["Spectrum of the left circumferential acceleration", response && spectrumPlot(response, numerics)],
     ["Natural modes against the harmonics of the mesh frequency", response && modesPlot(response, numerics), WHOLE],
-  ].filter(([, plot]) => plot);
-  show(byId("plots"), plots.length > 0);
-  for (const [title, { traces, axes }, size = HALF] of plots) {
+  ];
+  const drawn = plots.flatMap(([title, plot, size = HALF]) => (plot ? [{ title, ...plot, size }] : []));
+  show(byId("plots"), drawn.length > 0);
+  for (const { title, traces, axes, size } of drawn) {
     const image = el("img", { width: size.width, height: size.height, alt: summary({ traces, axes: { ...axes, name: title } }) });
     byId("figures").append(el("figure", { class: size === WHOLE ? "whole" : "" }, el("figcaption", {}, title), image));
     const drawing = await picture(traces, { ...axes, name: title }, { format: "svg", ...size });
@@ -95,29 +101,42 @@ async function showPlots({ geometry, mesh, impact, response, numerics }, input, 
   }
 }
 
-/** The last mesh periods of displacement and acceleration of the meshes, and the phase plane over the same time. */
+/**
+ * The last mesh periods of displacement and acceleration of the meshes, and the phase plane over the same time.
+ * @param {ResponseResult} response
+ * @param {Numerics} numerics
+ * @param {JobInput} input
+ * @param {SeriesChannel[]} catalogue
+ */
 async function motionPlots(response, numerics, input, catalogue) {
   const known = new Map(catalogue.map((channel) => [channel.name, channel]));
+  /** @param {string} name */
+  const channelOf = (name) => {
+    const channel = known.get(name);
+    if (!channel) throw new Error(`there is no channel ${name}`);
+    return channel;
+  };
   const period = 1 / response.mesh_frequency_hz;
-  const last = async (name) => {
-    const { t_end: end, t0 } = known.get(name);
-    return api.series(id, name, { from: Math.max(t0, end - PERIODS * period), to: end, max_points: POINTS });
+  /** @param {string} name @param {Record<string, any>} method */
+  const last = async (name, method) => {
+    const { t_end: end, t0 } = channelOf(name);
+    return api.series(id, name, { from: Math.max(t0, end - PERIODS * period), to: end, ...method });
   };
   const halves = halvesAlike(numerics) ? ["left"] : ["left", "right"];
+  /** @type {[string, Plot][]} */
   const plots = [];
   for (const [title, base] of [["Mesh displacement along the circumference", "x"], ["Mesh acceleration along the circumference", "a_x"]]) {
     const names = halves.map((half) => `${base}_${half}`).filter((name) => known.has(name));
     if (!names.length) continue;
-    const { unit, factor } = channelScale(known.get(names[0]).unit);
-    const traces = (await Promise.all(names.map(last))).map(({ t, y }, index) => line(t.map((time) => time * 1e3), y.map((value) => value * factor), halves.length > 1 ? halves[index] : ""));
+    const { unit, factor } = channelScale(channelOf(names[0]).unit);
+    const traces = (await Promise.all(names.map((name) => last(name, { max_points: POINTS })))).map(({ t, y }, index) => line(t.map((time) => time * 1e3), y.map((value) => (value ?? 0) * factor), halves.length > 1 ? halves[index] : ""));
     plots.push([title, { traces, axes: { x: "Time, ms", y: { label: base === "x" ? "Displacement" : "Acceleration", unit } } }]);
   }
   if (known.has("s_left") && known.has("v_s_left")) {
-    const exact = async (name) => {
-      const { t_end: end, t0 } = known.get(name);
-      return (await api.series(id, name, { from: Math.max(t0, end - PERIODS * period), to: end, method: "none" })).y;
-    };
+    /** @param {string} name */
+    const exact = async (name) => (await last(name, { method: "none" })).y.map((value) => value ?? 0);
     const paths = await Promise.all(halves.filter((half) => known.has(`s_${half}`) && known.has(`v_s_${half}`)).map(async (half) => {
+      /** @param {number[]} values */
       const closed = (values) => (response.method === "periodic" ? [...values, values[0]] : values);
       const [place, velocity] = await Promise.all([`s_${half}`, `v_s_${half}`].map(exact));
       return { half, place: closed(place.map((value) => value * 1e6)), velocity: closed(velocity.map((value) => value * 1e3)) };
@@ -127,6 +146,7 @@ async function motionPlots(response, numerics, input, catalogue) {
   return plots;
 }
 
+/** @param {JobInput} input @param {KindList} kinds */
 function showInputs(input, kinds) {
   const schema = kinds.items.find(({ kind }) => kind === input.kind)?.schema;
   const groups = inputGroups(input, schema);
@@ -139,19 +159,26 @@ function showInputs(input, kinds) {
   show(byId("inputs"), groups.length > 0);
 }
 
+/** @param {Accuracy | null} accuracy @returns {ValueRow[]} */
+function modelError(accuracy) {
+  if (!accuracy) return [];
+  const [shown, unit, note] = accuracyTexts(accuracy);
+  return [["Error of the model", `${shown} ${unit} ${note}`], ["Basis of the model's error", accuracy.model.basis]];
+}
+
 async function start() {
   const job = await api.job(id);
   showHead(job);
   if (job.state !== "succeeded" || job.kind === "sweep") {
     throw new Error(job.kind === "sweep" ? "A report is of one operating point: this job is a sweep." : `There is a report when the job has succeeded; it is ${job.state}.`);
   }
-  const [result, input, kinds] = await Promise.all([api.result(id), api.input(id), api.kinds()]);
+  const [result, input, kinds, gearData] = await Promise.all([api.result(id), api.input(id), api.kinds(), gearDataOf(id)]);
   const catalogue = result.response ? (await api.catalogue(id)).items : [];
-  fillRows(byId("headline").tBodies[0], headlines(result).map(([name, value, unit, note]) => [name, el("strong", {}, `${value} ${unit}`.trim()), el("span", {}, ...[note].flat())]));
+  fillRows(bodyOf(byId("headline")), headlines(result).map(([name, value, unit, note]) => [name, el("strong", {}, `${value} ${unit}`.trim()), el("span", {}, ...[note].flat())]));
   show(byId("summary"));
   fillWarnings(byId("warnings"), result.warnings);
-  show(byId("warned"), result.warnings?.length > 0);
-  showGearData(result, input);
+  show(byId("warned"), result.warnings.length > 0);
+  if (gearData) showGearData(gearData);
   showResults(result, input);
   showInputs(input, kinds);
   if (result.response?.natural_modes?.length) {
@@ -160,13 +187,13 @@ async function start() {
   }
   fillValues(byId("numerics-values"), [
     ["Error of the RMS values, estimated", typeof result.response?.error_estimate === "number" ? number(result.response.error_estimate, 2) : null],
-    ...(result.accuracy ? [["Error of the model", `${accuracyTexts(result.accuracy).slice(0, 2).join(" ")} ${accuracyTexts(result.accuracy)[2]}`], ["Basis of the model's error", result.accuracy.model.basis]] : []),
+    ...modelError(result.accuracy ?? null),
     ["Error asked for", result.response ? number(input.analysis?.accuracy, 2) : null],
     ["Time", number(Object.values(result.numerics.wall_ms).reduce((sum, time) => sum + time, 0), 3), "ms"],
     ...numericsValues({ job: null, ...result }),
   ]);
   show(byId("numerics"));
-  await showPlots(result, input, catalogue);
+  await showPlots({ id, job, result, input, catalogue, gearData });
   byId("print").disabled = false;
   byId("report").dataset.ready = "true";
 }

@@ -1,4 +1,4 @@
-// What every point carries beside its numbers: the bifurcation diagram and the spectra.
+// Recorded lists of every point: the bifurcation diagram and the spectra.
 
 import { campbellAt } from "./resonances.js";
 import { hover, lookOf } from "./style.js";
@@ -16,12 +16,18 @@ const RASTER = [1100, 500];
 const REFERENCE = 1e-6;
 const BINS = 400;
 
-/** Each start of a mesh period is a point: one for a motion with period 1, n for period n, many for chaos. */
+/**
+ * Each start of a mesh period is a point: one for a motion with period 1, n for period n, many for chaos.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @returns {Plot}
+ */
 export function bifurcation(sweep, view) {
   const { grid, state } = view;
   const axis = grid.axes[0];
   const column = sweep.data.column(state.name);
   const traces = grid.branches.map((branch, b) => {
+    /** @type {number[][]} */
     const [x, y, positions] = [[], [], []];
     for (const first of grid.order) {
       const position = grid.at(first, view.line, b);
@@ -37,7 +43,7 @@ export function bifurcation(sweep, view) {
     return {
       type: fast ? "scattergl" : "scatter", mode: "markers", name: branch, x: kept.map((at) => x[at]), y: kept.map((at) => y[at]), customdata: kept.map((at) => positions[at]), showlegend: Boolean(branch),
       hovertemplate: `${hover("", axis.unit, "x")}<br>${hover("", state.unit, "y")}<extra>${branch}</extra>`,
-      paint: (of) => ({ marker: { color: of(colour), size: branch === "down" ? 3 : 4, opacity: 0.75, symbol: branch === "down" ? "square" : "circle" } }),
+      paint: (/** @type {Paint} */ of) => ({ marker: { color: of(colour), size: branch === "down" ? 3 : 4, opacity: 0.75, symbol: branch === "down" ? "square" : "circle" } }),
     };
   });
   return {
@@ -46,17 +52,25 @@ export function bifurcation(sweep, view) {
   };
 }
 
+/** @typedef {(name: string) => string} Paint colour of the stylesheet by name */
+
+/** @type {boolean | null} */
 let webGl = null;
 function hasWebGl() {
   webGl ??= Boolean(document.createElement("canvas").getContext("webgl"));
   return webGl;
 }
 
-/** Amplitudes of the acceleration over the first axis, by mesh order or by frequency. */
+/**
+ * Amplitudes of the acceleration over the first axis, by mesh order or by frequency.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @returns {Plot}
+ */
 export function spectra(sweep, view) {
   const { grid } = view;
   const axis = grid.axes[0];
-  const orders = sweep.orders;
+  const orders = sweep.orders ?? [];
   const column = sweep.data.column(SPECTRUM);
   const places = grid.order.filter((first) => column[grid.at(first, view.line, view.branch)]);
   const x = places.map((first) => axis.values[first]);
@@ -64,11 +78,13 @@ export function spectra(sweep, view) {
   const diagram = campbellAt(sweep.rest, view);
   const perSpeed = diagram ? diagram.mesh_frequency_hz[1] / diagram.pinion_speed_rpm[1] : null;
   const inHertz = view.hertz && perSpeed !== null;
+  /** @param {number} value */
   const level = (value) => (view.log ? 20 * Math.log10(value / REFERENCE) : value);
   let y = orders;
+  /** @type {(number | null)[][]} */
   let z = orders.map((_, at) => rows.map((row) => level(row[at])));
   if (inHertz) {
-    const top = orders.at(-1) * perSpeed * x.at(-1);
+    const top = orders[orders.length - 1] * perSpeed * x[x.length - 1];
     y = Array.from({ length: BINS }, (_, bin) => ((bin + 0.5) * top) / BINS);
     const step = orders[1] - orders[0];
     z = y.map((hertz) => rows.map((row, at) => {
@@ -77,25 +93,30 @@ export function spectra(sweep, view) {
     }));
   }
   const unit = view.log ? "dB" : "m/s²";
+  const highest = y[y.length - 1];
+  /** @type {Trace[]} */
   const traces = [{
     type: "heatmap", x, y, z, unit, colorscale: "Viridis", hoverongaps: false, colorbar: { title: { text: unit }, thickness: 14, outlinewidth: 0 },
     customdata: y.map(() => places.map((first) => grid.at(first, view.line, view.branch))),
     hovertemplate: `${hover("", axis.unit, "x")}<br>${inHertz ? "%{y:.5~g} Hz" : "order %{y}"}<br>%{z:.4~g} ${unit}<extra></extra>`,
     ...(view.log ? cutBelow(z) : {}), paint: () => ({}),
   }];
-  if (view.resonances && diagram) traces.push(...overlay(diagram, inHertz, x, y.at(-1), perSpeed));
+  if (view.resonances && diagram && perSpeed !== null) traces.push(...overlay(diagram, inHertz, x, highest, perSpeed));
   const branch = grid.branches[view.branch];
   return {
     traces,
     axes: {
       x: axis.title, y: inHertz ? "Frequency, Hz" : "Mesh order", csvName: `${sweep.name} spectra`, hover: "closest", click: view.click,
       name: ["Circumferential acceleration of the left half, amplitude", view.log ? "dB re 1 µm/s²" : "m/s²", branch].filter(Boolean).join(", "),
-      more: (layout) => { if (axis.logarithmic) layout.xaxis.type = "log"; layout.yaxis.range = [0, y.at(-1)]; layout.yaxis.exponentformat = "none"; },
+      more: (layout) => { if (axis.logarithmic) layout.xaxis.type = "log"; layout.yaxis.range = [0, highest]; layout.yaxis.exponentformat = "none"; },
     },
   };
 }
 
-/** What lies 80 dB below the strongest line, or has no amplitude at all, is drawn as that level. */
+/**
+ * Values 80 dB below the strongest line, and those of no amplitude, are drawn as that level.
+ * @param {(number | null)[][]} z
+ */
 function cutBelow(z) {
   let top = -Infinity;
   for (const row of z) for (const value of row) if (value !== null && value > top) top = value;
@@ -105,10 +126,19 @@ function cutBelow(z) {
   return { zmin: least, zmax: top };
 }
 
-/** Natural frequencies of the mesh modes, and over frequency the orders 1 to 4. */
+/**
+ * Natural frequencies of the mesh modes, and over frequency the orders 1 to 4.
+ * @param {CampbellDiagram} diagram
+ * @param {boolean} inHertz
+ * @param {number[]} x
+ * @param {number} top
+ * @param {number} perSpeed mesh frequency per unit of speed
+ * @returns {Trace[]}
+ */
 function overlay(diagram, inHertz, x, top, perSpeed) {
   const paint = () => ({ line: { color: "rgba(255,255,255,.8)", width: 1, dash: "dot" } });
   const base = { type: "scatter", mode: "lines", showlegend: false, aside: true, paint };
+  /** @param {NaturalMode} mode */
   const share = (mode) => (mode.strain_energy.mesh_left ?? 0) + (mode.strain_energy.mesh_right ?? 0);
   const modes = diagram.natural_modes.filter((mode) => mode.frequency_hz > 0 && share(mode) >= 0.1);
   const lines = modes.map((mode) => ({

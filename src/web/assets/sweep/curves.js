@@ -1,4 +1,5 @@
-// A quantity over the first axis: both branches and halves, jumps, ranges with two motions, and what the motion is like below.
+// A quantity over the first axis: both branches and halves, jumps, ranges with two motions, and the kinds of motion
+// below.
 
 import { CONTACTS, FAILED, REGIMES, kindOf } from "./quantities.js";
 import { resonancesOf } from "./resonances.js";
@@ -14,7 +15,7 @@ const ALIKE = 2e-3;
 /** Columns of the strip. */
 const STRIP = 1500;
 
-/** Traces and layout of the view; `view` says which line, halves and range, and what to mark. */
+/** @param {SweepState} sweep @param {SweepView} view @returns {Plot} */
 export function curves(sweep, view) {
   const { grid, quantity } = view;
   const axis = grid.axes[0];
@@ -33,7 +34,7 @@ export function curves(sweep, view) {
   traces.push(...jumpsOf(sweep, view, x, sides[0]), ...rangeKey(sweep, view), ...selectedOf(sweep, view, sides));
   const rows = strip(sweep, view, x, from, to);
   traces.push(...rows.traces);
-  const resonances = view.resonances ? resonancesOf(sweep.rest, view, [x[0], x.at(-1)]) : [];
+  const resonances = view.resonances ? resonancesOf(sweep.rest, view, [x[0], x[x.length - 1]]) : [];
   return {
     traces,
     axes: {
@@ -48,17 +49,25 @@ export function curves(sweep, view) {
   };
 }
 
-/** The curves of a branch: that of the pair, of one half, of both, or one for both where they would cover each other. */
+/**
+ * The curves of a branch: that of the pair, of one half, of both, or one for both where they would cover each other.
+ * @typedef {"both" | "alike" | "left" | "right"} Side
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @returns {Side[]}
+ */
 function sidesOf(sweep, { grid, line, quantity, halves }) {
   if (quantity.columns.both) return ["both"];
   if (halves !== "both") return [halves];
-  const [left, right] = ["left", "right"].map((side) => columnOf(sweep, quantity, side));
+  const [left, right] = /** @type {Side[]} */ (["left", "right"]).map((side) => columnOf(sweep, quantity, side));
+  /** @param {number} position */
   const alike = (position) => !(Math.abs(left[position] - right[position]) > ALIKE * Math.abs(left[position]));
   const all = grid.branches.every((_, b) => grid.order.every((first) => alike(grid.at(first, line, b))));
   return all ? ["alike"] : ["left", "right"];
 }
 
-const columnOf = (sweep, quantity, side) => sweep.data.column(quantity.columns[side === "alike" ? "left" : side]);
+/** @param {SweepState} sweep @param {SweepQuantity} quantity @param {Side} side */
+const columnOf = (sweep, quantity, side) => sweep.data.column(quantity.columns[side === "alike" ? "left" : side] ?? "");
 
 function curve({ x, y, positions, from, to, branch, side, axis, quantity }) {
   const { colour, dash } = lookOf(branch, side);
@@ -85,18 +94,26 @@ function curve({ x, y, positions, from, to, branch, side, axis, quantity }) {
   return [main, arrows];
 }
 
-/** The jumps of the line that is shown. */
+/** The jumps of the line that is shown. @param {SweepState} sweep @param {SweepView} view */
 export function jumpsAt(sweep, view) {
   const value = view.grid.axes[1]?.values[view.line] ?? null;
   return (sweep.rest?.sweep?.jumps ?? []).filter((jump) => jump.second_axis_value === value);
 }
 
+/** The ranges with two motions of the line that is shown. @param {SweepState} sweep @param {SweepView} view */
 export function hysteresisAt(sweep, view) {
   const value = view.grid.axes[1]?.values[view.line] ?? null;
   return (sweep.rest?.sweep?.hysteresis ?? []).filter((range) => range.second_axis_value === value);
 }
 
-/** Arrows from the point before to the point after each jump, one trace for each branch. */
+/**
+ * Arrows from the point before to the point after each jump, one trace for each branch.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @param {number[]} x
+ * @param {Side} side
+ * @returns {Trace[]}
+ */
 function jumpsOf(sweep, view, x, side) {
   const { grid, quantity } = view;
   const column = columnOf(sweep, quantity, side);
@@ -104,7 +121,7 @@ function jumpsOf(sweep, view, x, side) {
   return grid.branches.flatMap((branch, b) => {
     const jumps = jumpsAt(sweep, view).filter((jump) => jump.branch === branch).slice(0, JUMPS);
     if (!jumps.length) return [];
-    const ends = jumps.map((jump) => [jump.from, jump.to].map((value) => ({ value, position: grid.at(place.get(value), view.line, b) })));
+    const ends = jumps.map((jump) => [jump.from, jump.to].map((value) => ({ value, position: grid.at(place.get(value) ?? 0, view.line, b) })));
     const { colour } = lookOf(branch, side);
     return [{
       type: "scatter", mode: "lines+markers", name: `jump ${branch}`, aside: true, showlegend: true,
@@ -120,7 +137,12 @@ function jumpsOf(sweep, view, x, side) {
   });
 }
 
-/** What the shaded ranges mean, for the legend. */
+/**
+ * The meaning of the shaded ranges, for the legend.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @returns {Trace[]}
+ */
 function rangeKey(sweep, view) {
   if (!hysteresisAt(sweep, view).length) return [];
   return [{
@@ -129,6 +151,7 @@ function rangeKey(sweep, view) {
   }];
 }
 
+/** @param {SweepState} sweep @param {SweepView} view @param {Side[]} sides @returns {Trace[]} */
 function selectedOf(sweep, view, sides) {
   const { grid, quantity, selected } = view;
   if (selected === null) return [];
@@ -141,15 +164,24 @@ function selectedOf(sweep, view, sides) {
   }];
 }
 
-/** What the motion is like at each point, and points without a response, as rows of coloured cells. */
+/**
+ * The kinds of motion and contact of each point, and points without a response, as rows of coloured cells.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @param {number[]} x
+ * @param {number} from
+ * @param {number} to
+ */
 function strip(sweep, view, x, from, to) {
   const { grid } = view;
   const [regime, contact, error] = ["regime", "contact", "error"].map((name) => sweep.data.column(name));
   const step = Math.max(1, Math.ceil((to - from) / STRIP));
+  /** @type {number[]} */
   const places = [];
   for (let at = from; at < to; at += step) places.push(at);
   const columns = places.map((at) => x[at]);
-  // Of the points in a cell the one whose motion is the wildest.
+  // Of the points in a cell the least regular kind of motion.
+  /** @param {PointKind[]} kinds @param {any} words @param {number} b */
   const row = (kinds, words, b) => places.map((at) => {
     let worst = null;
     for (let i = at; i < Math.min(to, at + step); i += 1) {
@@ -159,12 +191,17 @@ function strip(sweep, view, x, from, to) {
     }
     return worst;
   });
+  /** @type {string[]} */
   const labels = [];
-  const label = (what, branch) => [what, { up: "↑", down: "↓" }[branch]].filter(Boolean).join(" ");
+  /** @type {Record<string, string>} */
+  const arrows = { up: "↑", down: "↓" };
+  /** @param {string} what @param {string} branch */
+  const label = (what, branch) => [what, arrows[branch]].filter(Boolean).join(" ");
+  /** @param {string} what @param {PointKind[]} kinds @param {any} words @returns {Trace} */
   const heat = (what, kinds, words) => {
     const all = [...kinds, FAILED];
     const z = grid.branches.map((_, b) => row(kinds, words, b)).reverse();
-    // Rows by number, the lowest first; what they are called stands at the axis.
+    // Rows by number, the lowest first; their labels are those of the axis.
     const y = grid.branches.map((branch) => label(what, branch)).reverse().map((text) => labels.push(text) - 1);
     const positions = grid.branches.map((_, b) => places.map((at) => grid.at(grid.order[at], view.line, b))).reverse();
     return {
@@ -192,22 +229,31 @@ function arrange(layout, colour, { sweep, view, rows, resonances, axis, x }) {
     ...resonances.map(({ at }) => ({ type: "line", xref: "x", yref: "y domain", x0: at, x1: at, y0: 0, y1: 1, line: { color: colour("--muted"), width: 1, dash: "dot" }, layer: "below" })),
   ];
   const along = (value) => (axis.logarithmic ? Math.log10(value) : value);
-  layout.annotations = [
-    ...resonances.filter(({ label }) => label).map(({ at, label }) => ({ x: along(at), yref: "y domain", y: 0.98, yanchor: "top", xanchor: "right", textangle: -90, showarrow: false, text: label, font: { size: 10, color: colour("--muted") } })),
-  ];
+  layout.annotations =
+    resonances.filter(({ label }) => label).map(({ at, label }) => ({ x: along(at), yref: "y domain", y: 0.98, yanchor: "top", xanchor: "right", textangle: -90, showarrow: false, text: label, font: { size: 10, color: colour("--muted") } }));
   layout.margin = { ...layout.margin, l: 70 };
 }
 
-/** From half a step before the first value to half a step after the last. */
+/**
+ * From half a step before the first value to half a step after the last.
+ * @param {number[]} x
+ * @param {boolean} logarithmic
+ */
 function edges(x, logarithmic) {
-  const [first, last] = [x[0], x.at(-1)];
+  const [first, last, before] = [x[0], x[x.length - 1], x[x.length - 2]];
   if (first === last) return [first - 0.5 * Math.abs(first || 1), first + 0.5 * Math.abs(first || 1)];
-  if (logarithmic) return [first * Math.sqrt(first / x[1]), last * Math.sqrt(last / x.at(-2))];
-  return [first - (x[1] - first) / 2, last + (last - x.at(-2)) / 2];
+  if (logarithmic) return [first * Math.sqrt(first / x[1]), last * Math.sqrt(last / before)];
+  return [first - (x[1] - first) / 2, last + (last - before) / 2];
 }
 
-/** A range of points with half a step at each end, so that a single point has a width. */
+/**
+ * A range of points with half a step at each end, so that a single point has a width.
+ * @param {number} from
+ * @param {number} to
+ * @param {number[]} x
+ */
 function widened(from, to, x) {
-  const half = x.length > 1 ? Math.abs(x.at(-1) - x[0]) / (x.length - 1) / 2 : 0;
-  return { x0: Math.max(x[0], from - half), x1: Math.min(x.at(-1), to + half) };
+  const last = x[x.length - 1];
+  const half = x.length > 1 ? Math.abs(last - x[0]) / (x.length - 1) / 2 : 0;
+  return { x0: Math.max(x[0], from - half), x1: Math.min(last, to + half) };
 }

@@ -1,4 +1,4 @@
-// What stands out in a sweep, in sentences, each leading to its point.
+// Extremes, jumps and ranges with two motions of a sweep, in sentences with a way to their points.
 
 import { byId, el } from "../common/dom.js";
 import { number, percent } from "../common/format.js";
@@ -12,15 +12,15 @@ const MOST = 6;
 /** A peak this near to a crossing belongs to it. */
 const NEAR = 0.03;
 
-/** Jumps of the branch on the map, each halfway between its points. */
-export function jumpsOnMap(sweep, view) {
-  const branch = view.grid.branches[view.branch];
-  const jumps = (sweep.rest?.sweep?.jumps ?? []).filter((jump) => jump.branch === branch);
-  return jumps.map(({ from, to, second_axis_value: y }) => ({ x: (from + to) / 2, y }));
-}
-
+/**
+ * @typedef {{ text: string, position?: number }} Finding
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @param {(position: number) => void} select
+ */
 export function showFindings(sweep, view, select) {
   const { grid } = view;
+  /** @type {Finding[]} */
   const items = [...extremes(sweep, view), ...ranges(sweep, view), ...jumps(sweep, view)];
   const failed = sweep.data.failed();
   if (failed.length) {
@@ -30,23 +30,32 @@ export function showFindings(sweep, view, select) {
   byId("sweep-findings").replaceChildren(...items.map(({ text, position }) => {
     const button = position === undefined ? null : el("button", { type: "button", class: "quiet" }, "Show");
     button?.setAttribute("aria-label", `Show ${position === undefined ? "" : grid.describe(position)}`);
-    button?.addEventListener("click", () => select(position));
+    if (position !== undefined) button?.addEventListener("click", () => select(position));
     return el("li", {}, el("span", {}, text), button);
   }));
 }
 
-/** Greatest and least value of the quantity, and the resonance that a peak belongs to. */
+/**
+ * Greatest and least value of the quantity, and the resonance that a peak belongs to.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @returns {Finding[]}
+ */
 function extremes(sweep, view) {
   const { grid, quantity } = view;
   const value = valueAt(sweep, quantity, view.halves);
-  let [least, greatest] = [null, null];
+  /** @type {number | null} */
+  let least = null;
+  /** @type {number | null} */
+  let greatest = null;
   for (let position = 0; position < grid.total; position += 1) {
     const at = value(position);
     if (Number.isNaN(at)) continue;
     if (least === null || at < value(least)) least = position;
     if (greatest === null || at > value(greatest)) greatest = position;
   }
-  if (least === null || value(least) === value(greatest)) return [];
+  if (least === null || greatest === null || value(least) === value(greatest)) return [];
+  /** @param {string} word @param {number} position */
   const tell = (word, position) => {
     const text = `${word} value: ${number(value(position), 4)}${quantity.unit ? ` ${quantity.unit}` : ""} at ${grid.describe(position)}`;
     return { text: `${text}${word === "Greatest" ? resonance(sweep, view, position) : ""}.`, position };
@@ -54,12 +63,14 @@ function extremes(sweep, view) {
   return [tell("Greatest", greatest), tell("Least", least)];
 }
 
+/** @param {SweepState} sweep @param {SweepView} view @param {number} position */
 function resonance(sweep, view, position) {
   const { grid, quantity } = view;
   if (!quantity.name.includes("acceleration") && quantity.name !== "dynamic_factor") return "";
   const values = grid.axes[0].values;
   const line = grid.placeOf(position).second;
-  const ends = [grid.order[0], grid.order.at(-1)].map((first) => values[first]);
+  /** @type {Span} */
+  const ends = [values[grid.order[0]], values[grid.order[grid.order.length - 1]]];
   const speed = grid.valuesAt(position)[0];
   const near = resonancesOf(sweep.rest, { ...view, line }, ends).filter(({ at }) => Math.abs(at / speed - 1) < NEAR);
   if (!near.length) return "";
@@ -67,10 +78,12 @@ function resonance(sweep, view, position) {
   return `, near the resonance of mesh order ${order} with “${mode.name}” (${number(mode.frequency_hz, 4)} Hz, ${number(at, 4)} r/min)`;
 }
 
+/** @param {SweepState} sweep @param {SweepView} view @returns {Finding[]} */
 function ranges(sweep, view) {
   const { grid } = view;
   const axis = grid.axes[0];
   const all = hysteresisAt(sweep, view);
+  /** @type {Finding[]} */
   const found = all.slice(0, MOST).map(({ from, to, differ, largest_rms_ratio: ratio }) => {
     const where = from === to ? `At ${valueText(axis, from)}` : `From ${valueText(axis, from)} to ${valueText(axis, to)}`;
     const much = ratio > 1.005 ? `, the stronger up to ${number(ratio, 3)} times the weaker` : "";
@@ -80,10 +93,12 @@ function ranges(sweep, view) {
   return found;
 }
 
+/** @param {SweepState} sweep @param {SweepView} view @returns {Finding[]} */
 function jumps(sweep, view) {
   const { grid } = view;
   const axis = grid.axes[0];
   const all = jumpsAt(sweep, view);
+  /** @type {Finding[]} */
   const found = all.slice(0, MOST).map(({ branch, from, to, rms_before_m_s2: before, rms_after_m_s2: after }) => ({
     text: `On the way ${branch} the motion jumps between ${valueText(axis, from)} and ${valueText(axis, to)}: circumferential RMS from ${number(before, 4)} to ${number(after, 4)} m/s².`,
     position: placed(grid, axis, to, view.line, grid.branches.indexOf(branch)),
@@ -92,12 +107,19 @@ function jumps(sweep, view) {
   return found;
 }
 
+/**
+ * @param {SweepView["grid"]} grid
+ * @param {import("./axes.js").Axis} axis
+ * @param {number} value
+ * @param {number} line
+ * @param {number} branch
+ */
 function placed(grid, axis, value, line, branch) {
   const first = axis.values.indexOf(value);
   return first < 0 ? undefined : grid.at(first, line, branch);
 }
 
-/** How far the sweep is. */
+/** The progress of the sweep. @param {SweepState} sweep @param {Job} job */
 export function progressText(sweep, job) {
   const { n, total } = sweep.data;
   if (n === total) return total === 1 ? "One point." : `${number(total)} points.`;

@@ -1,15 +1,21 @@
 // A sweep over two inputs: heat map or contours of a quantity, the kind of motion, and sections along both axes.
 
-import { jumpsOnMap } from "./findings.js";
 import { CONTACTS, FAILED, REGIMES, kindOf } from "./quantities.js";
 import { hover, lookOf, nameOf, steps } from "./style.js";
 
+/** @type {{ name: string, label: string, kinds: PointKind[] }[]} */
 export const KINDS = [
   { name: "regime", label: "Kind of motion", kinds: REGIMES },
   { name: "contact", label: "Contact of the teeth", kinds: CONTACTS },
 ];
 
-/** The value of a quantity at a row: of the half asked for, or of the greater one. */
+/**
+ * The value of a quantity at a row: of the chosen half, or the greater one.
+ * @param {SweepState} sweep
+ * @param {SweepQuantity} quantity
+ * @param {string} halves
+ * @returns {(position: number) => number}
+ */
 export function valueAt(sweep, quantity, halves) {
   const columns = Object.values(quantity.columns).map((name) => sweep.data.column(name));
   if (columns.length === 1) return (position) => columns[0][position];
@@ -19,16 +25,19 @@ export function valueAt(sweep, quantity, halves) {
   return (position) => Math.max(left[position], right[position]);
 }
 
+/** @param {SweepState} sweep @param {SweepView} view @returns {Plot} */
 export function map(sweep, view) {
   const { grid } = view;
   const [first, second] = grid.axes;
   const x = grid.order.map((index) => first.values[index]);
   const y = grid.secondOrder.map((index) => second.values[index]);
+  /** @type {Rows} */
   const rows = (value) => grid.secondOrder.map((line) => grid.order.map((index) => value(grid.at(index, line, view.branch))));
   const positions = rows((position) => position);
   const kinds = KINDS.find(({ name }) => name === view.kind);
   const base = { x, y, customdata: positions, hoverongaps: false };
   const where = `${hover(first.label, first.unit, "x")}<br>${hover(second.label, second.unit, "y")}`;
+  /** @type {Trace[]} */
   const traces = [kinds ? kindMap(sweep, kinds, rows, base, where) : valueMap(sweep, view, rows, base, where)];
   const jumps = jumpsOnMap(sweep, view);
   if (jumps.length) {
@@ -55,8 +64,18 @@ export function map(sweep, view) {
   };
 }
 
+/**
+ * @typedef {<Value>(value: (position: number) => Value) => Value[][]} Rows values by rows of the map
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @param {Rows} rows
+ * @param {Trace} base
+ * @param {string} where
+ * @returns {Trace}
+ */
 function valueMap(sweep, view, rows, base, where) {
   const value = valueAt(sweep, view.quantity, view.halves);
+  /** @param {number} position */
   const shown = (position) => {
     const number = value(position);
     if (Number.isNaN(number)) return null;
@@ -72,22 +91,36 @@ function valueMap(sweep, view, rows, base, where) {
   };
 }
 
+/**
+ * @param {SweepState} sweep
+ * @param {typeof KINDS[number]} kind
+ * @param {Rows} rows
+ * @param {Trace} base
+ * @param {string} where
+ * @returns {Trace}
+ */
 function kindMap(sweep, { name, kinds }, rows, base, where) {
   const [words, errors] = [sweep.data.column(name), sweep.data.column("error")];
   const all = [...kinds, FAILED];
+  /** @param {number} position */
   const kind = (position) => kindOf(kinds, words[position], errors[position]);
   return {
     ...base, type: "heatmap", z: rows(kind), zmin: 0, zmax: all.length, showscale: false,
     text: rows((position) => words[position] ?? (errors[position] ? FAILED.label : "")), hovertemplate: `${where}<br>%{text}<extra></extra>`,
-    paint: (of) => ({ colorscale: steps(all.map(({ colour }) => of(colour))) }),
+    paint: (/** @type {(name: string) => string} */ of) => ({ colorscale: steps(all.map(({ colour }) => of(colour))) }),
   };
 }
 
-/** Position of the least value of the branch shown; null without any. */
-export function bestOf(sweep, view) {
+/**
+ * Position of the least value of the branch shown; null without any.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ */
+function bestOf(sweep, view) {
   const { grid } = view;
   const value = valueAt(sweep, view.quantity, view.halves);
   const from = view.branch * grid.lines * grid.length;
+  /** @type {number | null} */
   let best = null;
   for (let position = from; position < from + grid.lines * grid.length; position += 1) {
     if (value(position) < (best === null ? Infinity : value(best))) best = position;
@@ -95,6 +128,14 @@ export function bestOf(sweep, view) {
   return best;
 }
 
+/**
+ * @param {SweepView["grid"]} grid
+ * @param {number} position
+ * @param {string} symbol
+ * @param {string} name
+ * @param {string} colour
+ * @returns {Trace}
+ */
 function mark(grid, position, symbol, name, colour) {
   const [x, y] = grid.valuesAt(position);
   return {
@@ -103,7 +144,13 @@ function mark(grid, position, symbol, name, colour) {
   };
 }
 
-/** The curve through a point along one of the two axes. */
+/**
+ * The curve through the selected point along one of the two axes.
+ * @param {SweepState} sweep
+ * @param {SweepView & { selected: number }} view
+ * @param {number} along
+ * @returns {Plot & { title: string }}
+ */
 export function section(sweep, view, along) {
   const { grid, quantity } = view;
   const place = grid.placeOf(view.selected);
@@ -134,4 +181,15 @@ export function section(sweep, view, along) {
     },
     title: `${quantity.label} at ${other.label.toLowerCase()} ${at[1 - along].toPrecision(6).replace(/\.?0+$/, "")} ${other.unit}`,
   };
+}
+
+/**
+ * Jumps of the branch on the map, each halfway between its points.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ */
+function jumpsOnMap(sweep, view) {
+  const branch = view.grid.branches[view.branch];
+  const jumps = (sweep.rest?.sweep?.jumps ?? []).filter((jump) => jump.branch === branch);
+  return jumps.map(({ from, to, second_axis_value: y }) => ({ x: (from + to) / 2, y }));
 }

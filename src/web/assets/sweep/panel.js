@@ -1,7 +1,7 @@
 // The panel of a sweep: reads its rows while they are solved, and draws the view that is chosen.
 
 import * as api from "../common/api.js";
-import { byId, el, fillWarnings, notify, show } from "../common/dom.js";
+import { byAnyId, byId, el, fillWarnings, notify, show } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { draw, onZoom } from "../common/plots.js";
 import { Grid, valueText } from "./axes.js";
@@ -15,12 +15,13 @@ import { ALWAYS, CONTACTS, FAILED, QUANTITIES, REGIMES, columnsOf } from "./quan
 import { SPEED, campbell, campbellAt } from "./resonances.js";
 import { PointTable } from "./table.js";
 
-/** Between two readings of a running sweep: at least so long, and so many times as long as the last took. */
+/** Pause between two readings of a running sweep: the least, and as a multiple of the last reading's duration. */
 const PAUSE_MS = 600;
 const PAUSE_FACTOR = 4;
 const LONGEST_PAUSE_MS = 10_000;
 
 /** Views with the controls that they use. */
+/** @type {Record<string, { label: string, controls: string[] }>} */
 const VIEWS = {
   curves: { label: "Curves", controls: ["quantity", "line", "halves", "log", "resonances"] },
   map: { label: "Map", controls: ["quantity", "branch", "halves", "log", "contours"] },
@@ -28,36 +29,55 @@ const VIEWS = {
   spectra: { label: "Spectra", controls: ["line", "branch", "log", "hertz", "resonances"] },
   campbell: { label: "Campbell diagram", controls: ["line"] },
 };
-const SWITCHES = ["log", "contours", "hertz", "resonances"];
+const SWITCHES = /** @type {const} */ (["log", "contours", "hertz", "resonances"]);
 const CONTROLS = ["quantity", "state", "line", "branch", "halves", "log", "contours", "hertz", "resonances"];
 
+/** @type {Promise<Panel> | null} */
 let panel = null;
 
-/** Shows a sweep as far as it is solved; called at each change of the job. Resolves when everything that is there is drawn. */
+/**
+ * Shows a sweep as far as it is solved; called at each change of the job. Resolves when all that is solved is drawn.
+ * @param {{ id: string, job: Job }} sweep
+ */
 export async function showSweep({ id, job }) {
   panel ??= Panel.open(id, job);
   await (await panel).follow(job);
 }
 
 class Panel {
+  /** @param {string} id @param {Job} job */
   static async open(id, job) {
     const document = await api.input(id);
     return new Panel(id, job, document);
   }
 
+  /** @param {string} id @param {Job} job @param {JobInput} document */
   constructor(id, job, document) {
     this.grid = new Grid(document);
+    /** @type {SweepState} */
     this.sweep = { id, name: job.name ?? "Sweep", data: new SweepData(id, this.grid.total), rest: null, orders: null };
+    /** @type {string[]} */
     this.record = document.record ?? [];
     this.document = document;
     this.job = job;
+    /** @type {SweepView} */
     this.view = {
       grid: this.grid, name: this.grid.axes.length === 2 ? "map" : "curves", quantity: QUANTITIES[0], kind: null, state: STATES[0], line: 0, branch: 0, halves: "both",
       log: false, contours: false, hertz: false, resonances: true, range: null, selected: null, click: (event) => this.clicked(event),
     };
     this.plot = byId("sweep-plot");
+    /** @type {Promise<void> | null} */
     this.reading = null;
+    /** @type {Promise<void>} */
     this.drawing = Promise.resolve();
+    /** @type {Promise<void> | null} */
+    this.next = null;
+    /** @type {() => void} */
+    this.wake = () => {};
+    this.stale = false;
+    /** Position that the address names, until its row is here. @type {number | null} */
+    this.recalled = null;
+    /** @param {number} position */
     const select = (position) => this.select(position);
     this.table = new PointTable(this.sweep, this.grid, select);
     this.point = new PointPanel(this.sweep, this.grid, select);
@@ -70,7 +90,7 @@ class Panel {
     show(byId("sweep"));
   }
 
-  /** The view stands in the address, so that it can be linked to and is there again on the way back. */
+  /** Writes the view into the address, so that it can be linked to and restored by the history of the browser. */
   remember() {
     const { view } = this;
     const told = {
@@ -78,21 +98,28 @@ class Panel {
       ...Object.fromEntries(SWITCHES.map((name) => [name, Number(view[name])])),
     };
     const uses = new Set(["view", "point", ...VIEWS[view.name].controls]);
-    const kept = Object.entries(told).filter(([name, value]) => uses.has(name) && value !== null);
+    const kept = Object.entries(told).filter(([name, value]) => uses.has(name) && value !== null).map(([name, value]) => [name, String(value)]);
     window.history.replaceState(window.history.state, "", `#${new URLSearchParams(kept)}`);
   }
 
+  /** Restores the view that the address names. */
   recall() {
     const { view, grid } = this;
     const told = new URLSearchParams(window.location.hash.slice(1));
-    if (VIEWS[told.get("view")]) view.name = told.get("view");
+    const name = told.get("view");
+    if (name && VIEWS[name]) view.name = name;
     view.quantity = QUANTITIES.find(({ name }) => name === told.get("quantity")) ?? view.quantity;
     if (grid.axes.length === 2 && KINDS.some(({ name }) => name === told.get("quantity"))) view.kind = told.get("quantity");
     view.state = STATES.find(({ name }) => name === told.get("state")) ?? view.state;
-    const within = (name, end) => (/^\d+$/.test(told.get(name) ?? "") && Number(told.get(name)) < end ? Number(told.get(name)) : null);
+    /** @param {string} name @param {number} end */
+    const within = (name, end) => {
+      const text = told.get(name) ?? "";
+      return /^\d+$/.test(text) && Number(text) < end ? Number(text) : null;
+    };
     view.line = within("line", grid.lines) ?? view.line;
     view.branch = within("branch", grid.branches.length) ?? view.branch;
-    if (["left", "right"].includes(told.get("halves"))) view.halves = told.get("halves");
+    const halves = told.get("halves");
+    if (halves === "left" || halves === "right") view.halves = halves;
     for (const name of SWITCHES) if (told.has(name)) view[name] = told.get(name) === "1";
     this.recalled = within("point", grid.total);
   }
@@ -109,11 +136,14 @@ class Panel {
   }
 
   fillControls() {
-    const options = (id, list) => byId(id).replaceChildren(...list.map(([value, text]) => el("option", { value }, text)));
+    /** @param {string} id @param {[string, string][]} list */
+    const options = (id, list) => byAnyId(id).replaceChildren(...list.map(([value, text]) => el("option", { value }, text)));
     const { axes, branches } = this.grid;
+    /** @param {{ label: string, unit: string }} named */
     const title = ({ label, unit }) => [label, unit].filter(Boolean).join(", ");
+    /** @type {[string, string][]} */
     const kinds = axes.length === 2 ? KINDS.map(({ name, label }) => [name, label]) : [];
-    options("sweep-quantity", [...QUANTITIES.map((quantity) => [quantity.name, title(quantity)]), ...kinds]);
+    options("sweep-quantity", [...QUANTITIES.map((quantity) => /** @type {[string, string]} */ ([quantity.name, title(quantity)])), ...kinds]);
     options("sweep-state", STATES.map((state) => [state.name, title(state)]));
     if (axes[1]) {
       options("sweep-line", this.grid.secondOrder.map((index) => [String(index), valueText(axes[1], axes[1].values[index])]));
@@ -126,12 +156,13 @@ class Panel {
       input.addEventListener("change", () => this.change(() => { this.view.name = name; this.view.range = null; }));
       return el("label", { hidden: true }, input, label);
     }));
+    /** @type {Record<string, (view: SweepView, input: any) => void>} */
     const changes = {
       quantity: (view, { value }) => {
         view.quantity = QUANTITIES.find(({ name }) => name === value) ?? view.quantity;
         view.kind = KINDS.some(({ name }) => name === value) ? value : null;
       },
-      state: (view, { value }) => { view.state = STATES.find(({ name }) => name === value); },
+      state: (view, { value }) => { view.state = STATES.find(({ name }) => name === value) ?? view.state; },
       line: (view, { value }) => { view.line = Number(value); },
       branch: (view, { value }) => { view.branch = Number(value); },
       halves: (view, { value }) => { view.halves = value; },
@@ -141,11 +172,11 @@ class Panel {
       resonances: (view, { checked }) => { view.resonances = checked; },
     };
     for (const [name, apply] of Object.entries(changes)) {
-      byId(`sweep-${name}`).addEventListener("change", (event) => this.change(() => apply(this.view, event.target)));
+      byAnyId(`sweep-${name}`).addEventListener("change", (/** @type {Event} */ event) => this.change(() => apply(this.view, event.target)));
     }
   }
 
-  /** Which views have something to show. */
+  /** Which views have something to show. @returns {Record<string, boolean>} */
   there() {
     const { view, grid, sweep } = this;
     return {
@@ -159,7 +190,7 @@ class Panel {
     const { view, grid, sweep } = this;
     const there = this.there();
     for (const [name, is] of Object.entries(there)) {
-      const input = byId(`sweep-view-${name}`);
+      const input = byAnyId(`sweep-view-${name}`);
       show(input.parentElement, is);
       input.checked = view.name === name;
     }
@@ -171,13 +202,13 @@ class Panel {
     if (view.kind && view.name === "map") ["log", "contours"].forEach((name) => uses.delete(name));
     if (view.name === "spectra" && !campbellAt(sweep.rest, view)) uses.delete("hertz");
     if (grid.axes[0].pointer !== SPEED || !campbellAt(sweep.rest, view)) uses.delete("resonances");
-    for (const name of CONTROLS) show(byId(`sweep-${name}`).closest(".control"), uses.has(name));
+    for (const name of CONTROLS) show(byAnyId(`sweep-${name}`).closest(".control"), uses.has(name));
     byId("sweep-quantity").value = view.kind ?? view.quantity.name;
     byId("sweep-line").value = String(view.line);
     byId("sweep-branch").value = String(view.branch);
     byId("sweep-state").value = view.state.name;
     byId("sweep-halves").value = view.halves;
-    for (const name of SWITCHES) byId(`sweep-${name}`).checked = view[name];
+    for (const name of SWITCHES) byAnyId(`sweep-${name}`).checked = view[name];
   }
 
   columns(name = this.view.name) {
@@ -187,7 +218,7 @@ class Panel {
     return [...ALWAYS, ...columnsOf(view.quantity)];
   }
 
-  /** Something was chosen. */
+  /** Changes the view and draws it. @param {() => void} apply */
   async change(apply) {
     apply();
     this.remember();
@@ -198,6 +229,7 @@ class Panel {
     }
   }
 
+  /** @param {number} position */
   async select(position) {
     const { view, grid } = this;
     const { second, branch } = grid.placeOf(position);
@@ -206,12 +238,12 @@ class Panel {
     await this.point.show(position, view);
   }
 
-  /** Takes up a new state of the job; readings do not overlap. */
+  /** Takes up a new state of the job; readings do not overlap. @param {Job} job */
   async follow(job) {
     this.job = job;
     this.stale = true;
     // The end is shown without delay.
-    if (api.isEnded(job)) this.wake?.();
+    if (api.isEnded(job)) this.wake();
     while (this.stale || this.reading) await (this.reading ??= this.read().finally(() => { this.reading = null; }));
   }
 
@@ -229,9 +261,10 @@ class Panel {
         this.redraw().catch(() => {});
       });
       if (job.state === "succeeded" && !this.sweep.rest) {
-        this.sweep.rest = await api.resultWithoutRows(this.sweep.id);
-        this.sweep.orders = this.sweep.rest.sweep.spectrum_mesh_orders ?? null;
-        fillWarnings(byId("warnings"), this.sweep.rest.warnings);
+        const rest = await api.resultWithoutRows(this.sweep.id);
+        this.sweep.rest = rest;
+        this.sweep.orders = rest.sweep?.spectrum_mesh_orders ?? null;
+        fillWarnings(byId("warnings"), rest.warnings);
       }
       await this.redraw();
       await this.table.update();
@@ -242,7 +275,7 @@ class Panel {
       }
       if (api.isEnded(job)) continue;
       const pause = Math.min(LONGEST_PAUSE_MS, Math.max(PAUSE_MS, PAUSE_FACTOR * (performance.now() - started)));
-      await new Promise((resolve) => {
+      await new Promise((/** @type {(value?: unknown) => void} */ resolve) => {
         this.wake = resolve;
         if (api.isEnded(this.job)) resolve();
         setTimeout(resolve, pause);
@@ -263,10 +296,10 @@ class Panel {
   async drawNow() {
     const { view, sweep, plot, grid } = this;
     if (sweep.rest && !this.there()[view.name]) view.name = grid.axes.length === 2 ? "map" : "curves";
-    // What the address asks for may need the end of the sweep.
+    // The view that the address names may need the end of the sweep.
     const name = this.there()[view.name] ? view.name : "curves";
     const columns = [...new Set([...this.columns(name), ...columnsOf(view.quantity)])];
-    // What is here is drawn while more is read.
+    // Rows that are here are drawn while more are read.
     if (!sweep.data.has(columns)) await sweep.data.require(columns);
     this.arrange();
     byId("sweep-count").textContent = progressText(sweep, this.job);
@@ -275,7 +308,10 @@ class Panel {
     showFindings(sweep, view, (position) => this.select(position));
     // Axes without a point have no range.
     if (!sweep.data.n) return;
-    const picture = { curves, map, bifurcation, spectra, campbell }[name](sweep, view);
+    /** @type {Record<string, (sweep: SweepState, view: SweepView) => Plot | null>} */
+    const plots = { curves, map, bifurcation, spectra, campbell };
+    const picture = plots[name](sweep, view);
+    if (!picture) return;
     await draw(plot, picture.traces, picture.axes);
     onZoom(plot, (range) => this.zoomed(range));
     plot.dataset.points = String(sweep.data.n);
@@ -286,11 +322,13 @@ class Panel {
 
   showKinds() {
     const { view, sweep } = this;
+    /** @type {Record<string, PointKind[]>} */
     const all = { regime: [...REGIMES, FAILED], contact: CONTACTS };
+    /** @type {Record<string, string[]>} */
     const words = { regime: sweep.data.column("regime"), contact: sweep.data.column("contact") };
     const errors = sweep.data.column("error");
     for (const name of ["regime", "contact"]) {
-      const node = byId(`sweep-${name}-legend`);
+      const node = byAnyId(`sweep-${name}-legend`);
       const wanted = view.name === "curves" || (view.name === "map" && view.kind === name);
       show(node, wanted);
       if (!wanted) continue;
@@ -305,30 +343,32 @@ class Panel {
 
   async drawSections() {
     const { view, sweep, grid } = this;
-    const wanted = view.name === "map" && view.selected !== null && !view.kind && grid.axes.length === 2;
+    const { selected } = view;
+    const wanted = view.name === "map" && selected !== null && !view.kind && grid.axes.length === 2;
     show(byId("sweep-sections"), wanted);
     if (!wanted) return;
     for (const along of [0, 1]) {
-      const { traces, axes, title } = section(sweep, view, along);
-      byId(`sweep-section-title-${along}`).textContent = title;
-      await draw(byId(`sweep-section-${along}`), traces, axes);
+      const { traces, axes, title } = section(sweep, { ...view, selected }, along);
+      byAnyId(`sweep-section-title-${along}`).textContent = title;
+      await draw(byAnyId(`sweep-section-${along}`), traces, axes);
     }
   }
 
-  /** A point of a plot was clicked. */
+  /** Selects the point of a plot that was clicked. @param {any} event of plotly */
   clicked({ points }) {
-    const position = points.map(({ customdata }) => customdata).find((value) => Number.isInteger(value));
+    /** @type {number | undefined} */
+    const position = points.map(({ customdata }) => customdata).find((/** @type {unknown} */ value) => Number.isInteger(value));
     if (position !== undefined) this.select(position);
   }
 
-  /** Finer lines after zooming in. */
+  /** Finer lines after zooming in. @param {Span | null} range */
   zoomed(range) {
     if (this.view.name !== "curves") return;
     const wanted = range && this.grid.axes[0].logarithmic ? range.map((end) => 10 ** end) : range;
     this.change(() => { this.view.range = wanted; });
   }
 
-  /** The same document once more: the new job goes on from the points that are here. */
+  /** Submits the same document again: the new job continues from the solved points. */
   async resume() {
     const button = byId("sweep-resume");
     button.disabled = true;

@@ -1,4 +1,4 @@
-// One point of a sweep: its values, and its response as a job of its own.
+// One point of a sweep: its values, and the submission of its document as a job of its own.
 
 import * as api from "../common/api.js";
 import { byId, el, fillValues, notify, show } from "../common/dom.js";
@@ -10,20 +10,26 @@ import { CONTACTS, QUANTITIES, REGIMES } from "./quantities.js";
 const NAME_LENGTH = 200;
 
 export class PointPanel {
+  /** @param {SweepState} sweep @param {SweepView["grid"]} grid @param {(position: number) => void} select */
   constructor(sweep, grid, select) {
-    Object.assign(this, { sweep, grid, select, position: null, asked: 0 });
+    this.sweep = sweep;
+    this.grid = grid;
+    this.select = select;
+    this.position = 0;
+    this.asked = 0;
     byId("sweep-open").addEventListener("click", () => this.open());
     byId("sweep-point-back").addEventListener("click", () => this.step(-1));
     byId("sweep-point-next").addEventListener("click", () => this.step(1));
   }
 
-  /** To the neighbour along the first axis. */
+  /** Selects the neighbour along the first axis. @param {number} by */
   step(by) {
     const { first, second, branch } = this.grid.placeOf(this.position);
     const next = this.grid.order[this.grid.order.indexOf(first) + by];
     if (next !== undefined) this.select(this.grid.at(next, second, branch));
   }
 
+  /** @param {number} position @param {SweepView} view */
   async show(position, view) {
     this.position = position;
     const { first, second, branch } = this.grid.placeOf(position);
@@ -42,6 +48,7 @@ export class PointPanel {
     }
   }
 
+  /** @param {number} first @param {number} second @param {SweepView} view */
   noteOf(first, second, view) {
     const value = this.grid.axes[0].values[first];
     const twofold = hysteresisAt(this.sweep, { ...view, line: second }).some(({ from, to }) => value >= from && value <= to);
@@ -49,10 +56,13 @@ export class PointPanel {
     return twofold ? `${told} Two motions exist here, so that it may show the other one.` : `${told} Where two motions exist it may show the other one.`;
   }
 
+  /** @param {(name: string) => any} value of a column; undefined while the point is not solved */
   fill(value) {
     const error = value("error");
     const solved = error !== undefined;
+    /** @param {PointKind[]} kinds @param {string | undefined} word */
     const kind = (kinds, word) => (word ? `${word}: ${kinds.find(({ is }) => is(word))?.detail ?? ""}` : null);
+    /** @type {ValueRow[]} */
     const rows = QUANTITIES.flatMap(({ label, unit, columns }) => {
       const values = Object.values(columns).map(value);
       if (values.every((one) => one === null || one === undefined)) return [];
@@ -82,7 +92,12 @@ export class PointPanel {
   }
 }
 
-/** Legend of the strip: the kinds that occur, with their colours and what they mean. */
+/**
+ * Legend of the strip: the kinds that occur, with their colours and meaning.
+ * @param {HTMLElement} node
+ * @param {PointKind[]} kinds
+ * @param {Set<number>} seen
+ */
 export function showLegend(node, kinds, seen) {
   node.replaceChildren(...kinds.filter((_, index) => seen.has(index)).map(({ label, detail, colour }) => {
     const swatch = el("span", { class: "swatch" });

@@ -1,33 +1,23 @@
-// What a point has: the quantities that can be plotted, and the words for its motion.
+// The quantities of a point that can be plotted, and the kinds of its motion and contact.
 
-/** A quantity: its columns by half (or one column for both), its name and unit; `least` marks those of which less is better. */
-export const QUANTITIES = [
-  half("mesh_circumferential_acceleration_rms", "m_s2", "Circumferential acceleration of the mesh, RMS", "m/s²", true),
-  half("pinion_axial_acceleration_rms", "m_s2", "Axial acceleration of the pinion, RMS", "m/s²", true),
-  whole("dynamic_factor", "Dynamic factor", "", true),
-  half("tooth_force_max", "n", "Largest tooth force", "N", true),
-  whole("min_displacement_um", "Least displacement of the mesh", "µm"),
-  whole("impact_force_n", "Mesh-in impact force", "N", true),
-  whole("stiffness_mean_n_per_um", "Mean mesh stiffness", "N/µm"),
-  whole("total_contact_ratio", "Total contact ratio", ""),
-  whole("loaded_contact_ratio", "Contact ratio under load", ""),
-  whole("error_estimate", "Estimated relative error of the RMS", ""),
-];
+import { SWEEP_COLUMNS } from "../common/quantities.js";
+import { scalarAt } from "../common/scalars.js";
 
-function half(name, unitName, label, unit, least = false) {
-  return { name, label, unit, least, columns: { left: `${name}_left_${unitName}`, right: `${name}_right_${unitName}` } };
-}
+/** @type {SweepQuantity[]} */
+export const QUANTITIES = [...new Set(SWEEP_COLUMNS.filter(({ kind }) => kind === "number").map(({ group }) => group))].map((group) => {
+  const columns = SWEEP_COLUMNS.filter((column) => column.group === group);
+  const { label, unit, percent, change, lower_is_better: least } = scalarAt(/** @type {string} */ (columns[0].quantity));
+  // Rows have shares of 1.
+  return { name: group, label, unit: percent ? "" : unit, change, least, columns: Object.fromEntries(columns.map(({ half, name }) => [half ?? "both", name])) };
+});
 
-function whole(name, label, unit, least = false) {
-  return { name, label, unit, least, columns: { both: name } };
-}
-
+/** @param {SweepQuantity} quantity */
 export const columnsOf = (quantity) => Object.values(quantity.columns);
 
 /** Columns that every view needs. */
 export const ALWAYS = ["regime", "contact", "error"];
 
-/** Kinds of motion, from the simplest to the wildest; `colour` is a variable of the stylesheet. */
+/** Kinds of motion, from the most to the least regular. @type {PointKind[]} */
 export const REGIMES = [
   { is: (word) => word === "period-1", label: "period-1", detail: "repeats every mesh period", colour: "--regime-1" },
   { is: (word) => word === "period-2", label: "period-2", detail: "repeats every second mesh period", colour: "--regime-2" },
@@ -38,7 +28,7 @@ export const REGIMES = [
   { is: (word) => word === "unstable", label: "unstable", detail: "grows without bound", colour: "--regime-7" },
 ];
 
-/** What the teeth do. */
+/** Kinds of contact. @type {PointKind[]} */
 export const CONTACTS = [
   { is: (word) => word === "continuous", label: "continuous", detail: "the teeth never separate", colour: "--contact-1" },
   { is: (word) => word === "single-sided", label: "single-sided", detail: "the teeth separate and come back to the same flank", colour: "--contact-2" },
@@ -46,9 +36,15 @@ export const CONTACTS = [
   { is: (word) => word === "apart", label: "apart", detail: "the teeth do not touch", colour: "--contact-4" },
 ];
 
-export const FAILED = { label: "no response", detail: "the point could not be solved; the table says why", colour: "--no-response" };
+/** A point without a response. @type {PointKind} */
+export const FAILED = { is: () => false, label: "no response", detail: "the point could not be solved; the table says why", colour: "--no-response" };
 
-/** Number of a word's kind; the number of kinds for a point without a response, null for one that is not solved yet. */
+/**
+ * Number of a word's kind; the number of kinds for a point without a response, null for one that is not solved yet.
+ * @param {PointKind[]} kinds
+ * @param {string | null} word
+ * @param {string | null} error
+ */
 export function kindOf(kinds, word, error) {
   if (error) return kinds.length;
   if (!word) return null;

@@ -2,25 +2,34 @@
 
 import * as api from "../common/api.js";
 import { decimal } from "../common/csv.js";
-import { byId, download, el, notify, show } from "../common/dom.js";
+import { byAnyId, byId, download, el, notify, show } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { QUANTITIES } from "./quantities.js";
 
 const ROWS = 50;
 
 export class PointTable {
+  /** @param {SweepState} sweep @param {SweepView["grid"]} grid @param {(position: number) => void} select */
   constructor(sweep, grid, select) {
-    Object.assign(this, { sweep, grid, select, from: 0, failedOnly: false, selected: null, asked: 0 });
+    this.sweep = sweep;
+    this.grid = grid;
+    this.select = select;
+    this.from = 0;
+    this.failedOnly = false;
+    /** @type {number | null} */
+    this.selected = null;
+    this.asked = 0;
     this.details = byId("sweep-details");
     this.table = byId("sweep-table");
-    this.table.tHead.replaceChildren(this.head());
+    this.table.tHead?.replaceChildren(this.head());
     this.details.addEventListener("toggle", () => this.update());
+    /** @param {() => number} to */
     const step = (to) => () => { this.from = Math.min(Math.max(0, to()), this.lastStart()); this.update(); };
     byId("sweep-first").addEventListener("click", step(() => 0));
     byId("sweep-back").addEventListener("click", step(() => this.from - ROWS));
     byId("sweep-next").addEventListener("click", step(() => this.from + ROWS));
     byId("sweep-last").addEventListener("click", step(() => this.lastStart()));
-    byId("sweep-failed").addEventListener("change", (event) => { this.failedOnly = event.target.checked; this.from = 0; this.update(); });
+    byId("sweep-failed").addEventListener("change", () => { this.failedOnly = byId("sweep-failed").checked; this.from = 0; this.update(); });
     byId("sweep-csv").addEventListener("click", () => this.save());
   }
 
@@ -41,7 +50,7 @@ export class PointTable {
     return Math.max(0, Math.floor((this.count() - 1) / ROWS) * ROWS);
   }
 
-  /** The page that has the selected point. */
+  /** Turns to the page with the selected point. @param {number} position */
   turnTo(position) {
     this.selected = position;
     if (!this.details.open) return;
@@ -51,7 +60,7 @@ export class PointTable {
 
   async update() {
     const failed = this.sweep.data.failed();
-    show(byId("sweep-failed").parentElement, failed.length > 0);
+    show(/** @type {HTMLElement} */ (byId("sweep-failed").parentElement), failed.length > 0);
     if (!this.details.open) return;
     this.asked += 1;
     const asked = this.asked;
@@ -63,6 +72,10 @@ export class PointTable {
     }
   }
 
+  /**
+   * @typedef {{ position: number, value: (name: string) => any }} TableRow
+   * @returns {Promise<TableRow[]>}
+   */
   async page() {
     const to = Math.min(this.grid.total, this.from + ROWS);
     const { positions, columns } = await api.pointColumns(this.sweep.id, { from: this.from, to, limit: ROWS });
@@ -74,11 +87,13 @@ export class PointTable {
     });
   }
 
+  /** @param {number[]} failed positions @returns {Promise<TableRow[]>} */
   async failedRows(failed) {
     const errors = this.sweep.data.column("error");
     return failed.slice(this.from, this.from + ROWS).map((position) => ({ position, value: (name) => (name === "error" ? errors[position] : null) }));
   }
 
+  /** @param {TableRow[]} rows */
   fill(rows) {
     const nodes = rows.map(({ position, value }) => {
       const [head, ...others] = this.grid.valuesAt(position).map((at) => number(at, 7));
@@ -99,7 +114,7 @@ export class PointTable {
     this.table.tBodies[0].replaceChildren(...nodes);
     const count = this.count();
     byId("sweep-page").textContent = count ? `Rows ${number(this.from + 1)} to ${number(Math.min(count, this.from + ROWS))} of ${number(count)}` : "No rows";
-    for (const [id, off] of [["sweep-first", this.from === 0], ["sweep-back", this.from === 0], ["sweep-next", this.from >= this.lastStart()], ["sweep-last", this.from >= this.lastStart()]]) byId(id).disabled = off;
+    for (const [id, off] of [["sweep-first", this.from === 0], ["sweep-back", this.from === 0], ["sweep-next", this.from >= this.lastStart()], ["sweep-last", this.from >= this.lastStart()]]) byAnyId(String(id)).disabled = off;
   }
 
   async save() {

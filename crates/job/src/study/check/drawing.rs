@@ -1,7 +1,7 @@
 //! The drawing of a document's pair.
 
 use crate::document::{Hand, JobDocument, RotationInput};
-use crate::drawing::{Drawing, DrawnGear, DrawnHalf, DrawnLine, Margin, PathPoint, PlaneOfAction, Section};
+use crate::drawing::{Drawing, DrawnGear, DrawnHalf, DrawnLine, DrawnSection, MarginResult, PathPoint, PlaneOfAction};
 use crate::study::CheckedJob;
 use herringbone_physics::gear::{self, Half, Member, Pair};
 use std::f64::consts::TAU;
@@ -20,12 +20,12 @@ impl Drawing {
     }
 }
 
-fn margin(margin: gear::Margin) -> Margin {
+fn margin(margin: gear::Margin) -> MarginResult {
     let gear::Margin { code, member, value, limit, unit } = margin;
-    Margin { code: code.to_owned(), member: member.to_owned(), value, limit, unit: unit.to_owned() }
+    MarginResult { code: code.to_owned(), member: member.to_owned(), value, limit, unit: unit.to_owned() }
 }
 
-fn section(pair: &Pair, document: &JobDocument) -> Section {
+fn section(pair: &Pair, document: &JobDocument) -> DrawnSection {
     // Where the lines of the left half pass through its middle.
     let b = pair.spec.face_width_m;
     let x_m = pair.position_m(0.0) + 0.5 * b * pair.base_helix_angle_rad.tan();
@@ -48,7 +48,7 @@ fn section(pair: &Pair, document: &JobDocument) -> Section {
     let p = pair.base_pitch_m;
     let first = ((pair.path_start_m - x_m) / p).ceil() as i32 - 1;
     let last = ((pair.path_end_m - x_m) / p).floor() as i32;
-    Section {
+    DrawnSection {
         seen_from: seen_from(document),
         pinion: drawn(&pair.pinion, [0.0, -pinion_pitch_m], pinion_pitch_m, pinion_rad, -1.0),
         gear: drawn(&pair.gear, [0.0, gear_pitch_m], gear_pitch_m, gear_rad, 1.0),

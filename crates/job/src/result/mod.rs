@@ -1,0 +1,78 @@
+//! The result document: what comes out. Names and units are the public contract; stages that did not run are null.
+//!
+//! A scalar is declared once, as a field of these structs with its `#[scalar(…)]` attribute: see [`ResultFields`].
+
+mod accuracy;
+mod geometry;
+mod impact;
+mod mesh;
+mod numerics;
+mod quantity;
+mod response;
+mod supports;
+mod sweep;
+mod sweep_column;
+mod words;
+
+pub use accuracy::{Accuracy, ModelError};
+pub use geometry::{GearGeometry, Geometry};
+pub use impact::ImpactResult;
+pub use mesh::{ApexSensitivity, ContactForceTable, Convergence, FlankLoad, Mesh, MeshCurve};
+pub use numerics::{NotFinite, NumericsResult, WallMs};
+pub use quantity::{Change, Quantity, QuantityKind, quantities};
+pub use response::{
+    FloquetMultiplier, IntervalPerHalf, IntervalResult, NaturalMode, Poincare, ResponseResult, RmsIntervalsResult,
+    RmsResult, SpectrumResult, ToothForceResult, ToothForces,
+};
+pub use supports::{SpringValue, SupportsResult};
+pub use sweep::{Campbell, CampbellCrossing, Hysteresis, Jump, SweepAxis, SweepPoint, SweepResult};
+pub use sweep_column::{Cell, CellKind, Column};
+pub use words::{
+    ActsOnResult, BranchDifference, BranchDirection, ContactStateResult, ImpactSource, MethodResult, PlaneResult,
+    RegimeResult, ReusedStage, SpringOrigin, StiffnessSource,
+};
+
+pub(crate) use herringbone_macros::{ResultFields, SweepColumns};
+pub(crate) use quantity::{Declaration, Optional, Place, ResultFields};
+pub(crate) use sweep_column::ToCell;
+
+use herringbone_physics::gear::Warning;
+use serde::{Deserialize, Serialize};
+
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+pub struct JobResult {
+    pub geometry: Option<Geometry>,
+    pub mesh: Option<Mesh>,
+    pub impact: Option<ImpactResult>,
+    pub response: Option<ResponseResult>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub sweep: Option<SweepResult>,
+    pub numerics: NumericsResult,
+    /// Springs of the equations of motion; null for a job without a response.
+    #[serde(default)]
+    pub supports: Option<SupportsResult>,
+    /// How far the numbers may be off: from the solution of their own equations, and from a gear pair.
+    #[serde(default)]
+    pub accuracy: Option<Accuracy>,
+    #[cfg_attr(feature = "schema", schema(value_type = Vec<WarningEntry>))]
+    pub warnings: Vec<Warning>,
+}
+
+/// A warning: what an engineer should know, and which field it is about.
+#[cfg(feature = "schema")]
+#[derive(utoipa::ToSchema)]
+pub struct WarningEntry {
+    pub code: String,
+    pub detail: String,
+    pub pointer: String,
+}
+
+/// Two values, one per helix half.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ResultFields)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(halves)]
+pub struct PerHalf {
+    pub left: f64,
+    pub right: f64,
+}

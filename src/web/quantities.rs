@@ -1,0 +1,68 @@
+//! The script module `common/quantities.js`: the scalars of a result and the columns of a sweep, as the result's types
+//! declare them. The pages take names, units and meanings from it.
+
+use herringbone_job::result::{CellKind, Column, SweepPoint, quantities};
+use serde::Serialize;
+use std::sync::LazyLock;
+
+/// A column as the module has it.
+#[derive(Serialize)]
+struct ColumnEntry {
+    name: &'static str,
+    group: &'static str,
+    /// Pointer of its quantity; null where the sweep itself makes the value.
+    quantity: Option<&'static str>,
+    half: Option<&'static str>,
+    kind: &'static str,
+    on_request: bool,
+}
+
+impl From<&Column> for ColumnEntry {
+    fn from(column: &Column) -> Self {
+        let kind = match column.kind {
+            CellKind::Number => "number",
+            CellKind::Word => "word",
+            CellKind::Numbers => "numbers",
+        };
+        let Column { name, group, quantity, half, on_request, .. } = *column;
+        Self { name, group, quantity, half, kind, on_request }
+    }
+}
+
+static MODULE: LazyLock<String> = LazyLock::new(|| {
+    let columns: Vec<_> = SweepPoint::COLUMNS.iter().map(ColumnEntry::from).collect();
+    format!(
+        "// Made by the service from the declarations of its results.\n\n\
+         export const QUANTITIES = {};\n\nexport const SWEEP_COLUMNS = {};\n",
+        list(quantities()),
+        list(&columns)
+    )
+});
+
+/// The text of the module.
+pub fn module() -> &'static str {
+    &MODULE
+}
+
+/// A list in JSON, which is JavaScript too, with a line for each entry.
+fn list(entries: &[impl Serialize]) -> String {
+    // Entries are texts and flags, which can be written.
+    let lines = entries.iter().filter_map(|entry| serde_json::to_string(entry).ok());
+    format!("[\n{}\n]", lines.map(|line| format!("  {line},")).collect::<Vec<_>>().join("\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_quantity_and_column_is_an_entry() {
+        let module = module();
+        let entries = module.lines().filter(|line| line.starts_with("  {")).count();
+        assert_eq!(entries, quantities().len() + SweepPoint::COLUMNS.len());
+        assert!(
+            module.contains(r#""pointer":"/mesh/stiffness_mean_n_per_um","label":"mesh stiffness of one half, mean""#)
+        );
+        assert!(module.contains(r#""name":"tooth_force_max_left_n","group":"tooth_force_max""#));
+    }
+}
