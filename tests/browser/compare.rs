@@ -115,7 +115,10 @@ async fn two_jobs_are_compared_and_a_third_is_added() {
         );
         let expected = json!(["/design/helix_angle_deg", "/operation/pinion_speed_rpm", "/operation/pinion_torque_nm"]);
         assert_eq!(browser.value(pointers).await, expected);
-        near(cell(browser, "/response/rms/mesh_circumferential_acceleration_m_s2/{half}-both", &c).await.0, &rms(&third));
+        near(
+            cell(browser, "/response/rms/mesh_circumferential_acceleration_m_s2/{half}-both", &c).await.0,
+            &rms(&third),
+        );
         for figure in ["error", "series", "spectrum"] {
             browser
                 .until(&format!(
