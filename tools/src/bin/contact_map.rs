@@ -7,7 +7,7 @@
 //! speed, and the regimes that occur. A jump of one point by itself would stand out.
 
 use herringbone_job::parse_value;
-use herringbone_job::result::SweepPoint;
+use herringbone_job::result::{ContactStateResult, RegimeResult, SweepPoint};
 use herringbone_job::study::{self, SolveContext};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -79,8 +79,9 @@ fn report(name: &str, points: &[SweepPoint], torques: usize, speeds: usize, seco
     }
     let mut regimes: BTreeMap<String, usize> = BTreeMap::new();
     for p in &grid {
-        let word = |w: &Option<String>| w.clone().unwrap_or_default();
-        *regimes.entry(format!("{}, {}{}", word(&p.regime), word(&p.contact), word(&p.error))).or_default() += 1;
+        let (regime, contact) =
+            (p.regime.map(RegimeResult::as_str).unwrap_or_default(), p.contact.map_or("", ContactStateResult::as_str));
+        *regimes.entry(format!("{regime}, {contact}{}", p.error.as_deref().unwrap_or_default())).or_default() += 1;
     }
     println!("motions: {regimes:?}");
 }

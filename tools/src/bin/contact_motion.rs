@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             (1.0 - response.fraction_in_contact) - expected["fraction_without_contact"].as_f64().unwrap_or(f64::NAN),
             of(mesh.transmission_error_mean_um, "/static/transmission_error_mean_um"),
             of(mesh.transmission_error_harmonics_um[0], "/static/transmission_error_harmonics_um/0"),
-            response.regime,
+            response.regime.as_str(),
             response.rms.mesh_circumferential_acceleration_m_s2.left,
             response.error_estimate,
             numerics.steps,
