@@ -1,8 +1,8 @@
 //! # herringbone
 //!
-//! The HTTP simulation service for double-helical gear pairs: job store, work queue, HTTP interface, pages, command line.
-//! What is calculated is in the crates `herringbone-physics` (the physics, SI) and `herringbone-job` (documents, results and the
-//! stages between them). docs/ARCHITECTURE.md has the map and the invariants.
+//! The HTTP simulation service for double-helical gear pairs: database, job queue, HTTP interface and web pages. The
+//! calculation is in the crates `herringbone-physics` (the physics, in SI units) and `herringbone-job` (documents,
+//! results and the stages between them). docs/ARCHITECTURE.md has the map of the modules and the invariants.
 
 pub mod api;
 pub mod store;

@@ -1,4 +1,4 @@
-//! Argument parsing and wiring, nothing else.
+//! The program: parses the command line and runs the subcommand.
 
 mod cli;
 

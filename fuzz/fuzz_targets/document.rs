@@ -1,9 +1,9 @@
-//! Bytes as a job document: reading never panics; what is read reads back as itself when written out; whether the gear can
-//! exist is answered without a panic.
+//! Bytes as a job document: reading never panics; what is read reads back as itself when written out; whether the gear
+//! can exist is answered without a panic.
 
 #![no_main]
 
-use herringbone_job::study;
+use herringbone_job::study::CheckedJob;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -11,5 +11,5 @@ fuzz_target!(|bytes: &[u8]| {
     let written = serde_json::to_vec(&document).expect("a document holds numbers and texts");
     let again = herringbone_job::parse(&written).expect("a document written out is valid");
     assert!(document == again, "{document:?}\nreads back as\n{again:?}");
-    let _ = study::check(&document);
+    let _ = CheckedJob::new(document);
 });

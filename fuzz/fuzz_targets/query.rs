@@ -1,5 +1,6 @@
-//! Bytes as the path, query and headers of requests that read: never a panic, never a failure of the service, and a problem
-//! whenever something is refused. The input's first byte chooses the path; then lines: the query, and headers as `name: value`.
+//! Bytes as the path, query and headers of requests that read: never a panic, never a failure of the service, and a
+//! problem whenever something is refused. The input's first byte chooses the path; then lines: the query, and headers
+//! as `name: value`.
 
 #![no_main]
 
@@ -12,7 +13,7 @@ use herringbone::work::{Jobs, Solver, WorkConfig};
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
 use herringbone_job::result::JobResult;
-use herringbone_job::study::{self, Channel, CheckReport, Outcome, SolveContext, SolveError};
+use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveContext, SolveError};
 use http_body_util::BodyExt;
 use jiff::Timestamp;
 use libfuzzer_sys::fuzz_target;
@@ -25,15 +26,15 @@ use tower::ServiceExt;
 struct AtOnce;
 
 impl Solver for AtOnce {
-    fn check(&self, document: &JobDocument) -> Result<CheckReport, DocumentError> {
-        study::check(document)
+    fn check(&self, document: JobDocument) -> Result<CheckedJob, DocumentError> {
+        CheckedJob::new(document)
     }
 
     fn input_hash(&self, document: &JobDocument) -> String {
         study::input_hash(document)
     }
 
-    fn solve(&self, _: &JobDocument, _: &SolveContext) -> Result<Outcome, SolveError> {
+    fn solve(&self, _: &CheckedJob, _: &SolveContext) -> Result<Outcome, SolveError> {
         let values = (0..5000).map(|index| f64::from(index).sin()).collect();
         let (quantity, unit) = ("acceleration".to_owned(), "m/s2".to_owned());
         let channel = Channel { name: "a_x_left".to_owned(), quantity, unit, t0_s: 0.5, dt_s: 1e-4, rms: 0.7, values };

@@ -1,23 +1,23 @@
-//! Columns of the rows of a sweep, as they are declared with the row.
+//! The columns of the rows of a sweep, as declared with the fields of the row.
 
 use herringbone_job::result::{Cell, CellKind, Column, SweepPoint};
 use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
 use utoipa::openapi::{ObjectBuilder, RefOr, Schema, Type};
 use utoipa::{PartialSchema, ToSchema};
 
-/// The columns of a table that names none: numbers, then words.
-pub fn usual() -> Vec<&'static Column> {
-    let usual = |kind| SweepPoint::COLUMNS.iter().filter(move |column| column.kind == kind && !column.on_request);
-    usual(CellKind::Number).chain(usual(CellKind::Word)).collect()
+/// The columns of a table when none are requested: numbers, then texts.
+pub fn default_columns() -> Vec<&'static Column> {
+    let of_kind = |kind| SweepPoint::COLUMNS.iter().filter(move |column| column.kind == kind && !column.on_request);
+    of_kind(CellKind::Number).chain(of_kind(CellKind::Word)).collect()
 }
 
 /// Every column, by its name.
 pub fn all() -> Vec<(&'static str, &'static Column)> {
     let on_request = SweepPoint::COLUMNS.iter().filter(|column| column.on_request);
-    usual().into_iter().chain(on_request).map(|column| (column.name, column)).collect()
+    default_columns().into_iter().chain(on_request).map(|column| (column.name, column)).collect()
 }
 
-/// The name of a column, for the description.
+/// The name of a column, for the OpenAPI document.
 pub struct ColumnName;
 
 impl PartialSchema for ColumnName {
@@ -30,28 +30,28 @@ impl PartialSchema for ColumnName {
 
 impl ToSchema for ColumnName {}
 
-/// Rows as an object with a list for each column.
-pub struct Table<'a> {
+/// Rows, serialized as an object with a list for each column.
+pub struct ColumnTable<'a> {
     pub columns: &'a [&'static Column],
     pub rows: &'a [SweepPoint],
 }
 
-impl Serialize for Table<'_> {
+impl Serialize for ColumnTable<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.columns.len()))?;
         for column in self.columns {
-            map.serialize_entry(column.name, &Values { column, rows: self.rows })?;
+            map.serialize_entry(column.name, &ColumnValues { column, rows: self.rows })?;
         }
         map.end()
     }
 }
 
-struct Values<'a> {
+struct ColumnValues<'a> {
     column: &'a Column,
     rows: &'a [SweepPoint],
 }
 
-impl Serialize for Values<'_> {
+impl Serialize for ColumnValues<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut list = serializer.serialize_seq(Some(self.rows.len()))?;
         for row in self.rows {
@@ -108,6 +108,6 @@ mod tests {
             "error": [null, "no"],
             "acceleration_spectrum_m_s2": [[0.5, 1.0], null],
         });
-        assert_eq!(serde_json::to_value(Table { columns: &columns, rows: &rows }).unwrap(), expected);
+        assert_eq!(serde_json::to_value(ColumnTable { columns: &columns, rows: &rows }).unwrap(), expected);
     }
 }

@@ -1,4 +1,4 @@
-//! How the service is reached, and the limits of requests.
+//! The listen address, and the limits of requests.
 
 use super::connections::ConnectionConfig;
 use super::guard::AccessConfig;
@@ -7,36 +7,37 @@ use std::time::Duration;
 
 /// Largest request body.
 pub const MAX_BODY_BYTES: usize = 1 << 20;
-/// Longest wait that `Prefer: wait=` is given.
+/// Longest wait of `Prefer: wait=`, in seconds.
 pub const MAX_WAIT_S: u64 = 30;
-/// Page of a job list: default and cap.
+/// Jobs per page of a list: default and maximum.
 pub(super) const DEFAULT_PAGE: u32 = 50;
 pub(super) const MAX_PAGE: u32 = 200;
-/// Rows of a page of a sweep's points: default and cap.
+/// Rows per page of a sweep's points: default and maximum.
 pub(super) const DEFAULT_ROWS: u32 = 1000;
 pub(super) const MAX_ROWS: u32 = 10_000;
-/// Rows that a sweep can have: its points, up and down.
-pub(super) const MOST_ROWS: u64 = herringbone_job::MAX_SWEEP_POINTS as u64 * 2;
+/// Largest number of rows of a sweep: its points, with increasing and decreasing values.
+pub(super) const MAX_SWEEP_ROWS: u64 = herringbone_job::MAX_SWEEP_POINTS as u64 * 2;
 /// Points of a downsampled series: default and bounds.
 pub(super) const DEFAULT_POINTS: u64 = 2000;
 pub(super) const MIN_POINTS: u64 = 4;
 pub(super) const MAX_POINTS: u64 = 100_000;
-/// Samples that one request for a series without downsampling may take.
+/// Largest number of samples in a response without downsampling.
 pub(super) const MAX_RAW_POINTS: u64 = 1_000_000;
-/// Series that are read, written and sent at once: each takes an estimated 80 MB with all its samples (1e6).
-pub(super) const SERIES_AT_ONCE: usize = 16;
+/// Largest number of series in memory at once: each takes an estimated 80 MB with all its samples (1e6).
+pub(super) const MAX_SERIES_IN_MEMORY: usize = 16;
 /// Longest `Idempotency-Key`.
 pub(super) const MAX_KEY_CHARS: usize = 255;
-/// Longest `X-Request-Id` that is taken from a client.
+/// Longest `X-Request-Id` accepted from a client.
 pub(super) const MAX_REQUEST_ID_CHARS: usize = 128;
-/// Seconds after which a client should look again.
+/// Values of `Retry-After`, in seconds: of a job that has not ended, of a full queue or database, of the limit of
+/// followers.
 pub(super) const RETRY_LIVE_S: u64 = 1;
 pub(super) const RETRY_FULL_S: u64 = 5;
 pub(super) const RETRY_FOLLOW_S: u64 = 5;
-/// Event streams say something at least this often.
+/// Interval of keep-alive comments in event streams.
 pub(super) const KEEP_ALIVE: Duration = Duration::from_secs(15);
 
-/// Address and limits.
+/// Listen address, limits, access control and connections.
 #[derive(Debug, Clone, clap::Args)]
 pub struct HttpConfig {
     /// Address to listen on; port 0 takes any free one.

@@ -1,22 +1,23 @@
-//! The only HTTP. One file per endpoint in [`routes`]; what they share is what a request says ([`request`]), what a job
-//! looks like from outside ([`view`]) and how everything that goes wrong is answered ([`problem`]).
+//! The HTTP interface. One file per endpoint in [`routes`]; shared are the extractors ([`request`]), the representation
+//! of jobs ([`view`]) and of errors ([`problem`]). No other module knows HTTP.
 //!
-//! Invariant: every answer with a status of 400 or above is `application/problem+json` in one schema, with a code of a
-//! closed list; the envelope turns what the framework itself refuses into the same form. (A request whose head cannot be
-//! read never gets there: see [`connections`].)
+//! Invariant: every response with a status of 400 or above is `application/problem+json` in one schema, with a code of
+//! a closed list; the request middleware brings errors of the framework into the same form. (A request whose head
+//! cannot be parsed does not reach it: see [`connections`].)
 
 mod columns;
 mod config;
 mod connections;
 mod csv;
 mod downsample;
-mod envelope;
 mod guard;
-mod held;
+mod guarded_body;
+mod middleware;
 mod openapi;
 mod points;
 mod problem;
 mod request;
+mod result_body;
 mod router;
 mod routes;
 mod serve;
@@ -26,8 +27,8 @@ mod view;
 
 pub use config::{HttpConfig, MAX_BODY_BYTES, MAX_WAIT_S};
 pub use connections::ConnectionConfig;
-pub use csv::{Decimal, Field as CsvField};
-pub use guard::{Access, AccessConfig, AccessError, LoginNotice, LoginPage};
+pub use csv::{CsvField, CsvWriter, Decimal};
+pub use guard::{Access, AccessConfig, AccessError, LoginNotice, LoginRenderer};
 pub use openapi::openapi_json;
 pub use problem::{Problem, ProblemCode};
 pub use router::{Pages, router};

@@ -1,11 +1,11 @@
-//! Paths and the layers around them.
+//! The router and its layers.
 
 use super::config::{HttpConfig, MAX_BODY_BYTES};
-use super::envelope::{answer_panic, envelope};
-use super::guard::{Access, LoginPage, check_credentials, check_host, check_origin, login_routes};
+use super::guard::{Access, LoginRenderer, check_credentials, check_host, check_origin, login_routes};
+use super::middleware::{panic_response, request_middleware};
 use super::openapi;
-use super::problem::Refusal;
-use super::request::chosen;
+use super::problem::ApiError;
+use super::request::negotiate;
 use super::routes;
 use super::state::AppState;
 use axum::Router;
@@ -23,47 +23,47 @@ use tower_http::sensitive_headers::{SetSensitiveRequestHeadersLayer, SetSensitiv
 use tower_http::timeout::TimeoutLayer;
 use utoipa_swagger_ui::{Config, SwaggerUi};
 
-/// The web pages, which the service carries without knowing them.
+/// The web pages, passed in by the program: the HTTP interface does not depend on them.
 #[derive(Default)]
 pub struct Pages {
     pub routes: Router,
-    /// What browsers are shown at addresses that lead nowhere.
+    /// The page for browsers at unknown paths.
     pub not_found: MethodRouter,
-    /// The page at `/login`, of a service with a token.
-    pub login: LoginPage,
+    /// The renderer of the page at `/login`, for a service with a token.
+    pub login: LoginRenderer,
 }
 
-/// The whole service; the pages are merged into it and get the same layers.
+/// The router of the whole service; the pages get the same layers as the interface.
 pub fn router(state: AppState, config: &HttpConfig, access: &Access, pages: Pages) -> Router {
     let not_found = pages.not_found;
-    let state = state.with_followers(config.connections.max_followers());
-    let (api, _document) = openapi::described_routes().split_for_parts();
-    api.merge(routes::undescribed())
+    let state = state.with_max_followers(config.connections.max_followers());
+    let (api, _document) = openapi::documented_routes().split_for_parts();
+    api.merge(routes::undocumented())
         .with_state(state)
         .merge(SwaggerUi::new("/docs").config(Config::from("/openapi.json")))
         .merge(pages.routes)
         .merge(login_routes(access, pages.login))
-        .fallback(async move |request: Request| nothing_here(request, not_found).await)
+        .fallback(async move |request: Request| fallback(request, not_found).await)
         .layer(DefaultBodyLimit::max(MAX_BODY_BYTES))
-        // The same bound for what a request announces, before any of it is asked for.
+        // The same bound on `Content-Length`, before any of the body is requested.
         .layer(RequestBodyLimitLayer::new(MAX_BODY_BYTES))
         .layer(TimeoutLayer::with_status_code(StatusCode::REQUEST_TIMEOUT, config.request_timeout()))
         .layer(from_fn_with_state(access.clone(), check_credentials))
         .layer(check_origin())
         .layer(from_fn_with_state(access.clone(), check_host))
-        .layer(CatchPanicLayer::custom(answer_panic))
-        .layer(from_fn(envelope))
-        // Whatever prints headers below here prints no secrets.
+        .layer(CatchPanicLayer::custom(panic_response))
+        .layer(from_fn(request_middleware))
+        // Keeps secrets out of headers that inner layers log.
         .layer(SetSensitiveResponseHeadersLayer::new([SET_COOKIE]))
         .layer(SetSensitiveRequestHeadersLayer::new([AUTHORIZATION, COOKIE]))
         .layer(CompressionLayer::new())
 }
 
-/// A page for browsers, a problem for programs.
-async fn nothing_here(request: Request, page: MethodRouter) -> Response {
-    let liked = chosen(request.headers(), &["application/problem+json", "text/html"]);
-    if matches!(liked, Ok("text/html")) && !request.uri().path().starts_with("/api/") {
+/// The response at unknown paths: a page for browsers, a problem for programs.
+async fn fallback(request: Request, page: MethodRouter) -> Response {
+    let media_type = negotiate(request.headers(), &["application/problem+json", "text/html"]);
+    if matches!(media_type, Ok("text/html")) && !request.uri().path().starts_with("/api/") {
         return page.oneshot(request).await.into_response();
     }
-    Refusal::not_found("There is nothing at this path.").into_response()
+    ApiError::not_found("There is nothing at this path.").into_response()
 }

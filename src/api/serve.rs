@@ -1,17 +1,18 @@
-//! Serving until told to stop, and stopping in bounded time.
+//! Serving, and shutting down in bounded time.
 
-use super::connections::{ConnectionConfig, Endings, listen};
+use super::connections::{ConnectionConfig, ShutdownTokens, listen};
 use crate::work::Jobs;
 use axum::Router;
 use std::future::Future;
 use std::time::Duration;
 use tokio::net::TcpListener;
 
-/// What open connections are given to end after the jobs have stopped.
+/// Time for open connections to end after the jobs have stopped.
 const CONNECTION_DRAIN: Duration = Duration::from_secs(5);
 
-/// Serves until `shutdown` completes; then takes no more jobs, ends event streams and waits, stops running jobs (they
-/// run again after the restart), and returns within the configured drain time. Connections still open then are cut off.
+/// Serves until `shutdown` completes. Then accepts no further jobs, ends event streams and waits, stops running jobs
+/// (they run again after the restart), and returns within the configured drain time; connections still open then are
+/// closed.
 pub async fn serve(
     listener: TcpListener,
     app: Router,
@@ -19,14 +20,14 @@ pub async fn serve(
     jobs: Jobs,
     shutdown: impl Future<Output = ()>,
 ) {
-    let endings = Endings::default();
-    let server = listen(listener, app, connections.clone(), endings.clone());
+    let tokens = ShutdownTokens::default();
+    let server = listen(listener, app, connections.clone(), tokens.clone());
     tokio::pin!(server);
     tokio::select! {
         () = &mut server => return,
         () = shutdown => {}
     }
-    endings.stop.cancel();
+    tokens.graceful.cancel();
     let drained = async {
         if !jobs.close().await {
             tracing::warn!("running jobs did not stop in time; they are taken up after the restart");
@@ -36,7 +37,7 @@ pub async fn serve(
     let ((), ended) = tokio::join!(drained, ended);
     if ended.is_err() {
         tracing::warn!("some connections were still open at the end of the drain");
-        endings.cut.cancel();
+        tokens.immediate.cancel();
         server.await;
     }
     jobs.store().close().await;

@@ -1,6 +1,6 @@
-//! What handlers are given.
+//! The state shared by handlers.
 
-use super::config::SERIES_AT_ONCE;
+use super::config::MAX_SERIES_IN_MEMORY;
 use super::telemetry;
 use crate::work::Jobs;
 use jiff::Timestamp;
@@ -11,50 +11,54 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 /// Jobs, metrics and the time of the start. Cheap to clone.
 #[derive(Clone)]
 pub struct AppState {
-    inner: Arc<Inner>,
-    followers: Arc<Semaphore>,
-    series: Arc<Semaphore>,
+    shared: Arc<AppShared>,
+    follower_permits: Arc<Semaphore>,
+    series_permits: Arc<Semaphore>,
 }
 
-struct Inner {
+struct AppShared {
     jobs: Jobs,
     metrics: PrometheusHandle,
     started_at: Timestamp,
 }
 
 impl AppState {
-    /// The state of a service over these jobs, started now.
+    /// The state of a service with these jobs, started at `started_at`.
     pub fn new(jobs: Jobs, started_at: Timestamp) -> Self {
-        let inner = Arc::new(Inner { jobs, metrics: telemetry::recorder(), started_at });
+        let shared = Arc::new(AppShared { jobs, metrics: telemetry::recorder(), started_at });
         let semaphore = |permits| Arc::new(Semaphore::new(permits));
-        Self { inner, followers: semaphore(Semaphore::MAX_PERMITS), series: semaphore(SERIES_AT_ONCE) }
+        Self {
+            shared,
+            follower_permits: semaphore(Semaphore::MAX_PERMITS),
+            series_permits: semaphore(MAX_SERIES_IN_MEMORY),
+        }
     }
 
-    /// The same with a bound on clients that follow jobs.
-    pub(super) fn with_followers(self, limit: usize) -> Self {
-        Self { followers: Arc::new(Semaphore::new(limit)), ..self }
+    /// Returns this state with a bound on the clients that follow jobs.
+    pub(super) fn with_max_followers(self, limit: usize) -> Self {
+        Self { follower_permits: Arc::new(Semaphore::new(limit)), ..self }
     }
 
     pub fn jobs(&self) -> &Jobs {
-        &self.inner.jobs
+        &self.shared.jobs
     }
 
     pub(super) fn metrics(&self) -> &PrometheusHandle {
-        &self.inner.metrics
+        &self.shared.metrics
     }
 
     pub(super) fn started_at(&self) -> Timestamp {
-        self.inner.started_at
+        self.shared.started_at
     }
 
-    /// A place among the clients that follow a job (an event stream, a wait for its end), so that they cannot use up all
-    /// connections; `None` when all are taken.
-    pub(super) fn follow(&self) -> Option<OwnedSemaphorePermit> {
-        self.followers.clone().try_acquire_owned().ok()
+    /// The permit of a client that follows a job (an event stream, a wait for its end); `None` when all are taken. The
+    /// bound keeps connections free for other requests.
+    pub(super) fn follower_permit(&self) -> Option<OwnedSemaphorePermit> {
+        self.follower_permits.clone().try_acquire_owned().ok()
     }
 
-    /// A place among the series in memory; waits for one. To be held until the answer was sent.
-    pub(super) async fn series_place(&self) -> Option<OwnedSemaphorePermit> {
-        self.series.clone().acquire_owned().await.ok()
+    /// Waits for the permit to hold a series in memory; to be kept until the response was sent.
+    pub(super) async fn series_permit(&self) -> Option<OwnedSemaphorePermit> {
+        self.series_permits.clone().acquire_owned().await.ok()
     }
 }

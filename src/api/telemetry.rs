@@ -1,11 +1,11 @@
-//! The process's metrics.
+//! Metrics of the process.
 
-use crate::store::Usage;
+use crate::store::DatabaseUsage;
 use jiff::Timestamp;
 use metrics_exporter_prometheus::{PrometheusBuilder, PrometheusHandle};
 use std::sync::OnceLock;
 
-/// Upper bounds of the duration histograms: requests take milliseconds, jobs minutes.
+/// Upper bounds of the duration histograms, in seconds.
 const SECONDS: [f64; 14] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3600.0];
 
 /// The recorder of this process, installed on first use.
@@ -16,7 +16,7 @@ pub fn recorder() -> PrometheusHandle {
             let builder = PrometheusBuilder::new();
             let recorder = builder.set_buckets(&SECONDS).unwrap_or_default().build_recorder();
             let handle = recorder.handle();
-            // Someone else's recorder stays; ours is then empty.
+            // The recorder installed first stays in use.
             if metrics::set_global_recorder(recorder).is_err() {
                 tracing::warn!("metrics are recorded elsewhere");
             }
@@ -26,7 +26,7 @@ pub fn recorder() -> PrometheusHandle {
         .clone()
 }
 
-/// An event stream; counted as open as long as this lives.
+/// Counts an event stream as open until it is dropped.
 pub struct OpenStream(());
 
 impl OpenStream {
@@ -42,7 +42,7 @@ impl Drop for OpenStream {
     }
 }
 
-/// A connection; counted as open as long as this lives.
+/// Counts a connection as open until it is dropped.
 pub struct OpenConnection(());
 
 impl OpenConnection {
@@ -58,7 +58,7 @@ impl Drop for OpenConnection {
     }
 }
 
-/// What is read when somebody asks.
+/// Updates the gauges of the process: uptime, versions, memory.
 pub fn measure_process(started_at: Timestamp, now: Timestamp, solver_version: &'static str) {
     let uptime_s = now.duration_since(started_at).as_secs_f64().max(0.0);
     metrics::gauge!("herringbone_uptime_seconds").set(uptime_s);
@@ -69,15 +69,15 @@ pub fn measure_process(started_at: Timestamp, now: Timestamp, solver_version: &'
     }
 }
 
-/// Room that the database takes.
-pub fn measure_database(usage: &Usage) {
+/// Updates the gauges of the size of the database.
+pub fn measure_database(usage: &DatabaseUsage) {
     let parts = [("used", usage.used_bytes), ("file", usage.file_bytes), ("log", usage.log_bytes)];
     for (part, bytes) in parts {
         metrics::gauge!("herringbone_database_bytes", "part" => part).set(bytes as f64);
     }
 }
 
-/// Memory of this process; only where Linux tells it.
+/// Resident memory of this process; `None` except on Linux.
 fn resident_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
@@ -112,7 +112,7 @@ fn describe() {
     metrics::describe_gauge!("herringbone_uptime_seconds", "Time since the start.");
     metrics::describe_gauge!("herringbone_resident_memory_bytes", "Memory of the process (Linux).");
     metrics::describe_gauge!("herringbone_build_info", "Always 1; the labels are the versions.");
-    // Counters that are there from the start: an alert on their growth needs a first value.
+    // Counters exist from the start: an alert on their growth needs a first value.
     for place in ["job", "request"] {
         metrics::counter!("herringbone_panics_total", "in" => place).absolute(0);
     }

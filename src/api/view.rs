@@ -1,12 +1,13 @@
-//! A job as clients see it.
+//! The representation of jobs in responses.
 
 use super::config::RETRY_LIVE_S;
-use super::problem::Problem;
-use crate::store::{JobRecord, State};
+use super::problem::{ApiError, Problem};
+use crate::store::{JobRecord, JobState};
 use axum::Json;
-use axum::http::header::{CACHE_CONTROL, ETAG, RETRY_AFTER};
+use axum::http::header::{CACHE_CONTROL, RETRY_AFTER};
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse, Response};
+use headers::{ETag, HeaderMapExt};
 use herringbone_job::document::JobKind;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -20,7 +21,7 @@ pub struct Job {
     pub kind: String,
     pub name: Option<String>,
     pub label: Option<String>,
-    pub state: State,
+    pub state: JobState,
     /// Grows with every change; the `id` of the events and the entity tag of this answer.
     pub revision: i64,
     /// How often the job was started.
@@ -95,27 +96,30 @@ impl From<&JobRecord> for Job {
     }
 }
 
-/// Path of a job.
+/// The path of a job.
 pub fn job_path(job: &JobRecord) -> String {
     format!("/api/v1/jobs/{}", job.id)
 }
 
-/// Weak entity tag of a job.
-pub fn job_etag(job: &JobRecord) -> String {
-    format!("W/\"{}\"", job.revision)
+/// The weak entity tag of a job: its revision.
+pub fn job_etag(job: &JobRecord) -> Result<ETag, ApiError> {
+    format!("W/\"{}\"", job.revision).parse().map_err(ApiError::internal)
 }
 
-/// The answer that shows a job: entity tag, and when to look again while it lives.
-pub fn job_response(status: StatusCode, job: &JobRecord) -> Response {
-    let mut response = (status, [(ETAG, job_etag(job))], Json(Job::from(job))).into_response();
+/// The response with a job: its entity tag, and `Retry-After` until it has ended.
+pub fn job_response(status: StatusCode, job: &JobRecord) -> Result<Response, ApiError> {
+    let mut response = (status, Json(Job::from(job))).into_response();
+    response.headers_mut().typed_insert(job_etag(job)?);
     response.headers_mut().insert(CACHE_CONTROL, HeaderValue::from_static("no-cache"));
     if !job.state.is_ended() {
         response.headers_mut().insert(RETRY_AFTER, HeaderValue::from(RETRY_LIVE_S));
     }
-    response
+    Ok(response)
 }
 
-/// 304 with the entity tag.
-pub fn not_modified(etag: String) -> Response {
-    (StatusCode::NOT_MODIFIED, [(ETAG, etag)]).into_response()
+/// The response 304 with the entity tag.
+pub fn not_modified(etag: ETag) -> Response {
+    let mut response = StatusCode::NOT_MODIFIED.into_response();
+    response.headers_mut().typed_insert(etag);
+    response
 }

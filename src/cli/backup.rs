@@ -1,4 +1,4 @@
-//! `herringbone backup`: a copy of the database, also while the service runs.
+//! `herringbone backup`: copies the database, also while the service runs.
 
 use clap::Args;
 use herringbone::store;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
-pub struct Backup {
+pub struct BackupArguments {
     /// Database to copy; the service may be using it.
     #[arg(long, env = "HERRINGBONE_DATABASE", value_name = "FILE", default_value = "herringbone.db")]
     database: PathBuf,
@@ -21,14 +21,14 @@ pub struct Backup {
 }
 
 #[tokio::main(flavor = "current_thread")]
-pub async fn run(arguments: Backup) -> ExitCode {
-    let Backup { database, force, target } = arguments;
+pub async fn run(arguments: BackupArguments) -> ExitCode {
+    let BackupArguments { database, force, target } = arguments;
     match store::backup(&database, &target, force).await {
-        Ok(backup) => {
-            let total: u64 = backup.jobs.values().sum();
-            let states: Vec<_> = backup.jobs.iter().map(|(state, n)| format!("{n} {state}")).collect();
+        Ok(summary) => {
+            let total: u64 = summary.jobs.values().sum();
+            let states: Vec<_> = summary.jobs.iter().map(|(state, n)| format!("{n} {state}")).collect();
             let states = if states.is_empty() { String::new() } else { format!(": {}", states.join(", ")) };
-            println!("{}: {:.1} MB, {total} jobs{states}", target.display(), backup.bytes as f64 / 1e6);
+            println!("{}: {:.1} MB, {total} jobs{states}", target.display(), summary.bytes as f64 / 1e6);
             ExitCode::SUCCESS
         }
         Err(error) => {

@@ -1,15 +1,19 @@
-//! Finished stages in a directory: one file per content hash, so that finite elements are solved once per gear.
+//! The cache of stages in a directory: one file for each hash of the inputs of a stage.
 
 use herringbone_job::study::{Stage, StageStore};
 use std::path::PathBuf;
 
-/// A directory of stages. What cannot be read or written is solved again.
+/// A directory with cached stages. Stages that cannot be read are solved again; errors of writing are reported on
+/// standard error.
 pub struct DirectoryStages {
     directory: PathBuf,
 }
 
 impl DirectoryStages {
-    /// Opens the directory, which is created when it is not there.
+    /// Opens the directory; creates it when missing.
+    ///
+    /// # Errors
+    /// It cannot be created.
     pub fn open(directory: PathBuf) -> std::io::Result<DirectoryStages> {
         std::fs::create_dir_all(&directory)?;
         Ok(DirectoryStages { directory })
@@ -22,10 +26,11 @@ impl StageStore for DirectoryStages {
     }
 
     fn save(&self, key: &str, _stage: Stage, bytes: &[u8]) {
-        // Written beside and renamed: a reader never sees half a file.
+        // Renamed when complete, so that no reader sees a partial file.
         let partial = self.directory.join(format!("{key}.{}.partial", std::process::id()));
-        let kept = std::fs::write(&partial, bytes).and_then(|()| std::fs::rename(&partial, self.directory.join(key)));
-        if let Err(error) = kept {
+        let written =
+            std::fs::write(&partial, bytes).and_then(|()| std::fs::rename(&partial, self.directory.join(key)));
+        if let Err(error) = written {
             eprintln!("--cache {}: {error}", self.directory.display());
         }
     }

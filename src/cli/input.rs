@@ -1,4 +1,4 @@
-//! What `solve` and `check` share: reading a document from a file or standard input, and failing in the service's form.
+//! Reading job documents from files or standard input, and reporting invalid ones as problem+json.
 
 use herringbone::api::{MAX_BODY_BYTES, Problem};
 use herringbone_job::DocumentError;
@@ -7,11 +7,13 @@ use std::io::Read;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Largest document read, as over HTTP.
+/// Largest document, as over HTTP.
 const MAX_BYTES: u64 = MAX_BODY_BYTES as u64;
 
-/// Reads and parses the document at `path` (`-`: standard input); on failure the exit code, with the problem already
-/// on standard error.
+/// Reads and parses the document at `path` (`-`: standard input).
+///
+/// # Errors
+/// The exit code, after the error was printed on standard error.
 pub fn read_document(path: &Path) -> Result<JobDocument, ExitCode> {
     let bytes = read_bytes(path).map_err(|error| {
         eprintln!("{}: {error}", path.display());
@@ -20,7 +22,7 @@ pub fn read_document(path: &Path) -> Result<JobDocument, ExitCode> {
     herringbone_job::parse(&bytes).map_err(invalid)
 }
 
-/// Prints why a document is invalid, as problem+json; the exit code for invalid input is 2.
+/// Prints the errors of a document as problem+json. Returns the exit code for invalid input, 2.
 pub fn invalid(error: DocumentError) -> ExitCode {
     super::problem::print(&Problem::from(error));
     ExitCode::from(2)

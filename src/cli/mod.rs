@@ -1,4 +1,4 @@
-//! The subcommands, one file each.
+//! The command line: the subcommands, one file each.
 
 mod backup;
 mod cache;
@@ -26,17 +26,18 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Serve the HTTP interface and the web pages.
-    Serve(Box<serve::Serve>),
+    Serve(Box<serve::ServeArguments>),
     /// Copy the database, also while the service runs.
-    Backup(backup::Backup),
+    Backup(backup::BackupArguments),
     /// Solve one job document in place: the result as JSON on standard output.
-    Solve(solve::Solve),
+    Solve(solve::SolveArguments),
     /// Check one job document: geometry and warnings, or every violation.
-    Check(check::Check),
+    Check(check::CheckArguments),
     /// Print the description of the HTTP interface (OpenAPI, JSON).
     Openapi,
 }
 
+/// Runs the subcommand. Returns the exit code of the process.
 pub fn run(arguments: Arguments) -> ExitCode {
     match arguments.command {
         Command::Serve(arguments) => serve::run(*arguments),

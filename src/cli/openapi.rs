@@ -1,4 +1,4 @@
-//! `herringbone openapi`: the description of the HTTP interface.
+//! `herringbone openapi`: prints the OpenAPI document.
 
 use std::io::Write;
 use std::process::ExitCode;

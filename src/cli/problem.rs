@@ -1,7 +1,8 @@
-//! Problems on standard error, in the form the service answers them.
+//! Problems on standard error, as problem+json.
 
 use herringbone::api::Problem;
 
+/// Prints a problem as JSON on standard error.
 pub fn print(problem: &Problem) {
     match serde_json::to_string_pretty(problem) {
         Ok(text) => eprintln!("{text}"),

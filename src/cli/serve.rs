@@ -1,8 +1,8 @@
-//! `herringbone serve`: the HTTP service in the foreground.
+//! `herringbone serve`: runs the HTTP service in the foreground.
 
 use anyhow::Context;
 use clap::Args;
-use herringbone::api::{self, Access, AppState, HttpConfig, LoginPage, Pages};
+use herringbone::api::{self, Access, AppState, HttpConfig, LoginRenderer, Pages};
 use herringbone::store::{Store, StoreConfig};
 use herringbone::web;
 use herringbone::work::{self, Jobs, StudySolver, WorkConfig};
@@ -13,11 +13,11 @@ use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tracing_subscriber::EnvFilter;
 
-/// Files open besides connections: database, logs, sockets of the runtime.
+/// Number of open files besides connections: database, logs, sockets of the runtime.
 const OTHER_FILES: u64 = 64;
 
 #[derive(Debug, Args)]
-pub struct Serve {
+pub struct ServeArguments {
     #[command(flatten)]
     http: HttpConfig,
     #[command(flatten)]
@@ -28,7 +28,7 @@ pub struct Serve {
     log: LogConfig,
 }
 
-/// What is logged, on standard error.
+/// Settings of the log, which is written to standard error.
 #[derive(Debug, Args)]
 struct LogConfig {
     /// Levels, for example `info` or `warn,herringbone=debug`.
@@ -40,7 +40,7 @@ struct LogConfig {
     log_json: bool,
 }
 
-pub fn run(arguments: Serve) -> ExitCode {
+pub fn run(arguments: ServeArguments) -> ExitCode {
     start_log(&arguments.log);
     match serve(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
@@ -62,7 +62,7 @@ fn start_log(config: &LogConfig) {
         true => log.json().flatten_event(true).init(),
         false => log.init(),
     }
-    // A panic is a line of the log like others, not one of its own form.
+    // Panics are logged like other events.
     std::panic::set_hook(Box::new(|panic| {
         let place = panic.location().map(ToString::to_string).unwrap_or_default();
         tracing::error!(place, message = panic.payload_as_str().unwrap_or_default(), "panic");
@@ -70,7 +70,7 @@ fn start_log(config: &LogConfig) {
 }
 
 #[tokio::main]
-async fn serve(arguments: &Serve) -> anyhow::Result<()> {
+async fn serve(arguments: &ServeArguments) -> anyhow::Result<()> {
     let (http, work) = (&arguments.http, &arguments.work);
     let mut terminate = signal(SignalKind::terminate()).context("signal handler")?;
     let mut interrupt = signal(SignalKind::interrupt()).context("signal handler")?;
@@ -81,8 +81,7 @@ async fn serve(arguments: &Serve) -> anyhow::Result<()> {
     let jobs = Jobs::start(store, work, Arc::new(StudySolver), Arc::new(Timestamp::now))
         .await
         .map_err(anyhow::Error::from_boxed)?;
-    let housekeeper = work::tend(jobs.clone(), arguments.store.retention, Arc::new(Timestamp::now));
-    tokio::spawn(housekeeper);
+    tokio::spawn(work::run_retention(jobs.clone(), arguments.store.retention, Arc::new(Timestamp::now)));
     let state = AppState::new(jobs.clone(), Timestamp::now());
     let app = api::router(state, http, &access, pages(access.has_token()));
     let address = listener.local_addr()?;
@@ -102,11 +101,11 @@ fn pages(has_login: bool) -> Pages {
     Pages {
         routes: web::routes(has_login),
         not_found: axum::routing::any(web::not_found),
-        login: LoginPage(|notice| web::login(notice.status, notice.next, notice.trouble)),
+        login: LoginRenderer(|notice| web::login(notice.status, notice.next, notice.error)),
     }
 }
 
-/// Lets this process have as many files open as the system permits: each connection is one.
+/// Raises the limit of open files to the hard limit, as each connection is one.
 fn raise_file_limit(connections: u32) {
     match rlimit::increase_nofile_limit(u64::MAX) {
         Ok(files) if files < u64::from(connections) + OTHER_FILES => {

@@ -1,12 +1,12 @@
-//! `herringbone solve`: one document solved in place, without service or database.
+//! `herringbone solve`: solves a document in this process, without service or database.
 
 use super::cache::DirectoryStages;
 use super::input::{invalid, read_document};
 use super::{problem, table};
 use clap::Args;
-use herringbone::api::{CsvField, Decimal, Problem};
+use herringbone::api::{CsvField, CsvWriter, Decimal, Problem};
 use herringbone_job::document::JobDocument;
-use herringbone_job::study::{self, Channel, NoStageStore, SolveContext, SolveError, Stage, StageStore};
+use herringbone_job::study::{self, Channel, CheckedJob, NoStageStore, SolveContext, SolveError, Stage, StageStore};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -14,14 +14,14 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 #[derive(Debug, Args)]
-pub struct Solve {
+pub struct SolveArguments {
     /// Job document (JSON); `-` reads standard input.
     file: PathBuf,
     /// Write a recorded channel, full resolution, as CSV (`t_s,value`); may be given several times.
     #[arg(long, value_name = "CHANNEL=FILE.csv", value_parser = series_target)]
     series: Vec<(String, PathBuf)>,
-    /// Decimal sign in these files: `comma` writes them as spreadsheets read them whose language has a decimal comma (fields between
-    /// semicolons, a byte order mark).
+    /// Decimal sign in these files: `comma` writes them as spreadsheets read them whose language has a decimal comma
+    /// (fields between semicolons, a byte order mark).
     #[arg(long, value_name = "point|comma", default_value = "point", value_parser = decimal)]
     decimal: Decimal,
     /// Keep finished stages (finite elements of a gear, contact analyses) in this directory and reuse them.
@@ -40,11 +40,11 @@ fn series_target(text: &str) -> Result<(String, PathBuf), String> {
 }
 
 fn decimal(text: &str) -> Result<Decimal, String> {
-    let found = Decimal::ALL.iter().find(|(word, _)| *word == text).map(|(_, decimal)| *decimal);
-    found.ok_or_else(|| "give point or comma".to_owned())
+    let decimal = Decimal::ALL.iter().find(|(name, _)| *name == text).map(|(_, decimal)| *decimal);
+    decimal.ok_or_else(|| "give point or comma".to_owned())
 }
 
-pub fn run(arguments: Solve) -> ExitCode {
+pub fn run(arguments: SolveArguments) -> ExitCode {
     let mut document = match read_document(&arguments.file) {
         Ok(document) => document,
         Err(code) => return code,
@@ -60,9 +60,12 @@ pub fn run(arguments: Solve) -> ExitCode {
             }
         },
     };
-    let outcome = match solve(&document, &*stages) {
+    let job = match CheckedJob::new(document) {
+        Ok(job) => job,
+        Err(error) => return invalid(error),
+    };
+    let outcome = match solve(&job, &*stages) {
         Ok(outcome) => outcome,
-        Err(SolveError::Document(error)) => return invalid(error),
         Err(error) => {
             problem::print(&Problem::from(error));
             return ExitCode::FAILURE;
@@ -85,7 +88,7 @@ pub fn run(arguments: Solve) -> ExitCode {
     } else {
         write_json(&outcome.result)
     };
-    // A reader that closed the pipe early has what it wanted.
+    // A closed pipe is not an error: the reader needed no more.
     match written {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             eprintln!("standard output: {error}");
@@ -95,7 +98,7 @@ pub fn run(arguments: Solve) -> ExitCode {
     }
 }
 
-/// Records just the channels asked for: without `--series` no time series is built.
+/// Restricts the recorded channels to those of the document and of `--series`; none by default.
 fn record(document: &mut JobDocument, series: &[(String, PathBuf)]) {
     if document.analysis.channels.is_none() || !series.is_empty() {
         let mut channels = document.analysis.channels.take().unwrap_or_default();
@@ -104,15 +107,15 @@ fn record(document: &mut JobDocument, series: &[(String, PathBuf)]) {
     }
 }
 
-fn solve(document: &JobDocument, stages: &dyn StageStore) -> Result<study::Outcome, SolveError> {
+fn solve(job: &CheckedJob, stages: &dyn StageStore) -> Result<study::Outcome, SolveError> {
     let started = Instant::now();
-    let bar = bar();
+    let bar = progress_bar();
     let progress = |stage: Stage, fraction: f64| {
         bar.set_message(stage.as_str());
         bar.set_position((fraction * 1000.0) as u64);
     };
     let outcome = study::solve(
-        document,
+        job,
         &SolveContext {
             stages,
             progress: &progress,
@@ -127,7 +130,7 @@ fn solve(document: &JobDocument, stages: &dyn StageStore) -> Result<study::Outco
     })
 }
 
-fn bar() -> ProgressBar {
+fn progress_bar() -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
@@ -142,16 +145,12 @@ fn write_json(result: &herringbone_job::result::JobResult) -> std::io::Result<()
 }
 
 fn write_csv(series: &Channel, path: &PathBuf, decimal: Decimal) -> std::io::Result<()> {
-    let mut out = std::io::BufWriter::new(std::fs::File::create(path)?);
-    let mut line = decimal.start().to_owned();
-    decimal.push_line(&mut line, ["t_s", "value"].map(CsvField::Text));
+    let mut writer = CsvWriter::with_mark(std::fs::File::create(path)?, decimal)?;
+    writer.write_record(["t_s", "value"].map(CsvField::Text))?;
     for (index, value) in series.values.iter().enumerate() {
-        out.write_all(line.as_bytes())?;
-        line.clear();
         let time = format!("{:.12e}", series.t0_s + index as f64 * series.dt_s);
         let value = format!("{value:.17e}");
-        decimal.push_line(&mut line, [&time, &value].map(|number| CsvField::Written(number)));
+        writer.write_record([&time, &value].map(|number| CsvField::FormattedNumber(number)))?;
     }
-    out.write_all(line.as_bytes())?;
-    out.flush()
+    writer.into_inner().map(drop)
 }

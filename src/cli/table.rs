@@ -1,10 +1,13 @@
-//! The headline numbers of a result, for people.
+//! The headline numbers of a result as a text table.
 
 use herringbone_job::result::{Accuracy, JobResult, Quantity, quantities};
 use serde_json::Value;
 use std::io::{Result, Write};
 
-/// Writes one line per number: name, value, unit. Which numbers: those that the result's fields declare as headlines.
+/// Writes one line for each number that the fields of the result declare as a headline: name, value, unit.
+///
+/// # Errors
+/// Those of `out`.
 pub fn write(out: &mut impl Write, result: &JobResult) -> Result<()> {
     let value = serde_json::to_value(result)?;
     for quantity in headlines() {

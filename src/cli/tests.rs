@@ -1,4 +1,4 @@
-//! The documented settings are those of the program.
+//! Tests of the documented settings.
 
 use super::Arguments;
 use clap::{Arg, CommandFactory};
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 const DOCUMENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/OPERATIONS.md");
 
-/// Flag to the cells after it, of every row of a table that begins with a flag.
+/// The cells of each table row that begins with a flag, by flag.
 fn documented() -> BTreeMap<String, Vec<String>> {
     let text = std::fs::read_to_string(DOCUMENT).expect("docs/OPERATIONS.md");
     let mut rows = BTreeMap::new();
@@ -18,7 +18,7 @@ fn documented() -> BTreeMap<String, Vec<String>> {
     rows
 }
 
-/// Flag, variable and default as a row has them.
+/// Flag, variable and default of an argument as in a table row.
 fn row(argument: &Arg) -> (String, [String; 2]) {
     let flag = format!("`--{}`", argument.get_long().expect("a long flag"));
     let variable = argument.get_env().map(|name| format!("`{}`", name.to_string_lossy())).unwrap_or_default();
@@ -38,20 +38,20 @@ fn the_documented_settings_are_those_of_the_program() {
     for argument in serve.get_arguments().filter(|argument| argument.get_id() != "help") {
         let (flag, [variable, default]) = row(argument);
         assert!(!variable.is_empty(), "{flag} has no variable");
-        let what = argument.get_help().map(ToString::to_string).unwrap_or_default();
+        let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
         match documented.remove(&flag) {
-            None => wrong.push(format!("missing: | {flag} | {variable} | {default} | {what} |")),
+            None => wrong.push(format!("missing: | {flag} | {variable} | {default} | {help} |")),
             Some(cells) if cells[..2] != [variable.clone(), default.clone()] => {
                 wrong.push(format!("{flag} is not {cells:?} but: | {flag} | {variable} | {default} |"));
             }
-            Some(cells) => assert!(cells.get(2).is_some_and(|what| !what.is_empty()), "{flag} is not explained"),
+            Some(cells) => assert!(cells.get(2).is_some_and(|help| !help.is_empty()), "{flag} is not explained"),
         }
     }
     wrong.extend(documented.keys().map(|flag| format!("there is no {flag}")));
     assert!(wrong.is_empty(), "docs/OPERATIONS.md, Settings:\n{}", wrong.join("\n"));
 }
 
-/// The files that an operator installs set only what exists.
+/// The files for deployment use only settings that exist.
 #[test]
 fn the_deployment_files_use_variables_that_exist() {
     let command = Arguments::command();
@@ -61,11 +61,11 @@ fn the_deployment_files_use_variables_that_exist() {
         let path = format!("{}/{file}", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(&path).expect("readable");
         let words = text.split(|character: char| !(character.is_ascii_uppercase() || character == '_'));
-        let mut found = 0;
+        let mut count = 0;
         for word in words.filter(|word| word.starts_with("HERRINGBONE_")) {
             assert!(known.contains(&word), "{file}: {word} is no setting");
-            found += 1;
+            count += 1;
         }
-        assert!(found > 2, "{file} names no setting");
+        assert!(count > 2, "{file} names no setting");
     }
 }

@@ -1,35 +1,38 @@
-//! Canceling and deleting.
+//! Canceling and deleting jobs.
 
 use super::connect::{Store, StoreError};
 use super::lifecycle::JobId;
 use super::record::{JobRecord, job_columns, record_event};
 use jiff::Timestamp;
 
-/// What became of the wish to cancel a job.
+/// The outcome of canceling a job.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cancellation {
-    /// It had not started: canceled.
+    /// It was queued and is canceled.
     Canceled(JobRecord),
-    /// It runs: noted, the solver will stop.
-    Asked(JobRecord),
+    /// It runs: the request was recorded, and the solver is to stop.
+    Requested(JobRecord),
     /// It had ended before.
     Ended(JobRecord),
     NotFound,
 }
 
-/// What became of the wish to delete a job.
+/// The outcome of deleting a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Deletion {
     Deleted,
-    /// It has not ended.
-    Live,
+    /// It has not ended and was not deleted.
+    NotEnded,
     NotFound,
 }
 
 impl Store {
-    /// queued → canceled, or notes that a running job is to stop.
+    /// Cancels a queued job (queued → canceled), or records the request on a running one.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn cancel(&self, id: JobId, now: Timestamp) -> Result<Cancellation, StoreError> {
-        let mut transaction = self.write().await?;
+        let mut transaction = self.begin_with_reserve().await?;
         let canceled: Option<JobRecord> = sqlx::query_as(concat!(
             "UPDATE jobs SET state = 'canceled', revision = revision + 1, \
              ended_at_us = MAX($2, COALESCE(started_at_us, submitted_at_us)), \
@@ -44,7 +47,7 @@ impl Store {
         if let Some(job) = canceled {
             record_event(&mut transaction, &job, now).await?;
             transaction.commit().await?;
-            self.waiting.add(-1);
+            self.queued_count.add(-1);
             return Ok(Cancellation::Canceled(job));
         }
         sqlx::query(
@@ -63,13 +66,16 @@ impl Store {
         Ok(match job {
             None => Cancellation::NotFound,
             Some(job) if job.state.is_ended() => Cancellation::Ended(job),
-            Some(job) => Cancellation::Asked(job),
+            Some(job) => Cancellation::Requested(job),
         })
     }
 
-    /// Removes an ended job and everything it left.
+    /// Deletes an ended job with its result, series and history.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn delete(&self, id: JobId) -> Result<Deletion, StoreError> {
-        let mut transaction = self.write().await?;
+        let mut transaction = self.begin_with_reserve().await?;
         let deleted = sqlx::query("DELETE FROM jobs WHERE id = $1 AND state IN ('succeeded', 'failed', 'canceled')")
             .bind(id.to_string())
             .execute(&mut *transaction)
@@ -81,7 +87,7 @@ impl Store {
         transaction.commit().await?;
         Ok(match (deleted.rows_affected(), live) {
             (0, None) => Deletion::NotFound,
-            (0, Some(_)) => Deletion::Live,
+            (0, Some(_)) => Deletion::NotEnded,
             _ => Deletion::Deleted,
         })
     }

@@ -1,13 +1,13 @@
-//! Opening the database: one writer connection, read-only readers, WAL.
+//! Opening the database: one connection that writes, several that read, write-ahead log.
 
 use super::backup;
 pub use super::error::StoreError;
-use super::examine::{OPEN_WAIT, beside, examine};
-use super::ids::Ids;
+use super::examine::{OPEN_WAIT, examine, with_suffix};
+use super::ids::IdGenerator;
 use super::open_error::OpenError;
-use super::probe::Probe;
-use super::retention::{Limit, RetentionConfig};
-use super::waiting::Waiting;
+use super::queued_count::QueuedCount;
+use super::retention::{RetentionConfig, SizeLimit};
+use super::write_probe::WriteProbe;
 use sqlx::migrate::{MigrateError, Migrator};
 use sqlx::sqlite::{
     SqliteAutoVacuum, SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
@@ -19,17 +19,17 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{Mutex, Notify};
 
-/// The migrations, embedded.
+/// The migrations, embedded in the program.
 pub(super) static MIGRATIONS: Migrator = sqlx::migrate!("./migrations");
 
-/// How long a statement waits for a lock of another program.
+/// Longest wait of a statement for a lock of another program.
 const BUSY_WAIT: Duration = Duration::from_secs(10);
-/// How long a caller waits for the one connection that writes.
+/// Longest wait for the connection that writes.
 const WRITER_WAIT: Duration = Duration::from_secs(15);
-/// The log keeps this much room after its content has gone into the file.
+/// Size to which the write-ahead log is cut after a checkpoint.
 const LOG_BYTES: u64 = 64 << 20;
 
-/// Where the data is kept.
+/// Settings of the database.
 #[derive(Debug, Clone, clap::Args)]
 pub struct StoreConfig {
     /// Database file; created when missing. One process at a time may use it.
@@ -51,6 +51,7 @@ pub struct StoreConfig {
 }
 
 impl StoreConfig {
+    /// The default settings with this database file.
     pub fn at(database: impl Into<PathBuf>) -> Self {
         let (database, retention) = (database.into(), RetentionConfig::default());
         Self { database, database_readers: 2, stage_cache_mib: 256, retention }
@@ -63,20 +64,23 @@ pub struct Store {
     pub(super) writer: SqlitePool,
     pub(super) reader: SqlitePool,
     pub(super) stage_cache_bytes: i64,
-    pub(super) waiting: Waiting,
-    pub(super) ids: Ids,
-    pub(super) limit: Option<Limit>,
+    pub(super) queued_count: QueuedCount,
+    pub(super) ids: IdGenerator,
+    pub(super) limit: Option<SizeLimit>,
     pub(super) path: Arc<Path>,
-    pub(super) pressed: Arc<Notify>,
-    pub(super) probe: Arc<Mutex<Option<Probe>>>,
+    /// Notified when a job was refused for want of space.
+    pub(super) space_needed: Arc<Notify>,
+    /// The last write probe.
+    pub(super) probe: Arc<Mutex<Option<WriteProbe>>>,
     _lock: Arc<File>,
 }
 
 impl Store {
-    /// Opens the database, creates it when missing and applies the migrations; an existing one is copied before.
+    /// Opens the database, creates it when missing and applies pending migrations, before which an existing one is
+    /// copied.
     ///
     /// # Errors
-    /// Why it was not opened; it is then as it was before.
+    /// [`OpenError`]; the database is then unchanged.
     pub async fn open(config: &StoreConfig) -> Result<Self, OpenError> {
         Self::open_with(config, &MIGRATIONS).await
     }
@@ -85,7 +89,7 @@ impl Store {
         let path = config.database.as_path();
         let lock = lock(path)?;
         let found = examine(path, migrations).await?;
-        let wrong = |error| OpenError::of_database(path, error);
+        let open_error = |error| OpenError::of_database(path, error);
         let limit = config.retention.limit(found.page_bytes);
         let options = SqliteConnectOptions::new()
             .filename(path)
@@ -96,95 +100,100 @@ impl Store {
             .busy_timeout(OPEN_WAIT)
             .pragma("journal_size_limit", LOG_BYTES.to_string());
         if let Some(to) = found.upgrade_to {
-            keep_copy(path, to).await?;
+            copy_before_upgrade(path, to).await?;
         }
         if found.schema.is_none() || found.upgrade_to.is_some() {
-            // Only heeded before the first table; on an existing file it would be one more write.
+            // Effective only before the first table is created.
             let new = found.schema.is_none().then_some(SqliteAutoVacuum::Incremental);
             let options = new.into_iter().fold(options.clone(), SqliteConnectOptions::auto_vacuum);
-            let pool = SqlitePoolOptions::new().max_connections(1).connect_with(options).await.map_err(wrong)?;
+            let pool = SqlitePoolOptions::new().max_connections(1).connect_with(options).await.map_err(open_error)?;
             let applied = migrations.run(&pool).await;
             pool.close().await;
-            applied.map_err(|error| not_upgraded(path, migrations, error))?;
+            applied.map_err(|error| upgrade_error(path, migrations, error))?;
         }
         let options = options.busy_timeout(BUSY_WAIT);
-        let lasting = || SqlitePoolOptions::new().idle_timeout(None).max_lifetime(None);
-        // Where SQLite rolls back by itself (a full disk at the commit), the driver goes on counting the transaction: such a
-        // connection would never write again.
-        let writer = lasting()
+        let permanent = || SqlitePoolOptions::new().idle_timeout(None).max_lifetime(None);
+        // Where SQLite rolls back by itself (a full disk at the commit), the driver still counts the transaction; such
+        // a connection could not write again and is not reused.
+        let writer = permanent()
             .max_connections(1)
             .acquire_timeout(WRITER_WAIT)
             .before_acquire(|connection, _| Box::pin(async { Ok(!connection.is_in_transaction()) }));
-        let writer = writer.connect_with(options.clone()).await.map_err(wrong)?;
-        try_to_write(&writer).await.map_err(wrong)?;
-        let reader = lasting()
+        let writer = writer.connect_with(options.clone()).await.map_err(open_error)?;
+        check_writable(&writer).await.map_err(open_error)?;
+        let reader = permanent()
             .max_connections(config.database_readers)
             .connect_with(options.read_only(true).create_if_missing(false))
             .await
-            .map_err(wrong)?;
-        let stage_cache_bytes = (i64::from(config.stage_cache_mib) << 20).min(Limit::stages(limit.as_ref()));
-        let waiting = Waiting::counted(&writer).await.map_err(wrong)?;
-        let ids = Ids::after_stored(&writer).await.map_err(wrong)?;
+            .map_err(open_error)?;
+        let stage_cache_bytes =
+            (i64::from(config.stage_cache_mib) << 20).min(SizeLimit::stage_cache_bytes(limit.as_ref()));
+        let queued_count = QueuedCount::read(&writer).await.map_err(open_error)?;
+        let ids = IdGenerator::after_stored(&writer).await.map_err(open_error)?;
         Ok(Self {
             writer,
             reader,
             stage_cache_bytes,
-            waiting,
+            queued_count,
             ids,
             limit,
             path: path.into(),
-            pressed: Arc::default(),
+            space_needed: Arc::default(),
             probe: Arc::default(),
             _lock: Arc::new(lock),
         })
     }
 
-    /// Begins a transaction that changes what is there, and may do so when there is no room for [`Store::write_more`]:
-    /// nothing could be canceled or deleted otherwise.
-    pub(super) async fn write(&self) -> Result<Transaction<'static, Sqlite>, StoreError> {
-        self.write_up_to(self.limit.as_ref().map(|limit| limit.max_pages_in_need)).await
+    /// Begins a transaction that may use the reserve above the size limit: it ends, cancels or deletes jobs, which must
+    /// be possible in a full database.
+    pub(super) async fn begin_with_reserve(&self) -> Result<Transaction<'static, Sqlite>, StoreError> {
+        self.begin_within(self.limit.as_ref().map(|limit| limit.max_pages_with_reserve)).await
     }
 
-    /// Begins a transaction that adds documents, rows or results.
-    pub(super) async fn write_more(&self) -> Result<Transaction<'static, Sqlite>, StoreError> {
-        self.write_up_to(self.limit.as_ref().map(|limit| limit.max_pages)).await
+    /// Begins a transaction that adds documents, rows or results, within the size limit.
+    pub(super) async fn begin(&self) -> Result<Transaction<'static, Sqlite>, StoreError> {
+        self.begin_within(self.limit.as_ref().map(|limit| limit.max_pages)).await
     }
 
-    async fn write_up_to(&self, max_pages: Option<u64>) -> Result<Transaction<'static, Sqlite>, StoreError> {
+    async fn begin_within(&self, max_pages: Option<u64>) -> Result<Transaction<'static, Sqlite>, StoreError> {
         let mut transaction = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         if let Some(max_pages) = max_pages {
-            // The bound is the connection's and stays until the next transaction sets its own.
+            // The bound belongs to the connection and stays until the next transaction sets its own.
             let pragma = format!("PRAGMA max_page_count = {max_pages}");
             sqlx::query(sqlx::AssertSqlSafe(pragma)).execute(&mut *transaction).await?;
         }
         Ok(transaction)
     }
 
-    /// Whether the database answers.
+    /// Executes a trivial query.
+    ///
+    /// # Errors
+    /// The database does not answer.
     pub async fn ping(&self) -> Result<(), StoreError> {
         sqlx::query("SELECT 1").execute(&self.reader).await?;
         Ok(())
     }
 
-    /// Closes every connection; what was committed is on disk.
+    /// Closes all connections.
     pub async fn close(&self) {
         self.reader.close().await;
         self.writer.close().await;
     }
 }
 
-/// Two processes on one database would each take the other's running jobs for lost ones.
+/// Locks the database against other processes of the service, each of which would treat the others' running jobs as
+/// lost.
 fn lock(database: &Path) -> Result<File, OpenError> {
-    let path = beside(database, ".lock");
+    let path = with_suffix(database, ".lock");
     if database.is_dir() {
         return Err(OpenError::NotAFile(database.to_owned()));
     }
-    // A missing directory is the database's, a forbidden file may be the lock's alone.
-    let wrong = |error: std::io::Error| match OpenError::of_file(&path, error) {
+    // The error about a missing directory names the database, others the lock file.
+    let lock_error = |error: std::io::Error| match OpenError::of_file(&path, error) {
         OpenError::NoDirectory(_) => OpenError::NoDirectory(database.to_owned()),
         other => other,
     };
-    let file = OpenOptions::new().write(true).create(true).truncate(false).open(&path).map_err(wrong)?;
+    let file = OpenOptions::new().write(true).create(true).truncate(false).open(&path).map_err(lock_error)?;
     match file.try_lock() {
         Ok(()) => Ok(file),
         Err(std::fs::TryLockError::WouldBlock) => Err(OpenError::InUse(database.to_owned())),
@@ -192,9 +201,9 @@ fn lock(database: &Path) -> Result<File, OpenError> {
     }
 }
 
-/// The way back: an older herringbone does not read the new schema.
-async fn keep_copy(path: &Path, to: i64) -> Result<(), OpenError> {
-    let copy = beside(path, &format!(".before-schema-{to}"));
+/// Copies the database before an upgrade, as older versions of the service do not read the new schema.
+async fn copy_before_upgrade(path: &Path, to: i64) -> Result<(), OpenError> {
+    let copy = with_suffix(path, &format!(".before-schema-{to}"));
     let copied = backup::copy(path, &copy).await.map_err(|error| match error {
         backup::BackupError::Database { source, .. } => OpenError::of_database(path, source),
         backup::BackupError::File { path, source } => OpenError::of_file(&path, source),
@@ -204,7 +213,7 @@ async fn keep_copy(path: &Path, to: i64) -> Result<(), OpenError> {
     Ok(())
 }
 
-fn not_upgraded(path: &Path, migrations: &Migrator, error: MigrateError) -> OpenError {
+fn upgrade_error(path: &Path, migrations: &Migrator, error: MigrateError) -> OpenError {
     let to = migrations.iter().map(|step| step.version).max().unwrap_or_default();
     match error {
         MigrateError::Execute(source) => OpenError::of_database(path, source),
@@ -216,7 +225,7 @@ fn not_upgraded(path: &Path, migrations: &Migrator, error: MigrateError) -> Open
     }
 }
 
-/// A file that may not be written, or is locked by another program, stops the start instead of the first job.
-async fn try_to_write(writer: &SqlitePool) -> Result<(), sqlx::Error> {
+/// Checks at the start that the database can be written.
+async fn check_writable(writer: &SqlitePool) -> Result<(), sqlx::Error> {
     writer.begin_with("BEGIN IMMEDIATE").await?.rollback().await
 }

@@ -1,21 +1,21 @@
-//! What can go wrong while the database is in use.
+//! Errors of the open database.
 
 use std::fmt;
 
-/// Why the store could not answer.
+/// Failure of an operation on the database.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     #[error("database: {0}")]
     Database(sqlx::Error),
-    #[error("{why}: {detail}")]
-    Unavailable { why: Unavailable, detail: String },
+    #[error("{cause}: {detail}")]
+    Unavailable { cause: Unavailable, detail: String },
     #[error("the database has reached its size limit: {used_mb} MB used, new jobs up to {limit_mb} MB")]
     LimitReached { used_mb: u64, limit_mb: u64 },
     #[error("stored {what} cannot be read: {detail}")]
     Corrupt { what: &'static str, detail: String },
 }
 
-/// Something outside the service stands in the way, and may go away again.
+/// A temporary cause outside the service.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Unavailable {
     /// The disk is full, or the database's limit is reached.
@@ -43,10 +43,10 @@ impl fmt::Display for Unavailable {
 }
 
 impl StoreError {
-    /// What stands in the way, if it may go away again without a change of the service.
+    /// The temporary cause, if there is one.
     pub fn unavailable(&self) -> Option<Unavailable> {
         match self {
-            StoreError::Unavailable { why, .. } => Some(*why),
+            StoreError::Unavailable { cause, .. } => Some(*cause),
             StoreError::LimitReached { .. } => Some(Unavailable::Full),
             StoreError::Database(_) | StoreError::Corrupt { .. } => None,
         }
@@ -55,16 +55,16 @@ impl StoreError {
 
 impl From<sqlx::Error> for StoreError {
     fn from(source: sqlx::Error) -> Self {
-        match passing(&source) {
-            Some(why) => StoreError::Unavailable { why, detail: source.to_string() },
+        match temporary_cause(&source) {
+            Some(cause) => StoreError::Unavailable { cause, detail: source.to_string() },
             None => StoreError::Database(source),
         }
     }
 }
 
-fn passing(error: &sqlx::Error) -> Option<Unavailable> {
+fn temporary_cause(error: &sqlx::Error) -> Option<Unavailable> {
     match error {
-        // Whoever has the one writer connection waits for somebody outside.
+        // The holder of the connection that writes waits for another program.
         sqlx::Error::PoolTimedOut => return Some(Unavailable::Busy),
         sqlx::Error::Io(_) => return Some(Unavailable::Disk),
         _ => {}
@@ -91,7 +91,7 @@ pub(super) const SQLITE_FULL: i32 = 13;
 pub(super) const SQLITE_CANTOPEN: i32 = 14;
 pub(super) const SQLITE_NOTADB: i32 = 26;
 
-/// SQLite's own code, without the details in its upper bits.
+/// The primary result code of SQLite.
 pub(super) fn primary_code(error: &sqlx::Error) -> Option<i32> {
     let code: i32 = error.as_database_error()?.code()?.parse().ok()?;
     Some(code & 0xff)

@@ -1,18 +1,18 @@
-//! Why a job failed, as it is kept.
+//! The stored error of a failed job.
 
 use herringbone_job::Violation;
 use serde::{Deserialize, Serialize};
 
-/// Why a job has no result. Becomes the `error` of the job in the HTTP interface.
+/// The error of a failed job, shown as its `error` in the HTTP interface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
-    /// Code of the problem, one of the closed list of the HTTP interface.
+    /// Code of the problem, from the closed list of the HTTP interface.
     pub code: String,
     pub detail: String,
     /// Stage that failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stage: Option<String>,
-    /// Simulated time at which it failed.
+    /// Simulated time of the failure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sim_time_s: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -22,6 +22,7 @@ pub struct Failure {
 }
 
 impl Failure {
+    /// A failure with code and detail only.
     pub fn new(code: &str, detail: impl Into<String>) -> Self {
         Self {
             code: code.to_owned(),

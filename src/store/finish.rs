@@ -1,34 +1,37 @@
-//! The end of a running job.
+//! The transitions from running to succeeded and failed.
 
 use super::connect::{Store, StoreError};
 use super::failure::Failure;
 use super::lifecycle::JobId;
-use super::points::{PointBatch, PointsOfResult, copy_points, drop_line_ends, insert_points};
+use super::points::{PointBatch, RowsSummary, copy_points, drop_line_ends, insert_points};
 use super::record::{JobRecord, job_columns, record_event};
 use super::result::etag_of;
 use super::series::PackedSeries;
 use jiff::Timestamp;
 use sqlx::{Sqlite, Transaction};
 
-/// What a job leaves behind when it succeeds.
+/// The result of a job, to be stored when it succeeds.
 #[derive(Debug, Clone)]
 pub struct Completion {
-    /// The result, as JSON.
+    /// The result as JSON; the rows of a sweep are left out.
     pub body: String,
     pub input_hash: String,
     pub solver_version: String,
     pub series: Vec<PackedSeries>,
-    /// Of a sweep: its rows stand apart from the body, at this place.
-    pub points: Option<PointsOfResult>,
-    /// Those of its rows that are not yet written.
-    pub rows: PointBatch,
-    /// The job whose series and rows are copied instead, when its result was taken.
+    /// Summary of the rows of a sweep, which are stored apart from the body.
+    pub rows: Option<RowsSummary>,
+    /// Rows that are not yet stored.
+    pub unwritten: PointBatch,
+    /// The job whose result this is; its series and rows are copied.
     pub reused_from: Option<JobId>,
 }
 
 impl Store {
-    /// running → succeeded, with the result and the series; `None` when the job is no longer this attempt's, or when
-    /// the job whose result is to be reused is gone.
+    /// Stores the result of a running job (running → succeeded). `None` when the job no longer belongs to this attempt,
+    /// or when the job whose result is to be reused was deleted.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn succeed(
         &self,
         id: JobId,
@@ -36,7 +39,7 @@ impl Store {
         completion: &Completion,
         now: Timestamp,
     ) -> Result<Option<JobRecord>, StoreError> {
-        let mut transaction = self.write_more().await?;
+        let mut transaction = self.begin().await?;
         let done = complete(&mut transaction, id, attempt, completion, now).await?;
         if done.is_some() {
             transaction.commit().await?;
@@ -44,7 +47,10 @@ impl Store {
         Ok(done)
     }
 
-    /// running → failed; `None` when the job is no longer this attempt's.
+    /// Stores the failure of a running job (running → failed). `None` when the job no longer belongs to this attempt.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn fail(
         &self,
         id: JobId,
@@ -52,7 +58,7 @@ impl Store {
         failure: &Failure,
         now: Timestamp,
     ) -> Result<Option<JobRecord>, StoreError> {
-        let mut transaction = self.write().await?;
+        let mut transaction = self.begin_with_reserve().await?;
         let failed = fail_in(&mut transaction, id, attempt, failure, now).await?;
         transaction.commit().await?;
         Ok(failed)
@@ -86,7 +92,7 @@ pub(super) async fn fail_in(
     Ok(failed)
 }
 
-/// The transition to succeeded within a transaction that the caller commits, or drops on `None`.
+/// The transition to succeeded, in a transaction that the caller commits, or drops on `None`.
 pub(super) async fn complete(
     transaction: &mut Transaction<'static, Sqlite>,
     id: JobId,
@@ -111,22 +117,21 @@ pub(super) async fn complete(
     .await?;
     let Some(job) = done else { return Ok(None) };
     record_event(transaction, &job, now).await?;
-    let points = completion.points.as_ref();
+    let rows = completion.rows.as_ref();
     sqlx::query(
-        "INSERT INTO results (job_id, body, etag, input_hash, solver_version, points_at, points_n, points_digest) \
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
+        "INSERT INTO results (job_id, body, etag, input_hash, solver_version, points_n, points_digest) \
+         VALUES ($1, $2, $3, $4, $5, $6, $7)",
     )
     .bind(id.to_string())
     .bind(&completion.body)
-    .bind(etag_of(&completion.body, points))
+    .bind(etag_of(&completion.body, rows))
     .bind(&completion.input_hash)
     .bind(&completion.solver_version)
-    .bind(points.map(|points| points.at as i64))
-    .bind(points.map(|points| points.n as i64))
-    .bind(points.map(|points| &points.digest))
+    .bind(rows.map(|rows| rows.count as i64))
+    .bind(rows.map(|rows| &rows.digest))
     .execute(&mut **transaction)
     .await?;
-    insert_points(transaction, id, &completion.rows).await?;
+    insert_points(transaction, id, &completion.unwritten).await?;
     drop_line_ends(transaction, id).await?;
     match completion.reused_from {
         Some(source) => {
@@ -143,17 +148,17 @@ pub(super) async fn complete(
     Ok(Some(job))
 }
 
-/// False when the source has no result any more.
+/// Copies series and rows from one job to another. False when the source was deleted.
 async fn copy_results(
     transaction: &mut Transaction<'static, Sqlite>,
     source: JobId,
     target: JobId,
 ) -> Result<bool, StoreError> {
-    let there = sqlx::query("SELECT 1 FROM results WHERE job_id = $1")
+    let result = sqlx::query("SELECT 1 FROM results WHERE job_id = $1")
         .bind(source.to_string())
         .fetch_optional(&mut **transaction)
         .await?;
-    if there.is_none() {
+    if result.is_none() {
         return Ok(false);
     }
     copy_points(transaction, source, target).await?;

@@ -1,21 +1,21 @@
-//! A job's identity and the states it goes through.
+//! Ids and states of jobs.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 use uuid::Uuid;
 
-/// Identity of a job: a UUIDv7, so that ids sort by time of submission.
+/// The id of a job: a UUIDv7, so that ids sort by time of submission.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct JobId(Uuid);
 
 impl JobId {
-    /// A new id, larger than every id this process made before.
+    /// A new id, larger than all ids that this process has made.
     pub fn new() -> Self {
         Self(Uuid::now_v7())
     }
 
-    /// The one after this: its random end counted up by one.
+    /// The next larger id.
     pub(super) fn next(self) -> Self {
         Self(Uuid::from_u128(self.0.as_u128().saturating_add(1)))
     }
@@ -56,7 +56,8 @@ impl FromStr for JobId {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, utoipa::ToSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum State {
+#[schema(as = State)]
+pub enum JobState {
     Queued,
     Running,
     Succeeded,
@@ -64,29 +65,32 @@ pub enum State {
     Canceled,
 }
 
-impl State {
-    pub const ALL: [State; 5] = [State::Queued, State::Running, State::Succeeded, State::Failed, State::Canceled];
+impl JobState {
+    /// Every state.
+    pub const ALL: [JobState; 5] =
+        [JobState::Queued, JobState::Running, JobState::Succeeded, JobState::Failed, JobState::Canceled];
 
-    pub fn word(self) -> &'static str {
+    /// The name of the state, as stored and in the interface.
+    pub fn as_str(self) -> &'static str {
         match self {
-            State::Queued => "queued",
-            State::Running => "running",
-            State::Succeeded => "succeeded",
-            State::Failed => "failed",
-            State::Canceled => "canceled",
+            JobState::Queued => "queued",
+            JobState::Running => "running",
+            JobState::Succeeded => "succeeded",
+            JobState::Failed => "failed",
+            JobState::Canceled => "canceled",
         }
     }
 
-    /// Whether a job in this state never changes again.
+    /// Whether the state is terminal: a job in it never changes again.
     pub fn is_ended(self) -> bool {
-        !matches!(self, State::Queued | State::Running)
+        !matches!(self, JobState::Queued | JobState::Running)
     }
 }
 
-impl FromStr for State {
+impl FromStr for JobState {
     type Err = ();
 
-    fn from_str(word: &str) -> Result<Self, ()> {
-        Self::ALL.into_iter().find(|state| state.word() == word).ok_or(())
+    fn from_str(name: &str) -> Result<Self, ()> {
+        Self::ALL.into_iter().find(|state| state.as_str() == name).ok_or(())
     }
 }

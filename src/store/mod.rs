@@ -1,4 +1,4 @@
-//! What is kept: jobs, their history, results, series and reusable stages, in SQLite. The only SQL.
+//! The database (SQLite): jobs, their history, results, series and reusable stages. No other module contains SQL.
 //!
 //! Invariant: every transition of a job is one guarded `UPDATE` (of a running job: fenced by its `attempt`) in one
 //! transaction with its row in `job_events`. A terminal state is final; a result row exists exactly when the job
@@ -17,7 +17,7 @@ mod list;
 mod lookup;
 mod open_error;
 mod points;
-mod probe;
+mod queued_count;
 mod record;
 mod result;
 mod retention;
@@ -26,26 +26,26 @@ mod series;
 mod stages;
 mod submit;
 mod usage;
-mod waiting;
+mod write_probe;
 
-pub use backup::{Backup, BackupError, backup};
+pub use backup::{BackupError, BackupSummary, backup};
 pub use cancel::{Cancellation, Deletion};
 pub use connect::{Store, StoreConfig};
 pub use error::{StoreError, Unavailable};
 pub use failure::Failure;
 pub use finish::Completion;
-pub use lifecycle::{JobId, State};
-pub use list::{JobFilter, JobPage};
-pub use lookup::Counts;
+pub use lifecycle::{JobId, JobState};
+pub use list::{JobFilter, JobListPage};
+pub use lookup::JobCounts;
 pub use open_error::OpenError;
-pub use points::{LineEndRow, PointBatch, PointRow, PointsDigest, PointsOfResult};
+pub use points::{LineEndRow, PointBatch, PointRow, PointsDigest, RowsSummary};
 pub use record::JobRecord;
-pub use result::{Reusable, StoredResult};
+pub use result::{ReusableResult, StoredResult};
 pub use retention::RetentionConfig;
-pub use run::{Claim, Pause, Recovery, WorkClass};
+pub use run::{Claim, Recovery, ReleaseReason, WorkClass};
 pub use series::{PackedSeries, SeriesEntry};
 pub use submit::{NewJob, Submission};
-pub use usage::Usage;
+pub use usage::DatabaseUsage;
 
 #[cfg(test)]
 mod tests;

@@ -1,4 +1,4 @@
-//! Why a database could not be opened: one sentence each, with the path and what to do. Nothing was changed.
+//! Errors of opening a database. Each message is one sentence with the path and a remedy.
 
 use super::error::{
     SQLITE_BUSY, SQLITE_CANTOPEN, SQLITE_CORRUPT, SQLITE_FULL, SQLITE_LOCKED, SQLITE_NOTADB, SQLITE_READONLY,
@@ -7,7 +7,7 @@ use super::error::{
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a database could not be opened.
+/// Failure to open a database; the file is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     #[error("the database {path} is not a file: name a file, for example {path}/herringbone.db", path = .0.display())]
@@ -56,7 +56,7 @@ pub enum OpenError {
 }
 
 impl OpenError {
-    /// What an error of the file system means for the database.
+    /// The error of opening that an error of the file system amounts to.
     pub(super) fn of_file(path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         match source.kind() {
@@ -68,7 +68,7 @@ impl OpenError {
         }
     }
 
-    /// What an error of SQLite means while opening.
+    /// The error of opening that an error of SQLite amounts to.
     pub(super) fn of_database(path: &Path, source: sqlx::Error) -> Self {
         let path = path.to_owned();
         match primary_code(&source) {

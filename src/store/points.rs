@@ -1,4 +1,4 @@
-//! Points of sweeps: one row each, written while the sweep runs and served as they are.
+//! Rows of sweeps: one for each solved point, stored while the sweep runs and served unchanged.
 
 use super::connect::{Store, StoreError};
 use super::lifecycle::JobId;
@@ -6,25 +6,25 @@ use sha2::{Digest, Sha256};
 use sqlx::sqlite::SqliteRow;
 use sqlx::{FromRow, Row, Sqlite, Transaction};
 
-/// A solved point.
+/// A solved point of a sweep.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PointRow {
-    /// Its place in the result's `sweep.points`.
+    /// Index in the result's `sweep.points`.
     pub position: u64,
-    /// JSON.
+    /// The point as JSON.
     pub body: String,
 }
 
-/// How far a line of a sweep with continuation was followed.
+/// The last solved point of a line of a sweep with continuation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineEndRow {
     pub line: u64,
     pub position: u64,
-    /// None: there is nothing to continue from.
+    /// State of the motion at its end, from which the next point continues; `None` where there is none.
     pub state: Option<Vec<f64>>,
 }
 
-/// Points that were solved since the last were written.
+/// Points that are solved and not yet stored.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PointBatch {
     pub solver_version: String,
@@ -32,13 +32,11 @@ pub struct PointBatch {
     pub ends: Vec<LineEndRow>,
 }
 
-/// What is left of the points of a result when its rows stand apart: where they belong in the body, and a hash of them.
+/// Number and digest of the rows of a result, which are stored apart from it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PointsOfResult {
-    /// Byte offset in the body: between the brackets of an empty list.
-    pub at: usize,
-    /// How many they are.
-    pub n: u64,
+pub struct RowsSummary {
+    pub count: u64,
+    /// See [`PointsDigest`].
     pub digest: String,
 }
 
@@ -47,7 +45,7 @@ impl PointBatch {
         self.rows.is_empty() && self.ends.is_empty()
     }
 
-    /// Adds what came later.
+    /// Appends a later batch.
     pub fn append(&mut self, mut later: PointBatch) {
         self.solver_version = later.solver_version;
         self.rows.append(&mut later.rows);
@@ -56,19 +54,23 @@ impl PointBatch {
 }
 
 impl Store {
-    /// What a worker that starts this attempt can go on from: the rows and line ends an earlier attempt left or, where there
-    /// are none, those of the newest failed or canceled job with the same input. Rows of another solver version are dropped.
-    pub async fn kept_points(
+    /// The rows and line ends from which an attempt resumes: those stored by an earlier attempt or, where there are
+    /// none, those of the newest failed or canceled job with the same input. Rows of another solver version are
+    /// deleted.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn resume_points(
         &self,
         id: JobId,
         attempt: i64,
         input_hash: &str,
         solver_version: &str,
     ) -> Result<PointBatch, StoreError> {
-        let mut transaction = self.write_more().await?;
+        let mut transaction = self.begin().await?;
         if is_current(&mut transaction, id, attempt).await? {
             drop_other_versions(&mut transaction, id, solver_version).await?;
-            adopt(&mut transaction, id, input_hash, solver_version).await?;
+            copy_points_of_same_input(&mut transaction, id, input_hash, solver_version).await?;
         }
         let rows = sqlx::query_as("SELECT position, body FROM sweep_points WHERE job_id = $1 ORDER BY position")
             .bind(id.to_string())
@@ -82,7 +84,10 @@ impl Store {
         Ok(PointBatch { solver_version: solver_version.to_owned(), rows, ends })
     }
 
-    /// Up to `limit` rows of a job from position `from` on and before `to`, in their order.
+    /// Reads up to `limit` rows of a job with positions in `from..to`, in their order.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub async fn points(&self, id: JobId, from: u64, to: u64, limit: u32) -> Result<Vec<PointRow>, StoreError> {
         Ok(sqlx::query_as(
             "SELECT position, body FROM sweep_points WHERE job_id = $1 AND position >= $2 AND position < $3 \
@@ -96,7 +101,10 @@ impl Store {
         .await?)
     }
 
-    /// How many rows a job has.
+    /// Counts the rows of a job.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub async fn point_count(&self, id: JobId) -> Result<u64, StoreError> {
         let row = sqlx::query("SELECT COUNT(*) AS n FROM sweep_points WHERE job_id = $1")
             .bind(id.to_string())
@@ -106,6 +114,7 @@ impl Store {
     }
 }
 
+/// Whether this attempt of the job is running.
 async fn is_current(
     transaction: &mut Transaction<'static, Sqlite>,
     id: JobId,
@@ -135,8 +144,8 @@ async fn drop_other_versions(
     Ok(())
 }
 
-/// Takes the rows of an interrupted job with the same input over into a job that has none.
-async fn adopt(
+/// Copies the rows of the newest failed or canceled job with the same input into a job that has none.
+async fn copy_points_of_same_input(
     transaction: &mut Transaction<'static, Sqlite>,
     id: JobId,
     input_hash: &str,
@@ -181,7 +190,7 @@ async fn adopt(
     Ok(())
 }
 
-/// Writes points within a transaction that has made sure that the job is this worker's.
+/// Stores points, in a transaction that has checked that the job belongs to this attempt.
 pub(super) async fn insert_points(
     transaction: &mut Transaction<'static, Sqlite>,
     id: JobId,
@@ -228,7 +237,7 @@ pub(super) async fn drop_line_ends(
     Ok(())
 }
 
-/// The rows of one job become those of another as well.
+/// Copies the rows of one job to another.
 pub(super) async fn copy_points(
     transaction: &mut Transaction<'static, Sqlite>,
     source: JobId,
@@ -246,18 +255,20 @@ pub(super) async fn copy_points(
     Ok(())
 }
 
-/// Hash of the rows of a result, which are added in the order of their positions.
+/// Digest of the rows of a result, added in the order of their positions: 128 bits of SHA-256, in hexadecimal.
 #[derive(Default)]
 pub struct PointsDigest(Sha256);
 
 impl PointsDigest {
+    /// Adds the JSON of a row.
     pub fn add(&mut self, body: &str) {
         self.0.update(body);
         self.0.update([0]);
     }
 
+    /// The digest as text.
     pub fn finish(self) -> String {
-        self.0.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+        hex::encode(&self.0.finalize()[..16])
     }
 }
 

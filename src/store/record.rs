@@ -1,28 +1,28 @@
-//! One row of `jobs`, without its document.
+//! Rows of the table `jobs`.
 
 use super::connect::StoreError;
 use super::failure::Failure;
-use super::lifecycle::{JobId, State};
+use super::lifecycle::{JobId, JobState};
 use jiff::Timestamp;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{FromRow, Row, Sqlite, Transaction};
 use std::str::FromStr;
 
-/// A job as it stands.
+/// A job without its document.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JobRecord {
     pub id: JobId,
     pub kind: String,
     pub name: Option<String>,
     pub label: Option<String>,
-    pub state: State,
-    /// Grows with every visible change.
+    pub state: JobState,
+    /// Number that increases with every visible change.
     pub revision: i64,
-    /// How often it was started.
+    /// Number of starts.
     pub attempt: i64,
-    /// Fraction of the whole job, 0 to 1.
+    /// Completed fraction of the whole job, 0 to 1.
     pub progress: f64,
-    /// Stage that runs, or ran last.
+    /// Current or last stage.
     pub stage: Option<String>,
     pub input_hash: String,
     pub solver_version: String,
@@ -31,13 +31,13 @@ pub struct JobRecord {
     pub ended_at: Option<Timestamp>,
     pub cancel_requested_at: Option<Timestamp>,
     pub error: Option<Failure>,
-    /// Job whose result was taken instead of computing.
+    /// Job whose result was reused.
     pub reused_from: Option<JobId>,
-    /// Request that submitted it.
+    /// Id of the request that submitted it.
     pub request_id: Option<String>,
 }
 
-/// Columns of a [`JobRecord`], as text that SQL statements are put together from.
+/// The columns of a [`JobRecord`], as a literal for `concat!`.
 macro_rules! job_columns {
     () => {
         "id, kind, name, label, state, revision, attempt, progress, stage, input_hash, solver_version, \
@@ -51,11 +51,11 @@ impl<'r> FromRow<'r, SqliteRow> for JobRecord {
         let state: String = row.try_get("state")?;
         let error: Option<String> = row.try_get("error")?;
         Ok(Self {
-            id: parsed("id", row.try_get("id")?)?,
+            id: parse_column("id", row.try_get("id")?)?,
             kind: row.try_get("kind")?,
             name: row.try_get("name")?,
             label: row.try_get("label")?,
-            state: State::from_str(&state).map_err(|()| decode("state", "unknown word"))?,
+            state: JobState::from_str(&state).map_err(|()| column_error("state", "unknown state"))?,
             revision: row.try_get("revision")?,
             attempt: row.try_get("attempt")?,
             progress: row.try_get("progress")?,
@@ -66,21 +66,23 @@ impl<'r> FromRow<'r, SqliteRow> for JobRecord {
             started_at: optional_timestamp(row, "started_at_us")?,
             ended_at: optional_timestamp(row, "ended_at_us")?,
             cancel_requested_at: optional_timestamp(row, "cancel_requested_at_us")?,
-            error: error.map(|text| serde_json::from_str(&text).map_err(|error| decode("error", error))).transpose()?,
+            error: error
+                .map(|text| serde_json::from_str(&text).map_err(|error| column_error("error", error)))
+                .transpose()?,
             reused_from: row
                 .try_get::<Option<String>, _>("reused_from")?
-                .map(|text| parsed("reused_from", text))
+                .map(|text| parse_column("reused_from", text))
                 .transpose()?,
             request_id: row.try_get("request_id")?,
         })
     }
 }
 
-pub(super) fn parsed<T: FromStr>(column: &'static str, text: String) -> Result<T, sqlx::Error>
+pub(super) fn parse_column<T: FromStr>(column: &'static str, text: String) -> Result<T, sqlx::Error>
 where
     T::Err: std::fmt::Display,
 {
-    text.parse().map_err(|error| decode(column, error))
+    text.parse().map_err(|error| column_error(column, error))
 }
 
 fn optional_timestamp(row: &SqliteRow, column: &'static str) -> Result<Option<Timestamp>, sqlx::Error> {
@@ -88,15 +90,15 @@ fn optional_timestamp(row: &SqliteRow, column: &'static str) -> Result<Option<Ti
 }
 
 fn timestamp(column: &'static str, microseconds: i64) -> Result<Timestamp, sqlx::Error> {
-    Timestamp::from_microsecond(microseconds).map_err(|error| decode(column, error))
+    Timestamp::from_microsecond(microseconds).map_err(|error| column_error(column, error))
 }
 
-fn decode(column: &'static str, detail: impl std::fmt::Display) -> sqlx::Error {
+fn column_error(column: &'static str, detail: impl std::fmt::Display) -> sqlx::Error {
     sqlx::Error::ColumnDecode { index: column.to_owned(), source: detail.to_string().into() }
 }
 
-/// Writes the history row of a transition that was just made. The clock may have been set back since the one before: the
-/// job's own times never run backwards (`MAX` in the statements), these tell what the clock said.
+/// Stores a transition in the history of the job. Its time is that of the clock, which may have been set back since the
+/// last transition; the times of the job itself never decrease (`MAX` in the statements).
 pub(super) async fn record_event(
     transaction: &mut Transaction<'static, Sqlite>,
     job: &JobRecord,
@@ -106,7 +108,7 @@ pub(super) async fn record_event(
         .bind(job.id.to_string())
         .bind(job.revision)
         .bind(now.as_microsecond())
-        .bind(job.state.word())
+        .bind(job.state.as_str())
         .bind(job.attempt)
         .execute(&mut **transaction)
         .await?;

@@ -1,30 +1,30 @@
-//! A job on its way through a worker: claimed, progressing, given back.
+//! Claiming, progress and release of jobs by workers, and recovery after a restart.
 
 use super::connect::{Store, StoreError};
 use super::failure::Failure;
-use super::lifecycle::{JobId, State};
+use super::lifecycle::{JobId, JobState};
 use super::points::{PointBatch, insert_points};
 use super::record::{JobRecord, job_columns, record_event};
 use jiff::Timestamp;
 use sqlx::{FromRow, Row, Sqlite, Transaction};
 use std::time::Duration;
 
-/// A job that was just started.
+/// A job claimed by a worker.
 #[derive(Debug, Clone)]
 pub struct Claim {
     pub job: JobRecord,
-    /// The document, as JSON.
+    /// The document as JSON.
     pub input: String,
-    /// Time that earlier attempts took, lost ones left out.
+    /// Computing time of earlier attempts, without lost ones.
     pub computed: Duration,
 }
 
-/// What a job takes of the machine; each class has workers and a place in the queue of its own.
+/// The class of a job by its computing time; each class has its own workers and queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum WorkClass {
-    /// One operating point: seconds.
+    /// One operating point (seconds).
     Single,
-    /// Many: hours.
+    /// Many operating points (hours).
     Sweep,
 }
 
@@ -35,33 +35,35 @@ impl WorkClass {
     }
 }
 
-/// Why a running job goes back to where it came from.
+/// The reason for returning a running job to the queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pause {
+pub enum ReleaseReason {
     /// The service stops.
     Shutdown,
-    /// Others had waited long enough.
+    /// Its turn is over, and other jobs wait.
     Turn,
 }
 
-/// What was found at the start of the process.
+/// The jobs that were running or queued at the start of the process.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Recovery {
-    /// Running jobs of a dead process that wait again.
+    /// Running jobs that were queued again.
     pub requeued: u64,
-    /// Running jobs whose cancellation was already asked for.
+    /// Running jobs whose cancellation had been requested.
     pub canceled: u64,
-    /// Running jobs that were lost as often as allowed.
+    /// Running jobs that failed because they were lost as often as allowed.
     pub given_up: u64,
-    /// Jobs that wait, the requeued ones included.
-    pub waiting: u64,
+    /// Queued jobs, including those that were queued again.
+    pub queued: u64,
 }
 
 impl Store {
-    /// queued → running, for the job of this class that is next in line: by priority, then the one that has made way for
-    /// others least often, then the oldest.
+    /// Claims the next job of this class (queued → running): by priority, then by the number of its turns, then by age.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn claim_next(&self, class: WorkClass, now: Timestamp) -> Result<Option<Claim>, StoreError> {
-        let mut transaction = self.write().await?;
+        let mut transaction = self.begin_with_reserve().await?;
         let row = sqlx::query(concat!(
             "UPDATE jobs SET state = 'running', attempt = attempt + 1, revision = revision + 1, \
              started_at_us = MAX($1, submitted_at_us), \
@@ -79,12 +81,15 @@ impl Store {
         let claim = Claim { job: sqlx::FromRow::from_row(&row)?, input: row.try_get("input")?, computed };
         record_event(&mut transaction, &claim.job, now).await?;
         transaction.commit().await?;
-        self.waiting.add(-1);
+        self.queued_count.add(-1);
         Ok(Some(claim))
     }
 
-    /// Whether a job of this class waits.
-    pub async fn is_waiting(&self, class: WorkClass) -> Result<bool, StoreError> {
+    /// Whether a job of this class is queued.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn has_queued(&self, class: WorkClass) -> Result<bool, StoreError> {
         let row = sqlx::query("SELECT 1 FROM jobs WHERE state = 'queued' AND (kind = 'sweep') = $1 LIMIT 1")
             .bind(class == WorkClass::Sweep)
             .fetch_optional(&self.reader)
@@ -92,8 +97,11 @@ impl Store {
         Ok(row.is_some())
     }
 
-    /// Notes how far a running job is, with the points that were solved meanwhile; `None`, and nothing written, when the job is
-    /// no longer this attempt's.
+    /// Stores the progress of a running job, and points that were solved. `None`, and nothing stored, when the job no
+    /// longer belongs to this attempt.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn progress(
         &self,
         id: JobId,
@@ -102,7 +110,7 @@ impl Store {
         fraction: f64,
         points: &PointBatch,
     ) -> Result<Option<JobRecord>, StoreError> {
-        let mut transaction = self.write_more().await?;
+        let mut transaction = self.begin().await?;
         let job: Option<JobRecord> = sqlx::query_as(concat!(
             "UPDATE jobs SET progress = $3, stage = $4, revision = revision + 1 \
              WHERE id = $1 AND attempt = $2 AND state = 'running' RETURNING ",
@@ -121,16 +129,20 @@ impl Store {
         Ok(job)
     }
 
-    /// running → canceled when that was asked for, else running → queued: the worker stopped before the end, after `computed`.
+    /// Returns a job that was stopped after the time `computed`: running → canceled if that was requested, else
+    /// running → queued. `None` when the job no longer belongs to this attempt.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn release(
         &self,
         id: JobId,
         attempt: i64,
-        pause: Pause,
+        reason: ReleaseReason,
         computed: Duration,
         now: Timestamp,
     ) -> Result<Option<JobRecord>, StoreError> {
-        let mut transaction = self.write().await?;
+        let mut transaction = self.begin_with_reserve().await?;
         sqlx::query(
             "UPDATE jobs SET computed_us = computed_us + $3, turns = turns + $4 \
              WHERE id = $1 AND attempt = $2 AND state = 'running'",
@@ -138,22 +150,25 @@ impl Store {
         .bind(id.to_string())
         .bind(attempt)
         .bind(i64::try_from(computed.as_micros()).unwrap_or(i64::MAX))
-        .bind(i64::from(pause == Pause::Turn))
+        .bind(i64::from(reason == ReleaseReason::Turn))
         .execute(&mut *transaction)
         .await?;
         let released = release_in(&mut transaction, id, attempt, now).await?;
-        let entered = i64::from(released.as_ref().is_some_and(|job| job.state == State::Queued));
-        self.waiting.add(entered);
+        let added = i64::from(released.as_ref().is_some_and(|job| job.state == JobState::Queued));
+        self.queued_count.add(added);
         if let Err(error) = transaction.commit().await {
-            self.waiting.add(-entered);
+            self.queued_count.add(-added);
             return Err(error.into());
         }
         Ok(released)
     }
 
-    /// Takes up what a dead process left: its running jobs wait again, unless they were lost `max_losses` times.
+    /// Queues the jobs that were running when the last process ended, unless they were lost `max_losses` times.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn recover(&self, max_losses: u32, now: Timestamp) -> Result<Recovery, StoreError> {
-        let mut transaction = self.write().await?;
+        let mut transaction = self.begin_with_reserve().await?;
         let lost = sqlx::query(concat!(
             "UPDATE jobs SET losses = losses + 1 WHERE state = 'running' RETURNING losses, ",
             job_columns!()
@@ -168,7 +183,7 @@ impl Store {
                 release_in(&mut transaction, job.id, job.attempt, now).await?;
                 recovery.canceled += 1;
             } else if losses >= i64::from(max_losses) {
-                give_up(&mut transaction, &job, losses, now).await?;
+                fail_lost_job(&mut transaction, &job, losses, now).await?;
                 recovery.given_up += 1;
             } else {
                 release_in(&mut transaction, job.id, job.attempt, now).await?;
@@ -177,9 +192,9 @@ impl Store {
         }
         let row =
             sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'").fetch_one(&mut *transaction).await?;
-        recovery.waiting = row.try_get::<i64, _>("n")?.unsigned_abs();
+        recovery.queued = row.try_get::<i64, _>("n")?.unsigned_abs();
         transaction.commit().await?;
-        self.waiting.add(recovery.requeued as i64);
+        self.queued_count.add(recovery.requeued as i64);
         Ok(recovery)
     }
 }
@@ -212,7 +227,7 @@ async fn release_in(
     Ok(released)
 }
 
-async fn give_up(
+async fn fail_lost_job(
     transaction: &mut Transaction<'static, Sqlite>,
     job: &JobRecord,
     losses: i64,

@@ -1,4 +1,4 @@
-//! Recorded channels: packed, catalogued, unpacked.
+//! Recorded channels.
 
 use super::connect::{Store, StoreError};
 use super::lifecycle::JobId;
@@ -6,10 +6,10 @@ use herringbone_job::study::Channel;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{FromRow, Row, Sqlite, Transaction};
 
-/// Level of zstd: series of doubles gain little from higher ones.
+/// Compression level of zstd; series of doubles gain little from higher ones.
 const ZSTD_LEVEL: i32 = 3;
 
-/// What is known of a channel without reading its samples.
+/// The description of a channel, without its samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeriesEntry {
     pub channel: String,
@@ -19,13 +19,14 @@ pub struct SeriesEntry {
     pub n: u64,
     pub t0_s: f64,
     pub dt_s: f64,
-    /// Extremes and exact root mean square (mean removed except of accelerations); `None` where they are not finite.
+    /// Extremes and exact root mean square (without the mean, except for accelerations); `None` where they are not
+    /// finite.
     pub min: Option<f64>,
     pub max: Option<f64>,
     pub rms: Option<f64>,
 }
 
-/// A channel with its samples compressed: zstd over f64 little-endian.
+/// A channel with its samples compressed (zstd, f64 little-endian).
 #[derive(Debug, Clone, PartialEq)]
 pub struct PackedSeries {
     pub entry: SeriesEntry,
@@ -33,10 +34,10 @@ pub struct PackedSeries {
 }
 
 impl PackedSeries {
-    /// Compresses a channel; takes milliseconds per million samples, so not for an async thread.
+    /// Compresses a channel. Takes milliseconds per million samples: not for async threads.
     ///
     /// # Errors
-    /// Only when memory runs out.
+    /// The compression fails, for want of memory.
     pub fn pack(channel: &Channel) -> Result<Self, StoreError> {
         let bytes: Vec<u8> = channel.values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let samples = zstd::bulk::compress(&bytes, ZSTD_LEVEL).map_err(|error| corrupt(&error))?;
@@ -55,10 +56,10 @@ impl PackedSeries {
         Ok(Self { entry, samples })
     }
 
-    /// The samples; takes milliseconds per million, so not for an async thread.
+    /// Decompresses the samples. Takes milliseconds per million: not for async threads.
     ///
     /// # Errors
-    /// [`StoreError::Corrupt`] when the blob is not what was written.
+    /// [`StoreError::Corrupt`] when the stored bytes are damaged.
     pub fn unpack(&self) -> Result<Vec<f64>, StoreError> {
         let size = self.entry.n as usize * 8;
         let bytes = zstd::bulk::decompress(&self.samples, size).map_err(|error| corrupt(&error))?;
@@ -114,7 +115,10 @@ impl<'r> FromRow<'r, SqliteRow> for SeriesEntry {
 }
 
 impl Store {
-    /// The channels of a job, in the order in which they were recorded.
+    /// Reads the descriptions of the channels of a job, in the order of recording.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub async fn series_catalogue(&self, id: JobId) -> Result<Vec<SeriesEntry>, StoreError> {
         Ok(sqlx::query_as(
             "SELECT channel, quantity, unit, n, t0_s, dt_s, min, max, rms FROM series WHERE job_id = $1 \
@@ -125,7 +129,10 @@ impl Store {
         .await?)
     }
 
-    /// One channel of a job.
+    /// Reads one channel of a job.
+    ///
+    /// # Errors
+    /// The database cannot be read.
     pub async fn series(&self, id: JobId, channel: &str) -> Result<Option<PackedSeries>, StoreError> {
         let row = sqlx::query(
             "SELECT channel, quantity, unit, n, t0_s, dt_s, min, max, rms, samples FROM series \

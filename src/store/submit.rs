@@ -1,4 +1,4 @@
-//! Accepting a job.
+//! Submission of jobs.
 
 use super::connect::{Store, StoreError};
 use super::finish::{Completion, complete};
@@ -7,7 +7,7 @@ use super::record::{JobRecord, job_columns, record_event};
 use jiff::Timestamp;
 use sqlx::{Row, Sqlite, Transaction};
 
-/// A job to be written.
+/// A job to be stored.
 #[derive(Debug, Clone)]
 pub struct NewJob {
     pub id: JobId,
@@ -19,26 +19,29 @@ pub struct NewJob {
     pub input_hash: String,
     pub solver_version: &'static str,
     pub request_id: Option<String>,
-    /// The client's key and a hash of what it sent with it.
+    /// The client's idempotency key, and a hash of the document sent with it.
     pub idempotency: Option<(String, String)>,
 }
 
-/// What became of a submission.
+/// The outcome of a submission.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Submission {
-    /// Written: queued, or already ended with a result that was there.
+    /// Stored: queued, or succeeded with a reused result.
     Accepted(JobRecord),
-    /// The same key and document were submitted before: that job.
+    /// The job of an earlier submission with the same key and document.
     Replayed(JobRecord),
-    /// The key was used before with another document.
+    /// The key was used with another document.
     KeyReused,
-    /// As many jobs wait as may.
+    /// The queue is full.
     Full,
 }
 
 impl Store {
-    /// Writes a job unless `capacity` jobs already wait. With `reuse`, the job ends in the same transaction with that
-    /// result and takes no place in the queue.
+    /// Stores a job unless `capacity` jobs are queued. With `reuse`, the job succeeds in the same transaction with that
+    /// result and is not queued.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn submit(
         &self,
         job: NewJob,
@@ -46,7 +49,7 @@ impl Store {
         capacity: u32,
         now: Timestamp,
     ) -> Result<Submission, StoreError> {
-        let mut transaction = self.write_more().await?;
+        let mut transaction = self.begin().await?;
         if let Some(earlier) = earlier_submission(&mut transaction, &job).await? {
             return Ok(earlier);
         }
@@ -58,20 +61,20 @@ impl Store {
                 record = done;
                 ended = true;
             } else {
-                // The job it came from was deleted in between: start afresh.
+                // The job of the reused result was deleted meanwhile: submitted again without it.
                 transaction.rollback().await?;
                 return Box::pin(self.submit(job, None, capacity, now)).await;
             }
         }
-        // Only the holder of the one writing connection adds to those that wait.
-        if !ended && self.waiting.get() >= i64::from(capacity) {
+        // The count grows only in transactions on the one connection that writes.
+        if !ended && self.queued_count.get() >= i64::from(capacity) {
             return Ok(Submission::Full);
         }
-        // Counted before the next writer can look.
-        let entered = i64::from(!ended);
-        self.waiting.add(entered);
+        // Counted before the next writer reads the count.
+        let added = i64::from(!ended);
+        self.queued_count.add(added);
         if let Err(error) = transaction.commit().await {
-            self.waiting.add(-entered);
+            self.queued_count.add(-added);
             return Err(error.into());
         }
         Ok(Submission::Accepted(record))

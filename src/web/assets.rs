@@ -5,10 +5,10 @@ use super::quantities;
 use axum::extract::Path;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use headers::{HeaderMapExt, IfNoneMatch};
 use rust_embed::{EmbeddedFile, RustEmbed};
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
-use std::fmt::Write;
 
 #[derive(RustEmbed)]
 #[folder = "src/web/assets/"]
@@ -17,18 +17,16 @@ struct Files;
 /// Module made by [`quantities`].
 const QUANTITIES: &str = "common/quantities.js";
 
-/// `/assets/{*file}`: revalidated by entity tag, so that a new version is seen at once.
+/// `/assets/{*file}`: revalidated by entity tag, so that a new version is used at once.
 pub async fn file(Path(name): Path<String>, headers: HeaderMap) -> Response {
     let Some((content, media_type)) = find(&name) else {
         return super::not_found().await;
     };
     let tag = entity_tag(&content);
-    let fresh = headers
-        .get(header::IF_NONE_MATCH)
-        .and_then(|value| value.to_str().ok())
-        .is_some_and(|known| known.split(',').any(|known| known.trim().trim_start_matches("W/") == tag));
+    let known: Option<IfNoneMatch> = headers.typed_get();
+    let is_known = known.zip(tag.parse().ok()).is_some_and(|(known, tag)| !known.precondition_passes(&tag));
     let caching = [(header::ETAG, tag), (header::CACHE_CONTROL, "no-cache".to_owned())];
-    if fresh {
+    if is_known {
         return (StatusCode::NOT_MODIFIED, caching).into_response();
     }
     let kind = [
@@ -72,11 +70,5 @@ fn find(name: &str) -> Option<(Content, &'static str)> {
 }
 
 fn entity_tag(content: &Content) -> String {
-    let mut tag = String::from("\"");
-    for byte in &content.sha256[..12] {
-        // Writing to a String cannot fail.
-        let _ = write!(tag, "{byte:02x}");
-    }
-    tag.push('"');
-    tag
+    format!("\"{}\"", hex::encode(&content.sha256[..12]))
 }

@@ -1,7 +1,7 @@
 // Types of the pages' scripts: what the API answers (generated from openapi/openapi.json by scripts/check-pages), what is known of
 // plotly.js, and what the scripts pass to each other.
 
-import type { components } from "../../target/pages/openapi";
+import type { components } from "../../target/page-types/openapi";
 
 type Schemas = components["schemas"];
 

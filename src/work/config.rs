@@ -1,10 +1,10 @@
-//! How much is computed at once.
+//! Settings of workers, threads and the queue.
 
 use crate::store::WorkClass;
 use std::num::NonZeroUsize;
 use std::time::Duration;
 
-/// Workers, threads and queue.
+/// Number of workers and threads, bounds of the queue and of jobs.
 #[derive(Debug, Clone, clap::Args)]
 pub struct WorkConfig {
     /// Jobs of one operating point that run at the same time; the number of processors when not given.
@@ -36,8 +36,8 @@ pub struct WorkConfig {
           value_parser = clap::value_parser!(u32).range(64..=16_777_216))]
     pub job_memory_mib: u32,
 
-    /// Threads that all running jobs of one operating point share, and threads of each sweep; the number of processors when
-    /// not given.
+    /// Threads that all running jobs of one operating point share, and threads of each sweep; the number of processors
+    /// when not given.
     #[arg(long, env = "HERRINGBONE_THREADS", value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
 
@@ -75,15 +75,17 @@ impl Default for WorkConfig {
 }
 
 impl WorkConfig {
+    /// Workers for jobs of one operating point.
     pub fn worker_count(&self) -> usize {
         self.workers.map_or_else(processors, |workers| workers as usize)
     }
 
+    /// Threads of each pool.
     pub fn thread_count(&self) -> usize {
         self.threads.map_or_else(processors, |threads| threads as usize)
     }
 
-    /// Longest time that a job of this class may compute.
+    /// Longest computing time of a job of this class.
     pub fn time_limit(&self, class: WorkClass) -> Duration {
         Duration::from_secs(match class {
             WorkClass::Single => self.job_time_limit_s.into(),
@@ -91,6 +93,7 @@ impl WorkConfig {
         })
     }
 
+    /// Longest wait for running jobs at a shutdown.
     pub fn drain(&self) -> Duration {
         Duration::from_secs(self.drain_s.into())
     }

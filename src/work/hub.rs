@@ -1,5 +1,5 @@
-//! Who waits for which job, or for any: the newest state of a job is told to its subscribers, every change to those who
-//! listen to all, without touching the database.
+//! Events of jobs: the newest state of a job for its subscribers, and every change for listeners of all jobs. No
+//! database access.
 
 use crate::store::{JobId, JobRecord};
 use std::collections::HashMap;
@@ -7,15 +7,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::{broadcast, watch};
 
-type Latest = Option<Arc<JobRecord>>;
+type LatestRecord = Option<Arc<JobRecord>>;
 
-/// Changes that are kept for those who listen to all jobs and are slow; older ones they miss.
+/// Number of events buffered for slow listeners; older ones are dropped.
 const BACKLOG: usize = 256;
 
-/// One channel per job that somebody waits for, and one for all jobs.
+/// One channel for each job with subscribers, and one for the events of all jobs.
 pub(super) struct Hub {
-    channels: Mutex<HashMap<JobId, watch::Sender<Latest>>>,
-    all: broadcast::Sender<News>,
+    channels: Mutex<HashMap<JobId, watch::Sender<LatestRecord>>>,
+    all: broadcast::Sender<JobEvent>,
 }
 
 impl Default for Hub {
@@ -24,50 +24,50 @@ impl Default for Hub {
     }
 }
 
-/// What happened to some job.
+/// A change of some job.
 #[derive(Debug, Clone, PartialEq)]
-pub enum News {
-    /// It is further on.
+pub enum JobEvent {
+    /// Only its progress changed.
     Progress(Arc<JobRecord>),
-    /// Anything else about it changed; it may be new.
-    State(Arc<JobRecord>),
+    /// Anything else changed, or the job is new.
+    Changed(Arc<JobRecord>),
     Deleted(JobId),
-    /// Several jobs were deleted at once, or this listener was too slow: what it knows is no longer true.
-    Several,
+    /// Several jobs were deleted, or events were dropped: the list of jobs is to be read again.
+    Resync,
 }
 
 impl Hub {
-    /// Tells the subscribers of a job its new state; older news than the last is dropped.
+    /// Publishes the new state of a job; subscribers ignore a revision older than the last.
     pub fn publish(&self, job: &JobRecord) {
-        self.tell(|| News::State(Arc::new(job.clone())));
+        self.broadcast(|| JobEvent::Changed(Arc::new(job.clone())));
         self.publish_to_subscribers(job);
     }
 
-    /// The same when nothing but the progress changed.
+    /// As [`Hub::publish`], when only the progress changed.
     pub fn publish_progress(&self, job: &JobRecord) {
-        self.tell(|| News::Progress(Arc::new(job.clone())));
+        self.broadcast(|| JobEvent::Progress(Arc::new(job.clone())));
         self.publish_to_subscribers(job);
     }
 
-    /// Tells those who listen to all jobs that a job is gone.
+    /// Publishes the deletion of a job.
     pub fn publish_deletion(&self, id: JobId) {
-        self.tell(|| News::Deleted(id));
+        self.broadcast(|| JobEvent::Deleted(id));
     }
 
-    /// Tells them that what they know is no longer true.
-    pub fn publish_upheaval(&self) {
-        self.tell(|| News::Several);
+    /// Tells listeners to read the list of jobs again.
+    pub fn publish_resync(&self) {
+        self.broadcast(|| JobEvent::Resync);
     }
 
-    /// Hears of every later change of any job. Listen first, then list the jobs: nothing is missed then.
-    pub fn listen(&self) -> Listener {
-        Listener(self.all.subscribe())
+    /// Listens to all later events. To miss none, listen first, then list the jobs.
+    pub fn listen(&self) -> JobEventListener {
+        JobEventListener(self.all.subscribe())
     }
 
-    fn tell(&self, news: impl FnOnce() -> News) {
+    fn broadcast(&self, event: impl FnOnce() -> JobEvent) {
         if self.all.receiver_count() > 0 {
-            // Whoever listened may have left in between.
-            let _ = self.all.send(news());
+            // Fails when the last listener was dropped meanwhile.
+            let _ = self.all.send(event());
         }
     }
 
@@ -84,16 +84,16 @@ impl Hub {
         }
     }
 
-    /// Hears of every later change. Subscribe first, then read the job from the store: nothing is missed then.
-    pub fn subscribe(self: &Arc<Self>, job: JobId) -> Subscription {
+    /// Subscribes to later changes of a job. To miss none, subscribe first, then read the job from the store.
+    pub fn subscribe(self: &Arc<Self>, job: JobId) -> JobSubscription {
         let mut channels = self.channels.lock().unwrap_or_else(PoisonError::into_inner);
         let receiver = channels.entry(job).or_insert_with(|| watch::channel(None).0).subscribe();
-        Subscription { job, receiver, hub: Arc::clone(self) }
+        JobSubscription { job, receiver, hub: Arc::clone(self) }
     }
 
-    fn leave(&self, job: JobId) {
+    fn unsubscribe(&self, job: JobId) {
         let mut channels = self.channels.lock().unwrap_or_else(PoisonError::into_inner);
-        // The leaving subscription's own receiver still counts.
+        // The receiver of this subscription is still counted.
         if channels.get(&job).is_some_and(|channel| channel.receiver_count() <= 1) {
             channels.remove(&job);
         }
@@ -105,46 +105,46 @@ impl Hub {
     }
 }
 
-/// Hears of a job's changes; a slow listener hears only of the newest.
-pub struct Subscription {
+/// A subscription to the changes of a job; a slow subscriber receives only the newest.
+pub struct JobSubscription {
     job: JobId,
-    receiver: watch::Receiver<Latest>,
+    receiver: watch::Receiver<LatestRecord>,
     hub: Arc<Hub>,
 }
 
-impl Subscription {
-    /// The next change after `revision`. Never ends for a job that never changes.
+impl JobSubscription {
+    /// Waits for a record with a revision after `revision`.
     pub async fn after(&mut self, revision: i64) -> Arc<JobRecord> {
-        let newer = |latest: &Latest| latest.as_ref().is_some_and(|job| job.revision > revision);
+        let newer = |latest: &LatestRecord| latest.as_ref().is_some_and(|job| job.revision > revision);
         match self.receiver.wait_for(newer).await {
             Ok(latest) => {
                 if let Some(job) = latest.as_ref() {
                     return Arc::clone(job);
                 }
             }
-            // The sender lives in the hub as long as this subscription does.
+            // The sender lives as long as this subscription.
             Err(_closed) => {}
         }
         std::future::pending().await
     }
 }
 
-impl Drop for Subscription {
+impl Drop for JobSubscription {
     fn drop(&mut self) {
-        self.hub.leave(self.job);
+        self.hub.unsubscribe(self.job);
     }
 }
 
-/// Hears of every change of any job, in the order in which they were told: news of one job may overtake each other, the
-/// greater revision counts. One that is too slow hears [`News::Several`] in place of what it missed.
-pub struct Listener(broadcast::Receiver<News>);
+/// A listener to the events of all jobs, in the order of their publication: events of one job may be out of order, the
+/// greater revision is newer. Dropped events are replaced by [`JobEvent::Resync`].
+pub struct JobEventListener(broadcast::Receiver<JobEvent>);
 
-impl Listener {
-    /// The next change. Never ends while the hub lives.
-    pub async fn next(&mut self) -> News {
+impl JobEventListener {
+    /// Waits for the next event.
+    pub async fn next(&mut self) -> JobEvent {
         match self.0.recv().await {
-            Ok(news) => news,
-            Err(RecvError::Lagged(_)) => News::Several,
+            Ok(event) => event,
+            Err(RecvError::Lagged(_)) => JobEvent::Resync,
             Err(RecvError::Closed) => std::future::pending().await,
         }
     }
@@ -153,7 +153,7 @@ impl Listener {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::State;
+    use crate::store::JobState;
 
     fn job(id: JobId, revision: i64) -> JobRecord {
         JobRecord {
@@ -161,7 +161,7 @@ mod tests {
             kind: "mesh".into(),
             name: None,
             label: None,
-            state: State::Running,
+            state: JobState::Running,
             revision,
             attempt: 1,
             progress: 0.0,
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn subscribers_hear_the_newest_and_channels_go_with_the_last_of_them() {
+    async fn subscribers_receive_the_newest_record_and_channels_are_dropped_with_the_last_of_them() {
         let hub = Arc::new(Hub::default());
         let id = JobId::new();
         hub.publish(&job(id, 1));
@@ -196,7 +196,7 @@ mod tests {
         assert_eq!(hub.len(), 0);
     }
     #[tokio::test]
-    async fn who_listens_to_all_hears_each_change_and_one_that_is_slow_that_it_missed_some() {
+    async fn listeners_receive_each_event_and_slow_ones_a_resync() {
         let hub = Hub::default();
         let id = JobId::new();
         hub.publish(&job(id, 1));
@@ -204,15 +204,15 @@ mod tests {
         hub.publish(&job(id, 2));
         hub.publish_progress(&job(id, 3));
         hub.publish_deletion(id);
-        hub.publish_upheaval();
-        assert_eq!(listener.next().await, News::State(Arc::new(job(id, 2))), "not what was before");
-        assert_eq!(listener.next().await, News::Progress(Arc::new(job(id, 3))));
-        assert_eq!(listener.next().await, News::Deleted(id));
-        assert_eq!(listener.next().await, News::Several);
+        hub.publish_resync();
+        assert_eq!(listener.next().await, JobEvent::Changed(Arc::new(job(id, 2))), "not what was before");
+        assert_eq!(listener.next().await, JobEvent::Progress(Arc::new(job(id, 3))));
+        assert_eq!(listener.next().await, JobEvent::Deleted(id));
+        assert_eq!(listener.next().await, JobEvent::Resync);
         let many = i64::try_from(2 * BACKLOG).unwrap();
         (0..many).for_each(|revision| hub.publish_progress(&job(id, revision)));
-        assert_eq!(listener.next().await, News::Several);
-        let News::Progress(oldest) = listener.next().await else { panic!("no progress") };
-        assert_eq!(oldest.revision, many / 2, "as many are kept as permitted");
+        assert_eq!(listener.next().await, JobEvent::Resync);
+        let JobEvent::Progress(oldest) = listener.next().await else { panic!("no progress") };
+        assert_eq!(oldest.revision, many / 2, "as many are buffered as permitted");
     }
 }

@@ -1,19 +1,19 @@
-//! What one can do with jobs: submit, wait for, cancel.
+//! Operations on jobs: submit, wait, cancel, delete.
 
 use super::config::WorkConfig;
-use super::hub::{Listener, Subscription};
-use super::local::LocalQueue;
+use super::hub::{JobEventListener, JobSubscription};
+use super::local_queue::LocalQueue;
 use super::measure;
-use super::memory::MemoryBound;
+use super::memory::MemoryLimit;
 use super::queue::{Queue, Workers};
-use super::recorder::{Clock, Recorder};
+use super::recorder::{Clock, JobRecorder};
 use super::reuse::stored_completion;
 use super::solver::Solver;
 use crate::store::{Cancellation, Deletion, JobId, JobRecord, NewJob, Store, StoreError, Submission, WorkClass};
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
 use herringbone_job::drawing::Drawing;
-use herringbone_job::study::CheckReport;
+use herringbone_job::study::CheckedJob;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 use std::time::Duration;
@@ -24,12 +24,12 @@ use tokio_util::sync::CancellationToken;
 #[derive(Debug, Clone)]
 pub struct SubmitRequest {
     pub document: JobDocument,
-    /// The client's name for this submission; submitting again under it answers the first job.
+    /// The client's idempotency key: submitting again with it returns the first job.
     pub idempotency_key: Option<String>,
     pub request_id: Option<String>,
 }
 
-/// Why a job was not accepted.
+/// Failure to submit a job.
 #[derive(Debug, thiserror::Error)]
 pub enum SubmitError {
     #[error(transparent)]
@@ -48,25 +48,25 @@ pub enum SubmitError {
     Threads(#[from] tokio::task::JoinError),
 }
 
-/// Everything that happens to jobs. Cheap to clone.
+/// The jobs of this service. Cheap to clone.
 #[derive(Clone)]
-pub struct Jobs(Arc<Inner>);
+pub struct Jobs(Arc<JobsShared>);
 
-struct Inner {
-    recorder: Recorder,
+struct JobsShared {
+    recorder: JobRecorder,
     solver: Arc<dyn Solver>,
     queue: Arc<dyn Queue>,
     capacity: u32,
     drain: Duration,
-    memory: MemoryBound,
+    memory: MemoryLimit,
     closing: CancellationToken,
 }
 
 impl Jobs {
-    /// Takes up what a dead process left and starts the workers of this process.
+    /// Recovers the jobs of an earlier process and starts the workers.
     ///
     /// # Errors
-    /// When the store does not answer or the threads cannot be started.
+    /// The database cannot be written, or the threads cannot be started.
     pub async fn start(
         store: Store,
         config: &WorkConfig,
@@ -74,8 +74,8 @@ impl Jobs {
         clock: Clock,
     ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
         let recovery = store.recover(config.max_losses, clock()).await?;
-        if recovery.waiting > 0 || recovery.given_up > 0 || recovery.canceled > 0 {
-            let (waiting, requeued, given_up) = (recovery.waiting, recovery.requeued, recovery.given_up);
+        if recovery.queued > 0 || recovery.given_up > 0 || recovery.canceled > 0 {
+            let (waiting, requeued, given_up) = (recovery.queued, recovery.requeued, recovery.given_up);
             tracing::info!(
                 waiting,
                 requeued,
@@ -84,16 +84,29 @@ impl Jobs {
                 "jobs of an earlier run taken up"
             );
         }
-        let recorder = Recorder::new(store, clock);
+        let recorder = JobRecorder::new(store, clock);
         let queue = LocalQueue::start(config, recorder.clone(), Arc::clone(&solver))?;
-        Ok(Self::over(recorder, solver, Arc::new(queue), config))
+        Ok(Self::with_queue(recorder, solver, Arc::new(queue), config))
     }
 
-    /// As [`Jobs::start`], over a queue that runs already.
-    pub fn over(recorder: Recorder, solver: Arc<dyn Solver>, queue: Arc<dyn Queue>, config: &WorkConfig) -> Self {
+    /// Jobs with a queue that is running already.
+    pub fn with_queue(
+        recorder: JobRecorder,
+        solver: Arc<dyn Solver>,
+        queue: Arc<dyn Queue>,
+        config: &WorkConfig,
+    ) -> Self {
         let (capacity, drain) = (config.queue_capacity, config.drain());
-        let memory = MemoryBound::new(config);
-        Self(Arc::new(Inner { recorder, solver, queue, capacity, drain, memory, closing: CancellationToken::new() }))
+        let memory = MemoryLimit::new(config);
+        Self(Arc::new(JobsShared {
+            recorder,
+            solver,
+            queue,
+            capacity,
+            drain,
+            memory,
+            closing: CancellationToken::new(),
+        }))
     }
 
     pub fn store(&self) -> &Store {
@@ -104,12 +117,12 @@ impl Jobs {
         self.0.queue.workers()
     }
 
-    /// Jobs that may wait.
+    /// Largest number of queued jobs.
     pub fn capacity(&self) -> u32 {
         self.0.capacity
     }
 
-    /// How long [`Jobs::close`] waits at most.
+    /// Longest wait of [`Jobs::close`].
     pub fn drain(&self) -> Duration {
         self.0.drain
     }
@@ -118,7 +131,7 @@ impl Jobs {
         self.0.solver.version()
     }
 
-    /// Canceled when the service shuts down: whoever waits stops waiting then.
+    /// Cancelled when the service shuts down, which ends all waits.
     pub fn closing(&self) -> &CancellationToken {
         &self.0.closing
     }
@@ -127,28 +140,28 @@ impl Jobs {
         self.0.closing.is_cancelled()
     }
 
-    /// Geometry and warnings, without a job.
+    /// Checks a document without submitting it.
     ///
     /// # Errors
-    /// [`SubmitError::Document`] when the gear cannot exist, is not supported, or would take more memory than one job may.
-    pub async fn check(&self, document: JobDocument) -> Result<CheckReport, SubmitError> {
+    /// [`SubmitError::Document`] when the gear is infeasible, unsupported, or needs more memory than permitted.
+    pub async fn check(&self, document: JobDocument) -> Result<CheckedJob, SubmitError> {
         let (solver, memory) = (Arc::clone(&self.0.solver), self.0.memory);
         let checked = tokio::task::spawn_blocking(move || {
-            let report = solver.check(&document)?;
-            memory.check(&document).map(|()| report)
+            let job = solver.check(document)?;
+            memory.check(job.document()).map(|()| job)
         });
         Ok(checked.await??)
     }
 
-    /// The pair of a document to scale.
+    /// The data of a drawing of the pair of a job.
     ///
     /// # Errors
-    /// [`SubmitError::Document`] when the gear cannot exist.
-    pub async fn drawing(&self, document: JobDocument) -> Result<Drawing, SubmitError> {
-        Ok(tokio::task::spawn_blocking(move || Drawing::of(&document)).await??)
+    /// [`SubmitError::Threads`] when the thread that computes it fails.
+    pub async fn drawing(&self, job: CheckedJob) -> Result<Drawing, SubmitError> {
+        Ok(tokio::task::spawn_blocking(move || Drawing::of(&job)).await?)
     }
 
-    /// Accepts a job: checks it, writes it, and has it run; the job has ended already when its result was there.
+    /// Submits a job: checks, stores and queues it. The job has ended already when a stored result is reused.
     ///
     /// # Errors
     /// [`SubmitError`].
@@ -158,12 +171,12 @@ impl Jobs {
         }
         self.store().admit().await?;
         let SubmitRequest { document, idempotency_key, request_id } = request;
-        self.check(document.clone()).await?;
+        let document = self.check(document).await?.into_document();
         let input = serde_json::to_string(&document)?;
         let input_hash = self.0.solver.input_hash(&document);
         let solver_version = self.0.solver.version();
         let reuse = stored_completion(self.store(), &input_hash, solver_version).await?;
-        let idempotency = idempotency_key.map(|key| (key, hash_of(&input)));
+        let idempotency = idempotency_key.map(|key| (key, hex::encode(Sha256::digest(&input))));
         let job = NewJob {
             id: self.store().next_id(),
             kind: document.kind.as_str(),
@@ -179,9 +192,9 @@ impl Jobs {
             Submission::Accepted(job) => {
                 metrics::counter!("herringbone_jobs_submitted_total", "kind" => job.kind.clone()).increment(1);
                 if job.reused_from.is_some() {
-                    measure::result_reused();
+                    measure::record_result_reuse();
                 }
-                self.0.recorder.submitted(&job);
+                self.0.recorder.publish_submission(&job);
                 if !job.state.is_ended() {
                     self.0.queue.announce(job.id, WorkClass::of_kind(&job.kind));
                 }
@@ -193,20 +206,21 @@ impl Jobs {
         }
     }
 
-    /// The job as soon as `enough` holds for it, or as it is after `limit` or at the shutdown; holds no database connection meanwhile.
+    /// Waits until `condition` holds for a job, for `limit` at most or until the shutdown, and returns the job; `None`
+    /// when it does not exist. Holds no database connection meanwhile.
     ///
     /// # Errors
-    /// When the store does not answer.
+    /// The database cannot be read.
     pub async fn wait(
         &self,
         id: JobId,
         limit: Duration,
-        enough: impl Fn(&JobRecord) -> bool,
+        condition: impl Fn(&JobRecord) -> bool,
     ) -> Result<Option<JobRecord>, StoreError> {
         let deadline = Instant::now() + limit;
         let mut changes = self.subscribe(id);
         let Some(mut job) = self.store().job(id).await? else { return Ok(None) };
-        while !enough(&job) {
+        while !condition(&job) {
             tokio::select! {
                 newer = changes.after(job.revision) => job = newer.as_ref().clone(),
                 () = tokio::time::sleep_until(deadline) => break,
@@ -216,43 +230,43 @@ impl Jobs {
         Ok(Some(job))
     }
 
-    /// Hears of every later change of a job.
-    pub fn subscribe(&self, id: JobId) -> Subscription {
+    /// Subscribes to later changes of a job.
+    pub fn subscribe(&self, id: JobId) -> JobSubscription {
         self.0.recorder.subscribe(id)
     }
 
-    /// Hears of every later change of any job.
-    pub fn listen(&self) -> Listener {
+    /// Listens to later events of all jobs.
+    pub fn listen(&self) -> JobEventListener {
         self.0.recorder.listen()
     }
 
-    /// Cancels a job that waits, asks one that runs to stop.
+    /// Cancels a queued job, or requests a running one to stop.
     ///
     /// # Errors
-    /// When the store does not answer.
+    /// The database cannot be written.
     pub async fn cancel(&self, id: JobId) -> Result<Cancellation, StoreError> {
         let cancellation = self.0.recorder.cancel(id).await?;
-        if let Cancellation::Asked(_) = &cancellation {
+        if let Cancellation::Requested(_) = &cancellation {
             self.0.queue.stop(id);
         }
         Ok(cancellation)
     }
 
-    /// Deletes an ended job with everything it left.
+    /// Deletes an ended job with its result, series and history.
     ///
     /// # Errors
-    /// When the store does not answer.
+    /// The database cannot be written.
     pub async fn delete(&self, id: JobId) -> Result<Deletion, StoreError> {
         self.0.recorder.delete(id).await
     }
 
-    /// Tells those who listen that many jobs were deleted at once.
-    pub(super) fn deleted_several(&self) {
-        self.0.recorder.deleted_several();
+    /// Tells listeners to read the list of jobs again.
+    pub(super) fn publish_resync(&self) {
+        self.0.recorder.publish_resync();
     }
 
-    /// Takes no more jobs, stops the running ones (they run again after the restart) and waits for them within the
-    /// configured limit. True when all had stopped.
+    /// Refuses further jobs, stops the running ones (they run again after the restart) and waits for them, for the
+    /// configured time at most. Returns whether all have stopped.
     pub async fn close(&self) -> bool {
         self.0.closing.cancel();
         self.0.queue.close(self.0.drain).await
@@ -263,10 +277,6 @@ impl Jobs {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Submitted {
     pub job: JobRecord,
-    /// Whether the same submission had been made before.
+    /// Whether the submission is a repetition.
     pub replayed: bool,
-}
-
-fn hash_of(text: &str) -> String {
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,26 +1,26 @@
-//! The memory that one job may take.
+//! The memory limit of a job.
 
 use super::config::WorkConfig;
 use herringbone_job::document::JobDocument;
 use herringbone_job::study::demand;
 use herringbone_job::{DocumentError, Violation};
 
-/// The bound, and what the estimate needs to know of the machine.
+/// The memory limit, and the number of threads on which the estimate depends.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct MemoryBound {
+pub(super) struct MemoryLimit {
     limit_mib: u32,
     threads: usize,
 }
 
-impl MemoryBound {
+impl MemoryLimit {
     pub fn new(config: &WorkConfig) -> Self {
         Self { limit_mib: config.job_memory_mib, threads: config.thread_count() }
     }
 
-    /// Refuses a document whose calculation would take more.
+    /// Checks the estimated memory of a document against the limit.
     ///
     /// # Errors
-    /// [`DocumentError::Invalid`] that points to what asks for most of it.
+    /// [`DocumentError::Invalid`] with a pointer to the field that needs most of the memory.
     pub fn check(&self, document: &JobDocument) -> Result<(), DocumentError> {
         let (demand, limit_mib) = (demand(document, self.threads), self.limit_mib);
         let total_mib = demand.total_mib();

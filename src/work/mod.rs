@@ -1,30 +1,30 @@
-//! The only bridge between async and the CPU: jobs are accepted here, handed to a queue, run on one pool of threads, and
-//! what becomes of them is written and told to whoever waits.
+//! Running jobs: submission, the queue, workers on CPU thread pools, storing results and publishing events. The only
+//! bridge between async code and CPU threads.
 //!
-//! Invariant: nothing here knows HTTP or SQL; a job's state changes only through the [`Recorder`].
+//! Invariant: no HTTP and no SQL here; the state of a job changes only through the [`JobRecorder`].
 
 mod config;
+mod database_stages;
 mod failure;
 mod hub;
+mod job_run;
 mod jobs;
-mod local;
+mod local_queue;
 mod measure;
 mod memory;
-mod points;
 mod queue;
 mod recorder;
 mod retention;
 mod reuse;
-mod run;
+mod running_points;
 mod solver;
-mod stages;
-mod stop;
+mod stop_signal;
 
 pub use config::WorkConfig;
-pub use hub::{Listener, News, Subscription};
+pub use hub::{JobEvent, JobEventListener, JobSubscription};
 pub use jobs::{Jobs, SubmitError, SubmitRequest, Submitted};
-pub use local::LocalQueue;
-pub use queue::{Pending, Queue, Workers};
-pub use recorder::{Clock, Recorder};
-pub use retention::{Sweep, sweep, tend};
+pub use local_queue::LocalQueue;
+pub use queue::{BoxFuture, Queue, Workers};
+pub use recorder::{Clock, JobRecorder};
+pub use retention::{RetentionPass, run_retention, run_retention_pass};
 pub use solver::{Solver, StudySolver};

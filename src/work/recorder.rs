@@ -1,27 +1,27 @@
-//! Writes what becomes of a job and tells it to whoever waits; the only way in which a job's state changes.
+//! Changes of a job's state: stored, published and counted.
 
-use super::hub::{Hub, Listener, Subscription};
+use super::hub::{Hub, JobEventListener, JobSubscription};
 use super::measure;
 use crate::store::{
-    Cancellation, Claim, Completion, Deletion, Failure, JobId, JobRecord, Pause, PointBatch, State, Store, StoreError,
-    WorkClass,
+    Cancellation, Claim, Completion, Deletion, Failure, JobId, JobRecord, JobState, PointBatch, ReleaseReason, Store,
+    StoreError, WorkClass,
 };
 use jiff::Timestamp;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Where times come from; fixed in tests that need it.
+/// The source of times, replaceable in tests.
 pub type Clock = Arc<dyn Fn() -> Timestamp + Send + Sync>;
 
-/// Store, subscribers and clock.
+/// Stores and publishes all changes of the state of jobs. Cheap to clone.
 #[derive(Clone)]
-pub struct Recorder {
+pub struct JobRecorder {
     store: Store,
     hub: Arc<Hub>,
     clock: Clock,
 }
 
-impl Recorder {
+impl JobRecorder {
     pub fn new(store: Store, clock: Clock) -> Self {
         Self { store, hub: Arc::default(), clock }
     }
@@ -34,22 +34,25 @@ impl Recorder {
         (self.clock)()
     }
 
-    /// Hears of every later change of a job.
-    pub fn subscribe(&self, job: JobId) -> Subscription {
+    /// Subscribes to later changes of a job.
+    pub fn subscribe(&self, job: JobId) -> JobSubscription {
         self.hub.subscribe(job)
     }
 
-    /// Hears of every later change of any job.
-    pub fn listen(&self) -> Listener {
+    /// Listens to later events of all jobs.
+    pub fn listen(&self) -> JobEventListener {
         self.hub.listen()
     }
 
-    /// A job was submitted; it may have ended already.
-    pub fn submitted(&self, job: &JobRecord) {
+    /// Publishes a submitted job, which may have ended already.
+    pub fn publish_submission(&self, job: &JobRecord) {
         self.hub.publish(job);
     }
 
     /// Deletes an ended job.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn delete(&self, id: JobId) -> Result<Deletion, StoreError> {
         let deletion = self.store.delete(id).await?;
         if deletion == Deletion::Deleted {
@@ -58,22 +61,28 @@ impl Recorder {
         Ok(deletion)
     }
 
-    /// Many jobs were deleted at once.
-    pub fn deleted_several(&self) {
-        self.hub.publish_upheaval();
+    /// Tells listeners to read the list of jobs again.
+    pub fn publish_resync(&self) {
+        self.hub.publish_resync();
     }
 
-    /// Takes the next job of this class in line.
+    /// Claims the next job of this class.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn claim_next(&self, class: WorkClass) -> Result<Option<Claim>, StoreError> {
         let claim = self.store.claim_next(class, self.now()).await?;
         if let Some(claim) = &claim {
-            measure::started(&claim.job);
+            measure::record_start(&claim.job);
             self.hub.publish(&claim.job);
         }
         Ok(claim)
     }
 
-    /// How far a running job is, with the points that were solved meanwhile.
+    /// Stores the progress of a running job, and points that were solved.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn progress(
         &self,
         job: &JobRecord,
@@ -87,62 +96,79 @@ impl Recorder {
         Ok(())
     }
 
-    /// False when the job whose result was to be reused is gone, or the job is no longer this attempt's.
+    /// Stores the result of a running job. False when the job whose result was to be reused was deleted, or when the
+    /// job no longer belongs to this attempt.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn succeed(&self, job: &JobRecord, completion: &Completion) -> Result<bool, StoreError> {
         let done = self.store.succeed(job.id, job.attempt, completion, self.now()).await?;
         if done.is_some() && completion.reused_from.is_some() {
-            measure::result_reused();
+            measure::record_result_reuse();
         }
-        Ok(self.ended(done))
+        Ok(self.publish_end(done))
     }
 
+    /// Stores the failure of a running job. False when the job no longer belongs to this attempt.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn fail(&self, job: &JobRecord, failure: &Failure) -> Result<bool, StoreError> {
         let failed = self.store.fail(job.id, job.attempt, failure, self.now()).await?;
-        Ok(self.ended(failed))
+        Ok(self.publish_end(failed))
     }
 
-    /// The worker stopped before the end: canceled if that was asked for, else queued again.
+    /// Returns a job that was stopped: to canceled if that was requested, else to the queue.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn release(
         &self,
         job: &JobRecord,
-        pause: Pause,
+        reason: ReleaseReason,
         computed: Duration,
-    ) -> Result<Option<State>, StoreError> {
-        let released = self.store.release(job.id, job.attempt, pause, computed, self.now()).await?;
+    ) -> Result<Option<JobState>, StoreError> {
+        let released = self.store.release(job.id, job.attempt, reason, computed, self.now()).await?;
         let state = released.as_ref().map(|job| job.state);
-        self.ended(released);
+        self.publish_end(released);
         Ok(state)
     }
 
+    /// Cancels a queued job, or records the request on a running one.
+    ///
+    /// # Errors
+    /// The database cannot be written.
     pub async fn cancel(&self, id: JobId) -> Result<Cancellation, StoreError> {
         let cancellation = self.store.cancel(id, self.now()).await?;
         match &cancellation {
             Cancellation::Canceled(job) => {
-                self.ended(Some(job.clone()));
+                self.publish_end(Some(job.clone()));
             }
-            Cancellation::Asked(job) => self.hub.publish(job),
+            Cancellation::Requested(job) => self.hub.publish(job),
             Cancellation::Ended(_) | Cancellation::NotFound => {}
         }
         Ok(cancellation)
     }
 
-    fn told(&self, job: Option<JobRecord>) -> bool {
+    /// Publishes a changed job. Returns whether there is one.
+    fn publish(&self, job: Option<JobRecord>) -> bool {
         if let Some(job) = &job {
             self.hub.publish(job);
         }
         job.is_some()
     }
 
-    fn ended(&self, job: Option<JobRecord>) -> bool {
+    /// Publishes a job after a transition, and counts it if it has ended. Returns whether there is one.
+    fn publish_end(&self, job: Option<JobRecord>) -> bool {
         if let Some(job) = job.as_ref().filter(|job| job.state.is_ended()) {
-            tracing::info!(job = %job.id, state = job.state.word(), "job ended");
-            let labels = [("kind", job.kind.clone()), ("state", job.state.word().to_owned())];
+            tracing::info!(job = %job.id, state = job.state.as_str(), "job ended");
+            let labels = [("kind", job.kind.clone()), ("state", job.state.as_str().to_owned())];
             metrics::counter!("herringbone_jobs_ended_total", &labels).increment(1);
             if let (Some(started_at), Some(ended_at)) = (job.started_at, job.ended_at) {
                 let seconds = ended_at.duration_since(started_at).as_secs_f64().max(0.0);
                 metrics::histogram!("herringbone_job_duration_seconds", &labels).record(seconds);
             }
         }
-        self.told(job)
+        self.publish(job)
     }
 }

@@ -1,45 +1,45 @@
-//! What a job is given to: the study room, or a double in tests.
+//! The interface to the calculation.
 
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
-use herringbone_job::study::{self, CheckReport, Outcome, SolveContext, SolveError};
+use herringbone_job::study::{self, CheckedJob, Outcome, SolveContext, SolveError};
 
-/// Checks and solves documents. Called on plain threads; may take long and may panic.
+/// Checks and solves documents. Called on threads outside the async runtime; calls may take long and may panic.
 pub trait Solver: Send + Sync + 'static {
-    /// Geometry and warnings, in milliseconds.
+    /// Checks a document, in milliseconds.
     ///
     /// # Errors
-    /// Why the gear cannot exist or is not supported.
-    fn check(&self, document: &JobDocument) -> Result<CheckReport, DocumentError>;
+    /// The gear is infeasible or not supported.
+    fn check(&self, document: JobDocument) -> Result<CheckedJob, DocumentError>;
 
-    /// Content hash of everything that decides the result.
+    /// Hash of all inputs that determine the result.
     fn input_hash(&self, document: &JobDocument) -> String;
 
-    /// Solves a document.
+    /// Solves a job.
     ///
     /// # Errors
-    /// Why there is no result.
-    fn solve(&self, document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError>;
+    /// [`SolveError`].
+    fn solve(&self, job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError>;
 
-    /// Results and stages stored under another version are not reused.
+    /// Version of the calculation; results and stages of other versions are not reused.
     fn version(&self) -> &'static str;
 }
 
-/// The study room.
+/// The calculation of the crate `herringbone-job`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct StudySolver;
 
 impl Solver for StudySolver {
-    fn check(&self, document: &JobDocument) -> Result<CheckReport, DocumentError> {
-        study::check(document)
+    fn check(&self, document: JobDocument) -> Result<CheckedJob, DocumentError> {
+        CheckedJob::new(document)
     }
 
     fn input_hash(&self, document: &JobDocument) -> String {
         study::input_hash(document)
     }
 
-    fn solve(&self, document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
-        study::solve(document, context)
+    fn solve(&self, job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError> {
+        study::solve(job, context)
     }
 
     fn version(&self) -> &'static str {

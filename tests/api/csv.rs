@@ -3,7 +3,8 @@
 use crate::support::*;
 use serde_json::Value;
 
-/// The lines of CSV with decimal commas, read as a spreadsheet of such a language reads them: each field a number or a text.
+/// The lines of CSV with decimal commas, read as a spreadsheet of such a language reads them: each field a number or a
+/// text.
 fn read(text: &str) -> Vec<Vec<Result<f64, String>>> {
     let text = text.strip_prefix('\u{feff}').expect("a byte order mark");
     let text = text.strip_suffix("\r\n").expect("lines end in CR LF");

@@ -1,8 +1,8 @@
-//! Room for the database: what clients see when it runs short, and how it comes back.
+//! Retention: responses of a full database, and its recovery.
 
 use crate::support::*;
 use herringbone::store::{Completion, JobId, NewJob, PointBatch, RetentionConfig, Store, StoreConfig};
-use herringbone::work::{Sweep, sweep, tend};
+use herringbone::work::{RetentionPass, run_retention, run_retention_pass};
 use jiff::Timestamp;
 use serde_json::json;
 use sqlx::sqlite::SqliteConnectOptions;
@@ -11,18 +11,18 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use tokio_util::sync::CancellationToken;
 
-async fn by_hand(database: &Path) -> SqliteConnection {
+async fn raw_connection(database: &Path) -> SqliteConnection {
     SqliteConnectOptions::new().filename(database).connect().await.expect("opens")
 }
 
 #[tokio::test]
-async fn a_full_database_refuses_jobs_keeps_those_it_has_and_recovers() {
+async fn a_full_database_refuses_jobs_keeps_accepted_ones_and_recovers() {
     let app = limited_app(8).await;
     let (done, _) = app.run(&document()).await;
     app.solver.breakpoints.hold("solve");
     let live = app.submit(&document()).await;
     app.solver.breakpoints.reached("solve", 2).await;
-    let mut database = by_hand(&app.database()).await;
+    let mut database = raw_connection(&app.database()).await;
     let filling = "INSERT INTO stages VALUES ('ballast', 'mesh', '', 8400000, 0, zeroblob(8400000))";
     sqlx::query(filling).execute(&mut database).await.expect("filled");
     let answer = app.submit_with(&document(), &[]).await;
@@ -42,9 +42,9 @@ async fn a_full_database_refuses_jobs_keeps_those_it_has_and_recovers() {
 }
 
 #[tokio::test]
-async fn what_the_database_says_is_not_said_to_clients() {
+async fn messages_of_the_database_are_not_shown_to_clients() {
     let app = limited_app(8).await;
-    let mut database = by_hand(&app.database()).await;
+    let mut database = raw_connection(&app.database()).await;
     // Room for a submission and not for its event: SQLite's own word, from within a transaction.
     let filling = "INSERT INTO stages VALUES ('ballast', 'mesh', '', 0, 0, zeroblob(8700000))";
     sqlx::query(filling).execute(&mut database).await.expect("filled");
@@ -82,8 +82,8 @@ async fn filled(database: &Path, jobs: i64, until: Timestamp) -> Vec<JobId> {
             input_hash: format!("{number}"),
             solver_version: "test".into(),
             series: Vec::new(),
-            points: None,
-            rows: PointBatch::default(),
+            rows: None,
+            unwritten: PointBatch::default(),
             reused_from: None,
         };
         store.succeed(id, claim.job.attempt, &completion, at).await.expect("succeeds").expect("its own");
@@ -93,7 +93,7 @@ async fn filled(database: &Path, jobs: i64, until: Timestamp) -> Vec<JobId> {
 }
 
 #[tokio::test]
-async fn a_sweep_deletes_by_age_then_for_room_and_gives_the_room_back() {
+async fn a_pass_deletes_by_age_then_by_size_and_shrinks_the_file() {
     let directory = tempfile::tempdir().expect("temporary directory");
     let database = directory.path().join("jobs.db");
     let now = Timestamp::from_second(1_800_000_000).expect("a time");
@@ -102,43 +102,43 @@ async fn a_sweep_deletes_by_age_then_for_room_and_gives_the_room_back() {
     let store = Store::open(&StoreConfig { retention, ..StoreConfig::at(&database) }).await.expect("opens");
     let open = CancellationToken::new();
     let keep_from = Timestamp::from_second(now.as_second() - 30).expect("a time");
-    let done = sweep(&store, Some(keep_from), &open).await.expect("sweeps");
+    let deleted = run_retention_pass(&store, Some(keep_from), &open).await.expect("a pass");
     // Ten are too old; of the other 15 MB at least 6 go. How many more depends on the size of the last transaction.
-    assert!(done.by_age == 10 && (12..=20).contains(&done.by_size), "{done:?}");
-    let gone = 10 + done.by_size as usize;
+    assert!(deleted.by_age == 10 && (12..=20).contains(&deleted.by_size), "{deleted:?}");
+    let count = 10 + deleted.by_size as usize;
     let left: Vec<bool> = futures_util::future::join_all(ids.iter().map(|id| store.job(*id)))
         .await
         .into_iter()
         .map(|job| job.expect("reads").is_some())
         .collect();
-    assert!(left[..gone].iter().all(|left| !left) && left[gone..].iter().all(|left| *left), "{left:?}");
+    assert!(left[..count].iter().all(|left| !left) && left[count..].iter().all(|left| *left), "{left:?}");
     let usage = store.usage().await.expect("usage");
     assert!(usage.file_bytes < 9_000_000 && usage.log_bytes == 0, "{usage:?}");
-    assert_eq!(sweep(&store, Some(keep_from), &open).await.expect("sweeps"), Sweep::default());
+    assert_eq!(run_retention_pass(&store, Some(keep_from), &open).await.expect("a pass"), RetentionPass::default());
 }
 
-/// What the housekeeper deletes is told, at once, to whoever follows all jobs.
+/// Clients that follow all jobs are told at once to read the list again.
 #[tokio::test]
-async fn who_follows_all_jobs_hears_that_the_list_is_to_be_read_again() {
+async fn followers_of_all_jobs_are_told_to_read_the_list_again() {
     let app = limited_app(8).await;
     let (done, _) = app.run(&document()).await;
     let mut events = app.stream("/api/v1/jobs/events", &[]).await;
     assert_eq!(events.next().await.expect("an event").name, "reload");
-    let housekeeper = tend(app.jobs.clone(), RetentionConfig::default(), std::sync::Arc::new(Timestamp::now));
-    let housekeeper = tokio::spawn(housekeeper);
-    let mut database = by_hand(&app.database()).await;
+    let retention = run_retention(app.jobs.clone(), RetentionConfig::default(), std::sync::Arc::new(Timestamp::now));
+    let retention = tokio::spawn(retention);
+    let mut database = raw_connection(&app.database()).await;
     let filling = "INSERT INTO stages VALUES ('ballast', 'mesh', '', 0, 0, zeroblob(8600000))";
     sqlx::query(filling).execute(&mut database).await.expect("filled");
     app.submit_with(&document(), &[]).await.assert_problem(503, "storage-unavailable");
     assert_eq!(events.next().await.expect("an event").name, "reload");
     assert_eq!(app.get(&done).await.status, 404);
     app.jobs.close().await;
-    housekeeper.await.expect("ends with the jobs");
+    retention.await.expect("ends with the jobs");
 }
 
-/// The real program: a refused job wakes the housekeeper, and soon there is room.
+/// The real program: a refused job starts a pass.
 #[test]
-fn ended_jobs_make_room_for_new_ones() {
+fn ended_jobs_are_deleted_for_new_ones() {
     let directory = tempfile::tempdir().expect("temporary directory");
     let runtime = tokio::runtime::Runtime::new().expect("a runtime");
     runtime.block_on(filled(&directory.path().join("jobs.db"), 20, Timestamp::now()));
@@ -157,7 +157,7 @@ fn ended_jobs_make_room_for_new_ones() {
         assert!(Instant::now() < deadline, "no room was made");
         std::thread::sleep(Duration::from_millis(20));
     }
-    // The room is there before the sweep that made it has ended.
+    // Jobs are accepted before the pass has ended.
     let deleted = || {
         let (_, metrics) = service.exchange("GET", "/metrics", &[], "");
         let deleted = "herringbone_retention_deleted_jobs_total{reason=\"size\"} ";

@@ -102,7 +102,8 @@ fn the_first_example_has_every_name_with_a_finite_value() {
     assert!(result["warnings"].is_array());
 }
 
-/// The buffered force lies below Zhou's by what the load share at mesh-in says, on every variant of the source's Table 2.
+/// The buffered force lies below Zhou's by what the load share at mesh-in says, on every variant of the source's Table
+/// 2.
 #[test]
 fn the_buffer_takes_a_few_percent_off_the_impact_and_less_with_more_contact() {
     let mut last = f64::INFINITY;

@@ -1,5 +1,5 @@
-//! docs/STUDY.md says what the program answers: its Tables 2 and 3, by the source's model and with the contact in the equations, in the digits
-//! that it prints.
+//! docs/STUDY.md says what the program answers: its Tables 2 and 3, by the source's model and with the contact in the
+//! equations, in the digits that it prints.
 
 use super::*;
 

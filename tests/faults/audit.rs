@@ -209,14 +209,15 @@ impl Audit<'_> {
     }
 }
 
-/// As the service says that it hashes them: the rows in order, a zero byte after each, 128 bits of SHA-256 in hex.
+/// The digest of rows as the service documents it: the rows in order, a zero byte after each, 128 bits of SHA-256 in
+/// hex.
 fn digest_of(bodies: &[String]) -> String {
     let mut hasher = Sha256::new();
     for body in bodies {
         hasher.update(body);
         hasher.update([0]);
     }
-    hasher.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
+    hex::encode(&hasher.finalize()[..16])
 }
 
 fn is_end(state: &str) -> bool {

@@ -33,7 +33,7 @@ async fn jobs_run_in_their_order_when_the_clock_goes_backwards() {
     }
     for job in &ended {
         let (started_at, ended_at) = (job.started_at.expect("started"), job.ended_at.expect("ended"));
-        assert_eq!(job.state.word(), "succeeded");
+        assert_eq!(job.state.as_str(), "succeeded");
         assert!(job.submitted_at <= started_at && started_at <= ended_at, "{job:?}");
     }
     assert!(ids.windows(2).all(|two| two[0] < two[1]), "ids are in the order of submission, and so all different");

@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A response with given stiffness, directly periodic, hardly a series: milliseconds. Each one differs in speed, so that no
-/// result is reused by chance.
+/// A response with given stiffness, directly periodic, hardly a series: milliseconds. Each one differs in speed, so
+/// that no result is reused by chance.
 pub fn response() -> Value {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let speed_rpm = 1000.0 + 0.01 * f64::from(COUNT.fetch_add(1, Ordering::Relaxed));

@@ -1,4 +1,5 @@
-//! What happens when things go wrong: the real program, killed, out of room, on a damaged file, asked to stop under load.
+//! What happens when things go wrong: the real program, killed, out of room, on a damaged file, asked to stop under
+//! load.
 
 mod audit;
 mod chance;

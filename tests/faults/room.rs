@@ -1,4 +1,5 @@
-//! No room: jobs are refused with a reason that passes, nothing accepted is lost, and all goes on when there is room again.
+//! No room: jobs are refused with a reason that passes, nothing accepted is lost, and all goes on when there is room
+//! again.
 
 use crate::audit::{Accepted, audit};
 use crate::documents;
@@ -111,7 +112,8 @@ fn a_full_disk_refuses_jobs_until_there_is_room() {
     assert!(service.end().0.success());
 }
 
-/// How a command is started in a mount namespace of its own; none, with the reason printed, where that is not permitted.
+/// How a command is started in a mount namespace of its own; none, with the reason printed, where that is not
+/// permitted.
 fn namespace() -> Option<Vec<String>> {
     let mut reasons = Vec::new();
     for options in [&["--user", "--map-root-user", "--mount"][..], &["--mount"]] {

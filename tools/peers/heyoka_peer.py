@@ -1,6 +1,6 @@
 """heyoka (Taylor series compiled at run time, with events) on the reference cases of the equations of motion.
 
-Questions and answers as in scipy_peer.py. METHOD: the number of motions side by side in vector instructions (1: taylor_adaptive; more: taylor_adaptive_batch, all
+Requests and replies as in scipy_peer.py. METHOD: the number of motions side by side in vector instructions (1: taylor_adaptive; more: taylor_adaptive_batch, all
 of the same case); RESTART is always meant. heyoka is given what our own method uses:
 one half of the mirrored pair, relative rotation instead of the two arcs (10 states), changes of contact as terminal events, restarts at the edges of the impact.
 Compiling is not part of the time.

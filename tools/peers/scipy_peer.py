@@ -1,6 +1,6 @@
 """SciPy on the reference cases of the equations of motion.
 
-Reads questions "CASE METHOD TOLERANCE PERIODS RESTART" from standard input, one a line, and answers each with the processor seconds the solution took
+Reads requests "CASE METHOD TOLERANCE PERIODS RESTART" from standard input, one per line, and replies to each with the processor seconds the solution took
 and the 24 states it got to (SI, the order of the reference), or with a message.
 
 METHOD: DOP853, RK45 or LSODA of solve_ivp; dop853 of ode (compiled, equations in Python); odeint. RESTART: 1 to begin afresh at the edges of

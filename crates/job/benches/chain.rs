@@ -3,30 +3,31 @@
 //! `cargo bench -p herringbone-job --bench chain`; what came out stands in docs/BENCHMARKS.md.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use herringbone_job::document::JobDocument;
 use herringbone_job::parse_value;
-use herringbone_job::study::{self, SolveContext};
+use herringbone_job::study::{self, CheckedJob, SolveContext};
 use serde_json::{Value, json};
 use std::hint::black_box;
 
-fn example(change: impl FnOnce(&mut Value)) -> JobDocument {
+fn example(change: impl FnOnce(&mut Value)) -> CheckedJob {
     let mut value: Value =
         serde_json::from_str(include_str!("../../../examples/table1.json")).expect("the example is JSON");
     value["analysis"]["channels"] = json!([]);
     change(&mut value);
-    parse_value(&value).expect("a valid document")
+    parse_value(&value).and_then(CheckedJob::new).expect("a valid document")
 }
 
-fn solve(document: &JobDocument) -> study::Outcome {
+fn solve(job: &CheckedJob) -> study::Outcome {
     let context = SolveContext::none();
-    study::solve(document, &context).expect("the example solves")
+    study::solve(job, &context).expect("the example solves")
 }
 
 fn documents(criterion: &mut Criterion) {
     let bytes = include_bytes!("../../../examples/table1.json");
     criterion.bench_function("document: parse", |b| b.iter(|| herringbone_job::parse(black_box(bytes))));
-    let document = example(|_| {});
-    criterion.bench_function("document: geometry and warnings", |b| b.iter(|| study::check(black_box(&document))));
+    let document = example(|_| {}).into_document();
+    criterion.bench_function("document: geometry and warnings", |b| {
+        b.iter(|| CheckedJob::new(black_box(&document).clone()).map(|job| job.report()))
+    });
 }
 
 fn stages(criterion: &mut Criterion) {

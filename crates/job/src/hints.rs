@@ -2,6 +2,7 @@
 //! the value worked out for the document at hand where it says enough for that.
 
 use super::schema::field_descriptions;
+use super::unit::{Quantity, Unit};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -18,79 +19,6 @@ pub struct Unknown<'a> {
     pub known: &'a [&'static str],
 }
 
-/// Endings of names that state a unit, with the unit for people and its size in the SI unit of its kind; longer ones first.
-const UNITS: [(&str, &str, f64, Kind); 46] = [
-    ("_nm_per_rad", "N m/rad", 1.0, Kind::TorsionalStiffness),
-    ("_nm_per_deg", "N m/deg", 180.0 / PI, Kind::TorsionalStiffness),
-    ("_knm_per_rad", "kN m/rad", 1e3, Kind::TorsionalStiffness),
-    ("_kn_per_mm", "kN/mm", 1e6, Kind::Stiffness),
-    ("_n_per_um", "N/um", 1e6, Kind::Stiffness),
-    ("_n_per_mm", "N/mm", 1e3, Kind::Stiffness),
-    ("_n_per_m", "N/m", 1.0, Kind::Stiffness),
-    ("_kg_dm3", "kg/dm3", 1e3, Kind::Density),
-    ("_kg_m3", "kg/m3", 1.0, Kind::Density),
-    ("_g_cm3", "g/cm3", 1e3, Kind::Density),
-    ("_t_m3", "t/m3", 1e3, Kind::Density),
-    ("_kg_mm2", "kg mm2", 1e-6, Kind::Inertia),
-    ("_kg_cm2", "kg cm2", 1e-4, Kind::Inertia),
-    ("_kg_m2", "kg m2", 1.0, Kind::Inertia),
-    ("_lbf_ft", "lbf ft", 1.355_817_948_331_4, Kind::Torque),
-    ("_lbf_in", "lbf in", 0.112_984_829_027_617, Kind::Torque),
-    ("_nmm", "N mm", 1e-3, Kind::Torque),
-    ("_knm", "kN m", 1e3, Kind::Torque),
-    ("_n_m", "N m", 1.0, Kind::Torque),
-    ("_nm", "N m", 1.0, Kind::Torque),
-    ("_rad_s", "rad/s", 1.0, Kind::Speed),
-    ("_rad_per_s", "rad/s", 1.0, Kind::Speed),
-    ("_1_min", "r/min", PI / 30.0, Kind::Speed),
-    ("_rpm", "r/min", PI / 30.0, Kind::Speed),
-    ("_rps", "r/s", 2.0 * PI, Kind::Speed),
-    ("_hz", "r/s", 2.0 * PI, Kind::Speed),
-    ("_n_mm2", "N/mm2", 1e6, Kind::Stress),
-    ("_gpa", "GPa", 1e9, Kind::Stress),
-    ("_mpa", "MPa", 1e6, Kind::Stress),
-    ("_pa", "Pa", 1.0, Kind::Stress),
-    ("_psi", "psi", 6_894.757_293_168, Kind::Stress),
-    ("_mrad", "mrad", 1e-3, Kind::Angle),
-    ("_rad", "rad", 1.0, Kind::Angle),
-    ("_arcmin", "arcmin", PI / 10_800.0, Kind::Angle),
-    ("_deg", "deg", PI / 180.0, Kind::Angle),
-    ("_kw", "kW", 1e3, Kind::Power),
-    ("_w", "W", 1.0, Kind::Power),
-    ("_kn", "kN", 1e3, Kind::Force),
-    ("_kg", "kg", 1.0, Kind::Mass),
-    ("_inch", "in", 25.4e-3, Kind::Length),
-    ("_in", "in", 25.4e-3, Kind::Length),
-    ("_mm", "mm", 1e-3, Kind::Length),
-    ("_um", "um", 1e-6, Kind::Length),
-    ("_cm", "cm", 1e-2, Kind::Length),
-    ("_m", "m", 1.0, Kind::Length),
-    ("_n", "N", 1.0, Kind::Force),
-];
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Length,
-    Angle,
-    Speed,
-    Torque,
-    Power,
-    Force,
-    Stress,
-    Mass,
-    Inertia,
-    Density,
-    Stiffness,
-    TorsionalStiffness,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Unit {
-    text: &'static str,
-    size: f64,
-    kind: Kind,
-}
-
 /// What to say beside "is not a field of this object"; nothing where no field is meant for certain.
 pub fn hint(unknown: &Unknown) -> Option<String> {
     if unknown.name.len() > 60 {
@@ -98,8 +26,8 @@ pub fn hint(unknown: &Unknown) -> Option<String> {
     }
     let name = plain(unknown.name);
     let (stem, unit) = split(&name);
-    let asked = Asked { unknown, stem, unit };
-    asked.by_meaning().or_else(|| asked.in_another_unit()).or_else(|| asked.elsewhere(&name))
+    let foreign = ForeignName { unknown, stem, unit };
+    foreign.by_meaning().or_else(|| foreign.in_another_unit()).or_else(|| foreign.elsewhere(&name))
 }
 
 /// Lower case, with underscores, "center" for "centre": "transverseModule" and "Transverse-Module" become "transverse_module".
@@ -118,42 +46,38 @@ fn plain(name: &str) -> String {
 }
 
 /// A name without the unit at its end, and that unit.
-fn split(name: &str) -> (&str, Option<Unit>) {
-    let found = UNITS.iter().find_map(|(ending, text, size, kind)| {
-        let stem = name.strip_suffix(ending).filter(|stem| !stem.is_empty())?;
-        Some((stem, Unit { text, size: *size, kind: *kind }))
-    });
+fn split(name: &str) -> (&str, Option<&'static Unit>) {
+    let unit = Unit::of_name(name);
+    let stem = unit.and_then(|unit| name.strip_suffix(unit.suffix)).unwrap_or(name);
     // "m_n" is a module and "d_m" a diameter.
-    match found {
-        Some((stem, unit)) if stem.len() > 1 => (stem, Some(unit)),
-        _ => (name, None),
-    }
+    if stem.len() > 1 { (stem, unit) } else { (name, None) }
 }
 
-struct Asked<'a> {
+/// An unknown name, taken apart.
+struct ForeignName<'a> {
     unknown: &'a Unknown<'a>,
     stem: &'a str,
-    unit: Option<Unit>,
+    unit: Option<&'static Unit>,
 }
 
-impl Asked<'_> {
+impl ForeignName<'_> {
     /// A number of the document.
     fn number(&self, pointer: &str) -> Option<f64> {
         self.unknown.document.pointer(pointer)?.as_f64()
     }
 
     /// The unknown member's value in SI, taken to be in `default` (its size in SI) where its name states no unit.
-    fn si(&self, kind: Kind, default: f64) -> Option<f64> {
+    fn si(&self, quantity: Quantity, default: f64) -> Option<f64> {
         let size = match self.unit {
             None => default,
-            Some(unit) if unit.kind == kind => unit.size,
+            Some(unit) if unit.quantity == quantity => unit.size,
             Some(_) => return None,
         };
         self.unknown.value.as_f64().map(|value| value * size)
     }
 
     fn mm(&self) -> Option<f64> {
-        Some(self.si(Kind::Length, 1e-3)? * 1e3)
+        Some(self.si(Quantity::Length, 1e-3)? * 1e3)
     }
 
     fn cos_beta(&self) -> Option<f64> {
@@ -175,7 +99,7 @@ impl Asked<'_> {
         Some((self.number("/design/pinion/teeth")?, self.number("/design/gear/teeth")?))
     }
 
-    /// Reference diameter of the gear that is asked about, mm: d = z m_n / cos β.
+    /// Reference diameter of the gear that the name is about, mm: d = z m_n / cos β.
     fn reference_diameter(&self) -> Option<f64> {
         Some(self.of_member("teeth", None)? * self.number("/design/normal_module_mm")? / self.cos_beta()?)
     }
@@ -320,7 +244,7 @@ impl Asked<'_> {
                     .to_owned(),
             ),
             "addendum" | "dedendum" | "fillet_radius" | "tip_alteration" | "profile_shift"
-                if self.unit.is_some_and(|unit| unit.kind == Kind::Length) =>
+                if self.unit.is_some_and(|unit| unit.quantity == Quantity::Length) =>
             {
                 let multiple =
                     self.mm().zip(self.number("/design/normal_module_mm")).map(|(length, module)| length / module);
@@ -349,20 +273,21 @@ impl Asked<'_> {
             }
             "crowning" => Some(format!("crowning along the tooth is {member}/lead_crowning_um")),
             "torque" if self.is_about_the_gear() => {
-                let torque = self.si(Kind::Torque, 1.0).zip(self.teeth()).map(|(torque, (z1, z2))| torque * z1 / z2);
+                let torque =
+                    self.si(Quantity::Torque, 1.0).zip(self.teeth()).map(|(torque, (z1, z2))| torque * z1 / z2);
                 Some(format!(
                     "the torque is the pinion's, /operation/pinion_torque_nm: T_1 = T_2 z_1 / z_2{}",
                     shown(torque, "N m")
                 ))
             }
             "torque" | "load" | "moment" if object != "/operation" || bare == stem => {
-                let torque = self.si(Kind::Torque, 1.0).filter(|_| self.unit.is_some());
+                let torque = self.si(Quantity::Torque, 1.0).filter(|_| self.unit.is_some());
                 Some(format!("the torque is /operation/pinion_torque_nm, of the whole pinion{}", shown(torque, "N m")))
             }
             "speed" | "rpm" | "angular_velocity" | "angular_speed" | "omega" | "rotational_speed" | "n" | "n1"
                 if object != "/operation" || bare == stem || self.is_about_the_gear() || bare != "speed" =>
             {
-                let rpm = self.si(Kind::Speed, PI / 30.0).map(|speed| speed * 30.0 / PI);
+                let rpm = self.si(Quantity::Speed, PI / 30.0).map(|speed| speed * 30.0 / PI);
                 if self.is_about_the_gear() {
                     let rpm = rpm.zip(self.teeth()).map(|(speed, (z1, z2))| speed * z2 / z1);
                     return Some(format!(
@@ -375,7 +300,7 @@ impl Asked<'_> {
             }
             "power" => {
                 let speed = self.number("/operation/pinion_speed_rpm");
-                let torque = self.si(Kind::Power, 1e3).zip(speed).map(|(power, rpm)| power * 30.0 / (PI * rpm));
+                let torque = self.si(Quantity::Power, 1e3).zip(speed).map(|(power, rpm)| power * 30.0 / (PI * rpm));
                 Some(format!(
                     "the load is given as a torque, /operation/pinion_torque_nm: T_1 = P / ω_1{}",
                     shown(torque, "N m")
@@ -389,7 +314,7 @@ impl Asked<'_> {
             }
             "tangential_force" | "circumferential_force" | "ft" | "f_t" => {
                 let torque =
-                    self.si(Kind::Force, 1.0).zip(self.reference_diameter()).map(|(force, d)| force * d * 0.5e-3);
+                    self.si(Quantity::Force, 1.0).zip(self.reference_diameter()).map(|(force, d)| force * d * 0.5e-3);
                 Some(format!(
                     "the load is given as a torque, /operation/pinion_torque_nm: T_1 = F_t d_1 / 2{}",
                     shown(torque, "N m")
@@ -434,15 +359,15 @@ impl Asked<'_> {
     fn in_another_unit(&self) -> Option<String> {
         let unit = self.unit?;
         let (name, field) = self.unknown.known.iter().find_map(|name| match split(name) {
-            (stem, Some(field)) if stem == self.stem && field.kind == unit.kind && field.size != unit.size => {
+            (stem, Some(field)) if stem == self.stem && field.quantity == unit.quantity && field.size != unit.size => {
                 Some((name, field))
             }
             _ => None,
         })?;
         let given = self.unknown.value.as_f64().map(|value| [value, value * unit.size / field.size]);
-        Some(match given.filter(|[_, wanted]| wanted.is_finite()).map(|both| both.map(significant)) {
-            Some([given, wanted]) => {
-                format!("did you mean \"{name}\"? {given} {} are {wanted} {}", unit.text, field.text)
+        Some(match given.filter(|[_, converted]| converted.is_finite()).map(|both| both.map(significant)) {
+            Some([given, converted]) => {
+                format!("did you mean \"{name}\"? {given} {} are {converted} {}", unit.text, field.text)
             }
             None => format!("did you mean \"{name}\", in {}?", field.text),
         })
@@ -478,12 +403,12 @@ impl Asked<'_> {
 
     /// " = 20 deg" where the angle was given in another unit.
     fn in_degrees(&self) -> String {
-        let angle = self.si(Kind::Angle, PI / 180.0).filter(|_| self.unit.is_some());
+        let angle = self.si(Quantity::Angle, PI / 180.0).filter(|_| self.unit.is_some());
         shown(angle.map(f64::to_degrees), "deg")
     }
 
     fn helix_from_base(&self) -> Option<f64> {
-        let base = self.si(Kind::Angle, PI / 180.0)?;
+        let base = self.si(Quantity::Angle, PI / 180.0)?;
         let angle = self.number("/design/pressure_angle_deg").unwrap_or(20.0).to_radians();
         // tan α_n = tan α_t cos β and sin β_b = sin β cos α_n; with α_t given, tan β_b = tan β cos α_t.
         let beta = match self.unknown.document.pointer("/design/pressure_angle_plane").and_then(Value::as_str) {
@@ -612,7 +537,7 @@ mod tests {
     fn f17_the_value_that_the_hint_gives_is_the_one_that_is_meant() {
         let text = include_str!("../../../examples/table1.json");
         let document = parse(text.as_bytes()).unwrap();
-        let report = crate::study::check(&document).unwrap();
+        let report = crate::study::CheckedJob::new(document).unwrap().report();
         let reference_mm = report.geometry.pinion.reference_diameter_mm;
         let hinted = detail("/design/transverse_module_mm", json!(reference_mm / 17.0));
         assert!(hinted.ends_with("m_n = m_t cos β = 6 mm"), "{hinted}");
@@ -655,14 +580,6 @@ mod tests {
             let unknown =
                 Unknown { document: &json!({}), object: "/design", name, value: &json!(1), known: &["teeth"] };
             assert_eq!(hint(&unknown), None, "{name}");
-        }
-    }
-
-    /// A longer ending stands before one that ends it.
-    #[test]
-    fn the_longest_unit_is_found() {
-        for (index, (ending, ..)) in UNITS.iter().enumerate() {
-            assert!(!UNITS[..index].iter().any(|(before, ..)| ending.ends_with(before)), "{ending}");
         }
     }
 }

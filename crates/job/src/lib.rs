@@ -5,12 +5,13 @@ pub(crate) mod arbitrary;
 pub mod document;
 pub mod drawing;
 mod encoding;
-mod fields;
+mod field;
 mod finite;
 pub mod gear_data;
 pub mod grid;
 mod hints;
 mod json;
+mod path;
 mod reader;
 pub mod result;
 pub mod schema;
@@ -18,10 +19,11 @@ mod shape;
 pub mod study;
 #[cfg(test)]
 mod tests;
+pub mod unit;
 mod violation;
 
+pub use document::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_value};
 pub use encoding::{EncodingError, utf8_text, without_mark};
-pub use fields::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_value};
 pub use finite::not_finite;
 pub use shape::SweepShape;
 pub use violation::{DocumentError, Violation};

@@ -1,33 +1,45 @@
 //! Reading a JSON document field by field, so that every violation is found in one pass and the same declarations
 //! yield the JSON Schema, the defaults and the limits that the service publishes.
 //!
-//! A field is declared once, where it is read. Run over an empty document with [`Reading::describe`], the same code
-//! lists all fields instead of reading them.
+//! A field is declared once, on a struct (`#[derive(Input)]`, see [`super::field`]). Run over an empty document with
+//! [`Reading::describe`], the same code lists all fields instead of reading them.
 
+use super::field::{Declared, Words};
 use super::hints::{self, Unknown};
+use super::path::Path;
 use super::violation::Violation;
 use serde_json::{Map, Value, json};
 use std::cell::RefCell;
 
-/// What [`char::is_control`] finds is not in a text.
+/// Texts hold no control characters ([`char::is_control`]).
 const NO_CONTROLS: &str = r"^[^\u0000-\u001f\u007f-\u009f]*$";
 
-/// Declaration of a number: permitted range, unit, default, and a line of help. No default: required.
-#[derive(Debug, Clone, Copy)]
-pub struct Number {
-    pub min: f64,
-    pub max: f64,
-    pub unit: &'static str,
-    pub default: Option<f64>,
-    pub help: &'static str,
-}
-
-/// A declared field, as published in the schema.
+/// A declared field, as published in the schema and shown in the form.
 #[derive(Debug, Clone)]
 pub struct FieldDescription {
     pub pointer: String,
     pub schema: Value,
     pub required: bool,
+    /// Words of a choice with the labels that people read, where they differ from the words.
+    pub labels: &'static [(&'static str, &'static str)],
+    /// Section of the form.
+    pub group: &'static str,
+    /// Place among the fields that stand together; fields of one place stand in the order of declaration.
+    pub order: i32,
+    /// Letter and subscript of the quantity, or empty.
+    pub symbol: (&'static str, &'static str),
+    /// The default in words where it depends on other fields.
+    pub derived: Option<&'static str>,
+    pub condition: Option<Condition>,
+}
+
+/// A field that matters only while another field has one of some values.
+#[derive(Debug, Clone)]
+pub struct Condition {
+    /// Pointer of the other field.
+    pub on: String,
+    /// Its values, separated by spaces.
+    pub values: &'static str,
 }
 
 /// Violations listed at most; further ones are counted. A megabyte can hold a hundred thousand.
@@ -40,25 +52,39 @@ struct Collected {
     fields: Vec<FieldDescription>,
 }
 
-/// One pass over a document: what was found wrong, and (when describing) what was declared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Purpose {
+    Read,
+    /// Lists the declared fields; nothing is missing or invalid.
+    Describe,
+    /// Fills in defaults; nothing is missing or invalid.
+    Fill,
+}
+
+/// One pass over a document: the violations that were found, and (when describing) the fields that are declared.
 pub struct Reading {
     collected: RefCell<Collected>,
-    describing: bool,
+    purpose: Purpose,
 }
 
 impl Reading {
     /// A pass that reads.
     pub fn read() -> Self {
-        Self { collected: RefCell::default(), describing: false }
+        Self { collected: RefCell::default(), purpose: Purpose::Read }
     }
 
     /// A pass that lists the declared fields; nothing is missing or invalid in it.
     pub fn describe() -> Self {
-        Self { collected: RefCell::default(), describing: true }
+        Self { collected: RefCell::default(), purpose: Purpose::Describe }
     }
 
-    pub fn is_describing(&self) -> bool {
-        self.describing
+    /// A pass over no document, for the defaults.
+    pub fn fill() -> Self {
+        Self { collected: RefCell::default(), purpose: Purpose::Fill }
+    }
+
+    fn is_describing(&self) -> bool {
+        self.purpose == Purpose::Describe
     }
 
     /// The document's root object.
@@ -66,7 +92,7 @@ impl Reading {
         let map = match value {
             Value::Object(map) => Some(map),
             other => {
-                self.violate(wrong_type("", "an object", other));
+                self.violate(wrong_type(String::new(), "an object", other));
                 None
             }
         };
@@ -75,13 +101,14 @@ impl Reading {
             document: value,
             map,
             present: map.is_some(),
-            pointer: String::new(),
+            path: Path::ROOT,
             seen: RefCell::default(),
+            inherited: Inherited::default(),
         }
     }
 
     pub fn violate(&self, violation: Violation) {
-        if self.describing {
+        if self.purpose != Purpose::Read {
             return;
         }
         let mut collected = self.collected.borrow_mut();
@@ -96,7 +123,7 @@ impl Reading {
         self.collected.borrow().violations.len() >= MAX_VIOLATIONS
     }
 
-    /// What was found wrong; the last entry says how many more there are than [`MAX_VIOLATIONS`].
+    /// The violations that were found; the last entry says how many more there are than [`MAX_VIOLATIONS`].
     pub fn violations(self) -> Vec<Violation> {
         let Collected { mut violations, further, .. } = self.collected.into_inner();
         if further > 0 {
@@ -114,6 +141,17 @@ impl Reading {
     }
 }
 
+/// What the fields of an object have from the declaration of the object, as long as they do not declare it themselves.
+#[derive(Default, Clone)]
+struct Inherited {
+    group: &'static str,
+    order: i32,
+    derived: Option<&'static str>,
+    /// Defaults in words of single fields of the object.
+    derived_in: &'static [(&'static str, &'static str)],
+    condition: Option<Condition>,
+}
+
 /// An object of the document (or its absence, in which case every field takes its default or is missing).
 pub struct Object<'a> {
     reading: &'a Reading,
@@ -121,24 +159,63 @@ pub struct Object<'a> {
     document: &'a Value,
     map: Option<&'a Map<String, Value>>,
     present: bool,
-    pointer: String,
+    path: Path<'a>,
     seen: RefCell<Vec<&'static str>>,
+    inherited: Inherited,
 }
 
 impl<'a> Object<'a> {
-    pub fn reading(&self) -> &'a Reading {
-        self.reading
+    /// Where the rules between the fields of this object find what they need.
+    pub fn place(&self) -> Place<'_> {
+        Place { reading: self.reading, path: self.path, object: Some(self) }
     }
 
-    pub fn pointer_to(&self, name: &str) -> String {
-        format!("{}/{}", self.pointer, name)
+    fn pointer_to(&self, name: &str) -> String {
+        self.path.member(name).to_string()
     }
 
-    fn declare(&self, name: &'static str, required: bool, schema: impl FnOnce() -> Value) {
-        self.seen.borrow_mut().push(name);
-        if self.reading.describing {
-            let mut collected = self.reading.collected.borrow_mut();
-            collected.fields.push(FieldDescription { pointer: self.pointer_to(name), schema: schema(), required });
+    fn declare(&self, declared: &Declared, required: bool, schema: impl FnOnce() -> Value) {
+        self.declare_words(declared, required, &[], schema);
+    }
+
+    fn declare_words(
+        &self,
+        declared: &Declared,
+        required: bool,
+        labels: &'static [(&'static str, &'static str)],
+        schema: impl FnOnce() -> Value,
+    ) {
+        self.seen.borrow_mut().push(declared.name);
+        if self.reading.is_describing() {
+            let Inherited { group, order, derived, condition, .. } = self.inherited(declared);
+            self.reading.collected.borrow_mut().fields.push(FieldDescription {
+                pointer: self.pointer_to(declared.name),
+                schema: schema(),
+                required,
+                labels,
+                group,
+                order,
+                symbol: declared.form.symbol,
+                derived,
+                condition,
+            });
+        }
+    }
+
+    /// What holds for a field, and for the fields in it: its own declaration's, else this object's.
+    fn inherited(&self, declared: &Declared) -> Inherited {
+        if !self.reading.is_describing() {
+            return Inherited::default();
+        }
+        let (form, outer) = (&declared.form, &self.inherited);
+        let here = outer.derived_in.iter().find(|(name, _)| *name == declared.name).map(|(_, words)| *words);
+        let condition = form.when.map(|(sibling, values)| Condition { on: self.pointer_to(sibling), values });
+        Inherited {
+            group: if form.group.is_empty() { outer.group } else { form.group },
+            order: if form.order == 0 { outer.order } else { form.order },
+            derived: here.or(form.derived).or(outer.derived),
+            derived_in: form.derived_in,
+            condition: condition.or_else(|| outer.condition.clone()),
         }
     }
 
@@ -154,14 +231,19 @@ impl<'a> Object<'a> {
         }
     }
 
+    fn wrong_type(&self, name: &str, expected: &str, value: &Value) {
+        self.reading.violate(wrong_type(self.pointer_to(name), expected, value));
+    }
+
     /// A nested object. Left out, it is an object with every field left out; `required` makes that a violation.
-    pub fn object(&self, name: &'static str, required: bool, help: &'static str) -> Object<'a> {
-        self.declare(name, required, || json!({"type": "object", "description": help}));
+    pub fn object<'b>(&'b self, declared: &'static Declared) -> Object<'b> {
+        let Declared { name, required, help, .. } = *declared;
+        self.declare(declared, required, || json!({"type": "object", "description": help}));
         let value = self.value(name);
         let map = match value {
             Some(Value::Object(map)) => Some(map),
             Some(other) => {
-                self.reading.violate(wrong_type(&self.pointer_to(name), "an object", other));
+                self.wrong_type(name, "an object", other);
                 None
             }
             None => {
@@ -178,184 +260,189 @@ impl<'a> Object<'a> {
             document: self.document,
             map,
             present,
-            pointer: self.pointer_to(name),
+            path: self.path.member(name),
             seen: RefCell::default(),
+            inherited: self.inherited(declared),
         }
     }
 
     /// A nested object that stays absent when left out: `None` unless given (or describing).
-    pub fn optional_object(&self, name: &'static str, help: &'static str) -> Option<Object<'a>> {
-        let given = self.value(name).is_some();
-        let object = self.object(name, false, help);
-        (given && object.map.is_some() || self.reading.describing).then_some(object)
+    pub fn optional_object<'b>(&'b self, declared: &'static Declared) -> Option<Object<'b>> {
+        let given = self.has(declared.name);
+        let object = self.object(declared);
+        (given && object.map.is_some() || self.reading.is_describing()).then_some(object)
     }
 
-    /// A number with its range; the default when left out.
-    pub fn number(&self, name: &'static str, declaration: Number) -> f64 {
-        self.optional_or(name, declaration, declaration.default.is_none()).unwrap_or_else(|| {
-            if declaration.default.is_none() {
-                self.missing(name, &range_text(&declaration));
-            }
-            declaration.default.unwrap_or(declaration.min)
-        })
-    }
-
-    /// A number that may be left out or null, meaning "derive it".
-    pub fn optional_number(&self, name: &'static str, declaration: Number) -> Option<f64> {
-        self.optional_or(name, declaration, false)
-    }
-
-    fn optional_or(&self, name: &'static str, declaration: Number, required: bool) -> Option<f64> {
-        self.declare(name, required, || {
-            let mut schema = json!({"type": "number", "minimum": declaration.min, "maximum": declaration.max,
-                "description": declaration.help, "x-unit": declaration.unit});
-            if let Some(default) = declaration.default {
-                schema["default"] = json!(default);
-            }
-            schema
-        });
-        let value = self.value(name)?;
-        Some(self.check_number(&self.pointer_to(name), value, &declaration))
-    }
-
-    fn check_number(&self, pointer: &str, value: &Value, declaration: &Number) -> f64 {
-        let fallback = declaration.default.unwrap_or(declaration.min);
-        let Some(number) = value.as_f64() else {
-            let mut violation = wrong_type(pointer, &format!("a number, {}", range_text(declaration)), value);
-            bound(&mut violation, declaration);
-            self.reading.violate(violation);
-            return fallback;
-        };
-        if number.is_finite() && (declaration.min..=declaration.max).contains(&number) {
-            return number;
-        }
-        let mut violation = Violation::new(
-            pointer,
-            "out-of-range",
-            format!("is {}; permitted: {}", shown(number), range_text(declaration)),
-        );
-        bound(&mut violation, declaration);
-        self.reading.violate(violation);
-        fallback
-    }
-
-    /// A whole number within `min..=max`.
-    pub fn integer(&self, name: &'static str, min: u64, max: u64, default: Option<u64>, help: &'static str) -> u64 {
-        self.integer_or(name, min, max, default, default.is_none(), help).unwrap_or_else(|| {
+    /// A number with its range; the default when left out, required without one.
+    pub fn number(&self, declared: &Declared, default: Option<f64>) -> f64 {
+        self.number_or(declared, default, default.is_none()).unwrap_or_else(|| {
             if default.is_none() {
-                self.missing(name, &format!("a whole number, {min} to {max}"));
+                self.missing(declared.name, &range_text(declared));
             }
-            default.unwrap_or(min)
+            default.unwrap_or(declared.min)
         })
     }
 
-    /// A whole number that may be left out or null, meaning "derive it".
-    pub fn optional_integer(&self, name: &'static str, min: u64, max: u64, help: &'static str) -> Option<u64> {
-        self.integer_or(name, min, max, None, false, help)
+    /// A number that may be left out or null; the default is only published.
+    pub fn optional_number(&self, declared: &Declared, default: Option<f64>) -> Option<f64> {
+        self.number_or(declared, default, false)
     }
 
-    fn integer_or(
-        &self,
-        name: &'static str,
-        min: u64,
-        max: u64,
-        default: Option<u64>,
-        required: bool,
-        help: &'static str,
-    ) -> Option<u64> {
-        let declaration =
-            Number { min: min as f64, max: max as f64, unit: "1", default: default.map(|value| value as f64), help };
-        self.declare(name, required, || {
-            let mut schema = json!({"type": "integer", "minimum": min, "maximum": max, "description": help});
+    fn number_or(&self, declared: &Declared, default: Option<f64>, required: bool) -> Option<f64> {
+        self.declare(declared, required, || {
+            let mut schema = json!({"type": "number", "minimum": declared.min, "maximum": declared.max,
+                "description": declared.help, "x-unit": declared.unit.text});
             if let Some(default) = default {
                 schema["default"] = json!(default);
             }
             schema
         });
-        let fallback = default.unwrap_or(min);
-        let value = self.value(name)?;
-        let whole = value.as_f64().filter(|number| number.fract() == 0.0);
-        Some(match (value, whole) {
-            (Value::Number(_), None) => {
-                let mut violation = Violation::new(
-                    self.pointer_to(name),
-                    "wrong-type",
-                    format!("is {value}; a whole number is needed, {}", range_text(&declaration)),
-                );
-                bound(&mut violation, &declaration);
-                self.reading.violate(violation);
-                fallback
+        let value = self.value(declared.name)?;
+        Some(
+            self.in_range(&self.path.member(declared.name), value, declared).unwrap_or(default.unwrap_or(declared.min)),
+        )
+    }
+
+    /// The number at `path`; none, and a violation, where it is none or out of range.
+    fn in_range(&self, path: &Path, value: &Value, declared: &Declared) -> Option<f64> {
+        let violation = match value.as_f64() {
+            Some(number) => match out_of_range(number, declared) {
+                None => return Some(number),
+                Some(violation) => violation,
+            },
+            None => {
+                let expected = format!("a number, {}", range_text(declared));
+                bounded(wrong_type(String::new(), &expected, value), declared)
             }
-            _ => self.check_number(&self.pointer_to(name), value, &declaration) as u64,
+        };
+        self.reading.violate(Violation { pointer: path.to_string(), ..violation });
+        None
+    }
+
+    /// A whole number; the default when left out, required without one.
+    pub fn integer(&self, declared: &Declared, default: Option<u32>) -> u32 {
+        self.integer_or(declared, default, default.is_none()).unwrap_or_else(|| {
+            if default.is_none() {
+                self.missing(declared.name, &format!("a whole number, {} to {}", declared.min, declared.max));
+            }
+            default.unwrap_or(declared.min as u32)
         })
     }
 
-    pub fn boolean(&self, name: &'static str, default: bool, help: &'static str) -> bool {
-        self.declare(name, false, || json!({"type": "boolean", "default": default, "description": help}));
+    /// A whole number that may be left out or null; the default is only published.
+    pub fn optional_integer(&self, declared: &Declared, default: Option<u32>) -> Option<u32> {
+        self.integer_or(declared, default, false)
+    }
+
+    fn integer_or(&self, declared: &Declared, default: Option<u32>, required: bool) -> Option<u32> {
+        self.declare(declared, required, || {
+            let mut schema = json!({"type": "integer", "minimum": declared.min as u64, "maximum": declared.max as u64,
+                "description": declared.help});
+            if let Some(default) = default {
+                schema["default"] = json!(default);
+            }
+            schema
+        });
+        let value = self.value(declared.name)?;
+        let fallback = default.unwrap_or(declared.min as u32);
+        if let (Value::Number(number), Some(float)) = (value, value.as_f64())
+            && float.fract() != 0.0
+        {
+            let violation = not_whole(number, declared);
+            self.reading.violate(Violation { pointer: self.pointer_to(declared.name), ..violation });
+            return Some(fallback);
+        }
+        let number = self.in_range(&self.path.member(declared.name), value, declared);
+        Some(number.map_or(fallback, |number| number as u32))
+    }
+
+    pub fn boolean(&self, declared: &Declared, default: bool) -> bool {
+        let Declared { name, help, .. } = *declared;
+        self.declare(declared, false, || json!({"type": "boolean", "default": default, "description": help}));
         match self.value(name) {
             None => default,
             Some(Value::Bool(value)) => *value,
             Some(other) => {
-                self.reading.violate(wrong_type(&self.pointer_to(name), "true or false", other));
+                self.wrong_type(name, "true or false", other);
                 default
             }
         }
     }
 
-    /// One of a closed list of words.
-    pub fn choice<T: Copy>(
-        &self,
-        name: &'static str,
-        choices: &[(&'static str, T)],
-        default: T,
-        default_word: &'static str,
-        help: &'static str,
-    ) -> T {
-        let words = || choices.iter().map(|(word, _)| *word).collect::<Vec<_>>();
-        self.declare(
-            name,
-            false,
-            || json!({"type": "string", "enum": words(), "default": default_word, "description": help}),
-        );
+    /// One of a closed list of words; none when left out.
+    pub fn choice<W: Words>(&self, declared: &Declared, default: Option<W>, required: bool) -> Option<W> {
+        let Declared { name, help, .. } = *declared;
+        self.declare_words(declared, required, W::LABELS, || {
+            let mut schema = json!({"type": "string", "enum": W::words()});
+            if let Some(default) = default {
+                schema["default"] = json!(default.as_word());
+            }
+            schema["description"] = json!(help);
+            schema
+        });
+        let permitted = || W::words().join(", ");
         match self.value(name) {
-            None => default,
-            Some(Value::String(word)) => match choices.iter().find(|(known, _)| known == word) {
-                Some((_, value)) => *value,
-                None => {
-                    self.reading.violate(Violation::new(
-                        self.pointer_to(name),
-                        "not-one-of",
-                        format!("is \"{}\"; permitted: {}", clip(word), words().join(", ")),
-                    ));
-                    default
+            None => {
+                if required {
+                    self.missing(name, &format!("one of the words {}", permitted()));
                 }
-            },
+                None
+            }
+            Some(Value::String(word)) => {
+                let known = W::of_word(word);
+                if known.is_none() {
+                    let detail = format!("is \"{}\"; permitted: {}", clip(word), permitted());
+                    self.reading.violate(Violation::new(self.pointer_to(name), "not-one-of", detail));
+                }
+                known
+            }
             Some(other) => {
-                let expected = format!("one of the words {}", words().join(", "));
-                self.reading.violate(wrong_type(&self.pointer_to(name), &expected, other));
-                default
+                self.wrong_type(name, &format!("one of the words {}", permitted()), other);
+                None
             }
         }
+    }
+
+    /// A list of words of a closed list, each once; empty when left out.
+    pub fn choices<W: Words>(&self, declared: &Declared) -> Vec<W> {
+        let most = W::WORDS.len();
+        self.declare_words(declared, false, W::LABELS, || {
+            json!({"type": "array", "maxItems": most, "items": {"type": "string", "enum": W::words()}, "description": declared.help})
+        });
+        let mut choices = Vec::new();
+        for (index, word) in self.strings(declared.name, most).into_iter().flatten() {
+            match W::of_word(word) {
+                Some(choice) if !choices.contains(&choice) => choices.push(choice),
+                Some(_) => {}
+                None => {
+                    let detail = format!("is \"{}\"; permitted: {}", clip(word), W::words().join(", "));
+                    let pointer = self.path.item(declared.name, Some(index)).to_string();
+                    self.reading.violate(Violation::new(pointer, "not-one-of", detail));
+                }
+            }
+        }
+        choices
     }
 
     /// A text of at most `max_chars` characters without control characters; `None` when left out.
-    pub fn text(&self, name: &'static str, max_chars: usize, help: &'static str) -> Option<String> {
-        self.text_or(name, max_chars, false, help)
+    pub fn text(&self, declared: &Declared) -> Option<String> {
+        self.text_or(declared, false)
     }
 
     /// A text that has to be given.
-    pub fn required_text(&self, name: &'static str, max_chars: usize, help: &'static str) -> String {
-        self.text_or(name, max_chars, true, help).unwrap_or_else(|| {
-            if !self.has(name) {
-                self.missing(name, "a string");
+    pub fn required_text(&self, declared: &Declared) -> String {
+        self.text_or(declared, true).unwrap_or_else(|| {
+            if !self.has(declared.name) {
+                self.missing(declared.name, "a string");
             }
             String::new()
         })
     }
 
-    fn text_or(&self, name: &'static str, max_chars: usize, required: bool, help: &'static str) -> Option<String> {
+    fn text_or(&self, declared: &Declared, required: bool) -> Option<String> {
+        let Declared { name, max_chars, help, .. } = *declared;
         self.declare(
-            name,
+            declared,
             required,
             || json!({"type": "string", "maxLength": max_chars, "pattern": NO_CONTROLS, "description": help}),
         );
@@ -381,95 +468,79 @@ impl<'a> Object<'a> {
             }
             Value::String(text) => Some(text.clone()),
             other => {
-                self.reading.violate(wrong_type(&self.pointer_to(name), "a string", other));
+                self.wrong_type(name, "a string", other);
                 None
             }
         }
     }
 
     /// A list of numbers, each within the declared range; `None` when left out.
-    pub fn numbers(&self, name: &'static str, min_items: usize, max_items: usize, item: Number) -> Option<Vec<f64>> {
-        self.declare(name, false, || {
-            json!({"type": "array", "minItems": min_items, "maxItems": max_items, "description": item.help,
-                "items": {"type": "number", "minimum": item.min, "maximum": item.max, "x-unit": item.unit}})
+    pub fn numbers(&self, declared: &Declared) -> Option<Vec<f64>> {
+        let Declared { name, min_items, max_items, .. } = *declared;
+        self.declare(declared, false, || {
+            json!({"type": "array", "minItems": min_items, "maxItems": max_items, "description": declared.help,
+                "items": {"type": "number", "minimum": declared.min, "maximum": declared.max, "x-unit": declared.unit.text}})
         });
-        let values = self.array(name, min_items, max_items)?;
-        let pointer = self.pointer_to(name);
-        Some(
-            values
-                .iter()
-                .enumerate()
-                .map(|(index, value)| self.check_number(&format!("{pointer}/{index}"), value, &item))
-                .collect(),
-        )
+        let values = self.array(name, min_items, max_items)?.iter().enumerate();
+        let number =
+            |(index, value)| self.in_range(&self.path.item(name, Some(index)), value, declared).unwrap_or(declared.min);
+        Some(values.map(number).collect())
     }
 
-    /// A list of words; `None` when left out. The declaration names the permitted words where the caller knows them; whether
-    /// each word is one of them is the caller's to check.
-    pub fn texts(
-        &self,
-        name: &'static str,
-        max_items: usize,
-        permitted: Option<&[&str]>,
-        help: &'static str,
-    ) -> Option<Vec<String>> {
-        self.declare(name, false, || {
-            let mut items = json!({"type": "string"});
-            if let Some(words) = permitted {
-                items["enum"] = json!(words);
-            }
-            json!({"type": "array", "maxItems": max_items, "items": items, "description": help})
+    /// A list of texts; `None` when left out.
+    pub fn texts(&self, declared: &Declared) -> Option<Vec<String>> {
+        let Declared { name, max_items, .. } = *declared;
+        self.declare(declared, false, || {
+            json!({"type": "array", "maxItems": max_items, "items": {"type": "string"}, "description": declared.help})
         });
+        let strings = self.strings(name, max_items)?;
+        Some(strings.into_iter().map(|(_, text)| text.to_owned()).collect())
+    }
+
+    /// The texts of a list with their places.
+    fn strings(&self, name: &str, max_items: usize) -> Option<Vec<(usize, &'a str)>> {
         let values = self.array(name, 0, max_items)?;
-        let pointer = self.pointer_to(name);
-        let mut texts = Vec::with_capacity(values.len());
+        let mut strings = Vec::with_capacity(values.len());
         for (index, value) in values.iter().enumerate() {
             match value {
-                Value::String(text) => texts.push(text.clone()),
-                other => self.reading.violate(wrong_type(&format!("{pointer}/{index}"), "a string", other)),
+                Value::String(text) => strings.push((index, text.as_str())),
+                other => {
+                    let pointer = self.path.item(name, Some(index)).to_string();
+                    self.reading.violate(wrong_type(pointer, "a string", other));
+                }
             }
         }
-        Some(texts)
+        Some(strings)
     }
 
     /// A list of objects; `None` when left out. When describing: one object that stands for all.
-    pub fn objects(
-        &self,
-        name: &'static str,
-        min_items: usize,
-        max_items: usize,
-        help: &'static str,
-    ) -> Option<Vec<Object<'a>>> {
-        self.declare(name, false, || {
+    pub fn objects<'b>(&'b self, declared: &'static Declared) -> Option<Vec<Object<'b>>> {
+        let Declared { name, min_items, max_items, help, .. } = *declared;
+        self.declare(declared, false, || {
             json!({"type": "array", "minItems": min_items, "maxItems": max_items, "items": {"type": "object"},
                 "description": help})
         });
-        let pointer = self.pointer_to(name);
-        if self.reading.describing {
-            let item = Object {
-                reading: self.reading,
-                document: self.document,
-                map: None,
-                present: true,
-                pointer: format!("{pointer}/*"),
-                seen: RefCell::default(),
-            };
-            return Some(vec![item]);
+        let object = |index: Option<usize>, map: Option<&'a Map<String, Value>>| Object {
+            reading: self.reading,
+            document: self.document,
+            map,
+            present: true,
+            path: self.path.item(name, index),
+            seen: RefCell::default(),
+            inherited: self.inherited(declared),
+        };
+        if self.reading.is_describing() {
+            return Some(vec![object(None, None)]);
         }
         let values = self.array(name, min_items, max_items)?;
         let mut objects = Vec::with_capacity(values.len());
         for (index, value) in values.iter().enumerate() {
-            let pointer = format!("{pointer}/{index}");
             match value {
-                Value::Object(map) => objects.push(Object {
-                    reading: self.reading,
-                    document: self.document,
-                    map: Some(map),
-                    present: true,
-                    pointer,
-                    seen: RefCell::default(),
-                }),
-                other => self.reading.violate(wrong_type(&pointer, "an object", other)),
+                Value::Object(map) => objects.push(object(Some(index), Some(map))),
+                other => {
+                    let pointer = self.path.item(name, Some(index)).to_string();
+                    self.reading.violate(wrong_type(pointer, "an object", other));
+                }
             }
         }
         Some(objects)
@@ -490,14 +561,14 @@ impl<'a> Object<'a> {
                 None
             }
             other => {
-                self.reading.violate(wrong_type(&self.pointer_to(name), "an array", other));
+                self.wrong_type(name, "an array", other);
                 None
             }
         }
     }
 
     /// Whether the document gives this field (and not null).
-    pub fn has(&self, name: &str) -> bool {
+    fn has(&self, name: &str) -> bool {
         self.value(name).is_some()
     }
 
@@ -510,7 +581,7 @@ impl<'a> Object<'a> {
                 let hint = if self.reading.is_full() { None } else { self.hint(name, value, &seen) };
                 let hint = hint.map(|hint| format!("; {hint}")).unwrap_or_default();
                 self.reading.violate(Violation::new(
-                    format!("{}/{}", self.pointer, escape(name)),
+                    format!("{}/{}", self.path, escape(name)),
                     "unknown-field",
                     format!("is not a field of this object{hint}"),
                 ));
@@ -518,22 +589,88 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// What is meant by an unknown name: what it stands for, else the field that is spelt alike.
+    /// A line on an unknown name: the quantity it stands for, else the field that is spelt alike.
     fn hint(&self, name: &str, value: &Value, known: &[&'static str]) -> Option<String> {
-        let unknown = Unknown { document: self.document, object: &self.pointer, name, value, known };
+        let object = self.path.to_string();
+        let unknown = Unknown { document: self.document, object: &object, name, value, known };
         hints::hint(&unknown).or_else(|| nearest(name, known).map(|known| format!("did you mean \"{known}\"?")))
     }
 }
 
-fn bound(violation: &mut Violation, declaration: &Number) {
-    violation.minimum = Some(declaration.min);
-    violation.maximum = Some(declaration.max);
-    violation.unit = Some(declaration.unit.to_owned());
+/// Where a rule between the fields of an object reports what breaks it.
+pub struct Place<'a> {
+    reading: &'a Reading,
+    path: Path<'a>,
+    /// None where the object is not read but was there: then everything in it counts as given.
+    object: Option<&'a Object<'a>>,
 }
 
-fn range_text(declaration: &Number) -> String {
-    let unit = if declaration.unit == "1" { String::new() } else { format!(" {}", declaration.unit) };
-    format!("{} to {}{unit}", shown(declaration.min), shown(declaration.max))
+impl<'a> Place<'a> {
+    /// The root of a document that is not read.
+    pub fn root(reading: &'a Reading) -> Self {
+        Self { reading, path: Path::ROOT, object: None }
+    }
+
+    /// The nested object `name`.
+    pub fn member<'b>(&'b self, name: &'b str) -> Place<'b> {
+        Place { reading: self.reading, path: self.path.member(name), object: None }
+    }
+
+    /// An item of the list `name`.
+    pub fn item<'b>(&'b self, name: &'b str, index: usize) -> Place<'b> {
+        Place { reading: self.reading, path: self.path.item(name, Some(index)), object: None }
+    }
+
+    /// Whether the document gives this field (and not null), be it rightly or wrongly.
+    pub fn gives(&self, name: &str) -> bool {
+        self.object.is_none_or(|object| object.has(name))
+    }
+
+    /// Whether there is a document that can break rules.
+    pub fn is_read(&self) -> bool {
+        self.reading.purpose == Purpose::Read
+    }
+
+    /// Reports that the field `name` does not go together with others.
+    pub fn conflict(&self, name: &str, detail: impl Into<String>) {
+        self.violate(name, "conflict", detail);
+    }
+
+    /// Reports that the field `name` is needed here.
+    pub fn missing(&self, name: &str, detail: impl Into<String>) {
+        self.violate(name, "missing", detail);
+    }
+
+    fn violate(&self, name: &str, code: &str, detail: impl Into<String>) {
+        if self.is_read() {
+            self.reading.violate(Violation::new(self.path.member(name).to_string(), code, detail));
+        }
+    }
+}
+
+/// The violation of a number that is out of its range, without its pointer.
+pub fn out_of_range(number: f64, declared: &Declared) -> Option<Violation> {
+    if number.is_finite() && (declared.min..=declared.max).contains(&number) {
+        return None;
+    }
+    let detail = format!("is {}; permitted: {}", shown(number), range_text(declared));
+    Some(bounded(Violation::new("", "out-of-range", detail), declared))
+}
+
+/// The violation of a number that is not whole where it has to be, without its pointer.
+pub fn not_whole(number: &serde_json::Number, declared: &Declared) -> Violation {
+    let detail = format!("is {number}; a whole number is needed, {}", range_text(declared));
+    bounded(Violation::new("", "wrong-type", detail), declared)
+}
+
+fn bounded(violation: Violation, declared: &Declared) -> Violation {
+    let (minimum, maximum) = (Some(declared.min), Some(declared.max));
+    Violation { minimum, maximum, unit: Some(declared.unit.text.to_owned()), ..violation }
+}
+
+fn range_text(declared: &Declared) -> String {
+    let unit = if declared.unit.text == "1" { String::new() } else { format!(" {}", declared.unit.text) };
+    format!("{} to {}{unit}", shown(declared.min), shown(declared.max))
 }
 
 /// A number as a person writes it: very large and very small ones with a power of ten.
@@ -542,8 +679,8 @@ fn shown(number: f64) -> String {
     if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{number:e}") } else { format!("{number}") }
 }
 
-fn wrong_type(pointer: &str, expected: &str, found: &Value) -> Violation {
-    let found = match found {
+fn wrong_type(pointer: String, expected: &str, value: &Value) -> Violation {
+    let given = match value {
         Value::Null => "null",
         Value::Bool(_) => "a boolean",
         Value::Number(_) => "a number",
@@ -551,7 +688,7 @@ fn wrong_type(pointer: &str, expected: &str, found: &Value) -> Violation {
         Value::Array(_) => "an array",
         Value::Object(_) => "an object",
     };
-    Violation::new(pointer, "wrong-type", format!("is {found}; needed: {expected}"))
+    Violation::new(pointer, "wrong-type", format!("is {given}; needed: {expected}"))
 }
 
 /// Escapes a member name for a JSON pointer (RFC 6901) and bounds its length.

@@ -1,15 +1,16 @@
 //! The JSON Schema of the job document, from the same declarations that read it.
 
-use super::document::JobKind;
-use super::fields;
-use super::reader::{FieldDescription, Reading};
+use super::document::{self, JobKind};
+use super::reader::Reading;
+
+pub use super::reader::{Condition, FieldDescription};
 use serde_json::{Map, Value, json};
 
 /// Every declared field of the job document, parents before children.
 pub fn field_descriptions() -> Vec<FieldDescription> {
     let reading = Reading::describe();
     let nothing = Value::Object(Map::new());
-    fields::read(reading.root(&nothing));
+    document::read(&reading, &nothing);
     reading.fields()
 }
 

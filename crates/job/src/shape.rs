@@ -3,7 +3,6 @@
 use super::document::{JobDocument, JobKind};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
-use serde_json::{Value, json};
 
 impl JobDocument {
     /// A response with the inputs of this sweep as they stand, without axes.
@@ -19,17 +18,19 @@ impl JobDocument {
 
     /// The document of a row of this sweep as a job of its own: a response with the values of the axes put in. None where the sweep
     /// has no such row.
-    pub fn of_row(&self, position: usize) -> Option<Value> {
+    pub fn of_row(&self, position: usize) -> Option<JobDocument> {
         if position >= self.sweep_points() {
             return None;
         }
-        let mut value = serde_json::to_value(self.without_sweep()).ok()?;
+        let mut document = self.without_sweep();
         let mut place = position;
         for axis in &self.axes {
-            *value.pointer_mut(&axis.pointer)? = json!(axis.value(place % axis.len()));
+            for pointer in axis.pointers() {
+                document.slot(pointer)?.set(axis.value(place % axis.len())).ok()?;
+            }
             place /= axis.len();
         }
-        Some(value)
+        Some(document)
     }
 }
 

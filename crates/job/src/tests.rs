@@ -180,3 +180,18 @@ fn a_sweep_records_what_it_knows_and_no_more() {
     let alone = with("/record", json!(["poincare"]));
     assert_eq!(violations(&alone)[0].pointer, "/record");
 }
+
+#[test]
+fn the_input_of_a_row_has_all_that_its_axes_move() {
+    let mut document = table1();
+    document["kind"] = json!("sweep");
+    document["axes"] = json!([
+        {"pointer": "/design/pinion/teeth", "also": ["/design/gear/teeth"], "values": [20, 30]},
+        {"pointer": "/operation/pinion_speed_rpm", "values": [500.0, 600.0, 700.0]},
+    ]);
+    let sweep = parse_value(&document).expect("valid");
+    let row = sweep.of_row(3).expect("a row");
+    assert_eq!((row.kind, row.axes.len(), row.continuation), (JobKind::Response, 0, None));
+    assert_eq!((row.design.pinion.teeth, row.design.gear.teeth, row.operation.pinion_speed_rpm), (30, 30, 600.0));
+    assert_eq!(sweep.of_row(6), None);
+}

@@ -5,7 +5,8 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use herringbone_physics::contact::{Compliance, HalfContact, HalfCycle, Settings, solve_half};
+use herringbone_physics::compliance::{Compliance, Settings};
+use herringbone_physics::contact::{HalfContact, HalfCycle, solve_half};
 use herringbone_physics::fe::{FlankFlexibility, Resolution};
 use herringbone_physics::gear::{GearSpec, Half, Pair, PairSpec};
 use herringbone_physics::watch::Watch;

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use herringbone_physics::dynamics::{Integrator, NaturalModes, Parameters, advance, advance_many};
-use herringbone_physics::response::{Analysis, Method, solve, solve_many};
+use herringbone_physics::response::{Analysis, SolutionMethod, solve, solve_many};
 use herringbone_physics::watch::Watch;
 
 #[path = "dynamics_cases.rs"]
@@ -15,8 +15,8 @@ mod cases;
 
 const PERIODS: u64 = 100;
 const POINTS: usize = 32;
-/// Local error of a step that gives an RMS error of 1e-6 (what `integrate` chooses at that accuracy).
-const TOLERANCE: f64 = 5e-8;
+/// Local errors of a step: that of an integration with an accuracy of 1e-6, and a fine one.
+const TOLERANCES: [(f64, &str); 2] = [(5e-8, ""), (1e-12, ", tolerance 1e-12")];
 
 /// Static deflection at rest, both halves mirrored to the last bit.
 fn start(p: &Parameters) -> [f64; 24] {
@@ -30,13 +30,13 @@ fn start(p: &Parameters) -> [f64; 24] {
     start
 }
 
-/// The case at speeds a thousandth apart.
+/// The case at `points` equally spaced speeds from 0.5 to 1.5 of its own.
 fn speeds(p: &Parameters, points: usize) -> Vec<Parameters> {
     let at = |i| Parameters { mesh_frequency_hz: p.mesh_frequency_hz * (0.5 + i as f64 / points as f64), ..p.clone() };
     (0..points).map(at).collect()
 }
 
-/// Divide by 100 (alone) or by 3200 (in lanes) for one mesh period of one point.
+/// Trajectories without statistics. One mesh period of one point takes 1/100 (alone) or 1/3200 (in lanes) of the time.
 fn trajectories(c: &mut Criterion) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool of one thread");
     for name in ["A", "B", "C"] {
@@ -45,20 +45,24 @@ fn trajectories(c: &mut Criterion) {
         let mut staggered = p.clone();
         staggered.halves[1].phase_shift_mesh_periods = 0.5;
         for (what, p) in [("6 coordinates", &p), ("12 coordinates", &staggered)] {
-            c.bench_function(&format!("{name}, {what}: 100 mesh periods alone"), |b| {
-                b.iter(|| advance(black_box(p), &from, PERIODS, Integrator::Taylor, TOLERANCE, &Watch::none()))
-            });
             let points = vec![p.clone(); POINTS];
             let starts = vec![from; POINTS];
-            c.bench_function(&format!("{name}, {what}: 100 mesh periods of 32 points in lanes, one thread"), |b| {
-                b.iter(|| {
-                    pool.install(|| advance_many(black_box(&points), &starts, PERIODS, TOLERANCE, &Watch::none()))
-                })
-            });
+            for (tolerance, label) in TOLERANCES {
+                c.bench_function(&format!("{name}, {what}: 100 mesh periods alone{label}"), |b| {
+                    b.iter(|| advance(black_box(p), &from, PERIODS, Integrator::Taylor, tolerance, &Watch::none()))
+                });
+                let id = format!("{name}, {what}: 100 mesh periods of 32 points in lanes, one thread{label}");
+                c.bench_function(&id, |b| {
+                    b.iter(|| {
+                        pool.install(|| advance_many(black_box(&points), &starts, PERIODS, tolerance, &Watch::none()))
+                    })
+                });
+            }
         }
     }
 }
 
+/// Responses of one operating point.
 fn points(c: &mut Criterion) {
     for name in ["A", "C"] {
         let p = cases::case(name);
@@ -66,7 +70,7 @@ fn points(c: &mut Criterion) {
         c.bench_function(&format!("{name}: steady state of one point"), |b| {
             b.iter(|| solve(black_box(&p), &auto, &Watch::none()).map(|r| r.summary.error_estimate))
         });
-        let recorded = Method::Integrate { mesh_periods: PERIODS, record_mesh_periods: PERIODS };
+        let recorded = SolutionMethod::Integrate { mesh_periods: PERIODS, record_mesh_periods: PERIODS };
         let recorded = Analysis { method: recorded, ..auto.clone() };
         c.bench_function(&format!("{name}: 100 mesh periods recorded, with their error"), |b| {
             b.iter(|| solve(black_box(&p), &recorded, &Watch::none()).map(|r| r.summary.error_estimate))
@@ -74,14 +78,14 @@ fn points(c: &mut Criterion) {
     }
 }
 
-/// All threads of the pool.
+/// Responses of 1000 operating points, on all threads of the pool.
 fn sweeps(c: &mut Criterion) {
     let mut group = c.benchmark_group("1000 speeds");
     group.sample_size(10);
     let auto = Analysis { energy_balance: false, ..Analysis::default() };
     let linear = speeds(&cases::case("A"), 1000);
     group.bench_function("A: steady states", |b| b.iter(|| solve_many(black_box(&linear), &auto, &Watch::none())));
-    let method = Method::Integrate { mesh_periods: 300, record_mesh_periods: 100 };
+    let method = SolutionMethod::Integrate { mesh_periods: 300, record_mesh_periods: 100 };
     let integrate = Analysis { method, ..auto };
     let separating = speeds(&cases::case("C"), 1000);
     group.bench_function("C: 300 mesh periods each, 100 recorded", |b| {

@@ -1,8 +1,8 @@
 //! The reference cases, for benches.
 
 use herringbone_physics::dynamics::{
-    Couplings, HalfParameters, Harmonic, Impact, ImpactActsOn, Parameters, Spring, Stiffness, equivalent_mass_kg,
-    mesh_damping_n_s_per_m,
+    Couplings, HalfParameters, Harmonic, ImpactActsOn, ImpactExcitation, Parameters, Spring, Stiffness,
+    equivalent_mass_kg, mesh_damping_n_s_per_m,
 };
 
 /// Reference case A (linear), B (chaotic) or C (period 2).
@@ -36,7 +36,11 @@ fn parameters(torque_per_half_nm: f64, half_backlash_m: f64, damping_ratio: f64,
             harmonics: harmonics.map(|(a, phase_rad)| Harmonic { amplitude: a * amplitude, phase_rad }).to_vec(),
         },
         mesh_damping_n_s_per_m: mesh_damping_n_s_per_m(damping_ratio, 9e8, me),
-        impact: Some(Impact::HalfSine { force_n: 3000.0, duration_mesh_periods: 0.08, start_mesh_periods: 0.0 }),
+        impact: Some(ImpactExcitation::HalfSine {
+            force_n: 3000.0,
+            duration_mesh_periods: 0.08,
+            start_mesh_periods: 0.0,
+        }),
         phase_shift_mesh_periods: 0.0,
     };
     Parameters {

@@ -7,11 +7,14 @@
 //! gear ─▶ contact ─▶ impact ─▶ dynamics ─▶ response
 //! ```
 
+pub mod compliance;
 pub mod contact;
 pub mod dynamics;
 pub mod fe;
 pub mod gear;
 pub mod impact;
+pub mod iso6336;
+pub mod numerics;
 pub mod response;
 pub(crate) mod simd;
 pub mod watch;

@@ -1,14 +1,14 @@
-//! How a long calculation is watched: it reports its progress and asks whether it is still wanted.
+//! Progress and cancellation of long calculations.
 //!
-//! The physics takes a [`Watch`] and nothing else from the outside world. Invariant: a calculation passes a
+//! A [`Watch`] is the only connection of a calculation to its caller. Invariant: a calculation calls
 //! [`Watch::checkpoint`] at least every 50 ms of work.
 
-/// The calculation was asked to stop before it ended.
+/// Error of a calculation that was canceled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the calculation was canceled")]
 pub struct Canceled;
 
-/// Two callbacks: where progress goes, and whether to stop.
+/// Callbacks of a calculation: one receives its progress, the other asks for its cancellation.
 #[derive(Clone, Copy)]
 pub struct Watch<'a> {
     progress: &'a (dyn Fn(f64) + Sync),
@@ -16,22 +16,28 @@ pub struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// A watch over the given callbacks. `progress` receives the fraction done (0 to 1) of the current stage.
+    /// `progress` receives the completed fraction (0 to 1) of the current stage; `canceled` returns true to cancel.
     pub fn new(progress: &'a (dyn Fn(f64) + Sync), canceled: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self { progress, canceled }
     }
 
-    /// A watch that nobody looks at and that never stops anything.
+    /// A watch that reports nothing and never cancels.
     pub fn none() -> Watch<'static> {
         Watch { progress: &|_| {}, canceled: &|| false }
     }
 
-    /// Fails when the calculation is no longer wanted, without a report.
+    /// Checks for cancellation without a progress report.
+    ///
+    /// # Errors
+    /// [`Canceled`].
     pub fn checkpoint_quietly(&self) -> Result<(), Canceled> {
         if (self.canceled)() { Err(Canceled) } else { Ok(()) }
     }
 
-    /// Reports the fraction done (0 to 1) and fails when the calculation is no longer wanted.
+    /// Reports the completed fraction (0 to 1) and checks for cancellation.
+    ///
+    /// # Errors
+    /// [`Canceled`].
     pub fn checkpoint(&self, fraction: f64) -> Result<(), Canceled> {
         if (self.canceled)() {
             return Err(Canceled);

@@ -1,21 +1,21 @@
-//! Bounds of connections.
+//! Settings and bounds of connections.
 
 use std::time::Duration;
 
-/// Largest head of a request: request line and headers.
+/// Largest head of a request (request line and headers).
 pub(super) const MAX_HEAD_BYTES: usize = 32 * 1024;
-/// Buffer of each direction of a connection; responses pass through it in pieces.
+/// Size of the buffer of each direction of a connection.
 pub(super) const MAX_BUFFER_BYTES: usize = 64 * 1024;
-/// How long a client that still sends is listened to after its last answer, so that the answer reaches it.
+/// Time for which incoming bytes are discarded after the last response, so that the client receives the response.
 pub(super) const LINGER: Duration = Duration::from_secs(2);
 
-/// How many connections, and how long each may keep the service waiting.
+/// Number of connections, and their timeouts.
 #[derive(Debug, Clone, clap::Args)]
 pub struct ConnectionConfig {
     /// Connections open at once. Beyond it, the one that has waited longest without a request is closed; when all have
     /// requests in progress, further ones wait in the system's queue. Half as many clients may follow jobs.
     #[arg(long, env = "HERRINGBONE_MAX_CONNECTIONS", value_name = "N", default_value_t = 1024,
-          value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub max_connections: u32,
 
     /// Longest time from the first byte of a request (or the opening of the connection) to the end of its headers.
@@ -46,17 +46,17 @@ impl Default for ConnectionConfig {
 }
 
 impl ConnectionConfig {
-    /// Clients that may follow jobs at once (event streams, and waits for the end of a job).
+    /// Largest number of clients that follow jobs at once (event streams, and waits for the end of a job).
     pub fn max_followers(&self) -> usize {
         (self.max_connections / 2) as usize
     }
 }
 
-/// A duration in seconds, fractions allowed: 0.05 to 3600.
+/// Parses a duration in seconds, fractions allowed: 0.05 to 3600.
 ///
 /// # Errors
-/// A sentence for the command line.
-pub fn duration(text: &str) -> Result<Duration, String> {
+/// A message for the command line.
+fn duration(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text.parse().map_err(|_| "a number of seconds is needed".to_owned())?;
     match (0.05..=3600.0).contains(&seconds) {
         true => Ok(Duration::from_secs_f64(seconds)),

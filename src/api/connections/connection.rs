@@ -1,9 +1,9 @@
-//! One connection, from its opening to its end.
+//! The task of one connection.
 
 use super::config::{MAX_BUFFER_BYTES, MAX_HEAD_BYTES};
-use super::pulse::Pulse;
-use super::stream::Watched;
-use crate::api::held::Held;
+use super::state::ConnectionState;
+use super::stream::TrackedStream;
+use crate::api::guarded_body::GuardedBody;
 use axum::Router;
 use axum::body::Body;
 use hyper::body::Incoming;
@@ -19,41 +19,41 @@ use tokio::time::{Instant, sleep_until};
 use tokio_util::sync::CancellationToken;
 use tower::ServiceExt;
 
-/// Serves requests until the client ends, a deadline passes, or (between requests) `leave` is cancelled.
-pub async fn run(stream: TcpStream, app: Router, pulse: Pulse, leave: CancellationToken) {
+/// Serves requests until the client closes, a deadline passes, or (between requests) `close` is cancelled.
+pub(crate) async fn run(stream: TcpStream, app: Router, state: ConnectionState, close: CancellationToken) {
     let requests = {
-        let pulse = pulse.clone();
+        let state = state.clone();
         service_fn(move |request: hyper::Request<Incoming>| {
-            let busy = pulse.begin();
-            let answer = app.clone().oneshot(request.map(Body::new));
+            let guard = state.begin_request();
+            let response = app.clone().oneshot(request.map(Body::new));
             async move {
-                let answer = answer.await?;
-                // The end of the answer's body is the end of the request.
-                Ok::<_, Infallible>(answer.map(|body| Held::new(body, busy)))
+                let response = response.await?;
+                // The end of the response's body is the end of the request.
+                Ok::<_, Infallible>(response.map(|body| GuardedBody::new(body, guard)))
             }
         })
     };
-    let stream = TokioIo::new(Watched::new(stream, pulse.clone()));
+    let stream = TokioIo::new(TrackedStream::new(stream, state.clone()));
     let mut http = http1::Builder::new();
     http.max_header_size(MAX_HEAD_BYTES).max_buf_size(MAX_BUFFER_BYTES).header_read_timeout(None);
     let mut connection = pin!(http.serve_connection(stream, requests));
-    let mut left = pin!(leave.cancelled_owned());
-    let mut is_leaving = false;
-    let mut alarm = pin!(sleep_until(Instant::now()));
+    let mut close = pin!(close.cancelled_owned());
+    let mut is_closing = false;
+    let mut timer = pin!(sleep_until(Instant::now()));
     poll_fn(|context| {
-        if !is_leaving && left.as_mut().poll(context).is_ready() {
-            is_leaving = true;
-            // An answer in progress is the last one; a connection between requests ends.
+        if !is_closing && close.as_mut().poll(context).is_ready() {
+            is_closing = true;
+            // A response in progress is the last one; a connection between requests ends.
             connection.as_mut().graceful_shutdown();
         }
-        if connection.as_mut().poll(context).is_ready() || (is_leaving && pulse.is_dispensable()) {
+        if connection.as_mut().poll(context).is_ready() || (is_closing && state.can_close()) {
             return Poll::Ready(());
         }
-        let Some(deadline) = pulse.deadline() else { return Poll::Pending };
-        if alarm.deadline() != deadline {
-            alarm.as_mut().reset(deadline);
+        let Some(deadline) = state.deadline() else { return Poll::Pending };
+        if timer.deadline() != deadline {
+            timer.as_mut().reset(deadline);
         }
-        alarm.as_mut().poll(context)
+        timer.as_mut().poll(context)
     })
     .await;
 }

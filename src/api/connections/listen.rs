@@ -1,9 +1,9 @@
-//! Taking connections in.
+//! Accepting connections.
 
 use super::config::ConnectionConfig;
 use super::connection;
-use super::crowd::Crowd;
-use super::pulse::Pulse;
+use super::limiter::ConnectionLimiter;
+use super::state::ConnectionState;
 use crate::api::telemetry::OpenConnection;
 use axum::Router;
 use std::io;
@@ -13,39 +13,40 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
-/// Pauses after a connection could not be accepted: where another one made room, and where none could.
+/// Pauses after a connection could not be accepted: where an idle one was closed for it, and where none could be.
 const SHORT_PAUSE: Duration = Duration::from_millis(5);
 const PAUSE: Duration = Duration::from_millis(100);
-/// Time between two reports of it.
-const REPORT_PAUSE: Duration = Duration::from_secs(1);
+/// Shortest time between two log lines about it.
+const LOG_INTERVAL: Duration = Duration::from_secs(1);
 
-/// How connections are brought to an end.
+/// The two steps of a shutdown, as seen by connections.
 #[derive(Debug, Clone, Default)]
-pub struct Endings {
-    /// No more connections; open ones end with the request in progress.
-    pub stop: CancellationToken,
-    /// Open ones end now.
-    pub cut: CancellationToken,
+pub(crate) struct ShutdownTokens {
+    /// No further connections; open ones end with the request in progress.
+    pub(crate) graceful: CancellationToken,
+    /// Open ones end at once.
+    pub(crate) immediate: CancellationToken,
 }
 
-/// Takes connections in until told to stop, then waits for the end of all.
-pub async fn listen(listener: TcpListener, app: Router, config: ConnectionConfig, endings: Endings) {
-    let crowd = Arc::new(Crowd::new(config.max_connections));
+/// Accepts connections until [`ShutdownTokens::graceful`] is cancelled, then waits for the end of all.
+pub(crate) async fn listen(listener: TcpListener, app: Router, config: ConnectionConfig, shutdown: ShutdownTokens) {
+    let limiter = Arc::new(ConnectionLimiter::new(config.max_connections));
     let tasks = TaskTracker::new();
-    let mut trouble = Trouble::default();
-    while let Some(stream) = next(&listener, &crowd, &mut trouble, &endings.stop).await {
-        // The newcomer waits here when all places are taken by requests in progress, the ones after it in the system.
-        let place = tokio::select! {
-            place = crowd.place() => place,
-            () = endings.stop.cancelled() => break,
+    let mut errors = AcceptErrorLog::default();
+    while let Some(stream) = accept(&listener, &limiter, &mut errors, &shutdown.graceful).await {
+        // With all permits held by requests in progress, this connection waits here and later ones in the system's
+        // backlog.
+        let permit = tokio::select! {
+            permit = limiter.acquire() => permit,
+            () = shutdown.graceful.cancelled() => break,
         };
-        let leave = endings.stop.child_token();
-        let pulse = Pulse::new(crowd.clone(), leave.clone(), config.clone());
-        let (app, cut) = (app.clone(), endings.cut.clone());
+        let close = shutdown.graceful.child_token();
+        let state = ConnectionState::new(limiter.clone(), close.clone(), config.clone());
+        let (app, immediate) = (app.clone(), shutdown.immediate.clone());
         tasks.spawn(async move {
-            let _held = (place, OpenConnection::new());
-            let connection = connection::run(stream, app, pulse, leave);
-            let _ = cut.run_until_cancelled_owned(connection).await;
+            let _guards = (permit, OpenConnection::new());
+            let connection = connection::run(stream, app, state, close);
+            let _ = immediate.run_until_cancelled_owned(connection).await;
         });
     }
     drop(listener);
@@ -53,11 +54,11 @@ pub async fn listen(listener: TcpListener, app: Router, config: ConnectionConfig
     tasks.wait().await;
 }
 
-/// The next connection; `None` when it is time to stop.
-async fn next(
+/// The next connection; `None` once `stop` is cancelled.
+async fn accept(
     listener: &TcpListener,
-    crowd: &Crowd,
-    trouble: &mut Trouble,
+    limiter: &ConnectionLimiter,
+    errors: &mut AcceptErrorLog,
     stop: &CancellationToken,
 ) -> Option<TcpStream> {
     loop {
@@ -70,34 +71,34 @@ async fn next(
                 }
                 return Some(stream);
             }
-            // The client was gone before it was its turn.
-            Err(error) if is_of_client(&error) => {}
+            // The client closed before the connection was accepted.
+            Err(error) if is_client_error(&error) => {}
             Err(error) => {
-                trouble.report(&error);
-                let pause = if crowd.make_room() { SHORT_PAUSE } else { PAUSE };
+                errors.record(&error);
+                let pause = if limiter.evict() { SHORT_PAUSE } else { PAUSE };
                 stop.run_until_cancelled(tokio::time::sleep(pause)).await?;
             }
         }
     }
 }
 
-/// Connections that cannot be accepted (no file descriptors, no memory), reported now and then.
+/// Log of connections that cannot be accepted (no file descriptors, no memory), with a bounded rate.
 #[derive(Default)]
-struct Trouble {
-    reported_at: Option<Instant>,
+struct AcceptErrorLog {
+    logged_at: Option<Instant>,
 }
 
-impl Trouble {
-    fn report(&mut self, error: &io::Error) {
+impl AcceptErrorLog {
+    fn record(&mut self, error: &io::Error) {
         let now = Instant::now();
-        if self.reported_at.is_none_or(|last| now - last >= REPORT_PAUSE) {
+        if self.logged_at.is_none_or(|last| now - last >= LOG_INTERVAL) {
             tracing::warn!(%error, "connections cannot be accepted");
-            self.reported_at = Some(now);
+            self.logged_at = Some(now);
         }
     }
 }
 
-fn is_of_client(error: &io::Error) -> bool {
+fn is_client_error(error: &io::Error) -> bool {
     use io::ErrorKind::{ConnectionAborted, ConnectionRefused, ConnectionReset, Interrupted};
     matches!(error.kind(), ConnectionAborted | ConnectionRefused | ConnectionReset | Interrupted)
 }

@@ -1,18 +1,18 @@
-//! Connections below the requests: how many there may be, how long each may keep the service waiting, and how they end.
+//! TCP connections: their number, their deadlines and their shutdown.
 //!
-//! HTTP/1.1 without TLS: a reverse proxy in front does the rest. A request whose head cannot be read is answered by the
-//! HTTP library itself, with 400 or (head too large) 431, no body, and the end of the connection; everything else reaches
-//! the router.
+//! HTTP/1.1 without TLS, which is left to a reverse proxy. A request whose head cannot be parsed is answered by the
+//! HTTP library itself, with 400 or (head too large) 431, no body, and the end of the connection; everything else
+//! reaches the router.
 //!
-//! Invariant: a connection either has a request in progress, or a deadline. Only the former keep a newcomer waiting: with
-//! all places taken, the connection that has waited longest without a request makes room.
+//! Invariant: a connection either has a request in progress, or a deadline. Only the former keep a new connection
+//! waiting: at the bound, the connection that has been idle longest is closed.
 
 mod config;
 mod connection;
-mod crowd;
+mod limiter;
 mod listen;
-mod pulse;
+mod state;
 mod stream;
 
 pub use config::ConnectionConfig;
-pub use listen::{Endings, listen};
+pub(crate) use listen::{ShutdownTokens, listen};

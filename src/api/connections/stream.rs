@@ -1,32 +1,32 @@
-//! The bytes of a connection, with an eye on whether they move.
+//! The byte stream of a connection.
 
-use super::pulse::Pulse;
+use super::state::ConnectionState;
 use std::io::{self, IoSlice};
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 
-/// A stream that tells its connection's [`Pulse`] what happens to it.
-pub struct Watched {
+/// A TCP stream that reports reads and writes to its connection's [`ConnectionState`].
+pub(crate) struct TrackedStream {
     inner: TcpStream,
-    pulse: Pulse,
-    /// This side has said that it sends no more.
+    state: ConnectionState,
+    /// Whether the writing side was shut down.
     is_shut: bool,
 }
 
-impl Watched {
-    pub fn new(inner: TcpStream, pulse: Pulse) -> Self {
-        Self { inner, pulse, is_shut: false }
+impl TrackedStream {
+    pub(crate) fn new(inner: TcpStream, state: ConnectionState) -> Self {
+        Self { inner, state, is_shut: false }
     }
 
-    fn wrote(&self, written: Poll<io::Result<usize>>) -> Poll<io::Result<usize>> {
-        self.pulse.wrote(written.is_pending());
+    fn record_write(&self, written: Poll<io::Result<usize>>) -> Poll<io::Result<usize>> {
+        self.state.record_write(written.is_pending());
         written
     }
 }
 
-impl AsyncRead for Watched {
+impl AsyncRead for TrackedStream {
     fn poll_read(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -35,16 +35,16 @@ impl AsyncRead for Watched {
         let before = buffer.filled().len();
         let read = Pin::new(&mut self.inner).poll_read(context, buffer);
         if buffer.filled().len() > before {
-            self.pulse.heard();
+            self.state.record_read();
         }
         read
     }
 }
 
-impl AsyncWrite for Watched {
+impl AsyncWrite for TrackedStream {
     fn poll_write(mut self: Pin<&mut Self>, context: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         let written = Pin::new(&mut self.inner).poll_write(context, bytes);
-        self.wrote(written)
+        self.record_write(written)
     }
 
     fn poll_write_vectored(
@@ -53,7 +53,7 @@ impl AsyncWrite for Watched {
         slices: &[IoSlice<'_>],
     ) -> Poll<io::Result<usize>> {
         let written = Pin::new(&mut self.inner).poll_write_vectored(context, slices);
-        self.wrote(written)
+        self.record_write(written)
     }
 
     fn is_write_vectored(&self) -> bool {
@@ -64,20 +64,20 @@ impl AsyncWrite for Watched {
         Pin::new(&mut self.inner).poll_flush(context)
     }
 
-    /// Sends the end, then throws away what the client still sends until it ends too or the connection's deadline comes:
-    /// closed at once, with bytes unread, the system would tell the client of a broken connection, and the answer (a 413
-    /// to a large body, say) would be lost.
+    /// Shuts down the writing side, then discards incoming bytes until the client closes too or the deadline passes.
+    /// Closed at once with bytes unread, the operating system would reset the connection, and the response (for example
+    /// a 413 to a large body) would be lost.
     fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
         if !self.is_shut {
             ready!(Pin::new(&mut self.inner).poll_shutdown(context))?;
             self.is_shut = true;
-            self.pulse.linger();
+            self.state.begin_linger();
         }
         let mut scratch = [0; 4096];
-        // A client that sends faster than this reads must not keep the thread.
+        // A client that sends faster than this reads must not occupy the thread.
         for _ in 0..16 {
             let mut buffer = ReadBuf::new(&mut scratch);
-            if self.pulse.is_leaving() || ready!(Pin::new(&mut self.inner).poll_read(context, &mut buffer)).is_err() {
+            if self.state.is_closing() || ready!(Pin::new(&mut self.inner).poll_read(context, &mut buffer)).is_err() {
                 return Poll::Ready(Ok(()));
             }
             if buffer.filled().is_empty() {
@@ -89,11 +89,11 @@ impl AsyncWrite for Watched {
     }
 }
 
-impl Drop for Watched {
-    /// What a client does not take is not kept by the system for it either.
+impl Drop for TrackedStream {
+    /// Discards the unsent rest of a response that the client does not accept.
     fn drop(&mut self) {
-        if self.pulse.is_blocked() {
-            // A connection that the client has reset meanwhile has nothing to forget.
+        if self.state.is_blocked() {
+            // Fails only for a connection that the client has reset already.
             let _ = self.inner.set_zero_linger();
         }
     }

@@ -1,30 +1,30 @@
-//! What the guards know.
+//! The state of access control.
 
 use super::config::AccessConfig;
-use super::failures::Failures;
-use super::host::Hosts;
+use super::failure_limiter::FailureLimiter;
+use super::host::AllowedHosts;
 use super::session::Sessions;
 use super::token::{Token, TokenError};
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Who gets in. Cheap to clone.
+/// Allowed hosts and authentication. Cheap to clone.
 #[derive(Clone)]
-pub struct Access(Arc<Inner>);
+pub struct Access(Arc<AccessInner>);
 
-struct Inner {
-    hosts: Option<Hosts>,
-    lock: Option<Lock>,
+struct AccessInner {
+    hosts: Option<AllowedHosts>,
+    authenticator: Option<Authenticator>,
 }
 
-/// The token, and what was opened or tried with it.
-pub struct Lock {
+/// The token, the sessions opened with it, and the limiter of failed attempts.
+pub struct Authenticator {
     pub token: Token,
     sessions: Mutex<Sessions>,
-    failures: Mutex<Failures>,
+    failures: Mutex<FailureLimiter>,
 }
 
-/// Why the service does not start.
+/// An access configuration with which the service does not start.
 #[derive(Debug, thiserror::Error)]
 pub enum AccessError {
     #[error(transparent)]
@@ -41,7 +41,7 @@ impl Access {
     /// Reads the token, if one is configured, and decides whether the service may listen there.
     ///
     /// # Errors
-    /// When the token is unusable, or there is none and other machines could reach the service.
+    /// The token file holds no usable token, or there is no token and other machines could reach the service.
     pub fn new(config: &AccessConfig, listen: SocketAddr) -> Result<Self, AccessError> {
         let token = config.token_file.as_deref().map(Token::read).transpose()?;
         let is_local = listen.ip().to_canonical().is_loopback();
@@ -51,35 +51,36 @@ impl Access {
             }
             tracing::warn!(%listen, "reachable from other machines, and nothing asks for credentials (--insecure)");
         }
-        // Without a token a page of another site could reach the service under a name of its own that leads here.
+        // Without a token, a page of another site could reach the service by DNS rebinding.
         let is_checked = !config.allowed_hosts.is_empty() || (token.is_none() && is_local);
-        let hosts = is_checked.then(|| Hosts::new(config.allowed_hosts.clone()));
-        let lock = token.map(|token| Lock { token, sessions: Mutex::default(), failures: Mutex::default() });
-        Ok(Self(Arc::new(Inner { hosts, lock })))
+        let hosts = is_checked.then(|| AllowedHosts::new(config.allowed_hosts.clone()));
+        let authenticator =
+            token.map(|token| Authenticator { token, sessions: Mutex::default(), failures: Mutex::default() });
+        Ok(Self(Arc::new(AccessInner { hosts, authenticator })))
     }
 
     /// Whether requests need a token or a session.
     pub fn has_token(&self) -> bool {
-        self.0.lock.is_some()
+        self.0.authenticator.is_some()
     }
 
-    /// `None` when every name is taken.
-    pub(in crate::api) fn hosts(&self) -> Option<&Hosts> {
+    /// The host names that are accepted; `None` when all are.
+    pub(in crate::api) fn hosts(&self) -> Option<&AllowedHosts> {
         self.0.hosts.as_ref()
     }
 
-    /// `None` when the service is open.
-    pub(in crate::api) fn lock(&self) -> Option<&Lock> {
-        self.0.lock.as_ref()
+    /// The authenticator; `None` when the service needs no credentials.
+    pub(in crate::api) fn authenticator(&self) -> Option<&Authenticator> {
+        self.0.authenticator.as_ref()
     }
 }
 
-impl Lock {
+impl Authenticator {
     pub fn sessions(&self) -> MutexGuard<'_, Sessions> {
         self.sessions.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    pub fn failures(&self) -> MutexGuard<'_, Failures> {
+    pub fn failures(&self) -> MutexGuard<'_, FailureLimiter> {
         self.failures.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -95,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn open_to_this_machine_or_on_demand_only() {
+    fn without_a_token_only_loopback_addresses_unless_insecure() {
         for local in ["127.0.0.1:1", "127.8.8.8:1", "[::1]:1", "[::ffff:127.0.0.1]:1"] {
             assert!(access(local, false, &[]).unwrap().hosts().is_some(), "{local}");
         }

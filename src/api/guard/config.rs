@@ -1,9 +1,9 @@
-//! Who may ask.
+//! Settings of access control.
 
 use super::host::HostName;
 use std::path::PathBuf;
 
-/// The token, and the names of this host.
+/// Token file and host names.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct AccessConfig {
     /// File with the token that every request has to carry: one word of 16 to 1024 visible ASCII characters. Without it

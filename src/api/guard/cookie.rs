@@ -1,44 +1,44 @@
-//! The cookie that names a browser's session.
+//! The session cookie.
 
-use super::session::LIFETIME;
+use super::session::SESSION_LIFETIME;
 use axum::http::header::{COOKIE, ORIGIN};
 use axum::http::{HeaderMap, HeaderName, HeaderValue};
 
-const NAME: &str = "herringbone_session";
-const FORWARDED_PROTOCOL: HeaderName = HeaderName::from_static("x-forwarded-proto");
+const COOKIE_NAME: &str = "herringbone_session";
+const X_FORWARDED_PROTO: HeaderName = HeaderName::from_static("x-forwarded-proto");
 
-/// The session ids that a request carries (more than one where cookies of several paths meet).
-pub fn sessions(headers: &HeaderMap) -> impl Iterator<Item = &str> {
+/// The session ids in the cookies of a request; there may be several cookies of the name, set for different paths.
+pub fn session_ids(headers: &HeaderMap) -> impl Iterator<Item = &str> {
     let lines = headers.get_all(COOKIE).into_iter().filter_map(|value| value.to_str().ok());
     let pairs = lines.flat_map(|line| line.split(';')).filter_map(|pair| pair.trim().split_once('='));
-    pairs.filter(|(name, _)| *name == NAME).map(|(_, value)| value)
+    pairs.filter(|(name, _)| *name == COOKIE_NAME).map(|(_, value)| value)
 }
 
-/// `Set-Cookie` of a new session.
+/// The `Set-Cookie` header of a new session.
 pub fn set(id: &str, request: &HeaderMap) -> Option<HeaderValue> {
-    written(id, LIFETIME.as_secs(), request)
+    set_cookie(id, SESSION_LIFETIME.as_secs(), request)
 }
 
-/// `Set-Cookie` that makes the browser forget the session.
+/// The `Set-Cookie` header that removes the session cookie.
 pub fn clear(request: &HeaderMap) -> Option<HeaderValue> {
-    written("", 0, request)
+    set_cookie("", 0, request)
 }
 
-fn written(id: &str, seconds: u64, request: &HeaderMap) -> Option<HeaderValue> {
-    let secure = if came_by_https(request) { "; Secure" } else { "" };
-    let cookie = format!("{NAME}={id}; HttpOnly; SameSite=Strict; Path=/; Max-Age={seconds}{secure}");
+fn set_cookie(id: &str, max_age_s: u64, request: &HeaderMap) -> Option<HeaderValue> {
+    let secure = if is_https(request) { "; Secure" } else { "" };
+    let cookie = format!("{COOKIE_NAME}={id}; HttpOnly; SameSite=Strict; Path=/; Max-Age={max_age_s}{secure}");
     let mut value = HeaderValue::try_from(cookie).ok()?;
     value.set_sensitive(true);
     Some(value)
 }
 
-/// Whether the browser speaks TLS, to a proxy in front: its page's origin says so, or the proxy. With doubts it does not;
-/// a cookie marked `Secure` would be lost on plain HTTP.
-fn came_by_https(request: &HeaderMap) -> bool {
+/// Whether the browser uses TLS (to a reverse proxy), by the header `Origin` or `X-Forwarded-Proto`. False in doubt:
+/// browsers drop a cookie marked `Secure` on plain HTTP.
+fn is_https(request: &HeaderMap) -> bool {
     let text = |name| request.get(name).and_then(|value: &HeaderValue| value.to_str().ok()).unwrap_or_default();
     let origin = text(ORIGIN);
     match origin.is_empty() || origin == "null" {
-        true => text(FORWARDED_PROTOCOL).trim().eq_ignore_ascii_case("https"),
+        true => text(X_FORWARDED_PROTO).trim().eq_ignore_ascii_case("https"),
         false => origin.starts_with("https://"),
     }
 }
@@ -53,10 +53,10 @@ mod tests {
     }
 
     #[test]
-    fn found_among_other_cookies() {
-        let found = |line| sessions(&headers(&[("cookie", line)])).map(str::to_owned).collect::<Vec<_>>();
-        assert_eq!(found("a=b; herringbone_session=1;herringbone_session=2"), ["1", "2"]);
-        assert!(found("xherringbone_session=1; herringbone_sessio=2; herringbone_session").is_empty());
+    fn session_ids_are_found_among_other_cookies() {
+        let ids = |line| session_ids(&headers(&[("cookie", line)])).map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(ids("a=b; herringbone_session=1;herringbone_session=2"), ["1", "2"]);
+        assert!(ids("xherringbone_session=1; herringbone_sessio=2; herringbone_session").is_empty());
     }
 
     #[test]

@@ -1,10 +1,10 @@
-//! The token or a session, asked for on every path but a few.
+//! The check for the token or a session.
 
-use super::access::{Access, Lock};
+use super::access::{Access, Authenticator};
 use super::cookie;
-use super::login::login_address;
-use crate::api::problem::{ProblemCode, Refusal};
-use crate::api::request::chosen;
+use super::login::login_url;
+use crate::api::problem::{ApiError, ProblemCode};
+use crate::api::request::negotiate;
 use axum::extract::{Request, State};
 use axum::http::header::{AUTHORIZATION, CACHE_CONTROL, CONTENT_TYPE, WWW_AUTHENTICATE};
 use axum::http::{HeaderMap, HeaderValue, Method};
@@ -12,87 +12,87 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Redirect, Response};
 use std::time::Instant;
 
-/// What needs no credentials: probes, and the login page with what it shows.
-const OPEN: [&str; 5] = ["/healthz", "/readyz", "/login", "/assets/common/style.css", "/assets/icon.svg"];
+/// Paths that need no credentials: probes, and the login page with its assets.
+const PUBLIC_PATHS: [&str; 5] = ["/healthz", "/readyz", "/login", "/assets/common/style.css", "/assets/icon.svg"];
 
-/// Middleware: lets those in who have the token, or a session opened with it.
+/// Middleware: requires the token, or a session opened with it, except on [`PUBLIC_PATHS`].
 pub async fn check_credentials(State(access): State<Access>, request: Request, next: Next) -> Response {
-    let Some(lock) = access.lock() else { return next.run(request).await };
-    if OPEN.contains(&request.uri().path()) {
+    let Some(authenticator) = access.authenticator() else { return next.run(request).await };
+    if PUBLIC_PATHS.contains(&request.uri().path()) {
         return next.run(request).await;
     }
     let now = Instant::now();
-    match shown(request.headers()) {
-        Shown::Token(token) if lock.token.is(token) => {}
-        Shown::Session if has_session(lock, request.headers(), now) => {}
-        Shown::Token(_) => return wrong_token(lock, now),
-        Shown::Other => return unauthenticated("The request has no valid credentials."),
-        Shown::Session => return ask(&request),
+    match credentials(request.headers()) {
+        Credentials::Token(token) if authenticator.token.matches(token) => {}
+        Credentials::Cookies if has_session(authenticator, request.headers(), now) => {}
+        Credentials::Token(_) => return wrong_token(authenticator, now),
+        Credentials::Other => return unauthenticated("The request has no valid credentials."),
+        Credentials::Cookies => return request_login(&request),
     }
     let mut response = next.run(request).await;
-    keep_private(&mut response);
+    prevent_caching(&mut response);
     response
 }
 
-/// What a request shows.
-enum Shown<'a> {
-    /// `Authorization: Bearer`.
+/// The credentials of a request.
+enum Credentials<'a> {
+    /// The token of `Authorization: Bearer`.
     Token(&'a [u8]),
-    /// `Authorization` in another form.
+    /// An `Authorization` header of another form.
     Other,
-    /// At best a cookie.
-    Session,
+    /// No `Authorization` header; there may be a session cookie.
+    Cookies,
 }
 
-fn shown(headers: &HeaderMap) -> Shown<'_> {
+fn credentials(headers: &HeaderMap) -> Credentials<'_> {
     let mut lines = headers.get_all(AUTHORIZATION).into_iter();
     let (line, more) = (lines.next(), lines.next());
-    let Some(line) = line else { return Shown::Session };
+    let Some(line) = line else { return Credentials::Cookies };
     let bytes = line.as_bytes();
     match bytes.split_at_checked(7) {
         Some((scheme, token)) if more.is_none() && scheme.eq_ignore_ascii_case(b"bearer ") => {
-            Shown::Token(token.trim_ascii())
+            Credentials::Token(token.trim_ascii())
         }
-        _ => Shown::Other,
+        _ => Credentials::Other,
     }
 }
 
-fn has_session(lock: &Lock, headers: &HeaderMap, now: Instant) -> bool {
-    let sessions = lock.sessions();
-    cookie::sessions(headers).any(|id| sessions.is_open(id, now))
+fn has_session(authenticator: &Authenticator, headers: &HeaderMap, now: Instant) -> bool {
+    let sessions = authenticator.sessions();
+    cookie::session_ids(headers).any(|id| sessions.is_open(id, now))
 }
 
-/// 401; after too many wrong tokens 429.
-pub fn wrong_token(lock: &Lock, now: Instant) -> Response {
-    match lock.failures().note(now) {
+/// The response to a wrong token: 401, or 429 after too many.
+pub fn wrong_token(authenticator: &Authenticator, now: Instant) -> Response {
+    match authenticator.failures().record(now) {
         Ok(()) => unauthenticated("The token is wrong."),
         Err(seconds) => {
             let detail = "Wrong tokens come too fast.";
-            Refusal::new(ProblemCode::TooManyAttempts, detail).retry_after(seconds).into_response()
+            ApiError::new(ProblemCode::TooManyAttempts, detail).retry_after(seconds).into_response()
         }
     }
 }
 
 fn unauthenticated(detail: &str) -> Response {
-    let mut response = Refusal::new(ProblemCode::Unauthenticated, detail).into_response();
+    let mut response = ApiError::new(ProblemCode::Unauthenticated, detail).into_response();
     response.headers_mut().insert(WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
     response
 }
 
-/// The login page for people, 401 for programs.
-fn ask(request: &Request) -> Response {
-    let is_page = matches!(chosen(request.headers(), &["application/problem+json", "text/html"]), Ok("text/html"));
+/// The response without credentials: a redirect to the login page for browsers, 401 for programs.
+fn request_login(request: &Request) -> Response {
+    let is_page = matches!(negotiate(request.headers(), &["application/problem+json", "text/html"]), Ok("text/html"));
     let target = request.uri().path_and_query().map_or("/", |target| target.as_str());
     match *request.method() {
-        Method::GET | Method::HEAD if is_page => Redirect::to(&login_address(target)).into_response(),
-        // Whose session has ended meanwhile is where the button leads.
+        Method::GET | Method::HEAD if is_page => Redirect::to(&login_url(target)).into_response(),
+        // The session ended before the logout.
         Method::POST if is_page && target == "/logout" => Redirect::to("/login").into_response(),
         _ => unauthenticated("The request has no valid credentials."),
     }
 }
 
-/// Answers to those who showed credentials are for them only, unless a route has said how long they may be kept.
-fn keep_private(response: &mut Response) {
+/// Forbids caching of data and errors, unless the route set `Cache-Control` itself.
+fn prevent_caching(response: &mut Response) {
     let media_type = response.headers().get(CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
     let is_data = ["application/", "text/plain", "text/csv"].iter().any(|start| media_type.starts_with(start));
     if is_data || response.status().as_u16() >= 400 {

@@ -1,8 +1,8 @@
-//! The name under which a client asks. A page of another site can have its own name lead to this machine (DNS rebinding);
-//! the browser then takes this service for that site, but still says the name.
+//! The check of the header `Host`, against DNS rebinding: a page of another site can have its own name resolve to this
+//! machine; the browser then sends that name in `Host`.
 
 use super::access::Access;
-use crate::api::problem::{ProblemCode, Refusal};
+use crate::api::problem::{ApiError, ProblemCode};
 use axum::extract::{Request, State};
 use axum::http::header::HOST;
 use axum::http::uri::Authority;
@@ -11,15 +11,15 @@ use axum::response::{IntoResponse, Response};
 use std::net::IpAddr;
 use std::str::FromStr;
 
-/// Probes name the host as they like; what they learn is no secret.
+/// Paths without the check: probes may use any host name.
 const PROBES: [&str; 2] = ["/healthz", "/readyz"];
 
-/// A host's name or address, without a port.
+/// A host name or address, without a port.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct HostName(String);
 
-/// The names of this host.
-pub struct Hosts(Vec<HostName>);
+/// The names of this host, besides loopback addresses.
+pub struct AllowedHosts(Vec<HostName>);
 
 impl FromStr for HostName {
     type Err = String;
@@ -33,13 +33,13 @@ impl FromStr for HostName {
     }
 }
 
-impl Hosts {
+impl AllowedHosts {
     pub fn new(names: Vec<HostName>) -> Self {
         Self(names)
     }
 
-    /// Whether `name[:port]` is this host.
-    fn has(&self, authority: &str) -> bool {
+    /// Whether `authority` (`name[:port]`) names this host.
+    fn contains(&self, authority: &str) -> bool {
         let Ok(authority) = authority.parse::<Authority>() else { return false };
         let host = authority.host().to_ascii_lowercase();
         !authority.as_str().contains('@') && (is_loopback(&host) || self.0.iter().any(|name| name.0 == host))
@@ -51,14 +51,15 @@ fn is_loopback(host: &str) -> bool {
     host == "localhost" || address.parse::<IpAddr>().is_ok_and(|address| address.to_canonical().is_loopback())
 }
 
-/// Middleware: refuses requests under other names. A request that names no host (HTTP/1.0) is no browser's.
+/// Middleware: refuses requests for other hosts. A request without a host (HTTP/1.0) does not come from a browser and
+/// passes.
 pub async fn check_host(State(access): State<Access>, request: Request, next: Next) -> Response {
     let Some(hosts) = access.hosts() else { return next.run(request).await };
-    let said = request.headers().get_all(HOST).into_iter().map(|value| value.to_str().unwrap_or_default());
-    let mut said = said.chain(request.uri().authority().map(Authority::as_str));
-    if !said.all(|name| hosts.has(name)) && !PROBES.contains(&request.uri().path()) {
+    let names = request.headers().get_all(HOST).into_iter().map(|value| value.to_str().unwrap_or_default());
+    let mut names = names.chain(request.uri().authority().map(Authority::as_str));
+    if !names.all(|name| hosts.contains(name)) && !PROBES.contains(&request.uri().path()) {
         let detail = "The header Host does not name this service.";
-        return Refusal::new(ProblemCode::MisdirectedRequest, detail).into_response();
+        return ApiError::new(ProblemCode::MisdirectedRequest, detail).into_response();
     }
     next.run(request).await
 }
@@ -69,7 +70,7 @@ mod tests {
 
     #[test]
     fn names_of_this_machine_and_given_ones() {
-        let hosts = Hosts::new(vec!["Gears.example".parse().unwrap(), "[2001:db8::1]".parse().unwrap()]);
+        let hosts = AllowedHosts::new(vec!["Gears.example".parse().unwrap(), "[2001:db8::1]".parse().unwrap()]);
         for ours in [
             "localhost",
             "LOCALHOST:80",
@@ -79,7 +80,7 @@ mod tests {
             "gears.EXAMPLE:8",
             "[2001:db8::1]:8",
         ] {
-            assert!(hosts.has(ours), "{ours}");
+            assert!(hosts.contains(ours), "{ours}");
         }
         for other in [
             "",
@@ -96,7 +97,7 @@ mod tests {
             "localhost:80:80",
             "a b",
         ] {
-            assert!(!hosts.has(other), "{other}");
+            assert!(!hosts.contains(other), "{other}");
         }
     }
 

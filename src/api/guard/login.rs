@@ -1,9 +1,9 @@
-//! `GET /login`, `POST /login`, `POST /logout`: sessions for people with browsers.
+//! `GET /login`, `POST /login`, `POST /logout`: sessions of browsers.
 
 use super::access::Access;
 use super::cookie;
 use super::credentials::wrong_token;
-use crate::api::request::chosen;
+use crate::api::request::negotiate;
 use axum::extract::{DefaultBodyLimit, Query, State};
 use axum::http::header::{CACHE_CONTROL, SET_COOKIE};
 use axum::http::{HeaderMap, HeaderValue, StatusCode};
@@ -14,25 +14,26 @@ use serde::Deserialize;
 use std::fmt::Write;
 use std::time::Instant;
 
-/// A token and an address.
+/// Largest body of the login form: a token and a path.
 const MAX_FORM_BYTES: usize = 16 * 1024;
-const MAX_ADDRESS_BYTES: usize = 2000;
+/// Longest path to which a login leads.
+const MAX_PATH_BYTES: usize = 2000;
 
-/// What the login page shows.
+/// The variable content of the login page.
 #[derive(Debug)]
 pub struct LoginNotice<'a> {
     pub status: StatusCode,
-    /// Where the login leads: an address of this service.
+    /// Path on this service to which the login leads.
     pub next: &'a str,
-    /// Why the last attempt failed.
-    pub trouble: Option<&'static str>,
+    /// Message about the failure of the last attempt.
+    pub error: Option<&'static str>,
 }
 
-/// Writes the login page: a form with the fields `token` and `next`.
+/// The function that renders the login page: a form with the fields `token` and `next`.
 #[derive(Clone, Copy)]
-pub struct LoginPage(pub fn(&LoginNotice<'_>) -> Response);
+pub struct LoginRenderer(pub fn(&LoginNotice<'_>) -> Response);
 
-impl Default for LoginPage {
+impl Default for LoginRenderer {
     /// A bare form.
     fn default() -> Self {
         Self(|notice| {
@@ -43,7 +44,7 @@ impl Default for LoginPage {
 }
 
 #[derive(Deserialize)]
-struct Entry {
+struct LoginForm {
     #[serde(default)]
     token: String,
     #[serde(default)]
@@ -51,90 +52,89 @@ struct Entry {
 }
 
 #[derive(Deserialize)]
-struct Target {
+struct LoginQuery {
     #[serde(default)]
     next: String,
 }
 
-/// The routes of a service with a token; none without.
-pub fn routes(access: &Access, page: LoginPage) -> Router {
-    if access.lock().is_none() {
+/// The routes for login and logout; none for a service without a token.
+pub fn routes(access: &Access, renderer: LoginRenderer) -> Router {
+    if access.authenticator().is_none() {
         return Router::new();
     }
-    let form = async move |Query(target): Query<Target>| {
-        let notice = LoginNotice { status: StatusCode::OK, next: local(&target.next), trouble: None };
-        private((page.0)(&notice))
+    let show = async move |Query(query): Query<LoginQuery>| {
+        let notice = LoginNotice { status: StatusCode::OK, next: local_path(&query.next), error: None };
+        without_caching((renderer.0)(&notice))
     };
-    let enter = async move |State(access): State<Access>, headers: HeaderMap, Form(entry): Form<Entry>| {
-        private(log_in(&access, page, &headers, &entry))
+    let submit = async move |State(access): State<Access>, headers: HeaderMap, Form(form): Form<LoginForm>| {
+        without_caching(log_in(&access, renderer, &headers, &form))
     };
     Router::new()
-        .route("/login", get(form).post(enter))
+        .route("/login", get(show).post(submit))
         .route("/logout", post(log_out))
         .layer(DefaultBodyLimit::max(MAX_FORM_BYTES))
         .with_state(access.clone())
 }
 
-/// The login page's address, leading back to `target`.
-pub fn login_address(target: &str) -> String {
-    let mut address = "/login?next=".to_owned();
-    for byte in local(target).bytes() {
+/// The URL of the login page with `target` as the path to return to.
+pub fn login_url(target: &str) -> String {
+    let mut url = "/login?next=".to_owned();
+    for byte in local_path(target).bytes() {
         match byte {
-            b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' => address.push(byte.into()),
+            b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' => url.push(byte.into()),
             // Writing to a string cannot fail.
-            _ => _ = write!(address, "%{byte:02X}"),
+            _ => _ = write!(url, "%{byte:02X}"),
         }
     }
-    address
+    url
 }
 
-/// A token without what comes along when it is copied: white space and a byte order mark.
-fn pasted(token: &str) -> &str {
+/// Removes white space and a byte order mark around a token that was pasted.
+fn trim_pasted(token: &str) -> &str {
     token.trim_matches(|letter: char| letter.is_whitespace() || letter == '\u{feff}')
 }
 
-fn log_in(access: &Access, page: LoginPage, headers: &HeaderMap, entry: &Entry) -> Response {
-    let Some(lock) = access.lock() else { return StatusCode::NOT_FOUND.into_response() };
-    let (now, next) = (Instant::now(), local(&entry.next));
-    if lock.token.is(pasted(&entry.token).as_bytes()) {
-        let id = lock.sessions().open(now);
+fn log_in(access: &Access, renderer: LoginRenderer, headers: &HeaderMap, form: &LoginForm) -> Response {
+    let Some(authenticator) = access.authenticator() else { return StatusCode::NOT_FOUND.into_response() };
+    let (now, next) = (Instant::now(), local_path(&form.next));
+    if authenticator.token.matches(trim_pasted(&form.token).as_bytes()) {
+        let id = authenticator.sessions().open(now);
         return (cookie::set(&id, headers).map(|value| [(SET_COOKIE, value)]), Redirect::to(next)).into_response();
     }
-    let refusal = wrong_token(lock, now);
-    if !matches!(chosen(headers, &["application/problem+json", "text/html"]), Ok("text/html")) {
-        return refusal;
+    let error = wrong_token(authenticator, now);
+    if !matches!(negotiate(headers, &["application/problem+json", "text/html"]), Ok("text/html")) {
+        return error;
     }
-    let trouble = match refusal.status() {
+    let message = match error.status() {
         StatusCode::TOO_MANY_REQUESTS => "Too many wrong tokens were entered. Wait a moment.",
         _ => "This is not the token.",
     };
-    let (mut shown, parts) =
-        ((page.0)(&LoginNotice { status: refusal.status(), next, trouble: Some(trouble) }), refusal);
+    let mut page = (renderer.0)(&LoginNotice { status: error.status(), next, error: Some(message) });
     // `WWW-Authenticate` and `Retry-After` stay.
-    shown.headers_mut().extend(parts.into_parts().0.headers);
-    shown
+    page.headers_mut().extend(error.into_parts().0.headers);
+    page
 }
 
 async fn log_out(State(access): State<Access>, headers: HeaderMap) -> Response {
-    if let Some(lock) = access.lock() {
-        cookie::sessions(&headers).for_each(|id| lock.sessions().end(id));
+    if let Some(authenticator) = access.authenticator() {
+        cookie::session_ids(&headers).for_each(|id| authenticator.sessions().end(id));
     }
     (cookie::clear(&headers).map(|value| [(SET_COOKIE, value)]), Redirect::to("/login")).into_response()
 }
 
-/// An address of this service as it is, anything else as `/`: no name of a host can be in it, in any spelling that
-/// browsers understand.
-fn local(address: &str) -> &str {
-    let second = address.as_bytes().get(1);
-    let is_local = address.starts_with('/')
+/// Returns a path on this service unchanged and anything else as `/`, so that a redirect never leads to another host in
+/// any spelling that browsers understand.
+fn local_path(path: &str) -> &str {
+    let second = path.as_bytes().get(1);
+    let is_local = path.starts_with('/')
         && !matches!(second, Some(b'/' | b'\\'))
-        && address.len() <= MAX_ADDRESS_BYTES
-        && address.bytes().all(|byte| byte.is_ascii_graphic() && byte != b'\\')
-        && !["/login", "/logout"].contains(&address.split('?').next().unwrap_or_default());
-    if is_local { address } else { "/" }
+        && path.len() <= MAX_PATH_BYTES
+        && path.bytes().all(|byte| byte.is_ascii_graphic() && byte != b'\\')
+        && !["/login", "/logout"].contains(&path.split('?').next().unwrap_or_default());
+    if is_local { path } else { "/" }
 }
 
-fn private(mut response: Response) -> Response {
+fn without_caching(mut response: Response) -> Response {
     response.headers_mut().insert(CACHE_CONTROL, HeaderValue::from_static("no-store"));
     response
 }
@@ -144,9 +144,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_way_back_stays_on_this_service() {
+    fn the_path_to_return_to_is_on_this_service() {
         for good in ["/", "/jobs", "/jobs/1?a=b&c=//x", "/?from=1", "/jobs#top"] {
-            assert_eq!(local(good), good);
+            assert_eq!(local_path(good), good);
         }
         for bad in [
             "",
@@ -165,17 +165,14 @@ mod tests {
             "/logout",
             "/ü",
         ] {
-            assert_eq!(local(bad), "/", "{bad:?}");
+            assert_eq!(local_path(bad), "/", "{bad:?}");
         }
-        assert_eq!(local(&format!("/{}", "x".repeat(2000))), "/");
+        assert_eq!(local_path(&format!("/{}", "x".repeat(2000))), "/");
     }
 
     #[test]
-    fn the_way_back_is_one_parameter() {
-        assert_eq!(
-            login_address("/jobs?state=failed&label=a%20b"),
-            "/login?next=/jobs%3Fstate%3Dfailed%26label%3Da%2520b"
-        );
-        assert_eq!(login_address("//evil.example"), "/login?next=/");
+    fn the_path_to_return_to_is_one_parameter() {
+        assert_eq!(login_url("/jobs?state=failed&label=a%20b"), "/login?next=/jobs%3Fstate%3Dfailed%26label%3Da%2520b");
+        assert_eq!(login_url("//evil.example"), "/login?next=/");
     }
 }

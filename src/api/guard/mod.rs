@@ -1,13 +1,13 @@
-//! Who gets in. Around every route, in this order: the name the client used for this host ([`host`]), the site whose page
-//! made the browser ask ([`origin`]), and the token or a session opened with it ([`credentials`]).
+//! Access control, around every route, in this order: the host name in the request ([`host`]), the origin of the page
+//! that sent it ([`origin`]), and the token or a session opened with it ([`credentials`]).
 //!
-//! Invariant: without a token the service listens on this machine only, or was told that it may be open.
+//! Invariant: without a token the service listens on this machine only, or was started with `--insecure`.
 
 mod access;
 mod config;
 mod cookie;
 mod credentials;
-mod failures;
+mod failure_limiter;
 mod host;
 mod login;
 mod origin;
@@ -18,5 +18,5 @@ pub use access::{Access, AccessError};
 pub use config::AccessConfig;
 pub use credentials::check_credentials;
 pub use host::check_host;
-pub use login::{LoginNotice, LoginPage, routes as login_routes};
+pub use login::{LoginNotice, LoginRenderer, routes as login_routes};
 pub use origin::check_origin;

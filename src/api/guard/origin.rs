@@ -1,15 +1,16 @@
-//! The site whose page made the browser send a request (cross-site request forgery).
+//! The check against cross-site request forgery.
 
-use crate::api::problem::{ProblemCode, Refusal};
+use crate::api::problem::{ApiError, ProblemCode};
 use axum::response::{IntoResponse, Response};
 use tower_http::csrf::{CsrfLayer, ProtectionError};
 
-/// Layer: what changes something comes from pages of this service, or from no browser at all, as `Sec-Fetch-Site` and
-/// `Origin` tell. Methods that only read pass.
+/// Layer: refuses requests of other methods than GET, HEAD and OPTIONS that a page of another site made the browser
+/// send, by the headers `Sec-Fetch-Site` and `Origin`.
 pub fn check_origin() -> CsrfLayer<fn(ProtectionError) -> Response> {
     CsrfLayer::new().with_rejection_response(refuse)
 }
 
 fn refuse(_: ProtectionError) -> Response {
-    Refusal::new(ProblemCode::CrossOrigin, "A page of another site made the browser send this request.").into_response()
+    ApiError::new(ProblemCode::CrossOrigin, "A page of another site made the browser send this request.")
+        .into_response()
 }

@@ -1,4 +1,4 @@
-//! The token: read once at the start, compared in constant time, never shown.
+//! The access token: read at the start, compared in constant time, never logged.
 
 use herringbone_job::{EncodingError, without_mark};
 use sha2::{Digest, Sha256};
@@ -9,19 +9,20 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use subtle::ConstantTimeEq;
 
-const CHARS: RangeInclusive<usize> = 16..=1024;
+/// Permitted lengths, in characters.
+const TOKEN_LENGTH: RangeInclusive<usize> = 16..=1024;
 
-/// The token's digest; the token itself is not kept.
+/// The SHA-256 digest of the token.
 pub struct Token([u8; 32]);
 
-/// Why a file holds no usable token. Says nothing about what is in it.
+/// Failure to read a token file. The message does not contain any of its content.
 #[derive(Debug, thiserror::Error)]
 pub enum TokenError {
     #[error("the token file {} cannot be read: {source}", path.display())]
     Unreadable { path: PathBuf, source: std::io::Error },
     #[error("the token file {} is empty", path.display())]
     Empty { path: PathBuf },
-    #[error("the token in {} is too short or too long: {} to {} characters are needed", path.display(), CHARS.start(), CHARS.end())]
+    #[error("the token in {} is too short or too long: {} to {} characters are needed", path.display(), TOKEN_LENGTH.start(), TOKEN_LENGTH.end())]
     Length { path: PathBuf },
     #[error("the token file {} cannot be read: {source}", path.display())]
     Encoding { path: PathBuf, source: EncodingError },
@@ -30,12 +31,13 @@ pub enum TokenError {
 }
 
 impl Token {
-    /// Reads a token file; a byte order mark before the token and white space around it are left out. Warns when everybody on the machine can read it.
+    /// Reads a token file, ignoring a byte order mark and white space around the token. Logs a warning when every user
+    /// of the machine can read the file.
     ///
     /// # Errors
-    /// When there is no usable token in it.
+    /// The file cannot be read, or does not hold a usable token.
     pub fn read(path: &Path) -> Result<Self, TokenError> {
-        let (bytes, mode) = contents(path).map_err(|source| TokenError::Unreadable { path: path.into(), source })?;
+        let (bytes, mode) = read_start(path).map_err(|source| TokenError::Unreadable { path: path.into(), source })?;
         let path = path.to_owned();
         let token = match without_mark(&bytes) {
             Ok(text) => text.trim_ascii(),
@@ -47,7 +49,7 @@ impl Token {
         if !token.iter().all(u8::is_ascii_graphic) {
             return Err(TokenError::Characters { path });
         }
-        if !CHARS.contains(&token.len()) {
+        if !TOKEN_LENGTH.contains(&token.len()) {
             return Err(TokenError::Length { path });
         }
         if mode & 0o004 != 0 {
@@ -56,19 +58,19 @@ impl Token {
         Ok(Self(digest(token)))
     }
 
-    /// Whether this is the token, in a time that tells nothing about it: digests are compared, so that neither the place
-    /// of the first difference nor the length shows.
-    pub fn is(&self, presented: &[u8]) -> bool {
+    /// Whether `presented` is the token. The time taken reveals neither the place of the first difference nor the
+    /// length, as digests are compared in constant time.
+    pub fn matches(&self, presented: &[u8]) -> bool {
         self.0.ct_eq(&digest(presented)).into()
     }
 }
 
-/// At most what a token can have, and one byte more; and the file's mode.
-fn contents(path: &Path) -> std::io::Result<(Vec<u8>, u32)> {
+/// The beginning of the file, longer than any valid token, and the file's mode.
+fn read_start(path: &Path) -> std::io::Result<(Vec<u8>, u32)> {
     let file = File::open(path)?;
     let mode = file.metadata()?.permissions().mode();
     let mut bytes = Vec::new();
-    file.take(2 * *CHARS.end() as u64).read_to_end(&mut bytes)?;
+    file.take(2 * *TOKEN_LENGTH.end() as u64).read_to_end(&mut bytes)?;
     Ok((bytes, mode))
 }
 
@@ -89,16 +91,16 @@ mod tests {
     #[test]
     fn only_the_token_itself_is_the_token() {
         let token = read(b"  0123456789abcdef\r\n").unwrap();
-        assert!(token.is(b"0123456789abcdef"));
+        assert!(token.matches(b"0123456789abcdef"));
         for wrong in [&b""[..], b"0123456789abcde", b"0123456789abcdef0", b"0123456789abcdeF", b"0123456789abcdef\n"] {
-            assert!(!token.is(wrong), "{wrong:?}");
+            assert!(!token.matches(wrong), "{wrong:?}");
         }
     }
 
     #[test]
     fn f07_a_byte_order_mark_is_not_part_of_the_token_and_other_encodings_are_named() {
         let token = read(b"\xef\xbb\xbf0123456789abcdef\r\n").unwrap();
-        assert!(token.is(b"0123456789abcdef"));
+        assert!(token.matches(b"0123456789abcdef"));
         let utf16: Vec<u8> = "\u{feff}0123456789abcdef\r\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
         let error = read(&utf16).err().unwrap().to_string();
         assert!(error.contains("UTF-16") && !error.contains("0123456789"), "{error}");

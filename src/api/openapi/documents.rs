@@ -1,14 +1,14 @@
-//! Schemas of the job document: one for each kind, sharing what they have in common.
+//! Schemas of the job document: one for each kind, with shared blocks.
 
 use herringbone_job::document::JobKind;
 use herringbone_job::schema::job_document_schema_of;
 use serde_json::{Value, json};
 
-/// Blocks that documents of every kind have, and the names of their schemas.
+/// The blocks that documents of every kind have, with the names of their schemas.
 const SHARED: [(&str, &str); 4] =
     [("design", "JobDesign"), ("operation", "JobOperation"), ("model", "JobModel"), ("analysis", "JobAnalysis")];
 
-/// Name of the schema of a kind's documents.
+/// The name of the schema of the documents of a kind.
 fn schema_name(kind: JobKind) -> &'static str {
     match kind {
         JobKind::Mesh => "MeshDocument",
@@ -17,7 +17,7 @@ fn schema_name(kind: JobKind) -> &'static str {
     }
 }
 
-/// An example of a kind, as it can be submitted.
+/// A valid document of a kind.
 fn example(kind: JobKind) -> Value {
     let text = match kind {
         JobKind::Mesh | JobKind::Response => include_str!("../../../examples/table1.json"),
@@ -28,8 +28,8 @@ fn example(kind: JobKind) -> Value {
     example
 }
 
-/// Adds the document's schemas to the components.
-pub(super) fn describe(description: &mut Value) {
+/// Adds the schemas of the document to the components.
+pub(super) fn add_schemas(description: &mut Value) {
     let schemas = &mut description["components"]["schemas"];
     let mut kinds = Vec::new();
     for (_, kind) in JobKind::ALL {
@@ -39,7 +39,7 @@ pub(super) fn describe(description: &mut Value) {
             schemas[name] = std::mem::replace(&mut schema["properties"][field], reference);
         }
         if kind != JobKind::Sweep {
-            // Null counts as left out here too.
+            // Null counts as absent here too.
             schema["properties"]["axes"] = json!({"type": "null"});
             schema["properties"]["continuation"] = json!({"type": "null"});
             schema["properties"]["record"] = json!({"type": ["array", "null"], "maxItems": 0});
@@ -59,12 +59,12 @@ fn reference(name: &str) -> Value {
     json!({"$ref": format!("#/components/schemas/{name}")})
 }
 
-/// Names the document's schema where documents go in and out.
-pub(super) fn name(path: &str, operation: &mut Value) {
+/// Sets the schema of the document in the request and response bodies that are documents.
+pub(super) fn set_schemas(path: &str, operation: &mut Value) {
     if let Some(body) = operation.pointer_mut("/requestBody/content/application~1json") {
         body["schema"] = reference("JobDocument");
-        for (word, kind) in JobKind::ALL {
-            body["examples"][word] = json!({"value": example(kind)});
+        for (name, kind) in JobKind::ALL {
+            body["examples"][name] = json!({"value": example(kind)});
         }
     }
     if path.ends_with("/input") {

@@ -1,12 +1,12 @@
-//! Links: how what one answer says leads to the next request.
+//! OpenAPI links: values of a response that are parameters of further requests.
 
 use serde_json::{Value, json};
 
-/// Operations whose answer shows one job.
-const SHOW_A_JOB: [&str; 3] = ["submit_job", "read_job", "cancel_job"];
+/// Operations whose response is one job.
+const RETURN_JOB: [&str; 3] = ["submit_job", "read_job", "cancel_job"];
 
-/// Operations about one job.
-const ABOUT_A_JOB: [&str; 9] = [
+/// Operations with the id of a job as their parameter.
+const TAKE_JOB_ID: [&str; 9] = [
     "read_job",
     "watch_job",
     "cancel_job",
@@ -18,12 +18,12 @@ const ABOUT_A_JOB: [&str; 9] = [
     "delete_job",
 ];
 
-/// Adds the links that start from an operation's answers.
+/// Adds the links of an operation's responses.
 pub(super) fn add(operation: &mut Value) {
     let source = operation["operationId"].as_str().unwrap_or_default().to_owned();
     let mut links: Vec<(&str, Value)> = Vec::new();
-    if SHOW_A_JOB.contains(&source.as_str()) {
-        links.extend(ABOUT_A_JOB.map(|target| (target, json!({"id": "$response.body#/id"}))));
+    if RETURN_JOB.contains(&source.as_str()) {
+        links.extend(TAKE_JOB_ID.map(|target| (target, json!({"id": "$response.body#/id"}))));
     }
     match source.as_str() {
         "list_jobs" => {

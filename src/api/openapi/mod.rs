@@ -1,4 +1,4 @@
-//! The description of the interface, generated from the endpoints.
+//! The OpenAPI document, generated from the endpoints.
 
 mod documents;
 mod links;
@@ -9,7 +9,7 @@ use super::state::AppState;
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 
-/// What is said about the interface as a whole.
+/// The general part of the OpenAPI document.
 #[derive(OpenApi)]
 #[openapi(
     info(
@@ -23,7 +23,7 @@ use utoipa_axum::router::OpenApiRouter;
     components(schemas(
         super::problem::Problem,
         super::csv::Decimal,
-        super::downsample::Method,
+        super::downsample::DownsampleMethod,
         super::columns::ColumnName
     )),
     tags(
@@ -33,30 +33,32 @@ use utoipa_axum::router::OpenApiRouter;
         (name = "operation", description = "Health, metrics and the meaning of problem codes"),
     )
 )]
-struct Interface;
+struct GeneralDescription;
 
 /// The endpoints with their descriptions.
-pub(super) fn described_routes() -> OpenApiRouter<AppState> {
-    OpenApiRouter::with_openapi(Interface::openapi()).nest("/api/v1", routes::versioned()).merge(routes::operational())
+pub(super) fn documented_routes() -> OpenApiRouter<AppState> {
+    OpenApiRouter::with_openapi(GeneralDescription::openapi())
+        .nest("/api/v1", routes::versioned())
+        .merge(routes::operational())
 }
 
 /// The OpenAPI document as JSON text.
 pub fn openapi_json() -> String {
-    let (_, document) = described_routes().split_for_parts();
+    let (_, document) = documented_routes().split_for_parts();
     let mut document = serde_json::to_value(document).unwrap_or_default();
-    documents::describe(&mut document);
-    responses::describe(&mut document);
+    documents::add_schemas(&mut document);
+    responses::add_components(&mut document);
     if let Some(paths) = document["paths"].as_object_mut() {
         for (path, operations) in paths {
             let Some(operations) = operations.as_object_mut() else { continue };
             for operation in operations.values_mut() {
-                documents::name(path, operation);
-                responses::complete(path, operation);
+                documents::set_schemas(path, operation);
+                responses::add_common(path, operation);
                 links::add(operation);
             }
         }
     }
-    // Builds differ in whether maps keep the order of insertion; the text must not.
+    // Whether maps keep the order of insertion depends on the features of the build; the text must not.
     document.sort_all_objects();
     let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
     text.push('\n');

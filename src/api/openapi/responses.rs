@@ -1,17 +1,17 @@
-//! What every answer has, so that no endpoint has to repeat it.
+//! Parts of responses that endpoints have in common.
 
 use crate::api::config::MAX_REQUEST_ID_CHARS;
 use crate::api::problem::CODES;
 use serde_json::{Value, json};
 
-/// What every endpoint may answer besides what it says itself.
+/// Responses of every endpoint.
 const COMMON: [(&str, &str); 3] = [
     ("408", "The request took too long (`request-timeout`)."),
     ("413", "The body is larger than 1 MiB (`payload-too-large`)."),
     ("500", "The service failed (`internal`)."),
 ];
 
-/// What every endpoint but the probes may answer before it is asked.
+/// Responses of access control, on every endpoint but the probes.
 const GUARDS: [(&str, &str); 4] = [
     ("401", "The service has a token, and the request shows neither it nor a session (`unauthenticated`)."),
     ("403", "A page of another site made a browser send the request (`cross-origin`)."),
@@ -19,25 +19,25 @@ const GUARDS: [(&str, &str); 4] = [
     ("429", "Wrong tokens come too fast (`too-many-attempts`)."),
 ];
 
-/// Endpoints that orchestrators ask: nobody is kept from them.
+/// Endpoints without access control.
 const PROBES: [&str; 2] = ["/healthz", "/readyz"];
 
-/// What every endpoint with one representation (under `/api/v1`) may answer.
+/// Response of every endpoint under `/api/v1`.
 const NOT_ACCEPTABLE: (&str, &str) = ("406", "No representation fits the header Accept (`not-acceptable`).");
 
-/// What every endpoint that reads or writes the database may answer.
+/// Response of every endpoint that uses the database.
 const STORED: (&str, &str) = ("503", "The database cannot be used for now (`storage-unavailable`).");
 
-/// Endpoints that answer without the database.
+/// Endpoints that do not use the database.
 const WITHOUT_DATABASE: [&str; 5] =
     ["/api/v1/kinds", "/api/v1/jobs/validate", "/healthz", "/metrics", "/problems/{code}"];
 
-/// Statuses of answers that may say when to try again.
+/// Statuses of responses that may have the header `Retry-After`.
 const RETRIED: [&str; 3] = ["409", "429", "503"];
 
-/// Adds headers, the event's schema and the token to the components.
-pub(super) fn describe(description: &mut Value) {
-    // A service without a token asks for none.
+/// Adds headers, the schemas of events and the security scheme to the components.
+pub(super) fn add_components(description: &mut Value) {
+    // A service without a token requires none.
     description["security"] = json!([{}, {"token": []}]);
     let components = &mut description["components"];
     components["headers"]["RequestId"] = json!({
@@ -98,13 +98,13 @@ pub(super) fn describe(description: &mut Value) {
     });
 }
 
-/// Adds to an operation what it has in common with others: refusals, the schema of everything that goes wrong, headers.
-pub(super) fn complete(path: &str, operation: &mut Value) {
+/// Adds the common responses, the schema of errors and the headers to an operation.
+pub(super) fn add_common(path: &str, operation: &mut Value) {
     if let Some(parameters) = operation.get_mut("parameters").and_then(Value::as_array_mut) {
-        parameters.iter_mut().for_each(|parameter| plain(&mut parameter["schema"]));
+        parameters.iter_mut().for_each(|parameter| simplify(&mut parameter["schema"]));
         // The codes are a closed list.
         for parameter in parameters.iter_mut().filter(|parameter| parameter["name"] == "code") {
-            parameter["schema"]["enum"] = json!(CODES.map(|entry| entry.word));
+            parameter["schema"]["enum"] = json!(CODES.map(|entry| entry.name));
         }
     }
     let Some(responses) = operation["responses"].as_object_mut() else { return };
@@ -116,7 +116,7 @@ pub(super) fn complete(path: &str, operation: &mut Value) {
     }
     for (status, response) in responses {
         if let Some(headers) = response.get_mut("headers").and_then(Value::as_object_mut) {
-            headers.values_mut().for_each(|header| plain(&mut header["schema"]));
+            headers.values_mut().for_each(|header| simplify(&mut header["schema"]));
         }
         response["headers"]["X-Request-Id"] = json!({"$ref": "#/components/headers/RequestId"});
         if status.as_str() >= "400" {
@@ -136,14 +136,14 @@ pub(super) fn complete(path: &str, operation: &mut Value) {
     }
 }
 
-/// Parameters and headers are left out, not null; and how wide the service's integers are is not a client's concern.
-fn plain(schema: &mut Value) {
+/// Simplifies the schema of a parameter or header: it may be absent but not null, and integers have no width.
+fn simplify(schema: &mut Value) {
     let Some(schema) = schema.as_object_mut() else { return };
-    if let Some(Value::Array(words)) = schema.get_mut("type") {
-        words.retain(|word| word != "null");
-        if let [word] = words.as_slice() {
-            let word = word.clone();
-            schema.insert("type".to_owned(), word);
+    if let Some(Value::Array(types)) = schema.get_mut("type") {
+        types.retain(|name| name != "null");
+        if let [name] = types.as_slice() {
+            let name = name.clone();
+            schema.insert("type".to_owned(), name);
         }
     }
     if schema.get("format").and_then(Value::as_str).is_some_and(|format| format.starts_with("int")) {

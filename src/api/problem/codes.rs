@@ -2,7 +2,7 @@
 
 use axum::http::StatusCode;
 
-/// What went wrong, as a word that programs can rely on.
+/// The code of a problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ProblemCode {
     MalformedJson,
@@ -39,26 +39,26 @@ pub enum ProblemCode {
     StorageUnavailable,
 }
 
-/// What is published about a code.
+/// The published description of a code.
 #[derive(Debug, Clone, Copy)]
 pub struct CodeEntry {
     pub code: ProblemCode,
-    pub word: &'static str,
-    /// Status of answers with this code; for codes of failed jobs the status that a synchronous answer would have.
+    pub name: &'static str,
+    /// Status of responses with this code; for codes of failed jobs the status that a synchronous response would have.
     pub status: u16,
     pub title: &'static str,
-    /// What it means and what to do.
+    /// Meaning and remedy.
     pub explanation: &'static str,
 }
 
 const fn entry(
     code: ProblemCode,
-    word: &'static str,
+    name: &'static str,
     status: u16,
     title: &'static str,
     explanation: &'static str,
 ) -> CodeEntry {
-    CodeEntry { code, word, status, title, explanation }
+    CodeEntry { code, name, status, title, explanation }
 }
 
 /// Every code, by status.
@@ -308,23 +308,23 @@ pub const CODES: [CodeEntry; 32] = [
 
 impl ProblemCode {
     pub fn entry(self) -> &'static CodeEntry {
-        // Every variant is in the table; a test says so.
+        // Every variant is in the table, which a test checks.
         CODES.iter().find(|entry| entry.code == self).unwrap_or(&CODES[0])
     }
 
-    pub fn word(self) -> &'static str {
-        self.entry().word
+    pub fn as_str(self) -> &'static str {
+        self.entry().name
     }
 
-    pub fn from_word(word: &str) -> Option<Self> {
-        CODES.iter().find(|entry| entry.word == word).map(|entry| entry.code)
+    pub fn from_name(name: &str) -> Option<Self> {
+        CODES.iter().find(|entry| entry.name == name).map(|entry| entry.code)
     }
 
     pub fn status(self) -> StatusCode {
         StatusCode::from_u16(self.entry().status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR)
     }
 
-    /// The code for a refusal that the framework made without a body.
+    /// The code of an error response that the framework made without a body.
     pub fn of_status(status: StatusCode) -> Self {
         match status.as_u16() {
             401 => Self::Unauthenticated,
@@ -349,13 +349,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_has_every_code_once_and_words_lead_back() {
+    fn every_code_is_in_the_table_once_and_is_found_by_its_name() {
         for entry in &CODES {
-            assert_eq!(entry.code.entry().word, entry.word, "{} stands twice", entry.word);
-            assert_eq!(ProblemCode::from_word(entry.word), Some(entry.code));
+            assert_eq!(entry.code.entry().name, entry.name, "{} stands twice", entry.name);
+            assert_eq!(ProblemCode::from_name(entry.name), Some(entry.code));
             assert!(entry.code.status().as_u16() >= 400);
         }
-        // The compiler counts the variants: the last one's discriminant is the number of the others.
+        // The discriminant of the last variant is the number of the others.
         assert_eq!(ProblemCode::StorageUnavailable as usize + 1, CODES.len());
     }
 }

@@ -1,4 +1,4 @@
-//! Problems out of the errors of the rooms below.
+//! Conversions into problems from the errors of other modules.
 
 use super::{Problem, ProblemCode};
 use crate::store::{Failure, JobRecord};
@@ -36,10 +36,10 @@ impl From<SolveError> for Problem {
 
 impl From<&Failure> for Problem {
     fn from(failure: &Failure) -> Self {
-        let code = ProblemCode::from_word(&failure.code).unwrap_or(ProblemCode::SolveFailed);
+        let code = ProblemCode::from_name(&failure.code).unwrap_or(ProblemCode::SolveFailed);
         let mut errors = failure.errors.clone();
-        if code.word() != failure.code {
-            // A cause outside the closed list keeps its name.
+        if code.as_str() != failure.code {
+            // A code outside the closed list is reported as a violation.
             errors.push(Violation::new("", &failure.code, failure.detail.as_str()));
         }
         Problem {
@@ -52,7 +52,7 @@ impl From<&Failure> for Problem {
 }
 
 impl Problem {
-    /// The `error` of a job.
+    /// The `error` of a failed job.
     pub(in crate::api) fn of_job(job: &JobRecord) -> Option<Self> {
         let problem = Problem::from(job.error.as_ref()?);
         Some(Problem { request_id: job.request_id.clone(), ..problem })

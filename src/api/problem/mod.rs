@@ -1,11 +1,11 @@
-//! Everything that goes wrong, in one schema (RFC 9457).
+//! Errors as problem details (RFC 9457).
 
+mod api_error;
 mod codes;
 mod convert;
-mod refusal;
 
+pub use api_error::ApiError;
 pub use codes::{CODES, CodeEntry, ProblemCode};
-pub use refusal::Refusal;
 
 use herringbone_job::Violation;
 use serde::Serialize;
@@ -46,10 +46,10 @@ impl Problem {
     pub fn new(code: ProblemCode, detail: impl Into<String>) -> Self {
         let entry = code.entry();
         Self {
-            type_uri: format!("/problems/{}", entry.word),
+            type_uri: format!("/problems/{}", entry.name),
             title: entry.title.to_owned(),
             status: entry.status,
-            code: entry.word.to_owned(),
+            code: entry.name.to_owned(),
             detail: detail.into(),
             request_id: None,
             errors: Vec::new(),
@@ -59,7 +59,7 @@ impl Problem {
         }
     }
 
-    /// The same with violations.
+    /// Returns this problem with the given violations.
     pub fn with_errors(self, errors: Vec<Violation>) -> Self {
         Self { errors, ..self }
     }

@@ -1,20 +1,20 @@
-//! `Accept`: which representation the client takes.
+//! Content negotiation by the header `Accept`.
 
-use super::query::Parameters;
+use super::query::QueryParameters;
 use crate::api::csv::Decimal;
-use crate::api::problem::{ProblemCode, Refusal};
+use crate::api::problem::{ApiError, ProblemCode};
 use axum::extract::Request;
 use axum::http::HeaderMap;
 use axum::http::header::ACCEPT;
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
-/// The offer that the client likes best; the first when it does not say.
+/// Selects the offered media type with the highest quality in `Accept`; the first offer without that header.
 ///
 /// # Errors
-/// 406 when it takes none of them.
-pub fn chosen(headers: &HeaderMap, offers: &[&'static str]) -> Result<&'static str, Refusal> {
-    let ranges = ranges(headers);
+/// 406 when `Accept` permits none of them.
+pub fn negotiate(headers: &HeaderMap, offers: &[&'static str]) -> Result<&'static str, ApiError> {
+    let ranges = media_ranges(headers);
     let mut best: Option<(&'static str, f32)> = None;
     for offer in offers {
         let quality = if ranges.is_empty() { 1.0 } else { quality(&ranges, offer) };
@@ -23,63 +23,63 @@ pub fn chosen(headers: &HeaderMap, offers: &[&'static str]) -> Result<&'static s
         }
     }
     best.map(|(offer, _)| offer)
-        .ok_or_else(|| Refusal::new(ProblemCode::NotAcceptable, format!("This path has: {}.", offers.join(", "))))
+        .ok_or_else(|| ApiError::new(ProblemCode::NotAcceptable, format!("This path has: {}.", offers.join(", "))))
 }
 
-/// Whether a table is wanted as CSV, and with which decimal sign: `?decimal=` asks for CSV and its dialect, `Accept: text/csv` (which may
-/// have the parameter `decimal`) for CSV. None: as JSON.
+/// Selects the representation of a table: CSV with a decimal sign, or JSON (`None`). The query parameter `decimal`
+/// selects CSV and its dialect; `Accept: text/csv`, which may have the parameter `decimal`, selects CSV.
 ///
 /// # Errors
-/// 406 when the client takes neither JSON nor CSV, or not CSV where the query asks for it.
-pub fn json_or_csv(headers: &HeaderMap, query: &mut Parameters) -> Result<Option<Decimal>, Refusal> {
+/// 406 when `Accept` permits neither JSON nor CSV, or not CSV although the query selects it.
+pub fn negotiate_table(headers: &HeaderMap, query: &mut QueryParameters) -> Result<Option<Decimal>, ApiError> {
     if let Some(decimal) = query.choice("decimal", &Decimal::ALL) {
-        return chosen(headers, &["text/csv"]).map(|_| Some(decimal));
+        return negotiate(headers, &["text/csv"]).map(|_| Some(decimal));
     }
-    match chosen(headers, &["application/json", "text/csv"])? {
+    match negotiate(headers, &["application/json", "text/csv"])? {
         "text/csv" => accepted_decimal(headers).map(Some),
         _ => Ok(None),
     }
 }
 
 /// The parameter `decimal` of the range `text/csv` in `Accept`.
-fn accepted_decimal(headers: &HeaderMap) -> Result<Decimal, Refusal> {
+fn accepted_decimal(headers: &HeaderMap) -> Result<Decimal, ApiError> {
     let lines = headers.get_all(ACCEPT).into_iter().filter_map(|value| value.to_str().ok());
     for member in lines.flat_map(|line| line.split(',')) {
         let mut parts = member.split(';').map(|part| part.trim().to_ascii_lowercase());
         if parts.next().as_deref() != Some("text/csv") {
             continue;
         }
-        let Some(word) =
-            parts.find_map(|part| part.strip_prefix("decimal=").map(|word| word.trim_matches('"').to_owned()))
+        let Some(name) =
+            parts.find_map(|part| part.strip_prefix("decimal=").map(|name| name.trim_matches('"').to_owned()))
         else {
             continue;
         };
-        let found = Decimal::ALL.iter().find(|(known, _)| *known == word).map(|(_, decimal)| *decimal);
+        let decimal = Decimal::ALL.iter().find(|(known, _)| *known == name).map(|(_, decimal)| *decimal);
         let detail = "The parameter decimal of text/csv is point or comma.".to_owned();
-        return found.ok_or_else(|| Refusal::new(ProblemCode::NotAcceptable, detail));
+        return decimal.ok_or_else(|| ApiError::new(ProblemCode::NotAcceptable, detail));
     }
     Ok(Decimal::Point)
 }
 
-/// Middleware of paths that have JSON only.
+/// Middleware of paths with JSON responses only.
 pub async fn json_only(request: Request, next: Next) -> Response {
-    only(&["application/json"], request, next).await
+    require(&["application/json"], request, next).await
 }
 
-/// Middleware of paths that have an event stream only.
+/// Middleware of paths with event streams only.
 pub async fn event_stream_only(request: Request, next: Next) -> Response {
-    only(&["text/event-stream"], request, next).await
+    require(&["text/event-stream"], request, next).await
 }
 
-async fn only(offers: &[&'static str], request: Request, next: Next) -> Response {
-    match chosen(request.headers(), offers) {
+async fn require(offers: &[&'static str], request: Request, next: Next) -> Response {
+    match negotiate(request.headers(), offers) {
         Ok(_) => next.run(request).await,
-        Err(refusal) => refusal.into_response(),
+        Err(error) => error.into_response(),
     }
 }
 
-/// Media ranges with their quality.
-fn ranges(headers: &HeaderMap) -> Vec<(String, f32)> {
+/// The media ranges of `Accept` with their quality values.
+fn media_ranges(headers: &HeaderMap) -> Vec<(String, f32)> {
     let lines = headers.get_all(ACCEPT).into_iter().filter_map(|value| value.to_str().ok());
     let members = lines.flat_map(|line| line.split(',')).filter(|member| !member.trim().is_empty());
     members
@@ -92,11 +92,11 @@ fn ranges(headers: &HeaderMap) -> Vec<(String, f32)> {
         .collect()
 }
 
-/// Quality of an offer: that of the most specific range that has it.
+/// Quality of an offer: that of the most specific media range that matches it, 0 without a match.
 fn quality(ranges: &[(String, f32)], offer: &str) -> f32 {
     let family = offer.split_once('/').map_or(offer, |(family, _)| family);
-    for wanted in [offer.to_owned(), format!("{family}/*"), "*/*".to_owned()] {
-        if let Some((_, quality)) = ranges.iter().find(|(range, _)| *range == wanted) {
+    for candidate in [offer.to_owned(), format!("{family}/*"), "*/*".to_owned()] {
+        if let Some((_, quality)) = ranges.iter().find(|(range, _)| *range == candidate) {
             return *quality;
         }
     }
@@ -110,11 +110,11 @@ mod tests {
     fn choice(accept: &str) -> Option<&'static str> {
         let mut headers = HeaderMap::new();
         headers.insert(ACCEPT, accept.parse().unwrap());
-        chosen(&headers, &["application/json", "text/csv"]).ok()
+        negotiate(&headers, &["application/json", "text/csv"]).ok()
     }
 
     #[test]
-    fn the_best_liked_offer_is_chosen() {
+    fn the_offer_with_the_highest_quality_is_selected() {
         assert_eq!(choice("*/*"), Some("application/json"));
         assert_eq!(choice("text/csv"), Some("text/csv"));
         assert_eq!(choice("text/*"), Some("text/csv"));
@@ -122,7 +122,7 @@ mod tests {
         assert_eq!(choice("text/html, */*;q=0.1"), Some("application/json"));
         assert_eq!(choice("application/json;q=0, */*"), Some("text/csv"));
         assert_eq!(choice("image/png"), None);
-        assert_eq!(chosen(&HeaderMap::new(), &["application/json"]).ok(), Some("application/json"));
+        assert_eq!(negotiate(&HeaderMap::new(), &["application/json"]).ok(), Some("application/json"));
     }
 
     #[test]

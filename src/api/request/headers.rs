@@ -1,41 +1,42 @@
-//! Headers with a meaning of their own.
+//! Extractors of request headers.
 
 use crate::api::config::{MAX_KEY_CHARS, MAX_WAIT_S};
-use crate::api::problem::{Problem, ProblemCode, Refusal};
+use crate::api::problem::{ApiError, Problem, ProblemCode};
 use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
-use axum::http::{HeaderMap, HeaderName, header::IF_NONE_MATCH};
+use axum::http::{HeaderMap, HeaderName};
+use headers::{ETag, HeaderMapExt};
 use herringbone_job::Violation;
 use std::convert::Infallible;
 use std::time::Duration;
 
-/// Names a request in answers and logs; set by the envelope on every request.
+/// The id of a request in responses and logs; set by the request middleware.
 #[derive(Debug, Clone)]
 pub struct RequestId(pub String);
 
-/// `Idempotency-Key`: the client's name for a submission.
+/// `Idempotency-Key`: the client's identifier of a submission.
 #[derive(Debug, Clone)]
 pub struct IdempotencyKey(pub Option<String>);
 
-/// `Prefer: wait=N` (RFC 7240); longer waits than the service gives are cut, malformed preferences ignored.
+/// `Prefer: wait=N` (RFC 7240), limited to the longest wait of the service; malformed preferences are ignored.
 #[derive(Debug, Clone, Copy)]
 pub struct Prefer {
     pub wait: Option<Duration>,
 }
 
-/// `If-None-Match`.
+/// `If-None-Match` (RFC 9110, 13.1.2).
 #[derive(Debug, Clone)]
-pub struct IfNoneMatch(Vec<String>);
+pub struct IfNoneMatch(Option<headers::IfNoneMatch>);
 
 impl IfNoneMatch {
+    /// Whether the request has the header.
     pub fn is_given(&self) -> bool {
-        !self.0.is_empty()
+        self.0.is_some()
     }
 
-    /// Whether the client has this entity tag already (weak comparison).
-    pub fn has(&self, etag: &str) -> bool {
-        let opaque = |tag: &str| tag.trim().trim_start_matches("W/").to_owned();
-        self.0.iter().any(|known| known == "*" || opaque(known) == opaque(etag))
+    /// Whether the header lists this entity tag (weak comparison) or is `*`.
+    pub fn matches(&self, etag: &ETag) -> bool {
+        self.0.as_ref().is_some_and(|header| !header.precondition_passes(etag))
     }
 }
 
@@ -48,9 +49,9 @@ impl<S: Send + Sync> FromRequestParts<S> for RequestId {
 }
 
 impl<S: Send + Sync> FromRequestParts<S> for IdempotencyKey {
-    type Rejection = Refusal;
+    type Rejection = ApiError;
 
-    async fn from_request_parts(parts: &mut Parts, _state: &S) -> Result<Self, Refusal> {
+    async fn from_request_parts(parts: &mut Parts, _state: &S) -> Result<Self, ApiError> {
         let Some(value) = parts.headers.get("idempotency-key") else { return Ok(Self(None)) };
         let is_printable = value.as_bytes().iter().all(|byte| matches!(byte, b' '..=b'~'));
         match value.to_str() {
@@ -73,7 +74,7 @@ impl<S: Send + Sync> FromRequestParts<S> for Prefer {
     type Rejection = Infallible;
 
     async fn from_request_parts(parts: &mut Parts, _state: &S) -> Result<Self, Infallible> {
-        let wait = words(&parts.headers, HeaderName::from_static("prefer")).into_iter().find_map(|preference| {
+        let wait = list_members(&parts.headers, HeaderName::from_static("prefer")).into_iter().find_map(|preference| {
             let (name, value) = preference.split_once('=')?;
             let seconds: u64 = value.split(';').next()?.trim().trim_matches('"').parse().ok()?;
             name.trim().eq_ignore_ascii_case("wait").then(|| Duration::from_secs(seconds.min(MAX_WAIT_S)))
@@ -86,12 +87,12 @@ impl<S: Send + Sync> FromRequestParts<S> for IfNoneMatch {
     type Rejection = Infallible;
 
     async fn from_request_parts(parts: &mut Parts, _state: &S) -> Result<Self, Infallible> {
-        Ok(Self(words(&parts.headers, IF_NONE_MATCH)))
+        Ok(Self(parts.headers.typed_get()))
     }
 }
 
-/// The comma-separated members of a header that may stand several times.
-fn words(headers: &HeaderMap, name: HeaderName) -> Vec<String> {
+/// The members of a comma-separated list header, which may occur several times.
+fn list_members(headers: &HeaderMap, name: HeaderName) -> Vec<String> {
     let lines = headers.get_all(name).into_iter().filter_map(|value| value.to_str().ok());
-    lines.flat_map(|line| line.split(',')).map(|word| word.trim().to_owned()).collect()
+    lines.flat_map(|line| line.split(',')).map(|member| member.trim().to_owned()).collect()
 }

@@ -1,4 +1,4 @@
-//! What a request says: path, query, headers, body. Each reader refuses in the service's own form.
+//! Extractors of path, query, headers and body. Each rejects with [`super::problem::ApiError`].
 
 mod accept;
 mod body;
@@ -7,9 +7,9 @@ mod headers;
 mod path;
 mod query;
 
-pub use accept::{chosen, event_stream_only, json_only, json_or_csv};
+pub use accept::{event_stream_only, json_only, negotiate, negotiate_table};
 pub use body::DocumentBody;
 pub use cursor::Cursor;
 pub use headers::{IdempotencyKey, IfNoneMatch, Prefer, RequestId};
 pub use path::{ChannelPath, JobPath, PointPath};
-pub use query::Parameters;
+pub use query::QueryParameters;

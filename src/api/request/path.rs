@@ -1,11 +1,11 @@
-//! Jobs and channels named in the path. A name that cannot exist is not found, like one that does not.
+//! Extractors of path parameters. Malformed values are answered with 404, like those that do not exist.
 
-use crate::api::problem::Refusal;
+use crate::api::problem::ApiError;
 use crate::store::JobId;
 use axum::extract::{FromRequestParts, RawPathParams};
 use axum::http::request::Parts;
 
-/// `{id}`.
+/// `{id}` of a job.
 #[derive(Debug, Clone, Copy)]
 pub struct JobPath(pub JobId);
 
@@ -18,38 +18,38 @@ pub struct ChannelPath(pub JobId, pub String);
 pub struct PointPath(pub JobId, pub usize);
 
 impl<S: Send + Sync> FromRequestParts<S> for JobPath {
-    type Rejection = Refusal;
+    type Rejection = ApiError;
 
-    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Refusal> {
-        let word = named(parts, state, "id").await?;
-        word.parse().map(Self).map_err(|_| Refusal::not_found("There is no such job."))
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, ApiError> {
+        let text = path_parameter(parts, state, "id").await?;
+        text.parse().map(Self).map_err(|_| ApiError::not_found("There is no such job."))
     }
 }
 
 impl<S: Send + Sync> FromRequestParts<S> for ChannelPath {
-    type Rejection = Refusal;
+    type Rejection = ApiError;
 
-    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Refusal> {
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, ApiError> {
         let JobPath(id) = JobPath::from_request_parts(parts, state).await?;
-        Ok(Self(id, named(parts, state, "channel").await?))
+        Ok(Self(id, path_parameter(parts, state, "channel").await?))
     }
 }
 
 impl<S: Send + Sync> FromRequestParts<S> for PointPath {
-    type Rejection = Refusal;
+    type Rejection = ApiError;
 
-    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Refusal> {
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, ApiError> {
         let JobPath(id) = JobPath::from_request_parts(parts, state).await?;
-        let word = named(parts, state, "position").await?;
-        let position = word.parse().map_err(|_| Refusal::not_found("There is no such point."))?;
+        let text = path_parameter(parts, state, "position").await?;
+        let position = text.parse().map_err(|_| ApiError::not_found("There is no such point."))?;
         Ok(Self(id, position))
     }
 }
 
-async fn named<S: Send + Sync>(parts: &mut Parts, state: &S, name: &str) -> Result<String, Refusal> {
+async fn path_parameter<S: Send + Sync>(parts: &mut Parts, state: &S, name: &str) -> Result<String, ApiError> {
     let parameters = RawPathParams::from_request_parts(parts, state)
         .await
-        .map_err(|_| Refusal::not_found("There is nothing at this path."))?;
-    let found = parameters.iter().find(|(key, _)| *key == name).map(|(_, value)| value.to_owned());
-    found.ok_or_else(|| Refusal::not_found("There is nothing at this path."))
+        .map_err(|_| ApiError::not_found("There is nothing at this path."))?;
+    let value = parameters.iter().find(|(key, _)| *key == name).map(|(_, value)| value.to_owned());
+    value.ok_or_else(|| ApiError::not_found("There is nothing at this path."))
 }

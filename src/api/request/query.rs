@@ -1,36 +1,36 @@
-//! Query parameters, read so that every violation is found at once and unknown ones are errors.
+//! Query parameters. All violations are reported at once; unknown parameters are violations.
 
-use crate::api::problem::{Problem, ProblemCode, Refusal};
+use crate::api::problem::{ApiError, Problem, ProblemCode};
 use axum::extract::{FromRequestParts, Query};
 use axum::http::request::Parts;
 use herringbone_job::Violation;
 use std::str::FromStr;
 
-/// The parameters of a request. Take each known one, then [`Parameters::finish`].
+/// The query parameters of a request: each known one is read by a method, then [`QueryParameters::finish`] is called.
 #[derive(Debug)]
-pub struct Parameters {
+pub struct QueryParameters {
     pairs: Vec<(String, String)>,
     known: Vec<&'static str>,
     violations: Vec<Violation>,
 }
 
-impl<S: Send + Sync> FromRequestParts<S> for Parameters {
-    type Rejection = Refusal;
+impl<S: Send + Sync> FromRequestParts<S> for QueryParameters {
+    type Rejection = ApiError;
 
-    async fn from_request_parts(parts: &mut Parts, _state: &S) -> Result<Self, Refusal> {
+    async fn from_request_parts(parts: &mut Parts, _state: &S) -> Result<Self, ApiError> {
         let pairs = Query::<Vec<(String, String)>>::try_from_uri(&parts.uri)
-            .map_err(|error| Refusal::new(ProblemCode::InvalidParameter, error.body_text()))?;
+            .map_err(|error| ApiError::new(ProblemCode::InvalidParameter, error.body_text()))?;
         Ok(Self { pairs: pairs.0, known: Vec::new(), violations: Vec::new() })
     }
 }
 
-impl Parameters {
-    /// A text; an empty one counts as left out.
+impl QueryParameters {
+    /// A text; `None` when it is empty or absent.
     pub fn text(&mut self, name: &'static str) -> Option<String> {
         self.value(name).filter(|value| !value.is_empty())
     }
 
-    /// The value of a parameter, which may be given once.
+    /// The value of a parameter, which may occur once.
     fn value(&mut self, name: &'static str) -> Option<String> {
         self.known.push(name);
         let mut values = self.pairs.iter().filter(|(key, _)| key == name).map(|(_, value)| value);
@@ -41,17 +41,17 @@ impl Parameters {
         value
     }
 
-    /// A whole number of at least `minimum`; what lies above `maximum` is taken for `maximum` or refused.
-    pub fn whole(&mut self, name: &'static str, minimum: u64, maximum: u64, capped: bool) -> Option<u64> {
+    /// An integer of at least `minimum`. A value above `maximum` is reduced to `maximum` if `capped`, else a violation.
+    pub fn integer(&mut self, name: &'static str, minimum: u64, maximum: u64, capped: bool) -> Option<u64> {
         let text = self.value(name)?;
-        // More digits than 64 bits hold are a large number all the same.
-        let is_whole = text.bytes().all(|byte| byte.is_ascii_digit());
-        match u64::from_str(&text).or(if is_whole { Ok(u64::MAX) } else { Err(()) }) {
+        // More digits than 64 bits hold are still a large integer.
+        let is_integer = text.bytes().all(|byte| byte.is_ascii_digit());
+        match u64::from_str(&text).or(if is_integer { Ok(u64::MAX) } else { Err(()) }) {
             Ok(value) if value > maximum && capped => return Some(maximum),
             Ok(value) if (minimum..=maximum).contains(&value) => return Some(value),
             _ => {}
         }
-        let detail = format!("is \"{}\"; permitted: whole numbers, {minimum} to {maximum}", clip(&text));
+        let detail = format!("is \"{}\"; permitted: whole numbers, {minimum} to {maximum}", truncate(&text));
         self.violations.push(Violation {
             minimum: Some(minimum as f64),
             maximum: Some(maximum as f64),
@@ -60,52 +60,55 @@ impl Parameters {
         None
     }
 
-    /// A finite number.
+    /// A finite number; `unit` is named in the violation.
     pub fn number(&mut self, name: &'static str, unit: &str) -> Option<f64> {
         let text = self.value(name)?;
         let value = f64::from_str(&text).ok().filter(|value| value.is_finite());
         if value.is_none() {
-            let detail = format!("is \"{}\"; a finite number is needed, in {unit}", clip(&text));
+            let detail = format!("is \"{}\"; a finite number is needed, in {unit}", truncate(&text));
             let violation = Violation::new(format!("/{name}"), "wrong-type", detail);
             self.violations.push(Violation { unit: Some(unit.to_owned()), ..violation });
         }
         value
     }
 
-    /// One of a closed list of words.
+    /// One of a closed list of names.
     pub fn choice<T: Copy>(&mut self, name: &'static str, choices: &[(&'static str, T)]) -> Option<T> {
         let text = self.value(name)?;
-        self.word(name, &text, choices)
+        self.look_up(name, &text, choices)
     }
 
-    /// Any of a closed list of words, separated by commas.
+    /// Any number of names of a closed list, separated by commas.
     pub fn choices<T: Copy>(&mut self, name: &'static str, choices: &[(&'static str, T)]) -> Vec<T> {
         let Some(text) = self.value(name) else { return Vec::new() };
-        text.split(',').filter_map(|word| self.word(name, word, choices)).collect()
+        text.split(',').filter_map(|value| self.look_up(name, value, choices)).collect()
     }
 
-    fn word<T: Copy>(&mut self, name: &str, word: &str, choices: &[(&'static str, T)]) -> Option<T> {
-        let found = choices.iter().find(|(known, _)| *known == word).map(|(_, value)| *value);
-        if found.is_none() {
-            let words: Vec<_> = choices.iter().map(|(word, _)| *word).collect();
-            let detail = format!("is \"{}\"; permitted: {}", clip(word), words.join(", "));
+    fn look_up<T: Copy>(&mut self, name: &str, text: &str, choices: &[(&'static str, T)]) -> Option<T> {
+        let choice = choices.iter().find(|(known, _)| *known == text).map(|(_, value)| *value);
+        if choice.is_none() {
+            let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
+            let detail = format!("is \"{}\"; permitted: {}", truncate(text), names.join(", "));
             self.violations.push(Violation::new(format!("/{name}"), "not-one-of", detail));
         }
-        found
+        choice
     }
 
-    /// Notes a violation that the caller found.
-    pub fn violate(&mut self, violation: Violation) {
+    /// Adds a violation found by the caller.
+    pub fn add_violation(&mut self, violation: Violation) {
         self.violations.push(violation);
     }
 
-    /// Refuses when anything was wrong or a parameter was not known.
-    pub fn finish(mut self) -> Result<(), Refusal> {
+    /// Ends the reading.
+    ///
+    /// # Errors
+    /// 400 with all violations, if there are any, including parameters that were not read.
+    pub fn finish(mut self) -> Result<(), ApiError> {
         for (key, _) in &self.pairs {
             if !self.known.contains(&key.as_str()) {
                 let known = if self.known.is_empty() { "none".to_owned() } else { self.known.join(", ") };
                 let detail = format!("is not a parameter of this path; permitted: {known}");
-                self.violations.push(Violation::new(format!("/{}", clip(key)), "unknown-field", detail));
+                self.violations.push(Violation::new(format!("/{}", truncate(key)), "unknown-field", detail));
             }
         }
         if self.violations.is_empty() {
@@ -116,6 +119,7 @@ impl Parameters {
     }
 }
 
-fn clip(text: &str) -> String {
+/// The first 60 characters.
+fn truncate(text: &str) -> String {
     if text.chars().count() <= 60 { text.to_owned() } else { text.chars().take(60).chain(['…']).collect() }
 }

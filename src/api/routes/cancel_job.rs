@@ -1,6 +1,6 @@
 //! `POST /api/v1/jobs/{id}/cancel`
 
-use crate::api::problem::Refusal;
+use crate::api::problem::ApiError;
 use crate::api::request::JobPath;
 use crate::api::state::AppState;
 use crate::api::view::{Job, job_response};
@@ -10,10 +10,10 @@ use axum::http::StatusCode;
 use axum::response::Response;
 
 /// Cancel a job.
-///
-/// A job that waits is canceled at once, one that runs is asked to stop, one that ended stays as it is. May be repeated.
 #[utoipa::path(
     post, path = "/jobs/{id}/cancel", tag = "jobs",
+    description = "A job that waits is canceled at once, one that runs is asked to stop, one that ended stays as it \
+        is. May be repeated.",
     params(("id" = String, Path, format = "uuid", description = "Id of the job")),
     responses(
         (status = 200, description = "The job has ended.", body = Job),
@@ -21,10 +21,10 @@ use axum::response::Response;
         (status = 404, description = "No such job."),
     )
 )]
-pub async fn cancel_job(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Response, Refusal> {
+pub async fn cancel_job(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Response, ApiError> {
     match state.jobs().cancel(id).await? {
-        Cancellation::Canceled(job) | Cancellation::Ended(job) => Ok(job_response(StatusCode::OK, &job)),
-        Cancellation::Asked(job) => Ok(job_response(StatusCode::ACCEPTED, &job)),
-        Cancellation::NotFound => Err(super::no_job()),
+        Cancellation::Canceled(job) | Cancellation::Ended(job) => job_response(StatusCode::OK, &job),
+        Cancellation::Requested(job) => job_response(StatusCode::ACCEPTED, &job),
+        Cancellation::NotFound => Err(super::job_not_found()),
     }
 }

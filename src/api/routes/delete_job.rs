@@ -1,6 +1,6 @@
 //! `DELETE /api/v1/jobs/{id}`
 
-use crate::api::problem::{ProblemCode, Refusal};
+use crate::api::problem::{ApiError, ProblemCode};
 use crate::api::request::JobPath;
 use crate::api::state::AppState;
 use crate::store::Deletion;
@@ -17,10 +17,10 @@ use axum::http::StatusCode;
         (status = 409, description = "The job has not ended (`job-not-ended`): cancel it first."),
     )
 )]
-pub async fn delete_job(State(state): State<AppState>, JobPath(id): JobPath) -> Result<StatusCode, Refusal> {
+pub async fn delete_job(State(state): State<AppState>, JobPath(id): JobPath) -> Result<StatusCode, ApiError> {
     match state.jobs().delete(id).await? {
         Deletion::Deleted => Ok(StatusCode::NO_CONTENT),
-        Deletion::Live => Err(Refusal::new(ProblemCode::JobNotEnded, "The job has not ended; cancel it first.")),
-        Deletion::NotFound => Err(super::no_job()),
+        Deletion::NotEnded => Err(ApiError::new(ProblemCode::JobNotEnded, "The job has not ended; cancel it first.")),
+        Deletion::NotFound => Err(super::job_not_found()),
     }
 }

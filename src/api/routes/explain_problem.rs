@@ -1,7 +1,7 @@
 //! `GET /problems/{code}`
 
-use crate::api::problem::{CodeEntry, ProblemCode, Refusal};
-use crate::api::request::chosen;
+use crate::api::problem::{ApiError, CodeEntry, ProblemCode};
+use crate::api::request::negotiate;
 use axum::Json;
 use axum::extract::Path;
 use axum::http::HeaderMap;
@@ -29,9 +29,9 @@ pub struct ProblemExplanation {
         (status = 404, description = "No such code."),
     )
 )]
-pub async fn explain_problem(Path(code): Path<String>, headers: HeaderMap) -> Result<Response, Refusal> {
-    let media_type = chosen(&headers, &["application/json", "text/html"])?;
-    let code = ProblemCode::from_word(&code).ok_or_else(|| Refusal::not_found("There is no such problem code."))?;
+pub async fn explain_problem(Path(code): Path<String>, headers: HeaderMap) -> Result<Response, ApiError> {
+    let media_type = negotiate(&headers, &["application/json", "text/html"])?;
+    let code = ProblemCode::from_name(&code).ok_or_else(|| ApiError::not_found("There is no such problem code."))?;
     let entry = code.entry();
     let vary = [(VARY, "accept")];
     Ok(match media_type {
@@ -41,16 +41,16 @@ pub async fn explain_problem(Path(code): Path<String>, headers: HeaderMap) -> Re
 }
 
 fn explanation(entry: &'static CodeEntry) -> ProblemExplanation {
-    ProblemExplanation { code: entry.word, status: entry.status, title: entry.title, explanation: entry.explanation }
+    ProblemExplanation { code: entry.name, status: entry.status, title: entry.title, explanation: entry.explanation }
 }
 
-/// The table's texts hold nothing that HTML would take for markup; a test says so.
+/// The explanation as a page. The texts of the table contain no markup, which a test checks.
 fn page(entry: &CodeEntry) -> String {
     format!(
         "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>{title}</title>\
-         <h1>{title}</h1><p><code>{word}</code>, status {status}</p><p>{explanation}</p></html>",
+         <h1>{title}</h1><p><code>{name}</code>, status {status}</p><p>{explanation}</p></html>",
         title = entry.title,
-        word = entry.word,
+        name = entry.name,
         status = entry.status,
         explanation = entry.explanation
     )
@@ -63,7 +63,7 @@ mod tests {
     #[test]
     fn the_texts_need_no_escaping() {
         for entry in &CODES {
-            assert!(![entry.title, entry.explanation].concat().contains(['<', '>', '&']), "{}", entry.word);
+            assert!(![entry.title, entry.explanation].concat().contains(['<', '>', '&']), "{}", entry.name);
         }
     }
 }

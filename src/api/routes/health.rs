@@ -1,7 +1,7 @@
 //! `GET /healthz` and `GET /readyz`
 
 use crate::api::config::RETRY_FULL_S;
-use crate::api::problem::{ProblemCode, Refusal};
+use crate::api::problem::{ApiError, ProblemCode};
 use crate::api::state::AppState;
 use axum::Json;
 use axum::extract::State;
@@ -33,10 +33,10 @@ pub async fn read_liveness() -> Json<Health> {
         (status = 503, description = "`shutting-down`, or `storage-unavailable`: the database is full, locked or failing."),
     )
 )]
-pub async fn read_readiness(State(state): State<AppState>) -> Result<Json<Health>, Refusal> {
+pub async fn read_readiness(State(state): State<AppState>) -> Result<Json<Health>, ApiError> {
     if state.jobs().is_closing() {
         let detail = "The service is shutting down.";
-        return Err(Refusal::new(ProblemCode::ShuttingDown, detail).retry_after(RETRY_FULL_S));
+        return Err(ApiError::new(ProblemCode::ShuttingDown, detail).retry_after(RETRY_FULL_S));
     }
     state.jobs().store().ping().await?;
     state.jobs().store().writable().await?;

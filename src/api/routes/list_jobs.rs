@@ -1,11 +1,11 @@
 //! `GET /api/v1/jobs`
 
 use crate::api::config::{DEFAULT_PAGE, MAX_PAGE};
-use crate::api::problem::{ProblemCode, Refusal};
-use crate::api::request::{Cursor, Parameters};
+use crate::api::problem::{ApiError, ProblemCode};
+use crate::api::request::{Cursor, QueryParameters};
 use crate::api::state::AppState;
 use crate::api::view::Job;
-use crate::store::{JobFilter, State as JobState};
+use crate::store::{JobFilter, JobState};
 use axum::Json;
 use axum::extract::State;
 use herringbone_job::document::JobKind;
@@ -37,23 +37,23 @@ pub struct JobList {
         (status = 400, description = "`invalid-parameter` or `invalid-cursor`."),
     )
 )]
-pub async fn list_jobs(State(state): State<AppState>, mut query: Parameters) -> Result<Json<JobList>, Refusal> {
+pub async fn list_jobs(State(state): State<AppState>, mut query: QueryParameters) -> Result<Json<JobList>, ApiError> {
     let filter = JobFilter {
-        states: query.choices("state", &JobState::ALL.map(|state| (state.word(), state))),
+        states: query.choices("state", &JobState::ALL.map(|state| (state.as_str(), state))),
         kind: query.choice("kind", &JobKind::ALL).map(|kind| kind.as_str().to_owned()),
         label: query.text("label"),
     };
-    let limit = query.whole("limit", 1, MAX_PAGE.into(), true).map_or(DEFAULT_PAGE, |limit| limit as u32);
+    let limit = query.integer("limit", 1, MAX_PAGE.into(), true).map_or(DEFAULT_PAGE, |limit| limit as u32);
     let cursor = query.text("cursor");
     query.finish()?;
-    let before = cursor.map(|text| decoded(&text, &filter)).transpose()?;
+    let before = cursor.map(|text| decode_cursor(&text, &filter)).transpose()?;
     let page = state.jobs().store().list(&filter, before.map(|cursor| cursor.0), limit).await?;
     let last = page.jobs.last().filter(|_| page.more);
     let next_cursor = last.map(|job| Cursor(job.id).encode(&filter));
     Ok(Json(JobList { items: page.jobs.iter().map(Job::from).collect(), next_cursor }))
 }
 
-fn decoded(text: &str, filter: &JobFilter) -> Result<Cursor, Refusal> {
+fn decode_cursor(text: &str, filter: &JobFilter) -> Result<Cursor, ApiError> {
     let detail = "The cursor was not made by this list with the same filters; an empty one counts as left out.";
-    Cursor::decode(text, filter).ok_or_else(|| Refusal::new(ProblemCode::InvalidCursor, detail))
+    Cursor::decode(text, filter).ok_or_else(|| ApiError::new(ProblemCode::InvalidCursor, detail))
 }

@@ -65,7 +65,7 @@ fn description(kind: JobKind) -> &'static str {
     }
 }
 
-/// The defaults within a schema, in the shape of what it describes.
+/// The defaults in a schema, arranged as in the document that it describes; `None` without any.
 fn defaults_of(schema: &Value) -> Option<Value> {
     if let Some(value) = schema.get("default").or_else(|| schema.get("const")) {
         return Some(value.clone());

@@ -1,10 +1,10 @@
 //! `GET /api/v1/jobs/{id}/points`
 
-use crate::api::config::{DEFAULT_ROWS, MAX_ROWS, MOST_ROWS};
+use crate::api::config::{DEFAULT_ROWS, MAX_ROWS, MAX_SWEEP_ROWS};
 use crate::api::csv::Decimal;
 use crate::api::points;
-use crate::api::problem::Refusal;
-use crate::api::request::{JobPath, Parameters, json_or_csv};
+use crate::api::problem::ApiError;
+use crate::api::request::{JobPath, QueryParameters, negotiate_table};
 use crate::api::state::AppState;
 use axum::Json;
 use axum::extract::State;
@@ -37,11 +37,11 @@ pub struct PointItem {
 }
 
 /// Read the points of a sweep, a page at a time or as CSV.
-///
-/// The points of a sweep that runs, failed or was canceled can be read as far as they are solved; there may then be gaps between
-/// their positions, which are filled later. CSV has all of them unless `limit` is given.
 #[utoipa::path(
     get, path = "/jobs/{id}/points", tag = "results",
+    description = "The points of a sweep that runs, failed or was canceled can be read as far as they are solved; \
+        there may then be gaps between\ntheir positions, which are filled later. CSV has all of them unless `limit` \
+        is given.",
     params(
         ("id" = String, Path, format = "uuid", description = "Id of the job"),
         ("from" = Option<u64>, Query, description = "First position; 0 when left out.", minimum = 0,
@@ -64,29 +64,29 @@ pub struct PointItem {
 pub async fn list_points(
     State(state): State<AppState>,
     JobPath(id): JobPath,
-    mut query: Parameters,
+    mut query: QueryParameters,
     headers: HeaderMap,
-) -> Result<Response, Refusal> {
-    let as_csv = json_or_csv(&headers, &mut query)?;
-    let from = query.whole("from", 0, MOST_ROWS, false).unwrap_or(0);
-    let limit = query.whole("limit", 1, MAX_ROWS.into(), false);
+) -> Result<Response, ApiError> {
+    let csv_decimal = negotiate_table(&headers, &mut query)?;
+    let from = query.integer("from", 0, MAX_SWEEP_ROWS, false).unwrap_or(0);
+    let limit = query.integer("limit", 1, MAX_ROWS.into(), false);
     query.finish()?;
     let input = super::sweep_input(&state, id).await?;
-    let shape = SweepShape::of_stored(&input).map_err(Refusal::internal)?;
+    let shape = SweepShape::of_stored(&input).map_err(ApiError::internal)?;
     let store = state.jobs().store();
     let vary = (VARY, "accept");
-    if let Some(decimal) = as_csv {
+    if let Some(decimal) = csv_decimal {
         let rows = (from, limit.unwrap_or(u64::MAX));
-        let body = points::csv(store.clone(), id, &shape.pointers(), rows, decimal);
+        let body = points::csv_body(store.clone(), id, &shape.pointers(), rows, decimal);
         return Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response());
     }
     let limit = limit.map_or(DEFAULT_ROWS, |limit| limit as u32);
-    let (rows, next_position) = points::page(store, id, from, u64::MAX, limit).await?;
+    let (rows, next_position) = points::read_page(store, id, from, u64::MAX, limit).await?;
     let items: Result<Vec<_>, _> = rows
         .into_iter()
         .map(|row| Ok(PointItem { position: row.position, point: RawValue::from_string(row.body)? }))
         .collect();
-    let items = items.map_err(|error: serde_json::Error| Refusal::internal(error))?;
+    let items = items.map_err(|error: serde_json::Error| ApiError::internal(error))?;
     let n_solved = store.point_count(id).await?;
     let list = PointList { items, next_position, n_solved, n_points: shape.rows() as u64 };
     Ok(([vary], Json(list)).into_response())

@@ -1,6 +1,6 @@
 //! `GET /api/v1/jobs/{id}/series`
 
-use crate::api::problem::Refusal;
+use crate::api::problem::ApiError;
 use crate::api::request::JobPath;
 use crate::api::state::AppState;
 use crate::store::SeriesEntry;
@@ -12,12 +12,13 @@ use utoipa::ToSchema;
 /// The recorded channels of a job.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct SeriesList {
-    pub items: Vec<Series>,
+    pub items: Vec<SeriesView>,
 }
 
 /// A recorded channel.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct Series {
+#[schema(as = Series)]
+pub struct SeriesView {
     #[schema(example = "a_x_left")]
     pub name: String,
     pub quantity: String,
@@ -35,7 +36,7 @@ pub struct Series {
     pub rms: Option<f64>,
 }
 
-impl From<SeriesEntry> for Series {
+impl From<SeriesEntry> for SeriesView {
     fn from(entry: SeriesEntry) -> Self {
         Self {
             name: entry.channel,
@@ -62,8 +63,8 @@ impl From<SeriesEntry> for Series {
         (status = 409, description = "`result-not-ready` or `job-not-succeeded`."),
     )
 )]
-pub async fn list_series(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Json<SeriesList>, Refusal> {
-    super::succeeded(&state, id).await?;
+pub async fn list_series(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Json<SeriesList>, ApiError> {
+    super::find_succeeded_job(&state, id).await?;
     let entries = state.jobs().store().series_catalogue(id).await?;
-    Ok(Json(SeriesList { items: entries.into_iter().map(Series::from).collect() }))
+    Ok(Json(SeriesList { items: entries.into_iter().map(SeriesView::from).collect() }))
 }

@@ -1,4 +1,4 @@
-//! One file per endpoint.
+//! The endpoints, one file each.
 
 mod cancel_job;
 mod delete_job;
@@ -24,10 +24,10 @@ mod watch_job;
 mod watch_jobs;
 
 use super::config::RETRY_FOLLOW_S;
-use super::problem::{ProblemCode, Refusal};
+use super::problem::{ApiError, ProblemCode};
 use super::request::{event_stream_only, json_only};
 use super::state::AppState;
-use crate::store::{JobId, JobRecord, State};
+use crate::store::{JobId, JobRecord, JobState};
 use axum::Router;
 use axum::middleware::from_fn;
 use axum::routing::get;
@@ -35,7 +35,7 @@ use herringbone_job::document::JobKind;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-/// The endpoints under `/api/v1`, with their descriptions.
+/// The endpoints under `/api/v1`, with their OpenAPI descriptions.
 pub fn versioned() -> OpenApiRouter<AppState> {
     let json = OpenApiRouter::new()
         .routes(routes!(list_jobs::list_jobs, submit_job::submit_job))
@@ -55,12 +55,12 @@ pub fn versioned() -> OpenApiRouter<AppState> {
         .routes(routes!(watch_jobs::watch_jobs))
         .routes(routes!(watch_job::watch_job))
         .route_layer(from_fn(event_stream_only));
-    let chosen =
+    let negotiated =
         OpenApiRouter::new().routes(routes!(read_series::read_series)).routes(routes!(list_points::list_points));
-    json.merge(stream).merge(chosen)
+    json.merge(stream).merge(negotiated)
 }
 
-/// The endpoints beside `/api/v1`, with their descriptions.
+/// The other endpoints, with their OpenAPI descriptions.
 pub fn operational() -> OpenApiRouter<AppState> {
     OpenApiRouter::new()
         .routes(routes!(health::read_liveness))
@@ -69,44 +69,53 @@ pub fn operational() -> OpenApiRouter<AppState> {
         .routes(routes!(explain_problem::explain_problem))
 }
 
-/// The description itself.
-pub fn undescribed() -> Router<AppState> {
+/// The route of the OpenAPI document, which does not describe itself.
+pub fn undocumented() -> Router<AppState> {
     Router::new().route("/openapi.json", get(read_openapi::read_openapi))
 }
 
-/// The job, or 404.
-async fn existing(state: &AppState, id: JobId) -> Result<JobRecord, Refusal> {
-    state.jobs().store().job(id).await?.ok_or_else(no_job)
+/// Reads a job.
+///
+/// # Errors
+/// 404 when it does not exist.
+async fn find_job(state: &AppState, id: JobId) -> Result<JobRecord, ApiError> {
+    state.jobs().store().job(id).await?.ok_or_else(job_not_found)
 }
 
-/// The job if it succeeded, else 404 or the 409 that says why there is no result.
-async fn succeeded(state: &AppState, id: JobId) -> Result<JobRecord, Refusal> {
-    let job = existing(state, id).await?;
+/// Reads a job that succeeded.
+///
+/// # Errors
+/// 404 when it does not exist, 409 when it has no result.
+async fn find_succeeded_job(state: &AppState, id: JobId) -> Result<JobRecord, ApiError> {
+    let job = find_job(state, id).await?;
     match job.state {
-        State::Succeeded => Ok(job),
-        State::Queued | State::Running => {
-            Err(Refusal::new(ProblemCode::ResultNotReady, format!("The job is {}.", job.state.word())))
+        JobState::Succeeded => Ok(job),
+        JobState::Queued | JobState::Running => {
+            Err(ApiError::new(ProblemCode::ResultNotReady, format!("The job is {}.", job.state.as_str())))
         }
-        State::Failed | State::Canceled => {
-            Err(Refusal::new(ProblemCode::JobNotSucceeded, format!("The job is {}.", job.state.word())))
+        JobState::Failed | JobState::Canceled => {
+            Err(ApiError::new(ProblemCode::JobNotSucceeded, format!("The job is {}.", job.state.as_str())))
         }
     }
 }
 
-fn too_many_followers() -> Refusal {
+fn too_many_followers() -> ApiError {
     let detail = "As many clients follow jobs as the service allows.";
-    Refusal::new(ProblemCode::TooManyStreams, detail).retry_after(RETRY_FOLLOW_S)
+    ApiError::new(ProblemCode::TooManyStreams, detail).retry_after(RETRY_FOLLOW_S)
 }
 
-/// The stored document of a sweep, or 404.
-async fn sweep_input(state: &AppState, id: JobId) -> Result<String, Refusal> {
-    let job = existing(state, id).await?;
+/// Reads the stored document of a sweep.
+///
+/// # Errors
+/// 404 when the job does not exist or is not a sweep.
+async fn sweep_input(state: &AppState, id: JobId) -> Result<String, ApiError> {
+    let job = find_job(state, id).await?;
     if job.kind != JobKind::Sweep.as_str() {
-        return Err(Refusal::not_found("The job is not a sweep."));
+        return Err(ApiError::not_found("The job is not a sweep."));
     }
-    state.jobs().store().input(id).await?.ok_or_else(no_job)
+    state.jobs().store().input(id).await?.ok_or_else(job_not_found)
 }
 
-fn no_job() -> Refusal {
-    Refusal::not_found("There is no such job.")
+fn job_not_found() -> ApiError {
+    ApiError::not_found("There is no such job.")
 }

@@ -1,6 +1,6 @@
 //! `GET /api/v1/jobs/{id}/gear-data`
 
-use crate::api::problem::Refusal;
+use crate::api::problem::ApiError;
 use crate::api::request::JobPath;
 use crate::api::state::AppState;
 use axum::Json;
@@ -19,8 +19,8 @@ use herringbone_job::gear_data::GearData;
         (status = 422, description = "`invalid-design` or `unsupported-design`: this version refuses the document of an earlier one."),
     )
 )]
-pub async fn read_gear_data(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Json<GearData>, Refusal> {
-    let input = state.jobs().store().input(id).await?.ok_or_else(super::no_job)?;
-    let found = tokio::task::spawn_blocking(move || GearData::of_stored(&input)).await;
-    Ok(Json(found.map_err(Refusal::internal)??))
+pub async fn read_gear_data(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Json<GearData>, ApiError> {
+    let input = state.jobs().store().input(id).await?.ok_or_else(super::job_not_found)?;
+    let data = tokio::task::spawn_blocking(move || GearData::of_stored(&input)).await;
+    Ok(Json(data.map_err(ApiError::internal)??))
 }

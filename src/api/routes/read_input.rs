@@ -1,6 +1,6 @@
 //! `GET /api/v1/jobs/{id}/input`
 
-use crate::api::problem::Refusal;
+use crate::api::problem::ApiError;
 use crate::api::request::JobPath;
 use crate::api::state::AppState;
 use axum::extract::State;
@@ -16,7 +16,7 @@ use axum::response::{IntoResponse, Response};
         (status = 404, description = "No such job."),
     )
 )]
-pub async fn read_input(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Response, Refusal> {
-    let input = state.jobs().store().input(id).await?.ok_or_else(super::no_job)?;
+pub async fn read_input(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Response, ApiError> {
+    let input = state.jobs().store().input(id).await?.ok_or_else(super::job_not_found)?;
     Ok(([(CONTENT_TYPE, "application/json")], input).into_response())
 }

@@ -16,7 +16,7 @@ use jiff::Timestamp;
 )]
 pub async fn read_metrics(State(state): State<AppState>) -> Response {
     let jobs = state.jobs();
-    // What watches the service has to see most when the database is gone.
+    // Metrics are served without the database too.
     let measured = measure_store(jobs.store()).await;
     if let Err(error) = &measured {
         tracing::error!(%error, "the database was not measured");
@@ -41,8 +41,8 @@ async fn measure_store(store: &Store) -> Result<(), StoreError> {
         ("failed", counts.failed),
         ("canceled", counts.canceled),
     ];
-    for (word, n) in by_state {
-        metrics::gauge!("herringbone_jobs", "state" => word).set(n as f64);
+    for (state, n) in by_state {
+        metrics::gauge!("herringbone_jobs", "state" => state).set(n as f64);
     }
     telemetry::measure_database(&store.usage().await?);
     Ok(())

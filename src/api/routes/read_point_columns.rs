@@ -1,10 +1,10 @@
 //! `GET /api/v1/jobs/{id}/points/columns`
 
-use crate::api::columns::{self, ColumnName, Table};
-use crate::api::config::{DEFAULT_ROWS, MAX_ROWS, MOST_ROWS};
+use crate::api::columns::{self, ColumnName, ColumnTable};
+use crate::api::config::{DEFAULT_ROWS, MAX_ROWS, MAX_SWEEP_ROWS};
 use crate::api::points;
-use crate::api::problem::Refusal;
-use crate::api::request::{JobPath, Parameters};
+use crate::api::problem::ApiError;
+use crate::api::request::{JobPath, QueryParameters};
 use crate::api::state::AppState;
 use crate::store::PointRow;
 use axum::extract::State;
@@ -33,7 +33,7 @@ pub struct PointColumns<'a> {
     pub positions: Vec<u64>,
     /// For each column the values of these rows; null where a row does not have one.
     #[schema(value_type = HashMap<String, Vec<Option<PointValue>>>)]
-    pub columns: Table<'a>,
+    pub columns: ColumnTable<'a>,
     /// Position to go on from; null when nothing follows yet.
     pub next_position: Option<u64>,
     /// Points that are solved, and points that the sweep has.
@@ -64,31 +64,31 @@ pub struct PointColumns<'a> {
 pub async fn read_point_columns(
     State(state): State<AppState>,
     JobPath(id): JobPath,
-    mut query: Parameters,
-) -> Result<Response, Refusal> {
-    let mut chosen = query.choices("names", &columns::all());
-    let from = query.whole("from", 0, MOST_ROWS, false).unwrap_or(0);
-    let to = query.whole("to", 0, MOST_ROWS, false).unwrap_or(u64::MAX);
-    let limit = query.whole("limit", 1, MAX_ROWS.into(), false).map_or(DEFAULT_ROWS, |limit| limit as u32);
+    mut query: QueryParameters,
+) -> Result<Response, ApiError> {
+    let mut columns = query.choices("names", &columns::all());
+    let from = query.integer("from", 0, MAX_SWEEP_ROWS, false).unwrap_or(0);
+    let to = query.integer("to", 0, MAX_SWEEP_ROWS, false).unwrap_or(u64::MAX);
+    let limit = query.integer("limit", 1, MAX_ROWS.into(), false).map_or(DEFAULT_ROWS, |limit| limit as u32);
     query.finish()?;
-    if chosen.is_empty() {
-        chosen = columns::usual();
+    if columns.is_empty() {
+        columns = columns::default_columns();
     }
     let mut seen = HashSet::new();
-    chosen.retain(|column| seen.insert(column.name));
+    columns.retain(|column| seen.insert(column.name));
     let input = super::sweep_input(&state, id).await?;
-    let shape = SweepShape::of_stored(&input).map_err(Refusal::internal)?;
+    let shape = SweepShape::of_stored(&input).map_err(ApiError::internal)?;
     let store = state.jobs().store();
-    let (rows, next_position) = points::page(store, id, from, to, limit).await?;
+    let (rows, next_position) = points::read_page(store, id, from, to, limit).await?;
     let n_solved = store.point_count(id).await?;
     let counts = (n_solved, shape.rows() as u64);
-    // A page of large rows takes long enough to keep others waiting.
-    let body = tokio::task::spawn_blocking(move || encoded(&rows, &chosen, next_position, counts)).await;
-    let body = body.map_err(Refusal::internal)?.map_err(Refusal::internal)?;
+    // Converting a page of large rows would block the async thread for too long.
+    let body = tokio::task::spawn_blocking(move || to_json(&rows, &columns, next_position, counts)).await;
+    let body = body.map_err(ApiError::internal)?.map_err(ApiError::internal)?;
     Ok(([(CONTENT_TYPE, "application/json")], body).into_response())
 }
 
-fn encoded(
+fn to_json(
     rows: &[PointRow],
     columns: &[&'static Column],
     next_position: Option<u64>,
@@ -96,6 +96,6 @@ fn encoded(
 ) -> Result<Vec<u8>, serde_json::Error> {
     let positions = rows.iter().map(|row| row.position).collect();
     let rows: Vec<SweepPoint> = rows.iter().map(|row| serde_json::from_str(&row.body)).collect::<Result<_, _>>()?;
-    let columns = Table { columns, rows: &rows };
+    let columns = ColumnTable { columns, rows: &rows };
     serde_json::to_vec(&PointColumns { positions, columns, next_position, n_solved, n_points })
 }

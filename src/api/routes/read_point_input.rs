@@ -1,19 +1,19 @@
 //! `GET /api/v1/jobs/{id}/points/{position}/input`
 
-use crate::api::problem::Refusal;
+use crate::api::problem::ApiError;
 use crate::api::request::PointPath;
 use crate::api::state::AppState;
 use axum::Json;
 use axum::extract::State;
+use herringbone_job::document::JobDocument;
 use herringbone_job::parse;
-use serde_json::Value;
 
 /// Read the document of one point of a sweep, to submit it as a job of its own.
-///
-/// It is the sweep's document as a `response`, with the values of the axes put in; the point need not be solved. A point that the
-/// sweep reached by continuation is then solved from rest: where two motions exist it may be the other one.
 #[utoipa::path(
     get, path = "/jobs/{id}/points/{position}/input", tag = "results",
+    description = "It is the sweep's document as a `response`, with the values of the axes put in; the point need not \
+        be solved. A point that the\nsweep reached by continuation is then solved from rest: where two motions exist \
+        it may be the other one.",
     params(
         ("id" = String, Path, format = "uuid", description = "Id of the job"),
         ("position" = u64, Path, description = "Place of the point in the result's `sweep.points`", minimum = 0, example = 0),
@@ -26,8 +26,8 @@ use serde_json::Value;
 pub async fn read_point_input(
     State(state): State<AppState>,
     PointPath(id, position): PointPath,
-) -> Result<Json<Value>, Refusal> {
+) -> Result<Json<JobDocument>, ApiError> {
     let input = super::sweep_input(&state, id).await?;
-    let sweep = parse(input.as_bytes()).map_err(Refusal::internal)?;
-    sweep.of_row(position).map(Json).ok_or_else(|| Refusal::not_found("The sweep has no such point."))
+    let sweep = parse(input.as_bytes()).map_err(ApiError::internal)?;
+    sweep.of_row(position).map(Json).ok_or_else(|| ApiError::not_found("The sweep has no such point."))
 }

@@ -1,22 +1,22 @@
 //! `GET /api/v1/jobs/{id}/result`
 
-use crate::api::points;
-use crate::api::problem::Refusal;
-use crate::api::request::{IfNoneMatch, JobPath, Parameters};
+use crate::api::problem::ApiError;
+use crate::api::request::{IfNoneMatch, JobPath, QueryParameters};
+use crate::api::result_body::result_body;
 use crate::api::state::AppState;
 use crate::api::view::not_modified;
 use axum::body::Body;
 use axum::extract::State;
-use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, ETAG};
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
+use headers::{ETag, HeaderMapExt};
 use herringbone_job::result::JobResult;
 
 /// Read the result of a job: geometry, mesh, impact and response. It never changes.
-///
-/// The points of a sweep are part of it; `GET /jobs/{id}/points` has them a page at a time or as CSV, and `rows=false` leaves
-/// them out here.
 #[utoipa::path(
     get, path = "/jobs/{id}/result", tag = "results",
+    description = "The points of a sweep are part of it; `GET /jobs/{id}/points` has them a page at a time or as CSV, \
+        and `rows=false` leaves\nthem out here.",
     params(
         ("id" = String, Path, format = "uuid", description = "Id of the job"),
         ("rows" = Option<bool>, Query, description = "`false`: `sweep.points` is empty; true when left out. Other jobs have no rows."),
@@ -35,22 +35,24 @@ use herringbone_job::result::JobResult;
 pub async fn read_result(
     State(state): State<AppState>,
     JobPath(id): JobPath,
-    known: IfNoneMatch,
-    mut query: Parameters,
-) -> Result<Response, Refusal> {
+    if_none_match: IfNoneMatch,
+    mut query: QueryParameters,
+) -> Result<Response, ApiError> {
     let rows = query.choice("rows", &[("true", true), ("false", false)]).unwrap_or(true);
     query.finish()?;
-    super::succeeded(&state, id).await?;
-    let result = state.jobs().store().result(id).await?.ok_or_else(super::no_job)?;
-    let etag = if rows { format!("\"{}\"", result.etag) } else { format!("\"{}-without-rows\"", result.etag) };
-    if known.has(&etag) {
+    super::find_succeeded_job(&state, id).await?;
+    let result = state.jobs().store().result(id).await?.ok_or_else(super::job_not_found)?;
+    let suffix = if rows { "" } else { "-without-rows" };
+    let etag: ETag = format!("\"{}{suffix}\"", result.etag).parse().map_err(ApiError::internal)?;
+    if if_none_match.matches(&etag) {
         return Ok(not_modified(etag));
     }
-    let headers = [(CONTENT_TYPE, "application/json".to_owned()), (ETAG, etag), (CACHE_CONTROL, "no-cache".to_owned())];
-    let body = match result.points {
-        None => Body::from(result.body),
-        Some(_) if !rows => Body::from(result.body),
-        Some(place) => points::within(state.jobs().store().clone(), id, result.body, &place),
+    let body = match result.rows {
+        Some(summary) if rows => result_body(state.jobs().store().clone(), id, &result.body, summary.count)?,
+        _ => Body::from(result.body),
     };
-    Ok((headers, body).into_response())
+    let headers = [(CONTENT_TYPE, "application/json"), (CACHE_CONTROL, "no-cache")];
+    let mut response = (headers, body).into_response();
+    response.headers_mut().typed_insert(etag);
+    Ok(response)
 }

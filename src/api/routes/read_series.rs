@@ -1,11 +1,11 @@
 //! `GET /api/v1/jobs/{id}/series/{channel}`
 
 use crate::api::config::{DEFAULT_POINTS, MAX_POINTS, MAX_RAW_POINTS, MIN_POINTS};
-use crate::api::csv::{Decimal, Field};
-use crate::api::downsample::{Method, downsample};
-use crate::api::held::Held;
-use crate::api::problem::Refusal;
-use crate::api::request::{ChannelPath, Parameters, json_or_csv};
+use crate::api::csv::{CsvField, CsvWriter, Decimal};
+use crate::api::downsample::{DownsampleMethod, downsample};
+use crate::api::guarded_body::GuardedBody;
+use crate::api::problem::ApiError;
+use crate::api::request::{ChannelPath, QueryParameters, negotiate_table};
 use crate::api::state::AppState;
 use crate::store::PackedSeries;
 use axum::body::Body;
@@ -46,7 +46,7 @@ pub struct SeriesData {
         ("to" = Option<f64>, Query, description = "Last time, in seconds; the end when left out"),
         ("max_points" = Option<u64>, Query, description = "Points returned at most, 4 to 100000; 2000 when left out. Not \
             with `method=none`.", minimum = 4, maximum = 100_000, example = 2000),
-        ("method" = Option<Method>, Query, description = "`minmax` (default): smallest and largest of equal stretches; \
+        ("method" = Option<DownsampleMethod>, Query, description = "`minmax` (default): smallest and largest of equal stretches; \
             `lttb`: largest triangle three buckets; `none`: every sample, up to 1000000"),
         ("decimal" = Option<Decimal>, Query, description = "Answer with CSV: `point` (fields between commas, the default of `text/csv`) or \
             `comma` (decimal commas, fields between semicolons, CR LF, byte order mark: for spreadsheets of such a locale). The \
@@ -65,47 +65,48 @@ pub struct SeriesData {
 pub async fn read_series(
     State(state): State<AppState>,
     ChannelPath(id, channel): ChannelPath,
-    mut query: Parameters,
+    mut query: QueryParameters,
     headers: HeaderMap,
-) -> Result<Response, Refusal> {
-    let as_csv = json_or_csv(&headers, &mut query)?;
+) -> Result<Response, ApiError> {
+    let csv_decimal = negotiate_table(&headers, &mut query)?;
     let request = SeriesRequest::read(query)?;
-    super::succeeded(&state, id).await?;
-    let place = state.series_place().await;
+    super::find_succeeded_job(&state, id).await?;
+    let permit = state.series_permit().await;
     let packed = state.jobs().store().series(id, &channel).await?;
-    let packed = packed.ok_or_else(|| Refusal::not_found("The job has no such channel."))?;
-    let written = tokio::task::spawn_blocking(move || request.answer(&packed)?.written(as_csv));
-    let body = Body::from(written.await.map_err(Refusal::internal)??);
-    let content_type = if as_csv.is_some() { "text/csv; charset=utf-8" } else { "application/json" };
+    let packed = packed.ok_or_else(|| ApiError::not_found("The job has no such channel."))?;
+    let encoded = tokio::task::spawn_blocking(move || request.select(&packed)?.encode(csv_decimal));
+    let body = Body::from(encoded.await.map_err(ApiError::internal)??);
+    let content_type = if csv_decimal.is_some() { "text/csv; charset=utf-8" } else { "application/json" };
     let headers = [(CONTENT_TYPE, content_type), (VARY, "accept")];
-    Ok((headers, Body::new(Held::new(body, place))).into_response())
+    Ok((headers, Body::new(GuardedBody::new(body, permit))).into_response())
 }
 
-/// Which samples are wanted.
+/// The time window and downsampling of a request.
 struct SeriesRequest {
     from_s: f64,
     to_s: f64,
     max_points: usize,
-    method: Method,
+    method: DownsampleMethod,
 }
 
 impl SeriesRequest {
-    fn read(mut query: Parameters) -> Result<Self, Refusal> {
+    fn read(mut query: QueryParameters) -> Result<Self, ApiError> {
         let from_s = query.number("from", "s").unwrap_or(f64::NEG_INFINITY);
         let to_s = query.number("to", "s").unwrap_or(f64::INFINITY);
-        let max_points = query.whole("max_points", MIN_POINTS, MAX_POINTS, false);
-        let method = query.choice("method", &Method::ALL).unwrap_or(Method::MinMax);
+        let max_points = query.integer("max_points", MIN_POINTS, MAX_POINTS, false);
+        let method = query.choice("method", &DownsampleMethod::ALL).unwrap_or(DownsampleMethod::MinMax);
         if from_s > to_s {
-            query.violate(Violation::new("/to", "conflict", "lies before from"));
+            query.add_violation(Violation::new("/to", "conflict", "lies before from"));
         }
-        if method == Method::None && max_points.is_some() {
-            query.violate(Violation::new("/max_points", "conflict", "cannot be given with method=none"));
+        if method == DownsampleMethod::None && max_points.is_some() {
+            query.add_violation(Violation::new("/max_points", "conflict", "cannot be given with method=none"));
         }
         query.finish()?;
         Ok(Self { from_s, to_s, max_points: max_points.unwrap_or(DEFAULT_POINTS) as usize, method })
     }
 
-    fn answer(&self, packed: &PackedSeries) -> Result<SeriesData, Refusal> {
+    /// The samples in the window, downsampled.
+    fn select(&self, packed: &PackedSeries) -> Result<SeriesData, ApiError> {
         let entry = &packed.entry;
         let values = packed.unpack()?;
         let time = |index: usize| entry.t0_s + index as f64 * entry.dt_s;
@@ -113,34 +114,35 @@ impl SeriesRequest {
         let start = indices.partition_point(|index| time(*index) < self.from_s);
         let end = indices.partition_point(|index| time(*index) <= self.to_s).max(start);
         let window = &values[start..end];
-        if self.method == Method::None && window.len() as u64 > MAX_RAW_POINTS {
-            return Err(too_many(window.len()));
+        if self.method == DownsampleMethod::None && window.len() as u64 > MAX_RAW_POINTS {
+            return Err(too_many_samples(window.len()));
         }
-        let (chosen, method) = downsample(window, self.max_points, self.method);
+        let (selected, method) = downsample(window, self.max_points, self.method);
         Ok(SeriesData {
             channel: entry.channel.clone(),
             quantity: entry.quantity.clone(),
             unit: entry.unit.clone(),
-            t: chosen.iter().map(|index| time(start + index)).collect(),
-            y: chosen.iter().map(|index| window[*index]).collect(),
+            t: selected.iter().map(|index| time(start + index)).collect(),
+            y: selected.iter().map(|index| window[*index]).collect(),
             n_source: window.len(),
-            n_returned: chosen.len(),
-            n_not_finite: chosen.iter().filter(|index| !window[**index].is_finite()).count(),
-            method: method.word().to_owned(),
+            n_returned: selected.len(),
+            n_not_finite: selected.iter().filter(|index| !window[**index].is_finite()).count(),
+            method: method.as_str().to_owned(),
         })
     }
 }
 
 impl SeriesData {
-    fn written(&self, as_csv: Option<Decimal>) -> Result<Vec<u8>, Refusal> {
-        match as_csv {
-            Some(decimal) => Ok(csv(self, decimal).into_bytes()),
-            None => serde_json::to_vec(self).map_err(Refusal::internal),
+    /// The response body: CSV with this decimal sign, or JSON.
+    fn encode(&self, csv_decimal: Option<Decimal>) -> Result<Vec<u8>, ApiError> {
+        match csv_decimal {
+            Some(decimal) => csv(self, decimal).map_err(ApiError::internal),
+            None => serde_json::to_vec(self).map_err(ApiError::internal),
         }
     }
 }
 
-fn too_many(n: usize) -> Refusal {
+fn too_many_samples(n: usize) -> ApiError {
     use crate::api::problem::{Problem, ProblemCode};
     let detail = format!("has {n} samples between from and to; permitted with method=none: at most {MAX_RAW_POINTS}");
     let violation = Violation {
@@ -150,12 +152,11 @@ fn too_many(n: usize) -> Refusal {
     Problem::new(ProblemCode::InvalidParameter, detail).with_errors(vec![violation]).into()
 }
 
-fn csv(data: &SeriesData, decimal: Decimal) -> String {
-    let mut text = String::with_capacity(data.t.len() * 40);
-    text.push_str(decimal.start());
-    decimal.push_line(&mut text, ["t_s", "value"].map(Field::Text));
+fn csv(data: &SeriesData, decimal: Decimal) -> std::io::Result<Vec<u8>> {
+    let mut writer = CsvWriter::with_mark(Vec::with_capacity(data.t.len() * 40), decimal)?;
+    writer.write_record(["t_s", "value"].map(CsvField::Text))?;
     for (t, y) in data.t.iter().zip(&data.y) {
-        decimal.push_line(&mut text, [Field::Number(*t), Field::Number(*y)]);
+        writer.write_record([CsvField::Number(*t), CsvField::Number(*y)])?;
     }
-    text
+    writer.into_inner()
 }

@@ -3,7 +3,7 @@
 use crate::api::config::{
     DEFAULT_PAGE, DEFAULT_POINTS, MAX_BODY_BYTES, MAX_PAGE, MAX_POINTS, MAX_RAW_POINTS, MAX_WAIT_S,
 };
-use crate::api::problem::Refusal;
+use crate::api::problem::ApiError;
 use crate::api::state::AppState;
 use axum::Json;
 use axum::extract::State;
@@ -12,7 +12,8 @@ use utoipa::ToSchema;
 
 /// The service and what it does now.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct System {
+#[schema(as = System)]
+pub struct SystemView {
     pub name: &'static str,
     pub version: &'static str,
     /// Results stored under another version are not reused.
@@ -21,7 +22,7 @@ pub struct System {
     pub shutting_down: bool,
     pub queue: QueueView,
     pub workers: WorkersView,
-    pub limits: Limits,
+    pub limits: RequestLimits,
 }
 
 #[derive(Debug, Serialize, ToSchema)]
@@ -46,7 +47,8 @@ pub struct WorkersView {
 
 /// Limits of requests.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct Limits {
+#[schema(as = Limits)]
+pub struct RequestLimits {
     pub max_body_bytes: usize,
     pub max_wait_s: u64,
     pub page_default: u32,
@@ -60,25 +62,25 @@ pub struct Limits {
 /// Read version, queue, workers and limits.
 #[utoipa::path(
     get, path = "/system", tag = "service",
-    responses((status = 200, description = "The service and what it does now.", body = System))
+    responses((status = 200, description = "The service and what it does now.", body = SystemView))
 )]
-pub async fn read_system(State(state): State<AppState>) -> Result<Json<System>, Refusal> {
+pub async fn read_system(State(state): State<AppState>) -> Result<Json<SystemView>, ApiError> {
     let jobs = state.jobs();
     let workers = jobs.workers();
-    Ok(Json(System {
+    Ok(Json(SystemView {
         name: env!("CARGO_PKG_NAME"),
         version: env!("CARGO_PKG_VERSION"),
         solver_version: jobs.solver_version(),
         started_at: state.started_at().to_string(),
         shutting_down: jobs.is_closing(),
-        queue: QueueView { depth: jobs.store().waiting(), capacity: jobs.capacity() },
+        queue: QueueView { depth: jobs.store().queued_count(), capacity: jobs.capacity() },
         workers: WorkersView {
             total: workers.total,
             busy: workers.busy,
             sweeps_total: workers.sweeps_total,
             sweeps_busy: workers.sweeps_busy,
         },
-        limits: Limits {
+        limits: RequestLimits {
             max_body_bytes: MAX_BODY_BYTES,
             max_wait_s: MAX_WAIT_S,
             page_default: DEFAULT_PAGE,

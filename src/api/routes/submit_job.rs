@@ -1,6 +1,6 @@
 //! `POST /api/v1/jobs`
 
-use crate::api::problem::Refusal;
+use crate::api::problem::ApiError;
 use crate::api::request::{DocumentBody, IdempotencyKey, Prefer, RequestId};
 use crate::api::state::AppState;
 use crate::api::view::{Job, job_path, job_response};
@@ -44,18 +44,18 @@ pub async fn submit_job(
     IdempotencyKey(idempotency_key): IdempotencyKey,
     prefer: Prefer,
     DocumentBody(document): DocumentBody,
-) -> Result<Response, Refusal> {
+) -> Result<Response, ApiError> {
     let request = SubmitRequest { document, idempotency_key, request_id: Some(request_id) };
     let submitted = state.jobs().submit(request).await?;
     let mut job = submitted.job;
     let mut headers = HeaderMap::new();
-    let wait = prefer.wait.and_then(|wait| Some((wait, state.follow()?)));
+    let wait = prefer.wait.and_then(|wait| Some((wait, state.follower_permit()?)));
     if let Some((wait, _)) = wait {
-        job = state.jobs().wait(job.id, wait, |job| job.state.is_ended()).await?.ok_or_else(super::no_job)?;
-        let applied = HeaderValue::try_from(format!("wait={}", wait.as_secs())).map_err(Refusal::internal)?;
+        job = state.jobs().wait(job.id, wait, |job| job.state.is_ended()).await?.ok_or_else(super::job_not_found)?;
+        let applied = HeaderValue::try_from(format!("wait={}", wait.as_secs())).map_err(ApiError::internal)?;
         headers.insert(HeaderName::from_static("preference-applied"), applied);
     }
-    headers.insert(LOCATION, HeaderValue::try_from(job_path(&job)).map_err(Refusal::internal)?);
+    headers.insert(LOCATION, HeaderValue::try_from(job_path(&job)).map_err(ApiError::internal)?);
     if submitted.replayed {
         headers.insert(HeaderName::from_static("idempotent-replayed"), HeaderValue::from_static("true"));
     }
@@ -64,5 +64,5 @@ pub async fn submit_job(
     if status == StatusCode::ACCEPTED && job.state.is_ended() {
         headers.insert(RETRY_AFTER, HeaderValue::from(0));
     }
-    Ok((headers, job_response(status, &job)).into_response())
+    Ok((headers, job_response(status, &job)?).into_response())
 }

@@ -1,7 +1,7 @@
 //! `POST /api/v1/jobs/validate`
 
-use crate::api::problem::Refusal;
-use crate::api::request::{DocumentBody, Parameters};
+use crate::api::problem::ApiError;
+use crate::api::request::{DocumentBody, QueryParameters};
 use crate::api::state::AppState;
 use axum::Json;
 use axum::extract::State;
@@ -12,7 +12,8 @@ use utoipa::ToSchema;
 
 /// What a check found, and the drawing where it was asked for.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct Checked {
+#[schema(as = Checked)]
+pub struct ValidationResponse {
     #[serde(flatten)]
     pub report: CheckReport,
     /// The pair to scale; only with `drawing=true`.
@@ -21,15 +22,14 @@ pub struct Checked {
 }
 
 /// Check a job document without queueing it.
-///
-/// Geometry and warnings in milliseconds, or every violation at once. With `drawing=true` also what a drawing of the pair
-/// needs (outlines of the teeth, path of contact, lines of contact) and its margins.
 #[utoipa::path(
     post, path = "/jobs/validate", tag = "jobs",
+    description = "Geometry and warnings in milliseconds, or every violation at once. With `drawing=true` also what a \
+        drawing of the pair\nneeds (outlines of the teeth, path of contact, lines of contact) and its margins.",
     params(("drawing" = Option<bool>, Query, description = "Whether the answer has the drawing; false when left out.")),
     request_body(content = serde_json::Value, content_type = "application/json"),
     responses(
-        (status = 200, description = "The gear can exist and be solved.", body = Checked),
+        (status = 200, description = "The gear can exist and be solved.", body = ValidationResponse),
         (status = 400, description = "The body is not JSON, or `invalid-parameter`."),
         (status = 413, description = "The body is larger than 1 MiB."),
         (status = 415, description = "The body is not `application/json`."),
@@ -38,16 +38,13 @@ pub struct Checked {
 )]
 pub async fn validate_job(
     State(state): State<AppState>,
-    mut query: Parameters,
+    mut query: QueryParameters,
     DocumentBody(document): DocumentBody,
-) -> Result<Json<Checked>, Refusal> {
+) -> Result<Json<ValidationResponse>, ApiError> {
     let with_drawing = query.choice("drawing", &[("true", true), ("false", false)]).unwrap_or(false);
     query.finish()?;
-    let drawn = with_drawing.then(|| document.clone());
-    let report = state.jobs().check(document).await?;
-    let drawing = match drawn {
-        Some(document) => Some(state.jobs().drawing(document).await?),
-        None => None,
-    };
-    Ok(Json(Checked { report, drawing }))
+    let job = state.jobs().check(document).await?;
+    let report = job.report();
+    let drawing = if with_drawing { Some(state.jobs().drawing(job).await?) } else { None };
+    Ok(Json(ValidationResponse { report, drawing }))
 }

@@ -1,13 +1,13 @@
 //! `GET /api/v1/jobs/{id}/events`
 
 use crate::api::config::KEEP_ALIVE;
-use crate::api::problem::Refusal;
+use crate::api::problem::ApiError;
 use crate::api::request::JobPath;
 use crate::api::state::AppState;
 use crate::api::telemetry::OpenStream;
 use crate::api::view::Job;
 use crate::store::{JobId, JobRecord};
-use crate::work::Subscription;
+use crate::work::JobSubscription;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::sse::{Event, KeepAlive, Sse};
@@ -18,12 +18,12 @@ use std::sync::Arc;
 use tokio_util::sync::CancellationToken;
 
 /// Follow a job as server-sent events.
-///
-/// The job as it stands comes first. Then `progress`, `state` (started, requeued, cancel asked) and at last `done`, after
-/// which the stream ends. The data of every event is the whole job, its `id` the revision; a client that reconnects
-/// misses nothing that still matters. The stream also ends when the service shuts down.
 #[utoipa::path(
     get, path = "/jobs/{id}/events", tag = "jobs",
+    description = "The job as it stands comes first. Then `progress`, `state` (started, requeued, cancel asked) and \
+        at last `done`, after\nwhich the stream ends. The data of every event is the whole job, its `id` the \
+        revision; a client that reconnects\nmisses nothing that still matters. The stream also ends when the service \
+        shuts down.",
     params(
         ("id" = String, Path, format = "uuid", description = "Id of the job"),
         ("Last-Event-ID" = Option<String>, Header, description = "Revision last seen; sent by browsers that reconnect"),
@@ -40,16 +40,16 @@ pub async fn watch_job(
     State(state): State<AppState>,
     JobPath(id): JobPath,
     headers: HeaderMap,
-) -> Result<Response, Refusal> {
-    // Subscribed before the job is read: no change falls in between.
+) -> Result<Response, ApiError> {
+    // Subscribed before the job is read, so that no change between the two is missed.
     let changes = state.jobs().subscribe(id);
-    let job = super::existing(&state, id).await?;
+    let job = super::find_job(&state, id).await?;
     if job.state.is_ended() && last_event(&headers) == Some(job.revision) {
         return Ok(StatusCode::NO_CONTENT.into_response());
     }
-    let place = (state.follow().ok_or_else(super::too_many_followers)?, OpenStream::new());
+    let guards = (state.follower_permit().ok_or_else(super::too_many_followers)?, OpenStream::new());
     let events = events(id, Arc::new(job), changes, state.jobs().closing().clone()).map(move |event| {
-        let _ = &place;
+        let _ = &guards;
         event
     });
     Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE)).into_response())
@@ -59,28 +59,30 @@ fn last_event(headers: &HeaderMap) -> Option<i64> {
     headers.get("last-event-id")?.to_str().ok()?.parse().ok()
 }
 
-/// What was told last, and what is still to be told.
-enum Told {
-    Nothing(Arc<JobRecord>),
-    Up(Arc<JobRecord>),
+/// The position in the event stream of a job.
+enum StreamPosition {
+    /// Before the first event, which shows this record.
+    Start(Arc<JobRecord>),
+    /// After an event that showed this record.
+    After(Arc<JobRecord>),
 }
 
 fn events(
     id: JobId,
     job: Arc<JobRecord>,
-    changes: Subscription,
+    changes: JobSubscription,
     closing: CancellationToken,
 ) -> impl Stream<Item = Result<Event, Infallible>> {
-    unfold((Told::Nothing(job), changes, closing), move |(told, mut changes, closing)| async move {
-        let (name, job) = match told {
-            Told::Nothing(job) => (if job.state.is_ended() { "done" } else { "state" }, job),
-            Told::Up(last) if last.state.is_ended() => return None,
-            Told::Up(last) => {
+    unfold((StreamPosition::Start(job), changes, closing), move |(position, mut changes, closing)| async move {
+        let (name, job) = match position {
+            StreamPosition::Start(job) => (if job.state.is_ended() { "done" } else { "state" }, job),
+            StreamPosition::After(last) if last.state.is_ended() => return None,
+            StreamPosition::After(last) => {
                 let newer = tokio::select! {
                     newer = changes.after(last.revision) => newer,
                     () = closing.cancelled() => return None,
                 };
-                (name_of(&last, &newer), newer)
+                (event_name(&last, &newer), newer)
             }
         };
         let event = Event::default().event(name).id(job.revision.to_string()).json_data(Job::from(job.as_ref()));
@@ -88,15 +90,15 @@ fn events(
             tracing::error!(job = %id, %error, "event not written");
             Event::default().comment("event not written")
         });
-        Some((Ok(event), (Told::Up(job), changes, closing)))
+        Some((Ok(event), (StreamPosition::After(job), changes, closing)))
     })
 }
 
-fn name_of(last: &JobRecord, newer: &JobRecord) -> &'static str {
-    let of = |job: &JobRecord| (job.state, job.attempt, job.cancel_requested_at);
+fn event_name(last: &JobRecord, newer: &JobRecord) -> &'static str {
+    let visible = |job: &JobRecord| (job.state, job.attempt, job.cancel_requested_at);
     match newer.state.is_ended() {
         true => "done",
-        false if of(last) != of(newer) => "state",
+        false if visible(last) != visible(newer) => "state",
         false => "progress",
     }
 }

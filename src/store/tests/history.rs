@@ -35,15 +35,15 @@ async fn apply(store: &Store, id: JobId, step: Step) {
         Step::Succeed(attempt) => drop(store.succeed(id, attempt, &completion("a"), at(1)).await.unwrap()),
         Step::Fail(attempt) => drop(store.fail(id, attempt, &failure, at(1)).await.unwrap()),
         Step::Release(attempt) => {
-            drop(store.release(id, attempt, Pause::Shutdown, Duration::ZERO, at(1)).await.unwrap())
+            drop(store.release(id, attempt, ReleaseReason::Shutdown, Duration::ZERO, at(1)).await.unwrap())
         }
         Step::Cancel => drop(store.cancel(id, at(1)).await.unwrap()),
         Step::Recover => drop(store.recover(3, at(1)).await.unwrap()),
     }
 }
 
-fn is_permitted(from: State, to: State) -> bool {
-    use State::*;
+fn is_permitted(from: JobState, to: JobState) -> bool {
+    use JobState::*;
     matches!((from, to), (Queued, Running | Canceled) | (Running, Succeeded | Failed | Canceled | Queued))
 }
 
@@ -62,12 +62,12 @@ proptest! {
             }
             let job = store.job(id).await.unwrap().unwrap();
             let history = store.history(id).await.unwrap();
-            assert_eq!(history[0], (1, State::Queued));
+            assert_eq!(history[0], (1, JobState::Queued));
             assert!(history.windows(2).all(|pair| is_permitted(pair[0].1, pair[1].1)), "{history:?}");
             assert_eq!(history.last().unwrap().1, job.state);
             assert!(history.last().unwrap().0 <= job.revision);
-            assert_eq!(store.result(id).await.unwrap().is_some(), job.state == State::Succeeded);
-            assert_eq!(job.error.is_some(), job.state == State::Failed);
+            assert_eq!(store.result(id).await.unwrap().is_some(), job.state == JobState::Succeeded);
+            assert_eq!(job.error.is_some(), job.state == JobState::Failed);
         });
     }
 }

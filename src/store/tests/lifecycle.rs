@@ -5,14 +5,14 @@ use std::time::Duration;
 async fn queued_running_succeeded() {
     let Fixture { store, .. } = &fixture().await;
     let job = queued(store, "a").await;
-    assert_eq!((job.state, job.revision, job.attempt), (State::Queued, 1, 0));
+    assert_eq!((job.state, job.revision, job.attempt), (JobState::Queued, 1, 0));
     let claim = store.claim_next(WorkClass::Single, at(1)).await.unwrap().unwrap();
-    assert_eq!((claim.job.id, claim.job.state, claim.job.attempt), (job.id, State::Running, 1));
+    assert_eq!((claim.job.id, claim.job.state, claim.job.attempt), (job.id, JobState::Running, 1));
     assert_eq!(claim.input, "{\"hash\":\"a\"}");
     let progressed = store.progress(job.id, 1, "mesh", 0.5, &PointBatch::default()).await.unwrap().unwrap();
     assert_eq!((progressed.progress, progressed.stage.as_deref(), progressed.revision), (0.5, Some("mesh"), 3));
     let done = store.succeed(job.id, 1, &completion("a"), at(2)).await.unwrap().unwrap();
-    assert_eq!((done.state, done.progress, done.ended_at), (State::Succeeded, 1.0, Some(at(2))));
+    assert_eq!((done.state, done.progress, done.ended_at), (JobState::Succeeded, 1.0, Some(at(2))));
     assert_eq!(store.result(job.id).await.unwrap().unwrap().body, "{\"of\":\"a\"}");
     assert_eq!(store.job(job.id).await.unwrap(), Some(done));
 }
@@ -33,7 +33,7 @@ async fn an_error_exactly_when_failed() {
     let job = running(store, "a").await;
     let failure = Failure { sim_time_s: Some(0.25), step: Some(7), ..Failure::new("diverged", "too large") };
     let failed = store.fail(job.id, 1, &failure, at(2)).await.unwrap().unwrap();
-    assert_eq!((failed.state, failed.error.as_ref()), (State::Failed, Some(&failure)));
+    assert_eq!((failed.state, failed.error.as_ref()), (JobState::Failed, Some(&failure)));
     assert!(store.result(job.id).await.unwrap().is_none());
 }
 
@@ -44,7 +44,7 @@ async fn terminal_is_final() {
     let done = store.succeed(job.id, 1, &completion("a"), at(2)).await.unwrap().unwrap();
     assert!(store.succeed(job.id, 1, &completion("b"), at(3)).await.unwrap().is_none());
     assert!(store.fail(job.id, 1, &Failure::new("diverged", ""), at(3)).await.unwrap().is_none());
-    assert!(store.release(job.id, 1, Pause::Shutdown, Duration::ZERO, at(3)).await.unwrap().is_none());
+    assert!(store.release(job.id, 1, ReleaseReason::Shutdown, Duration::ZERO, at(3)).await.unwrap().is_none());
     assert!(store.progress(job.id, 1, "mesh", 0.1, &PointBatch::default()).await.unwrap().is_none());
     assert_eq!(store.cancel(job.id, at(3)).await.unwrap(), Cancellation::Ended(done.clone()));
     assert_eq!(store.job(job.id).await.unwrap(), Some(done));
@@ -54,7 +54,7 @@ async fn terminal_is_final() {
 async fn a_lost_worker_is_fenced_out() {
     let Fixture { store, .. } = &fixture().await;
     let job = running(store, "a").await;
-    store.release(job.id, 1, Pause::Shutdown, Duration::ZERO, at(2)).await.unwrap().unwrap();
+    store.release(job.id, 1, ReleaseReason::Shutdown, Duration::ZERO, at(2)).await.unwrap().unwrap();
     let again = store.claim_next(WorkClass::Single, at(3)).await.unwrap().unwrap().job;
     assert_eq!((again.id, again.attempt), (job.id, 2));
     assert!(store.succeed(job.id, 1, &completion("a"), at(4)).await.unwrap().is_none());
@@ -78,18 +78,20 @@ async fn canceling_a_queued_job_ends_it() {
 async fn canceling_a_running_job_is_noted_once_and_decides_its_release() {
     let Fixture { store, .. } = &fixture().await;
     let job = running(store, "a").await;
-    let Cancellation::Asked(asked) = store.cancel(job.id, at(2)).await.unwrap() else { panic!("not asked") };
-    let Cancellation::Asked(again) = store.cancel(job.id, at(3)).await.unwrap() else { panic!("not asked") };
-    assert_eq!(asked, again);
-    let released = store.release(job.id, 1, Pause::Shutdown, Duration::ZERO, at(4)).await.unwrap().unwrap();
-    assert_eq!((released.state, released.ended_at), (State::Canceled, Some(at(4))));
+    let Cancellation::Requested(requested) = store.cancel(job.id, at(2)).await.unwrap() else {
+        panic!("not requested")
+    };
+    let Cancellation::Requested(again) = store.cancel(job.id, at(3)).await.unwrap() else { panic!("not requested") };
+    assert_eq!(requested, again);
+    let released = store.release(job.id, 1, ReleaseReason::Shutdown, Duration::ZERO, at(4)).await.unwrap().unwrap();
+    assert_eq!((released.state, released.ended_at), (JobState::Canceled, Some(at(4))));
 }
 
 #[tokio::test]
 async fn deleting_takes_ended_jobs_with_all_they_left() {
     let Fixture { store, .. } = &fixture().await;
     let job = running(store, "a").await;
-    assert_eq!(store.delete(job.id).await.unwrap(), Deletion::Live);
+    assert_eq!(store.delete(job.id).await.unwrap(), Deletion::NotEnded);
     store.succeed(job.id, 1, &completion("a"), at(2)).await.unwrap().unwrap();
     assert_eq!(store.delete(job.id).await.unwrap(), Deletion::Deleted);
     assert_eq!(store.delete(job.id).await.unwrap(), Deletion::NotFound);
@@ -98,7 +100,7 @@ async fn deleting_takes_ended_jobs_with_all_they_left() {
 }
 
 #[tokio::test]
-async fn recovery_after_a_dead_process() {
+async fn jobs_of_a_dead_process_are_queued_again() {
     let Fixture { store, directory } = fixture().await;
     let lost = running(&store, "lost").await;
     let asked = running(&store, "asked").await;
@@ -108,26 +110,26 @@ async fn recovery_after_a_dead_process() {
     drop(store);
     let store = Store::open(&StoreConfig::at(directory.path().join("jobs.db"))).await.unwrap();
     let recovery = store.recover(3, at(10)).await.unwrap();
-    assert_eq!(recovery, Recovery { requeued: 1, canceled: 1, given_up: 0, waiting: 2 });
+    assert_eq!(recovery, Recovery { requeued: 1, canceled: 1, given_up: 0, queued: 2 });
     assert_eq!(store.claim_next(WorkClass::Single, at(11)).await.unwrap().unwrap().job.id, lost.id);
     assert_eq!(store.claim_next(WorkClass::Single, at(11)).await.unwrap().unwrap().job.id, waiting.id);
-    assert_eq!(store.job(asked.id).await.unwrap().unwrap().state, State::Canceled);
+    assert_eq!(store.job(asked.id).await.unwrap().unwrap().state, JobState::Canceled);
 }
 
 #[tokio::test]
-async fn a_job_that_keeps_killing_its_process_is_given_up() {
+async fn a_job_that_keeps_killing_its_process_fails() {
     let Fixture { store, .. } = &fixture().await;
     let job = running(store, "a").await;
     for attempt in 1..5 {
         // Shutdowns do not count.
-        store.release(job.id, attempt, Pause::Shutdown, Duration::ZERO, at(2)).await.unwrap().unwrap();
+        store.release(job.id, attempt, ReleaseReason::Shutdown, Duration::ZERO, at(2)).await.unwrap().unwrap();
         store.claim_next(WorkClass::Single, at(2)).await.unwrap().unwrap();
     }
     assert_eq!(store.recover(2, at(2)).await.unwrap().requeued, 1);
     store.claim_next(WorkClass::Single, at(3)).await.unwrap().unwrap();
     assert_eq!(store.recover(2, at(4)).await.unwrap().given_up, 1);
     let failed = store.job(job.id).await.unwrap().unwrap();
-    assert_eq!((failed.state, failed.error.unwrap().code.as_str()), (State::Failed, "worker-lost"));
+    assert_eq!((failed.state, failed.error.unwrap().code.as_str()), (JobState::Failed, "worker-lost"));
 }
 
 #[tokio::test]
@@ -135,7 +137,7 @@ async fn the_queue_is_bounded() {
     let Fixture { store, .. } = &fixture().await;
     assert!(matches!(store.submit(new_job("a"), None, 1, at(0)).await.unwrap(), Submission::Accepted(_)));
     assert_eq!(store.submit(new_job("b"), None, 1, at(0)).await.unwrap(), Submission::Full);
-    assert_eq!(store.waiting(), 1);
+    assert_eq!(store.queued_count(), 1);
     store.claim_next(WorkClass::Single, at(1)).await.unwrap().unwrap();
     assert!(matches!(store.submit(new_job("b"), None, 1, at(0)).await.unwrap(), Submission::Accepted(_)));
 }
@@ -150,7 +152,7 @@ async fn an_idempotency_key_names_one_submission() {
 }
 
 #[tokio::test]
-async fn a_reused_result_ends_the_job_at_once_and_takes_no_place() {
+async fn a_reused_result_ends_the_job_at_once_and_is_not_queued() {
     let Fixture { store, .. } = &fixture().await;
     let source = running(store, "a").await;
     store.succeed(source.id, 1, &completion("a"), at(2)).await.unwrap().unwrap();
@@ -161,9 +163,9 @@ async fn a_reused_result_ends_the_job_at_once_and_takes_no_place() {
     let Submission::Accepted(job) = store.submit(new_job("a"), Some(reuse), 0, at(3)).await.unwrap() else {
         panic!("not accepted")
     };
-    assert_eq!((job.state, job.reused_from), (State::Succeeded, Some(source.id)));
-    let states: Vec<State> = store.history(job.id).await.unwrap().into_iter().map(|(_, state)| state).collect();
-    assert_eq!(states, [State::Queued, State::Running, State::Succeeded]);
+    assert_eq!((job.state, job.reused_from), (JobState::Succeeded, Some(source.id)));
+    let states: Vec<JobState> = store.history(job.id).await.unwrap().into_iter().map(|(_, state)| state).collect();
+    assert_eq!(states, [JobState::Queued, JobState::Running, JobState::Succeeded]);
 }
 
 #[tokio::test]
@@ -173,7 +175,7 @@ async fn a_result_deleted_before_it_is_reused_is_computed_again() {
     let Submission::Accepted(job) = store.submit(new_job("a"), Some(reuse), 1, at(3)).await.unwrap() else {
         panic!("not accepted")
     };
-    assert_eq!((job.state, job.revision), (State::Queued, 1));
+    assert_eq!((job.state, job.revision), (JobState::Queued, 1));
 }
 
 /// The clock is set back while a job waits, and again while it runs.
@@ -203,7 +205,7 @@ async fn the_times_of_a_job_never_run_backwards() {
             "fails" => store.fail(job.id, 1, &Failure::new("diverged", ""), at(20)).await.unwrap(),
             _ => {
                 store.cancel(job.id, at(20)).await.unwrap();
-                store.release(job.id, 1, Pause::Shutdown, Duration::ZERO, at(10)).await.unwrap()
+                store.release(job.id, 1, ReleaseReason::Shutdown, Duration::ZERO, at(10)).await.unwrap()
             }
         };
         ordered(&ended.unwrap());

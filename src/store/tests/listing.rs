@@ -32,10 +32,10 @@ async fn filters() {
     let ids = async |filter: JobFilter| -> Vec<JobId> {
         store.list(&filter, None, 10).await.unwrap().jobs.into_iter().map(|job| job.id).collect()
     };
-    let states = |states: &[State]| JobFilter { states: states.to_vec(), ..JobFilter::default() };
-    assert_eq!(ids(states(&[State::Running])).await, [id]);
+    let states = |states: &[JobState]| JobFilter { states: states.to_vec(), ..JobFilter::default() };
+    assert_eq!(ids(states(&[JobState::Running])).await, [id]);
     let all = ids(JobFilter::default()).await;
-    assert_eq!(ids(states(&[State::Running, State::Queued, State::Running])).await, all);
+    assert_eq!(ids(states(&[JobState::Running, JobState::Queued, JobState::Running])).await, all);
     assert_eq!(ids(JobFilter { kind: Some("mesh".into()), ..JobFilter::default() }).await, [id]);
     assert_eq!(ids(JobFilter { label: Some("x".into()), ..JobFilter::default() }).await, [id]);
     assert!(ids(JobFilter { label: Some("' OR 1=1".into()), ..JobFilter::default() }).await.is_empty());

@@ -46,8 +46,8 @@ pub(super) fn completion(hash: &str) -> Completion {
         input_hash: hash.into(),
         solver_version: "test-1".into(),
         series: Vec::new(),
-        points: None,
-        rows: PointBatch::default(),
+        rows: None,
+        unwritten: PointBatch::default(),
         reused_from: None,
     }
 }

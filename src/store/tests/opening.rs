@@ -1,4 +1,4 @@
-//! Every way in which opening can go wrong: the right sentence, and the file as it was.
+//! Every error of opening a database: its message, and that the file is unchanged.
 
 use super::super::connect::MIGRATIONS;
 use super::*;
@@ -32,12 +32,12 @@ async fn closed() -> (TempDir, PathBuf) {
     (directory, path)
 }
 
-async fn by_hand(path: &Path) -> SqliteConnection {
+async fn raw_connection(path: &Path) -> SqliteConnection {
     SqliteConnectOptions::new().filename(path).create_if_missing(true).connect().await.expect("opens")
 }
 
 async fn run(path: &Path, sql: &'static str) {
-    let mut connection = by_hand(path).await;
+    let mut connection = raw_connection(path).await;
     sqlx::query(sql).execute(&mut connection).await.expect("runs");
     connection.close().await.expect("closes");
 }
@@ -51,7 +51,7 @@ fn with_a_step(sql: &'static str) -> Migrator {
 }
 
 #[tokio::test]
-async fn a_clean_end_leaves_one_file_and_opens_again() {
+async fn a_closed_database_is_one_file_and_opens_again() {
     let (directory, path) = closed().await;
     let mut names: Vec<_> = fs::read_dir(directory.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     names.sort();
@@ -61,7 +61,7 @@ async fn a_clean_end_leaves_one_file_and_opens_again() {
 }
 
 #[tokio::test]
-async fn a_directory_is_no_database() {
+async fn a_directory_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     assert!(matches!(refused(directory.path()).await, OpenError::NotAFile(_)));
     assert!(matches!(refused(Path::new("/dev/null")).await, OpenError::NotAFile(_)));
@@ -79,7 +79,7 @@ async fn a_missing_directory_is_named() {
 }
 
 #[tokio::test]
-async fn what_is_no_database_is_left_alone() {
+async fn a_file_that_is_no_database_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("jobs.db");
     for content in [&b"not a database"[..], &[0; 5000], b"SQLite format 3\0"] {
@@ -97,7 +97,7 @@ async fn an_empty_file_becomes_a_database() {
 }
 
 #[tokio::test]
-async fn the_database_of_another_program_is_left_alone() {
+async fn the_database_of_another_program_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("cookies.db");
     run(&path, "CREATE TABLE cookies (name TEXT)").await;
@@ -113,7 +113,7 @@ const HISTORY: &str = "CREATE TABLE _sqlx_migrations (version BIGINT PRIMARY KEY
                        checksum BLOB NOT NULL, execution_time BIGINT NOT NULL)";
 
 #[tokio::test]
-async fn a_database_whose_making_was_interrupted_is_made() {
+async fn a_database_whose_creation_was_interrupted_is_created() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("jobs.db");
     run(&path, HISTORY).await;
@@ -136,16 +136,16 @@ async fn a_file_cut_off_is_damaged() {
 
 /// Every page but the first is overwritten in turn: after an unclean end the start notices, whatever it was.
 #[tokio::test]
-async fn a_spoilt_page_is_noticed_after_an_unclean_end() {
+async fn an_overwritten_page_is_reported_after_an_unclean_end() {
     let (directory, path) = closed().await;
     let whole = fs::read(&path).unwrap();
     // A log that holds nothing valid: what a process that died may leave.
     let log = directory.path().join("jobs.db-wal");
     let mut noticed = 0;
     for page in 1..whole.len() / 4096 {
-        let mut spoilt = whole.clone();
-        spoilt[page * 4096..(page + 1) * 4096].fill(0xa5);
-        fs::write(&path, &spoilt).unwrap();
+        let mut damaged = whole.clone();
+        damaged[page * 4096..(page + 1) * 4096].fill(0xa5);
+        fs::write(&path, &damaged).unwrap();
         fs::write(&log, "left").unwrap();
         let error = refused_unchanged(&path).await;
         assert!(matches!(error, OpenError::Damaged { .. }), "page {page}: {error}");
@@ -186,7 +186,7 @@ async fn an_upgrade_copies_the_database_before() {
     let store = Store::open_with(&StoreConfig::at(&path), &steps).await.unwrap();
     store.close().await;
     drop(store);
-    // The way back: the copy takes the file's place.
+    // The copy replaces the file.
     let copy = directory.path().join(format!("jobs.db.before-schema-{version}"));
     fs::rename(&copy, &path).unwrap();
     let store = Store::open(&StoreConfig::at(&path)).await.unwrap();
@@ -197,7 +197,7 @@ async fn an_upgrade_copies_the_database_before() {
 }
 
 #[tokio::test]
-async fn an_upgrade_that_fails_is_taken_back() {
+async fn an_upgrade_that_fails_is_rolled_back() {
     let (_directory, path) = closed().await;
     let steps = with_a_step("CREATE TABLE later (a); INSERT INTO nowhere VALUES (1)");
     let error = Store::open_with(&StoreConfig::at(&path), &steps).await.err().expect("not opened");
@@ -210,35 +210,35 @@ async fn an_upgrade_that_fails_is_taken_back() {
 #[tokio::test]
 async fn a_damaged_file_is_not_upgraded() {
     let (_directory, path) = closed().await;
-    let mut spoilt = fs::read(&path).unwrap();
-    let page = spoilt.len() / 4096 - 1;
-    spoilt[page * 4096..].fill(0xa5);
-    fs::write(&path, &spoilt).unwrap();
+    let mut damaged = fs::read(&path).unwrap();
+    let page = damaged.len() / 4096 - 1;
+    damaged[page * 4096..].fill(0xa5);
+    fs::write(&path, &damaged).unwrap();
     let error = Store::open_with(&StoreConfig::at(&path), &with_a_step("CREATE TABLE later (a)")).await.err();
     assert!(matches!(error, Some(OpenError::Damaged { .. })), "{error:?}");
-    assert!(fs::read(&path).unwrap() == spoilt);
+    assert!(fs::read(&path).unwrap() == damaged);
 }
 
 #[tokio::test]
-async fn a_lock_of_another_program_is_said() {
+async fn a_lock_of_another_program_is_reported() {
     let (_directory, path) = closed().await;
-    let mut other = by_hand(&path).await;
+    let mut other = raw_connection(&path).await;
     sqlx::query("BEGIN IMMEDIATE").execute(&mut other).await.unwrap();
     assert!(matches!(refused(&path).await, OpenError::Locked(_)), "while it writes");
     sqlx::query("ROLLBACK").execute(&mut other).await.unwrap();
     other.close().await.unwrap();
-    let mut alone = by_hand(&path).await;
-    sqlx::query("PRAGMA locking_mode = EXCLUSIVE").execute(&mut alone).await.unwrap();
-    sqlx::query("BEGIN EXCLUSIVE").execute(&mut alone).await.unwrap();
-    assert!(matches!(refused(&path).await, OpenError::Locked(_)), "while it keeps everybody out");
-    drop(alone);
+    let mut exclusive = raw_connection(&path).await;
+    sqlx::query("PRAGMA locking_mode = EXCLUSIVE").execute(&mut exclusive).await.unwrap();
+    sqlx::query("BEGIN EXCLUSIVE").execute(&mut exclusive).await.unwrap();
+    assert!(matches!(refused(&path).await, OpenError::Locked(_)), "while it holds an exclusive lock");
+    drop(exclusive);
 }
 
 #[tokio::test]
 async fn a_lock_of_another_program_while_serving_is_storage_unavailable() {
     let Fixture { store, directory } = fixture().await;
     sqlx::query("PRAGMA busy_timeout = 50").execute(&store.writer).await.unwrap();
-    let mut other = by_hand(&directory.path().join("jobs.db")).await;
+    let mut other = raw_connection(&directory.path().join("jobs.db")).await;
     sqlx::query("BEGIN IMMEDIATE").execute(&mut other).await.unwrap();
     let error = store.submit(new_job("a"), None, 10, at(0)).await.expect_err("refused");
     assert_eq!(error.unavailable(), Some(Unavailable::Busy));
@@ -247,12 +247,12 @@ async fn a_lock_of_another_program_while_serving_is_storage_unavailable() {
     queued(&store, "a").await;
 }
 
-/// What a full disk does at a commit: SQLite has rolled back by itself, and the driver's own rollback fails.
+/// As with a full disk at a commit: SQLite has rolled back by itself, and the driver's own rollback fails.
 #[tokio::test]
-async fn a_transaction_that_sqlite_ended_by_itself_spoils_no_later_one() {
+async fn a_transaction_that_sqlite_ended_by_itself_does_not_affect_later_ones() {
     let Fixture { store, directory: _directory } = fixture().await;
     for _ in 0..3 {
-        let mut transaction = store.write().await.unwrap();
+        let mut transaction = store.begin_with_reserve().await.unwrap();
         sqlx::query("ROLLBACK").execute(&mut *transaction).await.unwrap();
         drop(transaction);
         queued(&store, "a").await;

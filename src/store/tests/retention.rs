@@ -8,7 +8,7 @@ async fn limited(max_database_mb: u32) -> Fixture {
     Fixture { store: Store::open(&config).await.expect("store opens"), directory }
 }
 
-/// A job that ended with a result of so many bytes, or what kept it from it.
+/// A job that ended with a result of so many bytes, or the error that prevented it.
 async fn ended(store: &Store, second: i64, bytes: usize) -> Result<JobId, StoreError> {
     let hash = format!("{second}");
     store.submit(new_job(&hash), None, 100, at(second)).await?;
@@ -23,7 +23,7 @@ async fn exists(store: &Store, id: JobId) -> bool {
 }
 
 #[tokio::test]
-async fn what_ended_long_ago_goes_and_live_jobs_stay() {
+async fn jobs_that_ended_long_ago_are_deleted_and_live_jobs_are_not() {
     let Fixture { store, .. } = &fixture().await;
     let old = ended(store, 0, 10).await.unwrap();
     let young = ended(store, 100, 10).await.unwrap();
@@ -37,7 +37,7 @@ async fn what_ended_long_ago_goes_and_live_jobs_stay() {
 }
 
 #[tokio::test]
-async fn ended_jobs_go_in_small_transactions() {
+async fn ended_jobs_are_deleted_in_small_transactions() {
     let Fixture { store, .. } = &fixture().await;
     for second in 0..20 {
         ended(store, second, 10).await.unwrap();
@@ -68,7 +68,7 @@ async fn a_clock_behind_deletes_nothing_and_one_ahead_no_live_job() {
 }
 
 #[tokio::test]
-async fn the_oldest_make_room_down_to_nine_tenths_and_the_file_shrinks() {
+async fn the_oldest_jobs_are_deleted_down_to_nine_tenths_and_the_file_shrinks() {
     let Fixture { store, .. } = &limited(10).await;
     let mut ids = Vec::new();
     for second in 0..21 {
@@ -76,10 +76,10 @@ async fn the_oldest_make_room_down_to_nine_tenths_and_the_file_shrinks() {
     }
     let before = store.usage().await.unwrap();
     assert!(before.used_bytes > 10_000_000);
-    assert_eq!(store.delete_for_room(false, 8).await.unwrap(), 8, "a batch");
-    assert_eq!(store.delete_for_room(true, 8).await.unwrap(), 0, "that was enough");
+    assert_eq!(store.delete_for_size(false, 8).await.unwrap(), 8, "a batch");
+    assert_eq!(store.delete_for_size(true, 8).await.unwrap(), 0, "that was enough");
     assert!(!exists(store, ids[7]).await && exists(store, ids[8]).await, "the oldest went");
-    store.give_back().await.unwrap();
+    store.release_space().await.unwrap();
     let after = store.usage().await.unwrap();
     assert!(after.used_bytes < 9_000_000 && after.free_bytes() == 0 && after.log_bytes == 0, "{after:?}");
     let on_disk = std::fs::metadata(&*store.path).unwrap().len();
@@ -87,12 +87,12 @@ async fn the_oldest_make_room_down_to_nine_tenths_and_the_file_shrinks() {
 }
 
 #[tokio::test]
-async fn a_database_full_of_live_jobs_takes_no_more_and_recovers() {
+async fn a_database_full_of_live_jobs_refuses_jobs_and_recovers() {
     let Fixture { store, .. } = &limited(20).await;
     store.admit().await.unwrap();
     // Live jobs with long documents: nothing may be deleted.
     let mut live = Vec::new();
-    let refusal = loop {
+    let error = loop {
         if let Err(error) = store.admit().await {
             break error;
         }
@@ -100,21 +100,21 @@ async fn a_database_full_of_live_jobs_takes_no_more_and_recovers() {
         live.push(job.id);
         store.submit(job, None, 1000, at(0)).await.unwrap();
     };
-    assert_eq!(refusal.unavailable(), Some(Unavailable::Full));
+    assert_eq!(error.unavailable(), Some(Unavailable::Full));
     assert_eq!(store.writable().await.err().and_then(|error| error.unavailable()), Some(Unavailable::Full));
-    assert_eq!(store.delete_for_room(false, 8).await.unwrap(), 0);
+    assert_eq!(store.delete_for_size(false, 8).await.unwrap(), 0);
     for id in live {
         assert!(exists(store, id).await);
         store.cancel(id, at(1)).await.unwrap();
     }
-    assert!(store.delete_for_room(false, 8).await.unwrap() > 0);
-    while store.delete_for_room(true, 8).await.unwrap() > 0 {}
+    assert!(store.delete_for_size(false, 8).await.unwrap() > 0);
+    while store.delete_for_size(true, 8).await.unwrap() > 0 {}
     store.admit().await.unwrap();
     store.writable().await.unwrap();
     ended(store, 5, 100_000).await.unwrap();
 }
 
-/// Where nobody asks before, SQLite stops a tenth above the limit.
+/// Without the check before, SQLite stops at 110 % of the limit.
 #[tokio::test]
 async fn the_file_never_outgrows_its_limit_by_more_than_a_tenth() {
     let Fixture { store, .. } = &limited(8).await;
@@ -129,15 +129,15 @@ async fn the_file_never_outgrows_its_limit_by_more_than_a_tenth() {
     let usage = store.usage().await.unwrap();
     assert!(usage.used_bytes > 8_000_000 && usage.file_bytes <= 8_800_000, "{usage:?}");
     // Nothing has ended: what is kept for reuse goes, so that live jobs can go on.
-    assert_eq!(store.delete_for_room(false, 8).await.unwrap(), 0);
+    assert_eq!(store.delete_for_size(false, 8).await.unwrap(), 0);
     assert!(store.stage("a").await.unwrap().is_none());
     let waiting = store.claim_next(WorkClass::Single, at(1)).await.unwrap().expect("a job waits").job;
     store.cancel(waiting.id, at(2)).await.unwrap();
 }
 
-/// The room for jobs is used up to the last page; canceling writes an event and moves the job in every index.
+/// The space for jobs is used up to the last page; canceling writes an event and moves the job in every index.
 #[tokio::test]
-async fn canceling_and_failing_have_room_where_jobs_have_none() {
+async fn canceling_and_failing_work_in_a_full_database() {
     let Fixture { store, .. } = &limited(8).await;
     let runs = running(store, "runs").await;
     let mut waiting = Vec::new();
@@ -156,12 +156,12 @@ async fn canceling_and_failing_have_room_where_jobs_have_none() {
         assert!(matches!(store.cancel(id, at(1)).await.unwrap(), Cancellation::Canceled(_)));
     }
     let failure = Failure::new("diverged", "");
-    assert_eq!(store.fail(runs.id, 1, &failure, at(2)).await.unwrap().map(|job| job.state), Some(State::Failed));
+    assert_eq!(store.fail(runs.id, 1, &failure, at(2)).await.unwrap().map(|job| job.state), Some(JobState::Failed));
 }
 
-/// Where the file may not grow any more, ended jobs can still be deleted.
+/// Ended jobs can be deleted when the file may not grow.
 #[tokio::test]
-async fn deleting_needs_no_room() {
+async fn deleting_works_in_a_full_database() {
     let Fixture { store, .. } = &limited(8).await;
     let mut second = 0;
     let error = loop {
@@ -171,10 +171,10 @@ async fn deleting_needs_no_room() {
         }
     };
     assert_eq!(error.unavailable(), Some(Unavailable::Full), "{error}");
-    assert_eq!(store.delete_for_room(false, 8).await.unwrap(), 8);
-    while store.delete_for_room(true, 8).await.unwrap() > 0 {}
+    assert_eq!(store.delete_for_size(false, 8).await.unwrap(), 8);
+    while store.delete_for_size(true, 8).await.unwrap() > 0 {}
     store.admit().await.unwrap();
-    store.give_back().await.unwrap();
+    store.release_space().await.unwrap();
     // What could not be written is written now.
     let left = store.claim_next(WorkClass::Single, at(second)).await.unwrap();
     if left.is_none() {
@@ -183,7 +183,7 @@ async fn deleting_needs_no_room() {
 }
 
 #[tokio::test]
-async fn kept_stages_make_room_first() {
+async fn the_stage_cache_is_bounded_by_a_quarter_of_the_limit() {
     let Fixture { store, .. } = &limited(8).await;
     for second in 0..10 {
         let hash = format!("{second}");

@@ -1,5 +1,6 @@
 use super::super::connect::MIGRATIONS;
 use super::*;
+use sqlx::migrate::Migrator;
 
 #[test]
 fn every_migration_file_is_embedded() {
@@ -31,4 +32,24 @@ async fn a_second_process_is_refused() {
     let fixture = fixture().await;
     let second = Store::open(&StoreConfig::at(fixture.directory.path().join("jobs.db"))).await;
     assert!(matches!(second, Err(OpenError::InUse(_))));
+}
+
+/// A result stored before rows were found by name has a byte offset in a column of its own, which an upgrade drops.
+#[tokio::test]
+async fn results_of_a_database_with_row_offsets_are_read_after_the_upgrade() {
+    let directory = tempfile::tempdir().unwrap();
+    let config = StoreConfig::at(directory.path().join("jobs.db"));
+    let before = MIGRATIONS.iter().filter(|step| step.version < 5).cloned().collect();
+    let store = Store::open_with(&config, &Migrator::with_migrations(before)).await.unwrap();
+    let job = running(&store, "a").await;
+    let body = "{\"sweep\":{\"points\":[]}}";
+    let insert = "INSERT INTO results (job_id, body, etag, input_hash, solver_version, points_at, points_n, points_digest) \
+                  VALUES ($1, $2, 'tag', 'a', 'test-1', 20, 2, 'digest')";
+    sqlx::query(insert).bind(job.id.to_string()).bind(body).execute(&store.writer).await.unwrap();
+    store.close().await;
+    drop(store);
+    let store = Store::open(&config).await.unwrap();
+    let rows = Some(RowsSummary { count: 2, digest: "digest".into() });
+    let expected = StoredResult { body: body.into(), etag: "tag".into(), rows };
+    assert_eq!(store.result(job.id).await.unwrap(), Some(expected));
 }

@@ -19,8 +19,8 @@ async fn samples_come_back_bit_for_bit() {
     let values = vec![1.0, -0.0, f64::MIN_POSITIVE, 1e308, f64::NAN, -3.25];
     let job = running(store, "a").await;
     let packed = PackedSeries::pack(&channel(values.clone())).unwrap();
-    let done = Completion { series: vec![packed], ..completion("a") };
-    store.succeed(job.id, 1, &done, at(2)).await.unwrap().unwrap();
+    let completed = Completion { series: vec![packed], ..completion("a") };
+    store.succeed(job.id, 1, &completed, at(2)).await.unwrap().unwrap();
     let entry = store.series_catalogue(job.id).await.unwrap().remove(0);
     assert_eq!((entry.n, entry.min, entry.max, entry.rms), (6, Some(-3.25), Some(1e308), Some(2.0)));
     let back = store.series(job.id, "a_x_left").await.unwrap().unwrap().unpack().unwrap();
@@ -33,8 +33,8 @@ async fn samples_come_back_bit_for_bit() {
 async fn a_reused_job_has_the_series_too() {
     let Fixture { store, .. } = &fixture().await;
     let source = running(store, "a").await;
-    let done = Completion { series: vec![PackedSeries::pack(&channel(vec![1.0])).unwrap()], ..completion("a") };
-    store.succeed(source.id, 1, &done, at(2)).await.unwrap().unwrap();
+    let completed = Completion { series: vec![PackedSeries::pack(&channel(vec![1.0])).unwrap()], ..completion("a") };
+    store.succeed(source.id, 1, &completed, at(2)).await.unwrap().unwrap();
     let copy = running(store, "a").await;
     let reuse = Completion { reused_from: Some(source.id), ..completion("a") };
     store.succeed(copy.id, 1, &reuse, at(3)).await.unwrap().unwrap();

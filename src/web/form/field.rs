@@ -1,8 +1,7 @@
-//! One field of the form, made from its declaration in the job document's schema.
+//! One field of the form, made from its declaration in the job document.
 
-use super::groups::{CONDITIONS, Condition, DERIVED};
-use super::is_at_or_in;
-use super::symbols::symbol;
+use herringbone_job::schema::{Condition, FieldDescription};
+use herringbone_job::unit::Unit;
 use serde_json::Value;
 
 /// What kind of input a field has; the page's script reads its value back accordingly.
@@ -52,16 +51,22 @@ pub struct Field {
     pub placeholder: &'static str,
     pub required: bool,
     /// Shown only while another field has one of these values.
-    pub condition: Option<&'static Condition>,
+    pub condition: Option<Condition>,
+    /// Section of the form.
+    pub group: &'static str,
+    /// Place among the fields that stand together.
+    pub order: i32,
 }
 
 impl Field {
-    /// A field from its schema; nothing for objects, whose fields are declared on their own.
-    pub fn new(pointer: &str, schema: &Value, required: bool, example: Option<&Value>) -> Option<Field> {
-        let derived = DERIVED.iter().find(|(place, _)| is_at_or_in(pointer, place)).map(|(_, meaning)| *meaning);
+    /// A field from its declaration; nothing for objects, whose fields are declared on their own.
+    pub fn new(description: &FieldDescription, example: Option<&Value>) -> Option<Field> {
+        let FieldDescription { pointer, schema, derived, .. } = description;
+        let derived = *derived;
         let default = if derived.is_some() { String::new() } else { text(&schema["default"]) };
         let value = example.map(text).unwrap_or_else(|| default.clone());
-        let declared_unit = schema["x-unit"].as_str().or(schema["items"]["x-unit"].as_str()).unwrap_or("1");
+        let unit = schema["x-unit"].as_str().or(schema["items"]["x-unit"].as_str()).and_then(Unit::named);
+        let unit = unit.unwrap_or(Unit::ONE);
         let placeholder = match derived {
             Some(meaning) => meaning,
             None if schema["description"].as_str().is_some_and(|help| help.contains("when null")) => "derived",
@@ -70,18 +75,20 @@ impl Field {
         Some(Field {
             id: format!("field{}", pointer.replace('/', "-")),
             pointer: pointer.to_owned(),
-            label: label(pointer, declared_unit),
+            label: label(pointer, unit),
             row: String::new(),
-            symbol: symbol(pointer),
+            symbol: description.symbol,
             help: help(schema),
-            range: range(schema, declared_unit),
-            unit: shown_unit(declared_unit),
-            control: control(pointer, schema, &value, derived)?,
+            range: range(schema, unit),
+            unit: unit.symbol,
+            control: control(description, &value)?,
             value,
             default,
             placeholder,
-            required,
-            condition: CONDITIONS.iter().find(|condition| is_at_or_in(pointer, condition.pointer)),
+            required: description.required,
+            condition: description.condition.clone(),
+            group: description.group,
+            order: description.order,
         })
     }
 
@@ -116,11 +123,12 @@ impl Field {
     }
 }
 
-fn control(pointer: &str, schema: &Value, value: &str, derived: Option<&str>) -> Option<Control> {
+fn control(description: &FieldDescription, value: &str) -> Option<Control> {
+    let FieldDescription { schema, labels, derived, .. } = description;
     if let Some(words) = schema["enum"].as_array() {
         let word = |word: &Value| {
             let word = text(word);
-            Choice { label: choice_label(pointer, &word), chosen: word == value, word }
+            Choice { label: choice_label(labels, &word), chosen: word == value, word }
         };
         let derived = derived.map(|meaning| Choice { word: String::new(), label: meaning.to_owned(), chosen: true });
         let words = words.iter().filter(|word| !word.is_null()).map(word);
@@ -140,28 +148,10 @@ fn control(pointer: &str, schema: &Value, value: &str, derived: Option<&str>) ->
     })
 }
 
-/// Words of the document that people would say otherwise: end of the field's pointer, word, label.
-const CHOICES: [(&str, &str, &str); 15] = [
-    ("/kind", "mesh", "mesh (contact, impact)"),
-    ("/kind", "response", "response (one point)"),
-    ("/kind", "sweep", "sweep (over inputs)"),
-    ("/mesh_stiffness/source", "ltca", "loaded tooth contact"),
-    ("/mesh_stiffness/source", "iso6336", "ISO 6336-1, closed form"),
-    ("/mesh_stiffness/fidelity", "fe", "finite elements"),
-    ("/mesh_stiffness/fidelity", "uniform", "uniform foundation"),
-    ("/mesh_force", "contact", "loaded contact"),
-    ("/mesh_force", "stiffness", "stiffness and impact (the source's)"),
-    ("/mesh_stiffness/law", "secant", "secant F/δ"),
-    ("/mesh_stiffness/law", "tangent", "tangent dF/dδ"),
-    ("/impact/source", "zhou2008", "Zhou (2008), unbuffered"),
-    ("/plane", "base", "base (consistent)"),
-    ("/plane", "pitch", "pitch (the source's)"),
-    ("/integrator", "runge_kutta_4", "Runge–Kutta 4"),
-];
-
-fn choice_label(pointer: &str, word: &str) -> String {
-    let found = CHOICES.iter().find(|(end, name, _)| pointer.ends_with(end) && *name == word);
-    found.map_or_else(|| word.replace('_', " "), |(.., label)| (*label).to_owned())
+/// The label of a word: its own, or the word.
+fn choice_label(labels: &[(&str, &str)], word: &str) -> String {
+    let own = labels.iter().find(|(name, _)| *name == word);
+    own.map_or_else(|| word.replace('_', " "), |(_, label)| (*label).to_owned())
 }
 
 /// The text of a value as it stands in an input: numbers as people write them, nothing for null.
@@ -180,16 +170,16 @@ fn number_text(number: f64) -> String {
     if size != 0.0 && !(1e-3..1e6).contains(&size) { format!("{number:e}") } else { number.to_string() }
 }
 
-fn range(schema: &Value, unit: &str) -> String {
+fn range(schema: &Value, unit: &Unit) -> String {
     let bounds = if schema["items"].is_object() { &schema["items"] } else { schema };
     // The axes of a sweep take what the swept field takes, which the server says.
-    if unit == "unit of the input" {
+    if unit.text == "unit of the input" {
         return String::new();
     }
     let (Some(minimum), Some(maximum)) = (bounds["minimum"].as_f64(), bounds["maximum"].as_f64()) else {
         return String::new();
     };
-    format!("{} to {} {}", number_text(minimum), number_text(maximum), shown_unit(unit)).trim_end().to_owned()
+    format!("{} to {} {}", number_text(minimum), number_text(maximum), unit.symbol).trim_end().to_owned()
 }
 
 /// The field's help; what the document calls null is an empty input here.
@@ -219,7 +209,7 @@ const SAID_BY_THE_SECTION: [&str; 14] = [
 const SPELLINGS: [(&str, &str); 3] = [("youngs", "Young's"), ("poissons", "Poisson's"), ("center", "centre")];
 
 /// "/design/pinion/tip_relief/amount_um" becomes "Tip relief, amount".
-fn label(pointer: &str, unit: &str) -> String {
+fn label(pointer: &str, unit: &Unit) -> String {
     let mut parts: Vec<String> = pointer
         .split('/')
         .filter(|part| !part.is_empty() && !SAID_BY_THE_SECTION.contains(part))
@@ -227,7 +217,7 @@ fn label(pointer: &str, unit: &str) -> String {
         .map(str::to_owned)
         .collect();
     if let Some(name) = parts.last_mut() {
-        *name = name.strip_suffix(unit_suffix(unit)).unwrap_or(name).to_owned();
+        *name = name.strip_suffix(unit.suffix).unwrap_or(name).to_owned();
     }
     let words = parts.join(", ").replace('_', " ");
     let words = SPELLINGS.iter().fold(words, |words, (name, spelling)| words.replace(name, spelling));
@@ -235,42 +225,13 @@ fn label(pointer: &str, unit: &str) -> String {
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 
-/// Declared unit, how field names end with it, how people write it.
-const UNITS: [(&str, &str, &str); 17] = [
-    ("1", "", ""),
-    ("mm", "_mm", "mm"),
-    ("um", "_um", "µm"),
-    ("deg", "_deg", "°"),
-    ("rad", "_rad", "rad"),
-    ("GPa", "_gpa", "GPa"),
-    ("kg/m3", "_kg_m3", "kg/m³"),
-    ("kg", "_kg", "kg"),
-    ("kg m2", "_kg_m2", "kg·m²"),
-    ("N", "_n", "N"),
-    ("N/um", "_n_per_um", "N/µm"),
-    ("N/(mm um)", "_n_per_mm_um", "N/(mm·µm)"),
-    ("N m", "_nm", "N·m"),
-    ("N m/rad", "_nm_per_rad", "N·m/rad"),
-    ("r/min", "_rpm", "r/min"),
-    ("SI", "", "SI units"),
-    ("unit of the input", "", "in its unit"),
-];
-
-fn unit_suffix(unit: &str) -> &'static str {
-    UNITS.iter().find(|(declared, ..)| *declared == unit).map_or("", |(_, suffix, _)| suffix)
-}
-
-fn shown_unit(unit: &str) -> &'static str {
-    UNITS.iter().find(|(declared, ..)| *declared == unit).map_or("", |(.., shown)| shown)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use herringbone_job::schema::field_descriptions;
 
     #[test]
     fn labels_are_words_without_the_unit() {
+        let label = |pointer, unit| label(pointer, Unit::named(unit).unwrap());
         assert_eq!(label("/design/normal_module_mm", "mm"), "Normal module");
         assert_eq!(label("/design/pinion/tip_relief/amount_um", "um"), "Tip relief, amount");
         assert_eq!(label("/model/impact/force_n", "N"), "Force");
@@ -278,25 +239,9 @@ mod tests {
     }
 
     #[test]
-    fn labels_of_choices_belong_to_words_of_fields() {
-        for (end, word, _) in CHOICES {
-            let fields = field_descriptions();
-            let mut schemas = fields.iter().filter(|field| field.pointer.ends_with(end)).map(|field| &field.schema);
-            let has =
-                |schema: &Value| schema["enum"].as_array().is_some_and(|words| words.iter().any(|known| known == word));
-            assert!(schemas.any(has), "{word} of {end}");
-        }
-        assert_eq!(choice_label("/analysis/method", "auto"), "auto");
-    }
-
-    #[test]
-    fn every_declared_unit_is_known_and_ends_the_name() {
-        for field in field_descriptions() {
-            let Some(unit) = field.schema["x-unit"].as_str() else { continue };
-            let known = UNITS.iter().find(|(declared, ..)| *declared == unit);
-            let (_, suffix, _) = known.unwrap_or_else(|| panic!("{unit} of {}", field.pointer));
-            assert!(field.pointer.ends_with(suffix), "{} in {unit}", field.pointer);
-        }
+    fn words_have_the_labels_of_their_declaration() {
+        assert_eq!(choice_label(&[("fe", "finite elements")], "fe"), "finite elements");
+        assert_eq!(choice_label(&[], "apex_leading"), "apex leading");
     }
 
     #[test]

@@ -1,13 +1,12 @@
-//! The design form, built from the job document's declarations and the plan in [`groups`].
+//! The design form, built from the job document's declarations and the sections in [`groups`].
 
 mod field;
 mod groups;
-mod symbols;
 
 pub use field::{Control, Field};
 
-use groups::LayoutPlan;
-use herringbone_job::schema::field_descriptions;
+use groups::{BlockPlan, GroupPlan, LayoutPlan};
+use herringbone_job::schema::{FieldDescription, field_descriptions};
 use serde_json::Value;
 use std::sync::LazyLock;
 
@@ -86,44 +85,25 @@ fn all_fields() -> Vec<Field> {
     let example: Value = serde_json::from_str(EXAMPLE).unwrap_or_default();
     let mut fields = Vec::new();
     for description in field_descriptions() {
-        let pointer = description.pointer.as_str();
-        if let Some(name) = pointer.strip_prefix("/axes/*") {
-            for axis in 0..groups::AXES {
-                let pointer = format!("/axes/{axis}{name}");
-                fields.extend(Field::new(&pointer, &description.schema, false, example.pointer(&pointer)));
-            }
-        } else if pointer != "/axes" && !pointer.contains("/*") {
-            fields.extend(Field::new(pointer, &description.schema, description.required, example.pointer(pointer)));
+        if let Some(name) = description.pointer.strip_prefix("/axes/*") {
+            // No axis is needed, so none of its fields is.
+            let of_axis = |axis| FieldDescription {
+                pointer: format!("/axes/{axis}{name}"),
+                required: false,
+                ..description.clone()
+            };
+            let axes = (0..groups::AXES).map(of_axis);
+            fields.extend(axes.filter_map(|axis| Field::new(&axis, example.pointer(&axis.pointer))));
+        } else if description.pointer != "/axes" && !description.pointer.contains("/*") {
+            fields.extend(Field::new(&description, example.pointer(&description.pointer)));
         }
     }
     fields
 }
 
-/// Puts each field where the plan has it; what the plan does not know stands in a section of its own at the end.
+/// Puts each field in the section of its declaration; a section that is not known here stands at the end.
 fn plan(mut fields: Vec<Field>) -> Vec<Group> {
-    let mut planned: Vec<Group> = groups::GROUPS
-        .iter()
-        .map(|group| Group {
-            id: group.id,
-            title: group.title,
-            short: group.short,
-            help: group.help,
-            open: group.open,
-            nothing: group.nothing,
-            blocks: group
-                .blocks
-                .iter()
-                .map(|block| Block {
-                    title: block.title,
-                    folded: block.folded,
-                    layout: match &block.layout {
-                        LayoutPlan::Fields(pointers) => Layout::Fields(take(&mut fields, pointers)),
-                        LayoutPlan::Table { columns, names } => table(&mut fields, columns, names),
-                    },
-                })
-                .collect(),
-        })
-        .collect();
+    let mut planned: Vec<Group> = groups::GROUPS.iter().map(|group| section(group, &mut fields)).collect();
     if !fields.is_empty() {
         let blocks = vec![Block { title: "", folded: false, layout: Layout::Fields(fields) }];
         planned.push(Group { id: "other", title: "Other", short: "Other", help: "", open: false, nothing: "", blocks });
@@ -131,15 +111,41 @@ fn plan(mut fields: Vec<Field>) -> Vec<Group> {
     planned
 }
 
-/// A row for each field, in the order declared in the first column's object.
-fn table(fields: &mut Vec<Field>, columns: &[(&'static str, &str)], names: &[&str]) -> Layout {
-    let mut taken: Vec<Vec<Field>> = columns
-        .iter()
-        .map(|(_, object)| {
-            let pointers: Vec<String> = names.iter().map(|name| format!("{object}/{name}")).collect();
-            take(fields, &pointers)
-        })
-        .collect();
+/// A section with its fields taken out of `fields`: each stands in the block whose object is nearest around it.
+fn section(group: &GroupPlan, fields: &mut Vec<Field>) -> Group {
+    let mut objects: Vec<&str> = group.blocks.iter().flat_map(BlockPlan::objects).collect();
+    objects.sort_by_key(|object| std::cmp::Reverse(object.len()));
+    let nearest = |field: &Field| objects.iter().find(|object| is_at_or_in(&field.pointer, object)).copied();
+    let mut take = |object: &str| {
+        let mut taken: Vec<Field> =
+            fields.extract_if(.., |field| field.group == group.id && nearest(field) == Some(object)).collect();
+        taken.sort_by_key(|field| field.order);
+        taken
+    };
+    let blocks = group.blocks.iter().map(|block| Block {
+        title: block.title,
+        folded: block.folded,
+        layout: match block.layout {
+            LayoutPlan::Fields(object) => Layout::Fields(take(object)),
+            LayoutPlan::Table(columns) => {
+                let taken = columns.iter().map(|(_, object)| take(object)).collect();
+                Layout::Table { columns: columns.iter().map(|(title, _)| *title).collect(), rows: rows(taken, columns) }
+            }
+        },
+    });
+    Group {
+        id: group.id,
+        title: group.title,
+        short: group.short,
+        help: group.help,
+        open: group.open,
+        nothing: group.nothing,
+        blocks: blocks.collect(),
+    }
+}
+
+/// A row for each field of the first column's object.
+fn rows(mut taken: Vec<Vec<Field>>, columns: &[(&'static str, &str)]) -> Vec<Row> {
     let count = taken.first().map_or(0, Vec::len);
     let mut rows = Vec::with_capacity(count);
     for _ in 0..count {
@@ -157,15 +163,7 @@ fn table(fields: &mut Vec<Field>, columns: &[(&'static str, &str)], names: &[&st
             .collect();
         rows.push(Row { label, cells });
     }
-    Layout::Table { columns: columns.iter().map(|(title, _)| *title).collect(), rows }
-}
-
-fn take(fields: &mut Vec<Field>, pointers: &[impl AsRef<str>]) -> Vec<Field> {
-    let mut taken = Vec::new();
-    for pointer in pointers {
-        taken.extend(fields.extract_if(.., |field| is_at_or_in(&field.pointer, pointer.as_ref())));
-    }
-    taken
+    rows
 }
 
 /// Whether `pointer` is `place` or lies in the object at `place`.
@@ -178,38 +176,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_plan_places_every_field() {
+    fn every_field_has_a_section_and_every_block_a_field() {
         let unplaced: Vec<_> = groups().iter().filter(|group| group.id == "other").collect();
         let names = unplaced.iter().flat_map(|group| &group.blocks).flat_map(Block::fields);
         assert_eq!(names.map(|field| field.pointer.as_str()).collect::<Vec<_>>(), Vec::<&str>::new());
-    }
-
-    #[test]
-    fn the_plan_names_only_fields_that_exist() {
+        let mut placed = 0;
         for group in groups() {
             for block in &group.blocks {
                 assert!(!block.fields().is_empty(), "nothing in {} / {}", group.title, block.title);
+                placed += block.fields().len();
             }
         }
         let fields = all_fields();
-        let exists = |place: &str| fields.iter().any(|field| is_at_or_in(&field.pointer, place));
-        for block in groups::GROUPS.iter().flat_map(|group| group.blocks) {
-            match &block.layout {
-                LayoutPlan::Fields(pointers) => pointers.iter().for_each(|place| assert!(exists(place), "{place}")),
-                LayoutPlan::Table { columns, names } => {
-                    for (object, name) in
-                        columns.iter().flat_map(|(_, object)| names.iter().map(move |name| (object, name)))
-                    {
-                        assert!(exists(&format!("{object}/{name}")), "{object}/{name}");
-                    }
-                }
+        assert_eq!(placed, fields.len());
+        for condition in fields.iter().filter_map(|field| field.condition.as_ref()) {
+            let other = fields.iter().find(|field| field.pointer == condition.on);
+            let Some(Field { control: Control::Choice(choices), .. }) = other else { panic!("{}", condition.on) };
+            for word in condition.values.split(' ') {
+                assert!(choices.iter().any(|choice| choice.word == word), "{word} of {}", condition.on);
             }
-        }
-        for condition in groups::CONDITIONS {
-            assert!(exists(condition.pointer) && exists(condition.on), "{}", condition.pointer);
-        }
-        for (place, _) in groups::DERIVED {
-            assert!(exists(place), "{place}");
         }
     }
 

@@ -5,7 +5,7 @@ use super::*;
 #[tokio::test]
 async fn event_streams_are_bounded_and_waits_give_way() {
     let connections = ConnectionConfig { max_connections: 4, ..ConnectionConfig::default() };
-    let app = app_reached(HttpConfig { connections, ..HttpConfig::default() }).await;
+    let app = app_with_http(HttpConfig { connections, ..HttpConfig::default() }).await;
     app.solver.breakpoints.hold("solve");
     let path = app.submit(&document()).await;
     app.solver.breakpoints.reached("solve", 1).await;

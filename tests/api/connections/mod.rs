@@ -32,7 +32,7 @@ struct Served {
 async fn served(http: HttpConfig) -> Served {
     let listener = TcpListener::bind("127.0.0.1:0").await.expect("a port");
     let address = listener.local_addr().expect("an address");
-    let app = app_reached(http.clone()).await;
+    let app = app_with_http(http.clone()).await;
     let (stop, stopped) = oneshot::channel::<()>();
     let (router, jobs) = (app.router.clone(), app.jobs.clone());
     let server = tokio::spawn(async move {

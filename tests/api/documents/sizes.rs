@@ -1,4 +1,5 @@
-//! Bodies of up to a megabyte that are as unlike a document as they can be: each gets the right answer, and a short one.
+//! Bodies of up to a megabyte that are as unlike a document as they can be: each gets the right answer, and a short
+//! one.
 
 use super::{JSON, with};
 use crate::support::*;

@@ -1,7 +1,8 @@
 //! Names and labels are the clients' words: markup in them stays text.
 //!
-//! Pages are shells without data: their scripts fetch it as JSON and set it as text, never as markup, which a test over the
-//! scripts holds. What a spreadsheet makes of a cell that starts with `=` is out of scope: the one CSV has numbers only.
+//! Pages are shells without data: their scripts fetch it as JSON and set it as text, never as markup, which a test over
+//! the scripts holds. What a spreadsheet makes of a cell that starts with `=` is out of scope: the one CSV has numbers
+//! only.
 
 use super::*;
 use std::path::Path;

@@ -7,7 +7,7 @@ use herringbone::api::Access;
 async fn app_with_hosts(names: &[&str]) -> App {
     let allowed_hosts = names.iter().map(|name| name.parse().expect("a name")).collect();
     let access = AccessConfig { allowed_hosts, ..AccessConfig::default() };
-    app_reached(HttpConfig { access, ..HttpConfig::default() }).await
+    app_with_http(HttpConfig { access, ..HttpConfig::default() }).await
 }
 
 #[tokio::test]

@@ -20,7 +20,7 @@ pub async fn guarded() -> App {
     let file = directory.path().join("token");
     std::fs::write(&file, format!("{TOKEN}\n")).expect("written");
     let access = AccessConfig { token_file: Some(file), ..AccessConfig::default() };
-    app_reached(HttpConfig { access, ..HttpConfig::default() }).await
+    app_with_http(HttpConfig { access, ..HttpConfig::default() }).await
 }
 
 /// The header of someone who has the token.

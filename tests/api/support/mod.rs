@@ -17,7 +17,7 @@ pub use solver::ScriptedSolver;
 use axum::Router;
 use axum::body::Body;
 use axum::http::{Method, Request};
-use herringbone::api::{self, Access, AppState, HttpConfig, LoginPage, Pages};
+use herringbone::api::{self, Access, AppState, HttpConfig, LoginRenderer, Pages};
 use herringbone::store::{RetentionConfig, Store, StoreConfig};
 use herringbone::web;
 use herringbone::work::{Jobs, Solver, WorkConfig};
@@ -48,14 +48,14 @@ pub async fn app_with(work: WorkConfig) -> App {
     start(tempfile::tempdir().expect("temporary directory"), work, HttpConfig::default()).await
 }
 
-/// A service whose patience with requests is over at once.
+/// A service with a request timeout of zero.
 pub async fn impatient_app() -> App {
     let http = HttpConfig { request_timeout_s: 0, ..HttpConfig::default() };
     start(tempfile::tempdir().expect("temporary directory"), small(), http).await
 }
 
-/// A service that is reached in another way than by default.
-pub async fn app_reached(http: HttpConfig) -> App {
+/// A service with these HTTP settings.
+pub async fn app_with_http(http: HttpConfig) -> App {
     start(tempfile::tempdir().expect("temporary directory"), small(), http).await
 }
 
@@ -64,14 +64,14 @@ pub async fn limited_app(max_database_mb: u32) -> App {
     let directory = tempfile::tempdir().expect("temporary directory");
     let retention = RetentionConfig { keep_days: None, max_database_mb: Some(max_database_mb) };
     let store = StoreConfig { retention, ..StoreConfig::at(directory.path().join("jobs.db")) };
-    start_over(&store, directory, small(), HttpConfig::default()).await
+    start_with_store(&store, directory, small(), HttpConfig::default()).await
 }
 
 async fn start(directory: TempDir, work: WorkConfig, http: HttpConfig) -> App {
-    start_over(&StoreConfig::at(directory.path().join("jobs.db")), directory, work, http).await
+    start_with_store(&StoreConfig::at(directory.path().join("jobs.db")), directory, work, http).await
 }
 
-async fn start_over(store: &StoreConfig, directory: TempDir, work: WorkConfig, http: HttpConfig) -> App {
+async fn start_with_store(store: &StoreConfig, directory: TempDir, work: WorkConfig, http: HttpConfig) -> App {
     let solver = Arc::new(ScriptedSolver::default());
     let store = Store::open(store).await.expect("store opens");
     let dyn_solver: Arc<dyn Solver> = solver.clone();
@@ -81,7 +81,7 @@ async fn start_over(store: &StoreConfig, directory: TempDir, work: WorkConfig, h
     let pages = Pages {
         routes: web::routes(access.has_token()).route("/panics", axum::routing::get(panics)),
         not_found: axum::routing::any(async || (axum::http::StatusCode::NOT_FOUND, axum::response::Html("no page"))),
-        login: LoginPage(|notice| web::login(notice.status, notice.next, notice.trouble)),
+        login: LoginRenderer(|notice| web::login(notice.status, notice.next, notice.error)),
     };
     let router = api::router(state, &http, &access, pages);
     App { router, jobs, solver, directory }

@@ -5,26 +5,27 @@ use herringbone::work::Solver;
 use herringbone_job::DocumentError;
 use herringbone_job::document::{JobDocument, JobKind};
 use herringbone_job::result::{JobResult, ReusedStage, SweepPoint, SweepResult};
-use herringbone_job::study::{self, Channel, CheckReport, Outcome, SolveContext, SolveError, Stage};
+use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveContext, SolveError, Stage};
 use herringbone_physics::watch::Canceled;
 
-/// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every calculation passes the
-/// breakpoint `solve`, and the one of its own name.
+/// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every
+/// calculation passes the breakpoint `solve`, and the one of its own name.
 #[derive(Default)]
 pub struct ScriptedSolver {
     pub breakpoints: Breakpoints,
 }
 
 impl Solver for ScriptedSolver {
-    fn check(&self, document: &JobDocument) -> Result<CheckReport, DocumentError> {
-        study::check(document)
+    fn check(&self, document: JobDocument) -> Result<CheckedJob, DocumentError> {
+        CheckedJob::new(document)
     }
 
     fn input_hash(&self, document: &JobDocument) -> String {
         study::input_hash(document)
     }
 
-    fn solve(&self, document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
+    fn solve(&self, job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError> {
+        let document = job.document();
         let name = document.name.as_deref().unwrap_or("unnamed");
         (context.progress)(Stage::Mesh, 0.25);
         for point in ["solve", name] {

@@ -3,15 +3,16 @@
 use std::collections::BTreeMap;
 
 use herringbone_physics::dynamics::{
-    Couplings, HalfParameters, Harmonic, Impact, ImpactActsOn, Parameters, Spring, Stiffness, mesh_damping_n_s_per_m,
+    Couplings, HalfParameters, Harmonic, ImpactActsOn, ImpactExcitation, Parameters, Spring, Stiffness,
+    mesh_damping_n_s_per_m,
 };
 use serde::Deserialize;
 
-/// Where the reference stands, from the crate's folder.
+/// Path of the reference data, from the crate's folder.
 pub const REFERENCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/dynamics_reference.json");
 
 /// 12 displacements (m, rad), then 12 velocities; per half y_p, z_p, θ_p, y_g, z_g, θ_g; SI.
-pub type SourceState = [f64; 24];
+pub type PhysicalState = [f64; 24];
 
 #[derive(Deserialize)]
 struct Document {
@@ -52,23 +53,23 @@ pub struct Numbers {
 
 /// One reference case.
 #[derive(Clone)]
-pub struct Case {
+pub struct ReferenceCase {
     pub name: String,
     pub common: Common,
     pub numbers: Numbers,
-    pub start: SourceState,
-    states: BTreeMap<u64, SourceState>,
+    pub start: PhysicalState,
+    states: BTreeMap<u64, PhysicalState>,
 }
 
-fn state(values: &[f64]) -> SourceState {
+fn state(values: &[f64]) -> PhysicalState {
     values.try_into().expect("a state has 24 numbers")
 }
 
 /// Cases A, B and C.
-pub fn all() -> Vec<Case> {
+pub fn all() -> Vec<ReferenceCase> {
     let text = std::fs::read_to_string(REFERENCE).expect("tests/data/dynamics_reference.json");
     let document: Document = serde_json::from_str(&text).expect("the reference has the known form");
-    let of = |(name, numbers): (String, Numbers)| Case {
+    let of = |(name, numbers): (String, Numbers)| ReferenceCase {
         name,
         common: document.common.clone(),
         start: state(&numbers.initial_state),
@@ -78,7 +79,7 @@ pub fn all() -> Vec<Case> {
     document.cases.into_iter().map(of).collect()
 }
 
-impl Case {
+impl ReferenceCase {
     pub fn mesh_frequency_hz(&self) -> f64 {
         2000.0 / 60.0 * 17.0
     }
@@ -88,10 +89,10 @@ impl Case {
         mesh_damping_n_s_per_m(self.numbers.mesh_damping_ratio, c.mean_stiffness_n_per_m, c.equivalent_mass_kg)
     }
 
-    /// Error after `periods` (1, 5, 20 …): the largest difference from the reference among the displacements, relative to the largest of
-    /// the reference's, or among the velocities likewise, whichever is greater. Of each half: y_p, z_p, y_g, z_g and
-    /// x = y_p − y_g + R_p θ_p − R_g θ_g, through which alone the rotations act; rigid rotation takes no part.
-    pub fn error(&self, periods: u64, found: &SourceState) -> f64 {
+    /// Error after `periods` (1, 5, 20 …): the larger of the greatest difference among the displacements relative to
+    /// the largest of the reference, and the same of the velocities. Of each half: y_p, z_p, y_g, z_g and x = y_p − y_g
+    /// + R_p θ_p − R_g θ_g, by which alone the rotations act; rigid rotation is excluded.
+    pub fn error(&self, periods: u64, found: &PhysicalState) -> f64 {
         let reference = &self.states[&periods];
         let (rp, rg) = (self.common.pinion_radius_m, self.common.gear_radius_m);
         let lengths = |q: &[f64]| [q[0], q[1], q[3], q[4], q[0] - q[3] + rp * q[2] - rg * q[5]];
@@ -113,7 +114,7 @@ impl Case {
         worst
     }
 
-    /// The case as the product takes it.
+    /// Parameters of the case for herringbone.
     pub fn parameters(&self) -> Parameters {
         let (m, c) = (&self.common, &self.numbers);
         let z = m.support_damping_ratio;
@@ -135,7 +136,7 @@ impl Case {
                 harmonics: c.amplitudes.iter().zip(&m.phases_rad).map(harmonic).collect(),
             },
             mesh_damping_n_s_per_m: self.mesh_damping_n_s_per_m(),
-            impact: Some(Impact::HalfSine {
+            impact: Some(ImpactExcitation::HalfSine {
                 force_n: m.impact_force_n,
                 duration_mesh_periods: m.impact_duration_mesh_periods,
                 start_mesh_periods: 0.0,

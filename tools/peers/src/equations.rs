@@ -1,25 +1,27 @@
-//! The right-hand side that the other programs are given: the twelve equations as 24 of first order, scaled so that one tolerance fits all.
+//! Right-hand side for the other programs: the twelve equations as 24 of first order, scaled so that one tolerance fits
+//! all.
 //!
-//! Time in mesh periods. Displacements in units of [`LENGTH_M`], rotations as arcs R θ; velocities in [`LENGTH_M`] times the mesh's own
-//! frequency √(k/m_e), so that both kinds are of order one. 12 displacements, then 12 velocities, in the source's order.
+//! Time in mesh periods. Displacements in units of [`LENGTH_M`], rotations as arcs R θ; velocities in [`LENGTH_M`]
+//! times the frequency of the mesh √(k/m_e), so that both are of order one. 12 displacements, then 12 velocities, in
+//! the order of the reference.
 
 use std::f64::consts::{PI, TAU};
 
-use crate::case::{Case, SourceState};
+use crate::case::{PhysicalState, ReferenceCase};
 
-/// The size of the vibration in the reference cases.
+/// Size of the vibration in the reference cases.
 const LENGTH_M: f64 = 5e-6;
 
 pub type Y = [f64; 24];
 
-/// A spring and a damper, over the mass they act on, in scaled units.
+/// Spring and damper over the mass they act on, in scaled units.
 #[derive(Clone, Copy)]
-struct Rate {
+struct SpringRate {
     k: f64,
     c: f64,
 }
 
-impl Rate {
+impl SpringRate {
     #[inline(always)]
     fn of(self, x: f64, v: f64) -> f64 {
         self.k * x + self.c * v
@@ -27,8 +29,8 @@ impl Rate {
 }
 
 #[derive(Clone)]
-pub struct Equations {
-    /// Velocity to change per mesh period; also of accelerations.
+pub struct ScaledEquations {
+    /// Factor from velocity to change per mesh period; also from acceleration.
     rate: f64,
     /// Harmonics a cos φ and a sin φ of k/k_mean.
     harmonics: [[f64; 2]; 4],
@@ -41,23 +43,23 @@ pub struct Equations {
     duration: f64,
     /// T/R over k_mean.
     load: f64,
-    /// Force over k_mean to acceleration: lateral and axial of pinion and gear, arcs of pinion and gear.
+    /// Factors from force over k_mean to acceleration: lateral and axial of pinion and gear, arcs of pinion and gear.
     mobility: [f64; 4],
-    pinion_lateral: Rate,
-    gear_lateral: Rate,
-    pinion_axial_other: Rate,
-    gear_axial: Rate,
-    gear_axial_other: Rate,
-    /// SI over scaled, state by state.
+    pinion_lateral: SpringRate,
+    gear_lateral: SpringRate,
+    pinion_axial_other: SpringRate,
+    gear_axial: SpringRate,
+    gear_axial_other: SpringRate,
+    /// SI units over scaled units of each state.
     units: Y,
 }
 
-impl Equations {
-    pub fn new(case: &Case) -> Self {
+impl ScaledEquations {
+    pub fn new(case: &ReferenceCase) -> Self {
         let (m, n) = (&case.common, &case.numbers);
         let k = m.mean_stiffness_n_per_m;
         let omega = (k / m.equivalent_mass_kg).sqrt();
-        let rate = |stiffness: f64, mass: f64| Rate {
+        let rate = |stiffness: f64, mass: f64| SpringRate {
             k: stiffness / (mass * omega * omega),
             c: 2.0 * m.support_damping_ratio * (stiffness * mass).sqrt() / (mass * omega),
         };
@@ -95,11 +97,11 @@ impl Equations {
         }
     }
 
-    pub fn scaled(&self, state: &SourceState) -> Y {
+    pub fn scaled(&self, state: &PhysicalState) -> Y {
         std::array::from_fn(|i| state[i] / self.units[i])
     }
 
-    pub fn source(&self, y: &[f64]) -> SourceState {
+    pub fn physical(&self, y: &[f64]) -> PhysicalState {
         std::array::from_fn(|i| y[i] * self.units[i])
     }
 
@@ -124,7 +126,7 @@ impl Equations {
         (k, pulse)
     }
 
-    /// The accelerations of half j from the tooth force over k_mean and the other force along the mesh.
+    /// Accelerations of half j from the tooth force and the tangential force, over k_mean.
     #[inline(always)]
     fn half(&self, j: usize, x: &[f64], v: &[f64], force: f64, along: f64, out: &mut [f64]) {
         let (i, o) = (6 * j, 6 - 6 * j);
@@ -188,11 +190,11 @@ impl Equations {
 mod tests {
     use super::*;
 
-    /// Inside each stretch between changes of contact the equations are linear: differences are exact but for rounding.
+    /// Between changes of contact the equations are linear: differences are exact except for rounding.
     #[test]
     fn the_jacobian_is_the_derivative() {
         for case in crate::case::all() {
-            let equations = Equations::new(&case);
+            let equations = ScaledEquations::new(&case);
             let y = equations.scaled(&case.start);
             for column in 0..24 {
                 let mut d = [0.0; 24];

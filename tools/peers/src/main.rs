@@ -1,11 +1,12 @@
 //! Run time against error of other programs and ours, on the reference cases of the equations of motion, in one run.
 //!
-//! `scripts/peers` builds and starts it. Arguments: `--python PATH` (SciPy and heyoka are reached through it; without it, not at all), `--plots FOLDER` (draws peers_*.svg
-//! there), `--rounds N`. The tables go to standard output as Markdown.
+//! `scripts/peers` builds and starts it. Arguments: `--python PATH` (interpreter for SciPy and heyoka; without it they
+//! are left out), `--plots FOLDER` (draws peers_*.svg there), `--rounds N`. The tables go to standard output as
+//! Markdown.
 //!
-//! Everybody follows the motion through 20 mesh periods from the reference's start, on one thread. The time is the processor's, with the
-//! setting up, per mesh period; the error is [`case::Case::error`] after 20 periods, in the chaotic case B after 5 (later
-//! the motion itself multiplies any error).
+//! Every method integrates 20 mesh periods from the reference's start, on one thread. The time is processor time per
+//! mesh period, set-up included; the error is [`case::ReferenceCase::error`] after 20 periods, in the chaotic case B
+//! after 5, because the motion itself multiplies later errors.
 
 mod case;
 mod equations;
@@ -40,7 +41,7 @@ fn arguments() -> Result<Arguments, String> {
 
 fn run() -> Result<(), String> {
     let arguments = arguments()?;
-    // Everything on this thread, whose processor time is measured.
+    // All work on this thread, since its processor time is measured.
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global().map_err(|e| e.to_string())?;
     let cases = case::all();
     let mut methods = methods::all(arguments.python.as_deref());

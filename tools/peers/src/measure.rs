@@ -1,26 +1,27 @@
-//! Errors and median times of every method on every case over its tolerances, the methods taking turns.
+//! Errors and median times of all methods on all cases and tolerances, measured in rounds.
 
 use std::hint::black_box;
-use std::time::{Duration, Instant};
 
-use crate::case::Case;
-use crate::methods::{Method, Whose};
+use crate::case::ReferenceCase;
+use crate::methods::{Method, Origin};
+use herringbone_tools::statistics::median;
+use herringbone_tools::stopwatch::Stopwatch;
 
 /// Mesh periods of a run.
 pub const PERIODS: u64 = 20;
 
-/// A shorter run than this is repeated within its turn, s.
+/// Shortest time of a measurement, s; shorter runs are repeated within it.
 const SHORTEST_TURN_S: f64 = 1e-3;
 
-/// SciPy takes part in so many rounds: its runs take up to a second.
+/// Rounds of SciPy, whose runs take up to a second.
 const SCIPY_ROUNDS: usize = 3;
 
-/// After how many periods the error of a case is taken.
-pub fn error_periods(case: &Case) -> u64 {
+/// Number of periods after which the error of a case is taken.
+pub fn error_periods(case: &ReferenceCase) -> u64 {
     if case.name == "B" { 5 } else { PERIODS }
 }
 
-/// One tolerance.
+/// Results at one tolerance.
 pub struct Rung {
     pub tolerance: f64,
     pub error: f64,
@@ -31,19 +32,19 @@ pub struct Rung {
     times: Vec<f64>,
 }
 
-/// One method on one case.
+/// Results of one method on one case.
 pub struct Ladder {
     pub case: String,
     pub name: String,
-    pub whose: Whose,
-    /// Operating points side by side.
+    pub origin: Origin,
+    /// Operating points integrated side by side.
     pub points: usize,
     pub rungs: Vec<Rung>,
 }
 
 impl Ladder {
-    /// Time per mesh period at which the error falls to `error`, interpolated between rungs on logarithmic scales; the error at a time is the
-    /// least reached by then. None if it is not reached.
+    /// Time per mesh period at which the error falls to `error`, interpolated between tolerances on logarithmic scales;
+    /// the error at a time is the least reached by then. None if it is not reached.
     pub fn seconds_at(&self, error: f64) -> Option<f64> {
         let mut by_time: Vec<&Rung> = self.rungs.iter().collect();
         by_time.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
@@ -67,10 +68,10 @@ impl Ladder {
     }
 }
 
-/// Everything measured. What fails at a tolerance is left out there, and said on standard error.
-pub fn all(cases: &[Case], methods: &mut [Box<dyn Method>], rounds: usize) -> Vec<Ladder> {
+/// All measurements. A tolerance at which a method fails is left out and reported on standard error.
+pub fn all(cases: &[ReferenceCase], methods: &mut [Box<dyn Method>], rounds: usize) -> Vec<Ladder> {
     let mut ladders = Vec::new();
-    // Which method, which case, for each ladder.
+    // Indices of method and case of each ladder.
     let mut of = Vec::new();
     for (m, method) in methods.iter_mut().enumerate() {
         for (c, case) in cases.iter().enumerate() {
@@ -86,7 +87,7 @@ pub fn all(cases: &[Case], methods: &mut [Box<dyn Method>], rounds: usize) -> Ve
             ladders.push(Ladder {
                 case: case.name.clone(),
                 name: method.name(),
-                whose: method.whose(),
+                origin: method.origin(),
                 points: method.points(),
                 rungs,
             });
@@ -96,10 +97,10 @@ pub fn all(cases: &[Case], methods: &mut [Box<dyn Method>], rounds: usize) -> Ve
     let turns: Vec<(usize, usize)> =
         ladders.iter().enumerate().flat_map(|(l, ladder)| (0..ladder.rungs.len()).map(move |r| (l, r))).collect();
     for round in 0..rounds {
-        // Each round begins with somebody else.
+        // Each round begins with another measurement.
         let first = round * turns.len() / rounds;
         for &(l, r) in turns[first..].iter().chain(&turns[..first]) {
-            if ladders[l].whose == Whose::Scipy && round >= SCIPY_ROUNDS {
+            if ladders[l].origin == Origin::Scipy && round >= SCIPY_ROUNDS {
                 continue;
             }
             let (m, c) = of[l];
@@ -108,13 +109,13 @@ pub fn all(cases: &[Case], methods: &mut [Box<dyn Method>], rounds: usize) -> Ve
         eprintln!("round {} of {rounds}", round + 1);
     }
     for rung in ladders.iter_mut().flat_map(|l| &mut l.rungs) {
-        rung.seconds = median(&mut rung.times) / PERIODS as f64;
+        rung.seconds = median(rung.times.drain(..)) / PERIODS as f64;
     }
     ladders
 }
 
-/// The errors at a tolerance.
-fn rung(method: &mut dyn Method, case: &Case, tolerance: f64) -> Result<Rung, String> {
+/// Errors at a tolerance.
+fn rung(method: &mut dyn Method, case: &ReferenceCase, tolerance: f64) -> Result<Rung, String> {
     let run = method.run(case, tolerance, PERIODS)?;
     let late_error = case.error(PERIODS, &run.state);
     let error = match error_periods(case) {
@@ -124,11 +125,11 @@ fn rung(method: &mut dyn Method, case: &Case, tolerance: f64) -> Result<Rung, St
     Ok(Rung { tolerance, error, late_error, seconds: f64::INFINITY, times: Vec::new() })
 }
 
-/// One time more. What is short is done once for nothing and then often enough.
-fn turn(method: &mut dyn Method, case: &Case, rung: &mut Rung) {
+/// Adds a measurement. A short run is done once without measuring and then repeated.
+fn turn(method: &mut dyn Method, case: &ReferenceCase, rung: &mut Rung) {
     let mut runs = |count: usize| {
         let watch = Stopwatch::start();
-        // Deterministic: what went well the first time does again.
+        // Deterministic: a run that succeeded once succeeds again.
         let elsewhere =
             (0..count).filter_map(|_| black_box(method.run(case, rung.tolerance, PERIODS)).ok()?.seconds).sum();
         let here = watch.seconds();
@@ -137,37 +138,4 @@ fn turn(method: &mut dyn Method, case: &Case, rung: &mut Rung) {
     let first = runs(1);
     let count = (SHORTEST_TURN_S / first.max(1e-6)).ceil();
     rung.times.push(if count > 1.0 { runs(count as usize) } else { first });
-}
-
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
-}
-
-/// Time that this thread spent computing. On Linux its processor time, which other programs on the machine do not lengthen by taking turns;
-/// elsewhere the time that passed.
-struct Stopwatch {
-    begin: Instant,
-    spent: Option<Duration>,
-}
-
-impl Stopwatch {
-    fn start() -> Self {
-        Self { spent: spent(), begin: Instant::now() }
-    }
-
-    fn seconds(&self) -> f64 {
-        let passed = self.begin.elapsed();
-        match (self.spent, spent()) {
-            (Some(before), Some(now)) => now.saturating_sub(before).as_secs_f64(),
-            _ => passed.as_secs_f64(),
-        }
-    }
-}
-
-/// Processor time of the thread; the kernel brings its count up to date when the thread offers its turn.
-fn spent() -> Option<Duration> {
-    std::thread::yield_now();
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    text.split_whitespace().next()?.parse().ok().map(Duration::from_nanos)
 }

@@ -1,19 +1,19 @@
-//! The tables, as Markdown.
+//! Markdown tables of the results.
 
 use std::fmt::Write;
 
-use crate::case::Case;
+use crate::case::ReferenceCase;
 use crate::measure::{Ladder, PERIODS, error_periods};
-use crate::methods::Whose;
+use crate::methods::Origin;
 
-/// The error at which times are compared.
+/// Error at which times are compared.
 const COMPARED: f64 = 1e-6;
 
-/// Ends the name of a method that is begun afresh at the edges of the impact.
+/// Suffix of the name of a method that is restarted at the edges of the impact.
 pub const RESTARTED: &str = ", restarted";
 
-/// The ladders of a case, of those that were run both ways the faster at the compared error only.
-pub fn better<'a>(case: &Case, ladders: &'a [Ladder]) -> Vec<&'a Ladder> {
+/// Ladders of a case; of methods that were run both ways the faster one at the compared error only.
+pub fn better<'a>(case: &ReferenceCase, ladders: &'a [Ladder]) -> Vec<&'a Ladder> {
     let of_case = || ladders.iter().filter(|l| l.case == case.name);
     let time = |l: &Ladder| l.seconds_at(COMPARED).unwrap_or(f64::INFINITY);
     let other = |l: &Ladder| match l.name.strip_suffix(RESTARTED) {
@@ -29,7 +29,7 @@ pub fn better<'a>(case: &Case, ladders: &'a [Ladder]) -> Vec<&'a Ladder> {
     of_case().filter(keep).collect()
 }
 
-/// The fastest at the compared error.
+/// The fastest method at the compared error.
 fn fastest<'a>(ladders: &[&'a Ladder], of: impl Fn(&Ladder) -> bool) -> Option<(&'a Ladder, f64)> {
     let times = ladders.iter().filter(|l| of(l)).filter_map(|l| l.seconds_at(COMPARED).map(|t| (*l, t)));
     times.min_by(|a, b| a.1.total_cmp(&b.1))
@@ -39,7 +39,7 @@ const OURS: &str = "herringbone Taylor";
 const OURS_IN_LANES: &str = "herringbone Taylor, 8 in lanes";
 const OURS_WITH_BOTH_HALVES: &str = "herringbone Taylor, 12 coordinates";
 
-pub fn all(cases: &[Case], ladders: &[Ladder]) -> String {
+pub fn all(cases: &[ReferenceCase], ladders: &[Ladder]) -> String {
     let kept: Vec<Vec<&Ladder>> = cases.iter().map(|case| better(case, ladders)).collect();
     let mut out = format!(
         "Time per mesh period at a relative error of {COMPARED:.0e} (r: restarted at the edges of the impact):\n\n| method |"
@@ -67,14 +67,14 @@ pub fn all(cases: &[Case], ladders: &[Ladder]) -> String {
     let _ = writeln!(out, "\n|---|{}", "---|".repeat(cases.len()));
     type Which = fn(&Ladder) -> bool;
     let ratios: [(&str, &str, Which); 6] = [
-        ("heyoka, 8 side by side, ours in lanes", OURS_IN_LANES, |l| l.whose == Whose::Peer && l.points > 1),
-        ("the best other program, one motion", OURS, |l| l.whose == Whose::Peer && l.points == 1),
+        ("heyoka, 8 side by side, ours in lanes", OURS_IN_LANES, |l| l.origin == Origin::Peer && l.points > 1),
+        ("the best other program, one motion", OURS, |l| l.origin == Origin::Peer && l.points == 1),
         ("the best with all 24 states, ours with 12 coordinates", OURS_WITH_BOTH_HALVES, |l| {
-            l.whose == Whose::Peer && !l.name.starts_with("heyoka")
+            l.origin == Origin::Peer && !l.name.starts_with("heyoka")
         }),
         ("SciPy DOP853 as it is called", OURS, |l| l.name == "SciPy DOP853"),
         ("SciPy DOP853, restarted", OURS, |l| l.name.strip_suffix(RESTARTED) == Some("SciPy DOP853")),
-        ("the best of SciPy", OURS, |l| l.whose == Whose::Scipy),
+        ("the best of SciPy", OURS, |l| l.origin == Origin::Scipy),
     ];
     for (what, ours, of) in ratios {
         let _ = write!(out, "| {what} |");

@@ -7,15 +7,17 @@
 //! speed, and the regimes that occur. A jump of one point by itself would stand out.
 
 use herringbone_job::parse_value;
-use herringbone_job::result::{ContactStateResult, RegimeResult, SweepPoint};
-use herringbone_job::study::{self, SolveContext};
+use herringbone_job::result::SweepPoint;
+use herringbone_job::study::{self, CheckedJob, SolveContext};
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::Arguments;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let args: Vec<usize> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
-    let (torques, speeds) = (args.first().copied().unwrap_or(27), args.get(1).copied().unwrap_or(116));
+fn main() -> Result<(), Failure> {
+    let arguments = Arguments::of_process();
+    let (torques, speeds) = (arguments.number(0)?.unwrap_or(27), arguments.number(1)?.unwrap_or(116));
     for (name, relief_um) in [("unrelieved", 0.0), ("relieved, 15 um parabolic over 6 mm", 15.0)] {
         let mut value: Value = serde_json::from_str(include_str!("../../../examples/contact.json"))?;
         value["kind"] = json!("sweep");
@@ -27,9 +29,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             {"pointer": "/operation/pinion_torque_nm", "from": 10.0, "to": 4000.0, "points": torques, "spacing": "logarithmic"},
             {"pointer": "/operation/pinion_speed_rpm", "from": 500.0, "to": 12000.0, "points": speeds},
         ]);
-        let document = parse_value(&value).map_err(|e| format!("{e:?}"))?;
+        let job = parse_value(&value).and_then(CheckedJob::new).map_err(|e| format!("{e:?}"))?;
         let started = Instant::now();
-        let outcome = study::solve(&document, &SolveContext::none())?;
+        let outcome = study::solve(&job, &SolveContext::none())?;
         let seconds = started.elapsed().as_secs_f64();
         let points = outcome.result.sweep.ok_or("no sweep")?.points;
         report(name, &points, torques, speeds, seconds);
@@ -79,8 +81,8 @@ fn report(name: &str, points: &[SweepPoint], torques: usize, speeds: usize, seco
     }
     let mut regimes: BTreeMap<String, usize> = BTreeMap::new();
     for p in &grid {
-        let (regime, contact) =
-            (p.regime.map(RegimeResult::as_str).unwrap_or_default(), p.contact.map_or("", ContactStateResult::as_str));
+        let regime = p.regime.map(|regime| regime.as_str()).unwrap_or_default();
+        let contact = p.contact.map(|contact| contact.as_str()).unwrap_or_default();
         *regimes.entry(format!("{regime}, {contact}{}", p.error.as_deref().unwrap_or_default())).or_default() += 1;
     }
     println!("motions: {regimes:?}");

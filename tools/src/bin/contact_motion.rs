@@ -3,12 +3,15 @@
 //! `cargo run --release -p herringbone-tools --no-default-features --bin contact_motion -- FILE`
 
 use herringbone_job::parse_value;
-use herringbone_job::study::{self, SolveContext};
+use herringbone_job::study::{self, CheckedJob, SolveContext};
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::Arguments;
 use serde_json::Value;
 use std::time::Instant;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let path = std::env::args().nth(1).ok_or("the file of cases is missing")?;
+fn main() -> Result<(), Failure> {
+    let arguments = Arguments::of_process();
+    let path = arguments.word(0).ok_or("the file of cases is missing")?;
     let cases: Value = serde_json::from_slice(&std::fs::read(path)?)?;
     println!(
         "{:55} {:>9} {:>8} {:>8} {:>9} {:>9} {:>8} {:>9} {:>8}",
@@ -18,10 +21,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut input = case["input"].clone();
         input["analysis"]["channels"] = serde_json::json!(["a_x_left", "f_n_left", "x_left"]);
         input["analysis"]["samples_per_mesh_period"] = serde_json::json!(1024);
-        let document = parse_value(&input).map_err(|e| format!("{e:?}"))?;
+        let job = parse_value(&input).and_then(CheckedJob::new).map_err(|e| format!("{e:?}"))?;
         let started = Instant::now();
         let outcome = match study::solve(
-            &document,
+            &job,
             &SolveContext { clock_ms: &|| started.elapsed().as_secs_f64() * 1e3, ..SolveContext::none() },
         ) {
             Ok(outcome) => outcome,

@@ -1,48 +1,29 @@
-//! Stress test of the vibration: random pairs over and beyond every range a user can ask for, each of which has to end, within a
-//! bounded time, in finite numbers or in an error that names its reason; and where the answer claims an accuracy, an
-//! independent integration of the reported motion has to agree with it.
+//! Stress test of the vibration with random pairs over and beyond all admissible ranges. Each must end within a bounded
+//! time, in finite numbers or in an error that names its reason; where the response states an accuracy, an independent
+//! integration of the reported motion must agree with it.
 //!
 //! `cargo run --release -p herringbone-tools --no-default-features --bin dynamics_stress -- [CASES [SEED [FIRST [usual|extreme|both [contact]]]]]`
 //!
 //! Two populations take turns: `usual` pairs (what an engineer would build, at speeds that are run) and `extreme` ones
-//! (stiffness 1e3 … 1e13 N/m, damping ratios 0 … 2, play 0 … 1 mm, 1 … 100 000 r/min, mass and inertia ratios 1e-6 … 1e6,
+//! (stiffness 1e3 … 1e13 N/m, damping ratios 0 … 2, backlash 0 … 1 mm, 1 … 100 000 r/min, mass and inertia ratios 1e-6 … 1e6,
 //! pulses 1e-6 … 1 mesh period long, torque of either sign or none). A case depends on seed and number alone: `1 SEED N`
 //! repeats it and prints its parameters. With `contact` the mesh forces are those of a loaded contact over approach and phase (soft at the
 //! beginning, with a free position that varies), without impacts.
 
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
 
 use herringbone_physics::dynamics::{
-    ContactForce, Couplings, DynamicsError, FlankForce, HalfParameters, Harmonic, Impact, ImpactActsOn, Integrator,
-    Parameters, Spring, Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m,
+    ContactForce, Couplings, DynamicsError, FlankForce, HalfParameters, Harmonic, ImpactActsOn, ImpactExcitation,
+    Integrator, Parameters, Spring, Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m,
 };
-use herringbone_physics::response::{Analysis, Method, Response, solve};
+use herringbone_physics::response::{Analysis, Response, SolutionMethod, solve};
 use herringbone_physics::watch::Watch;
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::Arguments;
+use herringbone_tools::random::Random;
+use herringbone_tools::stopwatch::Stopwatch;
 
-/// Splitmix64: a fixed sequence, so that a failure can be repeated.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-    fn chance(&mut self, part: f64) -> bool {
-        self.unit() < part
-    }
-}
-
-/// What the two populations draw from.
+/// Ranges of the parameters of a population.
 struct Ranges {
     name: &'static str,
     mesh_n_per_m: (f64, f64),
@@ -89,13 +70,13 @@ const EXTREME: Ranges = Ranges {
     pulse_mesh_periods: (1e-6, 1.0),
 };
 
-/// The words that say what a case is.
-struct Case {
+/// Parameters of a case and their description.
+struct StressCase {
     parameters: Parameters,
-    words: String,
+    description: String,
 }
 
-fn case(r: &mut Random, of: &Ranges) -> Case {
+fn case(r: &mut Random, of: &Ranges) -> StressCase {
     let log = |r: &mut Random, range: (f64, f64)| r.log(range.0, range.1);
     let teeth = r.between(10.0, 100.0).floor();
     let rpm = log(r, of.pinion_rpm);
@@ -133,7 +114,7 @@ fn case(r: &mut Random, of: &Ranges) -> Case {
         _ => ("Fourier", fourier),
     };
     let static_n = if torque == 0.0 { log(r, of.torque_nm) } else { torque.abs() } / pinion_radius_m;
-    let impact = (!r.chance(0.1)).then(|| Impact::HalfSine {
+    let impact = (!r.chance(0.1)).then(|| ImpactExcitation::HalfSine {
         force_n: static_n * log(r, of.impact_ratio) * if r.chance(0.1) { -1.0 } else { 1.0 },
         duration_mesh_periods: log(r, of.pulse_mesh_periods),
         start_mesh_periods: r.unit(),
@@ -190,12 +171,12 @@ fn case(r: &mut Random, of: &Ranges) -> Case {
         couplings,
     };
     parameters.balance_axially();
-    let words = format!(
+    let description = format!(
         "{rpm:.3e} r/min, z {teeth}, k_m {mean_n_per_m:.2e} N/m ({kind}), zeta_m {zeta_mesh:.3}, zeta {zeta:.3}, b {half_backlash_m:.2e} m, T {torque:.2e} N m, \
          masses {pinion_mass_kg:.2e}/{gear_mass_kg:.2e} kg, inertias {pinion_inertia_kg_m2:.2e}/{gear_inertia_kg_m2:.2e} kg m2, stagger {stagger:.2}, \
          damping in gap {damping_in_gap}"
     );
-    Case { parameters, words }
+    StressCase { parameters, description }
 }
 
 /// Puts contact forces in place of the stiffness: F = k(φ) e²/(e + c) beyond a free position that varies with the phase, on knots and levels as a contact
@@ -246,18 +227,12 @@ fn with_contact(p: &mut Parameters, r: &mut Random, of: &Ranges) -> Result<(), D
     Ok(())
 }
 
-/// Time this thread has had a processor, where the system tells (a machine with other work takes longer by the clock).
-fn processor_time_s() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    text.split(' ').next()?.parse::<f64>().ok().map(|ns| ns * 1e-9)
-}
-
-/// A solve that takes longer is given up and counted as one that does not end.
-const ENDLESS: Duration = Duration::from_secs(60);
-/// Accuracy asked for.
+/// Processor time after which a solve is canceled and counted as one that does not end, s.
+const TIME_LIMIT_S: f64 = 60.0;
+/// Requested accuracy.
 const ACCURACY: f64 = 1e-6;
 
-/// The answer's variant, or the error's.
+/// Regime and contact state, or the name of the error.
 fn outcome(result: &Result<Response, DynamicsError>) -> String {
     match result {
         Ok(r) => format!(
@@ -276,7 +251,7 @@ fn outcome(result: &Result<Response, DynamicsError>) -> String {
     }
 }
 
-/// Non-finite numbers of an answer.
+/// Whether a response has numbers that are not finite.
 fn not_finite(r: &Response) -> bool {
     let s = &r.summary;
     let mut numbers = s.rms.channels.values().chain(&s.dynamic_factor).chain([&s.min_displacement_m]);
@@ -289,7 +264,7 @@ fn not_finite(r: &Response) -> bool {
 fn independent(p: &Parameters, r: &Response) -> Option<f64> {
     let periods = r.summary.period_mesh_periods?;
     let analysis = Analysis {
-        method: Method::Integrate { mesh_periods: periods, record_mesh_periods: periods },
+        method: SolutionMethod::Integrate { mesh_periods: periods, record_mesh_periods: periods },
         accuracy: 1e-7,
         initial_state: Some(r.final_state),
         samples_per_mesh_period: 0,
@@ -306,10 +281,10 @@ fn independent(p: &Parameters, r: &Response) -> Option<f64> {
         [m.left, m.right, a.left, a.right]
     };
     let (a, b) = (of(r), of(&again));
-    // What the forces could give the mesh: an acceleration far below is nothing but rounding.
+    // Acceleration of the free mesh by the forces: far below it an acceleration is rounding.
     let possible = p.halves.iter().enumerate().fold(0.0f64, |m, (j, h)| {
         let impact_n = match h.impact {
-            Some(Impact::HalfSine { force_n, .. }) => force_n.abs(),
+            Some(ImpactExcitation::HalfSine { force_n, .. }) => force_n.abs(),
             _ => 0.0,
         };
         m.max((h.pinion_torque_nm.abs() / p.pinion_radius_m + impact_n) / p.equivalent_mass_kg(j))
@@ -333,49 +308,45 @@ struct Table {
     most_steps: u64,
 }
 
-fn main() {
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    let number = |at: usize, default: u64| args.get(at).and_then(|a| a.parse().ok()).unwrap_or(default);
-    let (wanted, seed, first) = (number(0, 200), number(1, 1), number(2, 0));
-    let only = args.get(3).map(String::as_str);
-    let contact = args.get(4).is_some_and(|a| a == "contact");
+fn main() -> Result<(), Failure> {
+    let arguments = Arguments::of_process();
+    let number = |place: usize, default: u64| arguments.number(place).map(|given| given.unwrap_or(default));
+    let (requested, seed, first) = (number(0, 200)?, number(1, 1)?, number(2, 0)?);
+    let only = arguments.word(3);
+    let contact = arguments.word(4) == Some("contact");
     let mut tables: [Table; 2] = Default::default();
     let mut slowest: Vec<(f64, String)> = Vec::new();
-    for number in first..first + wanted {
+    for number in first..first + requested {
         let population = (number % 2) as usize;
         let ranges = [&USUAL, &EXTREME][population];
         if only.is_some_and(|name| name != "both" && name != ranges.name) {
             continue;
         }
-        let mut random = Random(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ number);
+        let mut random = Random::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ number);
         let mut case = case(&mut random, ranges);
         if contact && let Err(error) = with_contact(&mut case.parameters, &mut random, ranges) {
             println!("case {number}: {error}");
             continue;
         }
-        if wanted == 1 {
+        if requested == 1 {
             println!("{:#?}", case.parameters);
         }
-        let (begin, begin_s) = (Instant::now(), processor_time_s());
-        let spent_s = || match (processor_time_s(), begin_s) {
-            (Some(now), Some(then)) => now - then,
-            _ => begin.elapsed().as_secs_f64(),
-        };
-        let canceled = || spent_s() > ENDLESS.as_secs_f64();
+        let stopwatch = Stopwatch::start();
+        let canceled = || stopwatch.seconds() > TIME_LIMIT_S;
         let watch = Watch::new(&|_| {}, &canceled);
         let analysis = Analysis { accuracy: ACCURACY, samples_per_mesh_period: 0, ..Analysis::default() };
         let result = solve(&case.parameters, &analysis, &watch);
-        let time_s = spent_s();
+        let time_s = stopwatch.seconds();
         let table = &mut tables[population];
         let name = outcome(&result);
         let entry = table.counts.entry(name.clone()).or_default();
         *entry = (entry.0 + 1, entry.1.max(time_s));
         table.worst_s = table.worst_s.max(time_s);
-        let line = format!("case {number} ({}): {name}, {time_s:.2} s: {}", ranges.name, case.words);
+        let line = format!("case {number} ({}): {name}, {time_s:.2} s: {}", ranges.name, case.description);
         let mut remarks = Vec::new();
         match &result {
             Ok(r) => {
-                table.most_steps = table.most_steps.max(r.summary.numerics.steps);
+                table.most_steps = table.most_steps.max(r.summary.counts.steps);
                 if not_finite(r) {
                     table.bad += 1;
                     remarks.push(format!("NOT FINITE: {:?}", r.summary));
@@ -396,12 +367,12 @@ fn main() {
                         }
                     }
                 }
-                if wanted == 1 {
+                if requested == 1 {
                     println!("{:#?}", r.summary);
                 }
             }
             Err(DynamicsError::Canceled(_)) => remarks.push("DID NOT END".into()),
-            Err(error) if wanted == 1 => println!("{error}"),
+            Err(error) if requested == 1 => println!("{error}"),
             Err(error @ DynamicsError::StepSizeTooSmall { .. } | error @ DynamicsError::Diverged { .. }) => {
                 remarks.push(error.to_string())
             }
@@ -429,4 +400,5 @@ fn main() {
     for (_, line) in slowest.iter().take(8) {
         println!("  {line}");
     }
+    Ok(())
 }

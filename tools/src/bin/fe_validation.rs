@@ -6,20 +6,11 @@
 use std::sync::Mutex;
 use std::time::Instant;
 
-use herringbone_physics::fe::{FlankFlexibility, FlankInput, Resolution, Side};
-use herringbone_physics::gear::{GearSpec, Pair, PairSpec};
+use herringbone_physics::fe::{FlankFlexibility, FlankInput, Side};
 use herringbone_physics::watch::Watch;
+use herringbone_tools::arguments::{Arguments, RESOLUTIONS};
+use herringbone_tools::{Failure, reference};
 use serde_json::Value;
-
-fn reference_pair() -> Pair {
-    let member = |teeth, bore_radius_m| GearSpec { bore_radius_m, ..GearSpec::plain(teeth) };
-    let angles = [20f64.to_radians(), 30f64.to_radians()];
-    let spec = PairSpec::plain(4e-3, angles, 45e-3, [member(29, 25e-3), member(67, 60e-3)]);
-    match Pair::new(&spec) {
-        Ok((pair, _)) => pair,
-        Err(reasons) => panic!("the reference pair cannot run: {reasons:?}"),
-    }
-}
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().map(|all| all.iter().filter_map(Value::as_f64).collect()).unwrap_or_default()
@@ -75,19 +66,13 @@ fn compare(label: &str, got: &dyn Fn(usize, usize) -> f64, expected: &[Vec<f64>]
     );
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let pair = reference_pair();
+fn main() -> Result<(), Failure> {
+    let pair = reference::pair(&reference::spec());
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/fe_tooth_29_67.json"))?;
     let reference: Value = serde_json::from_str(&text)?;
-    let only: Vec<String> = std::env::args().skip(1).collect();
-    let all = [
-        ("coarse", Resolution::Coarse),
-        ("medium", Resolution::Medium),
-        ("standard", Resolution::Standard),
-        ("fine", Resolution::Fine),
-    ];
-    for (name, resolution) in all {
-        if !only.is_empty() && !only.iter().any(|o| o == name) {
+    let arguments = Arguments::of_process();
+    for (name, resolution) in RESOLUTIONS {
+        if !arguments.choose(name) {
             continue;
         }
         for (member, side, hold) in [("pinion", Side::Pinion, 25e-3), ("gear", Side::Gear, 60e-3)] {

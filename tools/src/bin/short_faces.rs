@@ -3,13 +3,13 @@
 //! `cargo run --release -p herringbone-tools --no-default-features --bin short_faces [coarse|medium|standard|fine [Z1[:X1]/Z2[:X2] …]]`;
 //! teeth and profile shift coefficient of pinion and gear.
 
-use herringbone_physics::contact::{Compliance, ContactError, HalfCycle, Settings, solve_half};
+use herringbone_physics::compliance::{Compliance, Settings};
+use herringbone_physics::contact::{ContactError, HalfCycle, solve_half};
 use herringbone_physics::fe::{FlankFlexibility, Resolution};
 use herringbone_physics::gear::{GearSpec, Half, Pair, PairSpec};
 use herringbone_physics::watch::Watch;
-
-/// Whatever went wrong.
-type Failure = Box<dyn std::error::Error + Send + Sync>;
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::{Arguments, resolution};
 
 const HELIX_DEG: [f64; 6] = [0.0, 10.0, 20.0, 30.0, 40.0, 45.0];
 /// Face width in normal modules.
@@ -21,16 +21,10 @@ const MODULE_M: f64 = 2e-3;
 const LOAD_PA: f64 = 20e6;
 
 fn main() -> Result<(), Failure> {
-    let mut arguments = std::env::args().skip(1);
-    let resolution = match arguments.next().as_deref() {
-        Some("coarse") => Resolution::Coarse,
-        None | Some("medium") => Resolution::Medium,
-        Some("standard") => Resolution::Standard,
-        Some("fine") => Resolution::Fine,
-        Some(other) => return Err(format!("{other} is no resolution").into()),
-    };
-    let given: Vec<String> = arguments.collect();
-    let names: Vec<&str> = if given.is_empty() { PAIRS.to_vec() } else { given.iter().map(String::as_str).collect() };
+    let arguments = Arguments::of_process();
+    let resolution = resolution(arguments.word(0).unwrap_or("medium"))?;
+    let given: Vec<&str> = arguments.from(1).collect();
+    let names = if given.is_empty() { PAIRS.to_vec() } else { given };
     println!("| z | β, ° | {} |", WIDTHS.map(|w| format!("b {w} m_n")).join(" | "));
     println!("|---|---|{}", "---|".repeat(WIDTHS.len()));
     for name in names {

@@ -156,11 +156,15 @@ pub fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
 }
 
 /// Warnings of pulses longer than the mesh period, or with a mean above the load.
-pub fn of_pulses(document: &JobDocument, plane: &MotionPlane, pulses: &[Option<dynamics::Impact>; 2]) -> Vec<Warning> {
+pub fn of_pulses(
+    document: &JobDocument,
+    plane: &MotionPlane,
+    pulses: &[Option<dynamics::ImpactExcitation>; 2],
+) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let longest = pulses.iter().flatten().filter_map(|pulse| match pulse {
-        dynamics::Impact::HalfSine { duration_mesh_periods, .. } => Some(*duration_mesh_periods),
-        dynamics::Impact::Harmonics { .. } => None,
+        dynamics::ImpactExcitation::HalfSine { duration_mesh_periods, .. } => Some(*duration_mesh_periods),
+        dynamics::ImpactExcitation::Harmonics { .. } => None,
     });
     let longest = longest.fold(0.0, f64::max);
     let calculated = match &document.model.impact {
@@ -179,7 +183,7 @@ pub fn of_pulses(document: &JobDocument, plane: &MotionPlane, pulses: &[Option<d
         );
         warnings.push(warning("pulse-longer-than-period", pointer, detail));
     }
-    let mean_n = pulses.iter().flatten().map(dynamics::Impact::mean_n).fold(0.0, f64::max);
+    let mean_n = pulses.iter().flatten().map(dynamics::ImpactExcitation::mean_n).fold(0.0, f64::max);
     let load_n = (document.operation.pinion_torque_nm / 2.0 / plane.pinion_radius_m).abs();
     if mean_n > load_n {
         let pointer = if calculated.is_some() { "/model/impact" } else { "/model/impact/force_n" };
@@ -227,7 +231,8 @@ pub fn of_motion(document: &JobDocument, summary: &Summary) -> Vec<Warning> {
 mod tests {
     use super::*;
     use crate::parse_value;
-    use crate::study::{SolveContext, check, solve};
+    use crate::study::SolveContext;
+    use crate::study::unchecked::{check, solve};
     use serde_json::{Value, json};
 
     fn example(name: &str) -> Value {

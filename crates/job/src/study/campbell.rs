@@ -4,7 +4,6 @@ use super::mesh::MeshMemo;
 use super::{SolveContext, SolveError, point, response_result, row};
 use crate::document::{Axis, JobDocument};
 use crate::result::{Campbell, CampbellCrossing, NaturalMode};
-use serde_json::Value;
 
 /// The swept input that makes a Campbell diagram.
 const SPEED: &str = "/operation/pinion_speed_rpm";
@@ -17,7 +16,7 @@ const ORDERS: u32 = 10;
 /// # Errors
 /// [`SolveError::Canceled`].
 pub fn run(
-    base: &Value,
+    base: &JobDocument,
     sweep: &JobDocument,
     context: &SolveContext,
     memo: &MeshMemo,
@@ -34,14 +33,14 @@ pub fn run(
         let mut values = vec![speed.value(0)];
         // In the order of the axes.
         other_axis_value.into_iter().for_each(|value| values.insert(1 - at, value));
-        let modes = row::document(base, sweep, &values).and_then(|document| {
-            let staged = point::stage(&document, &quiet, memo)?;
+        let modes = row::job(base, sweep, &values).and_then(|job| {
+            let staged = point::stage(&job, &quiet, memo)?;
             let modes = staged
                 .parameters()
                 .map(response_result::natural_modes)
                 .transpose()
                 .map_err(super::vibration::failed)?;
-            Ok((modes, document.design.pinion.teeth))
+            Ok((modes, job.document().design.pinion.teeth))
         });
         match modes {
             Ok((Some(modes), teeth)) => diagrams.push(diagram(speed, other_axis_value, f64::from(teeth), modes)),

@@ -1,31 +1,66 @@
-//! What can be said of a document without solving it.
+//! Documents that can be solved, and what can be said of them without solving.
 
 mod drawing;
 
 use super::axes::check_axes;
-use super::prepare::{geometry, prepare};
+use super::prepare::{Prepared, geometry, prepare};
 use super::{CheckReport, demand, vibration};
 use crate::DocumentError;
 use crate::document::{JobDocument, JobKind};
 
-/// Checks that the gear of a document can exist and that everything it asks for can be computed: geometry and warnings.
-///
-/// # Errors
-/// [`DocumentError::Invalid`] with every reason why it cannot; [`DocumentError::Unsupported`] for what this version does not
-/// compute.
-pub fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
-    let prepared = prepare(document)?;
-    vibration::channels(document)?;
-    if document.kind == JobKind::Sweep {
-        check_axes(document)?;
+/// A job document that can be solved: its gear can exist, and everything it asks for can be computed. The pair and all that follows from
+/// it without solving is derived once, here.
+#[derive(Debug, Clone)]
+pub struct CheckedJob {
+    document: JobDocument,
+    prepared: Prepared,
+}
+
+impl CheckedJob {
+    /// Checks a document.
+    ///
+    /// # Errors
+    /// [`DocumentError::Invalid`] with every reason why it cannot be solved; [`DocumentError::Unsupported`] for what this version does not
+    /// compute.
+    pub fn new(document: JobDocument) -> Result<Self, DocumentError> {
+        let job = Self::of_point(document)?;
+        vibration::channels(&job.document)?;
+        if job.document.kind == JobKind::Sweep {
+            check_axes(&job.document)?;
+        }
+        Ok(job)
     }
-    let memory_mib = demand(document, 1).total_mib();
-    Ok(CheckReport {
-        geometry: geometry(&prepared),
-        supports: (document.kind != JobKind::Mesh).then_some(prepared.supports),
-        memory_mib,
-        warnings: prepared.warnings,
-    })
+
+    /// A point of a sweep that was checked: only the gear may be another one.
+    ///
+    /// # Errors
+    /// [`DocumentError::Invalid`] with every reason why the gear cannot exist.
+    pub(super) fn of_point(document: JobDocument) -> Result<Self, DocumentError> {
+        let prepared = prepare(&document)?;
+        Ok(Self { document, prepared })
+    }
+
+    pub fn document(&self) -> &JobDocument {
+        &self.document
+    }
+
+    pub fn into_document(self) -> JobDocument {
+        self.document
+    }
+
+    pub(super) fn prepared(&self) -> &Prepared {
+        &self.prepared
+    }
+
+    /// Geometry, supports and warnings.
+    pub fn report(&self) -> CheckReport {
+        CheckReport {
+            geometry: geometry(&self.prepared),
+            supports: (self.document.kind != JobKind::Mesh).then(|| self.prepared.supports.clone()),
+            memory_mib: demand(&self.document, 1).total_mib(),
+            warnings: self.prepared.warnings.clone(),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -35,14 +70,13 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
+        #![proptest_config(ProptestConfig { cases: 100, ..ProptestConfig::default() })]
 
         /// Values at the ends of every range together: a gear that can exist, or reasons why not.
         #[test]
         fn any_valid_document_is_answered(value in arbitrary::documents()) {
-            let document = parse_value(&value).expect("valid");
-            match check(&document) {
-                Ok(report) => prop_assert!(report.geometry.center_distance_mm.is_finite(), "{}", value),
+            match CheckedJob::new(parse_value(&value).expect("valid")) {
+                Ok(job) => prop_assert!(job.report().geometry.center_distance_mm.is_finite(), "{}", value),
                 Err(DocumentError::Invalid(found) | DocumentError::Unsupported(found)) => prop_assert!(!found.is_empty()),
                 Err(DocumentError::Malformed { detail, .. }) => prop_assert!(false, "{}", detail),
             }

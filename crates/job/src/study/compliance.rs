@@ -4,7 +4,7 @@ use super::hash::{compliance_hash, flank_hash};
 use super::mesh::ContactCase;
 use super::{SolveContext, SolveError, Stage};
 use crate::document::Fidelity;
-use herringbone_physics::contact::Compliance;
+use herringbone_physics::compliance::Compliance;
 use herringbone_physics::fe::{FeError, FlankFlexibility, FlankInput};
 use herringbone_physics::gear::{FlankModification, Pair, Rotation};
 use herringbone_physics::watch::Watch;

@@ -1,6 +1,7 @@
 //! Documents with the contact in the equations of motion.
 
-use super::{SolveContext, mesh::MeshMemo, point, solve};
+use super::unchecked::solve;
+use super::{CheckedJob, SolveContext, mesh::MeshMemo, point};
 use crate::parse_value;
 use herringbone_oracle::Tolerance::{Absolute, Relative};
 use herringbone_oracle::{check, check_worst};
@@ -65,8 +66,8 @@ fn table1(change: impl FnOnce(&mut Value)) -> Value {
 fn the_mean_tooth_force_is_the_static_one() {
     let errors = [(800.0, 2000.0), (800.0, 6500.0), (40.0, 9000.0), (3000.0, 1200.0)].map(|(torque_nm, rpm)| {
         let value = table1(|v| v["operation"] = json!({"pinion_torque_nm": torque_nm, "pinion_speed_rpm": rpm}));
-        let document = parse_value(&value).expect("valid");
-        let staged = point::stage(&document, &SolveContext::none(), &MeshMemo::default()).expect("staged");
+        let job = parse_value(&value).and_then(CheckedJob::new).expect("feasible");
+        let staged = point::stage(&job, &SolveContext::none(), &MeshMemo::default()).expect("staged");
         let p = staged.parameters().expect("equations");
         let channels = vec![response::ChannelId::parse("f_n_left").expect("a channel")];
         let solved = response::solve(p, &Analysis { channels, ..Analysis::default() }, &Watch::none()).expect("solved");
@@ -89,8 +90,8 @@ fn rigid_supports_leave_one_degree_of_freedom() {
             v["design"]["supports"] = json!({"pinion_lateral_n_per_um": 1e7, "gear_lateral_n_per_um": 1e7,
                 "pinion_halves_axial_n_per_um": 1e7, "gear_axial_n_per_um": 1e7, "gear_halves_axial_n_per_um": 1e7});
         });
-        let document = parse_value(&value).expect("valid");
-        let staged = point::stage(&document, &SolveContext::none(), &MeshMemo::default()).expect("staged");
+        let job = parse_value(&value).and_then(CheckedJob::new).expect("feasible");
+        let staged = point::stage(&job, &SolveContext::none(), &MeshMemo::default()).expect("staged");
         let p = staged.parameters().expect("equations").clone();
         let solved = response::solve(&p, &Analysis::default(), &Watch::none()).expect("solved");
         let contact = p.halves[0].contact_force.clone().expect("a contact force");

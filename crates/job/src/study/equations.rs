@@ -5,7 +5,7 @@ use super::prepare::Prepared;
 use crate::document::{ActsOn, GivenStiffness, JobDocument, Plane};
 use crate::result::SpringValue;
 use herringbone_physics::dynamics::{
-    ContactForce, Couplings, HalfParameters, Harmonic, Impact, ImpactActsOn, Parameters, Spring,
+    ContactForce, Couplings, HalfParameters, Harmonic, ImpactActsOn, ImpactExcitation, Parameters, Spring,
 };
 use herringbone_physics::dynamics::{Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m};
 use std::sync::Arc;
@@ -84,7 +84,7 @@ pub fn parameters(
     prepared: &Prepared,
     plane: &MotionPlane,
     stiffness: [Stiffness; 2],
-    impact: [Option<Impact>; 2],
+    impact: [Option<ImpactExcitation>; 2],
     right_lead_mesh_periods: f64,
 ) -> Parameters {
     let supports = &prepared.supports;
@@ -94,7 +94,7 @@ pub fn parameters(
     let spring = |n_per_um: &SpringValue, mass| Spring::with_damping_ratio(n_per_um.value * 1e6, zeta, mass);
     let torsion = |nm_per_rad: &SpringValue, inertia| Spring::with_damping_ratio(nm_per_rad.value, zeta, inertia);
     let m_e = equivalent_mass_kg(plane.pinion_radius_m, pinion_inertia_kg_m2, plane.gear_radius_m, gear_inertia_kg_m2);
-    let half = |stiffness: Stiffness, impact: Option<Impact>, phase_shift_mesh_periods: f64| HalfParameters {
+    let half = |stiffness: Stiffness, impact: Option<ImpactExcitation>, phase_shift_mesh_periods: f64| HalfParameters {
         pinion_mass_kg,
         pinion_inertia_kg_m2,
         gear_mass_kg,

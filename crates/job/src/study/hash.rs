@@ -43,5 +43,5 @@ fn hash(stage: &str, value: &impl Serialize) -> String {
     hasher.update([0]);
     // A document holds finite numbers and strings only, so writing it cannot fail.
     hasher.update(serde_json::to_vec(value).unwrap_or_default());
-    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hex::encode(hasher.finalize())
 }

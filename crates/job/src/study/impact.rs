@@ -13,7 +13,7 @@ use herringbone_physics::impact::{self, Entry, Inertia};
 /// Outcome of the impact stage: its block of the result, and the pulse of each half.
 pub struct ImpactStage {
     pub summary: Option<result::ImpactResult>,
-    pub pulses: [Option<dynamics::Impact>; 2],
+    pub pulses: [Option<dynamics::ImpactExcitation>; 2],
 }
 
 /// True where the impact of a document acts in the equations of motion; else it is only reported.
@@ -59,7 +59,7 @@ fn calculate(
     match &document.model.impact {
         ImpactInput::None => ImpactStage { summary: None, pulses: [None, None] },
         ImpactInput::Given(given) => {
-            let pulse = |shift: f64| dynamics::Impact::HalfSine {
+            let pulse = |shift: f64| dynamics::ImpactExcitation::HalfSine {
                 force_n: given.force_n,
                 duration_mesh_periods: given.duration_mesh_periods,
                 start_mesh_periods: given.start_mesh_periods + shift,
@@ -149,7 +149,7 @@ fn calculated(
         let (duration_s, start) = timing(impact);
         // Shorter than this the pulse has no effect that could be computed.
         let duration_mesh_periods = duration_s * prepared.mesh_frequency_hz;
-        (force > 0.0 && duration_mesh_periods >= 1e-9).then_some(dynamics::Impact::HalfSine {
+        (force > 0.0 && duration_mesh_periods >= 1e-9).then_some(dynamics::ImpactExcitation::HalfSine {
             force_n: force * plane.force_factor,
             duration_mesh_periods,
             start_mesh_periods: start + shift,

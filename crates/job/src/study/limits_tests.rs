@@ -1,6 +1,7 @@
 //! Documents at the limits of what geometry and compliance can do, through all stages.
 
-use super::{Outcome, SolveContext, check, solve};
+use super::unchecked::{check, solve};
+use super::{CheckedJob, Outcome, SolveContext};
 use crate::drawing::Drawing;
 use crate::result::JobResult;
 use crate::{DocumentError, Violation, parse_value};
@@ -113,7 +114,7 @@ fn a_short_path_with_overlap_is_solved() {
         let response = plausible(&base("response")).response.expect("a response");
         let rms = response.rms.mesh_circumferential_acceleration_m_s2;
         assert!(rms.left > 0.0 && rms.left < 1e4, "{rms:?}");
-        let drawing = Drawing::of(&parse_value(&base("mesh")).expect("valid")).expect("drawn");
+        let drawing = Drawing::of(&CheckedJob::new(parse_value(&base("mesh")).expect("valid")).expect("feasible"));
         let names: Vec<&str> = drawing.section.points.iter().map(|point| point.name.as_str()).collect();
         assert!(!names.contains(&"B") && names.contains(&"A") && names.contains(&"E"), "{names:?}");
         assert!(drawing.plane_of_action.left.contact_length_mm[0] > 0.0);
@@ -147,7 +148,7 @@ fn undercut_gears_are_solved() {
     ] {
         let result = plausible(&value);
         assert!(codes(&result).contains(&"undercut"), "{:?}", result.warnings);
-        let drawing = Drawing::of(&parse_value(&value).expect("valid")).expect("drawn");
+        let drawing = Drawing::of(&CheckedJob::new(parse_value(&value).expect("valid")).expect("feasible"));
         let [start, end] = drawing.plane_of_action.path_roll_mm;
         assert!(start >= 0.0 && start < end && drawing.margins.iter().all(|margin| margin.value.is_finite()));
         let t2 = drawing.section.points.last().expect("points");

@@ -10,13 +10,12 @@ use crate::document::{
     BodyInput, Elements, Fidelity, JobDocument, JobKind, Ltca, MeshForce, MeshStiffness, StiffnessLaw,
 };
 use crate::result::{ApexSensitivity, Convergence, FlankLoad, Mesh, MeshCurve, PerHalf, ReusedStage, StiffnessSource};
-use herringbone_physics::contact::iso6336::{Blank, MethodB};
-use herringbone_physics::contact::{
-    self, BodyHold, ContactError, ForceTable, HalfCycle, LoadedContact, MESH_IN_PHASE, Settings,
-};
+use herringbone_physics::compliance::{BodyHold, Settings};
+use herringbone_physics::contact::{self, ContactError, ForceTable, HalfCycle, LoadedContact, MESH_IN_PHASE};
 use herringbone_physics::dynamics::Stiffness;
 use herringbone_physics::fe::Resolution;
 use herringbone_physics::gear::{Pair, PairSpec};
+use herringbone_physics::iso6336::{Blank, MethodB};
 use herringbone_physics::watch::Watch;
 use serde::Serialize;
 use std::collections::HashMap;

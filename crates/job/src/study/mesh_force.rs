@@ -6,9 +6,10 @@ use super::hash::force_hash;
 use super::mesh::{ContactCase, MeshMemo, contact_failed};
 use super::{SolveContext, SolveError, Stage};
 use crate::result::ContactForceTable;
-use herringbone_physics::contact::{ForceTable, SplineKnots, same_gaps};
+use herringbone_physics::contact::{ForceTable, same_gaps};
 use herringbone_physics::dynamics::{ContactForce, FlankForce};
 use herringbone_physics::gear::{Half, Pair};
+use herringbone_physics::numerics::PeriodicSpline;
 use herringbone_physics::watch::Watch;
 use std::sync::Arc;
 
@@ -155,7 +156,7 @@ fn flank_force(
     plane: &MotionPlane,
     place: impl Fn(f64) -> (f64, f64),
 ) -> FlankForce {
-    let spline = SplineKnots::new(table.phase.clone());
+    let spline = PeriodicSpline::new(table.phase.clone());
     // F_n s and F_bt δ are the same work.
     let force_factor = plane.stiffness_factor.sqrt();
     let at = |values: &[f64]| -> Vec<[f64; 2]> {

@@ -24,7 +24,7 @@ mod sweep;
 mod vibration;
 
 use crate::DocumentError;
-use crate::document::{JobDocument, JobKind};
+use crate::document::JobKind;
 use crate::result::{Geometry, JobResult, ReusedStage};
 use herringbone_physics::gear::Warning;
 
@@ -33,7 +33,7 @@ use mesh::MeshMemo;
 use point::Wanted;
 use serde::{Deserialize, Serialize};
 
-pub use check::check;
+pub use check::CheckedJob;
 pub use demand::{Demand, demand};
 pub use hash::input_hash;
 pub use points::{KeptPoints, LineEnd, NoPointStore, PointStore};
@@ -134,7 +134,7 @@ pub struct Outcome {
 pub enum SolveError {
     #[error(transparent)]
     Canceled(#[from] Canceled),
-    /// The design turned out infeasible (a document that was not checked first).
+    /// A point of a sweep whose values do not go together, or make a gear that cannot exist.
     #[error(transparent)]
     Document(#[from] DocumentError),
     /// A stage failed: deterministic, so it is not tried again.
@@ -172,18 +172,18 @@ impl SolveError {
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn solve(document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
-    // All that can be refused is refused before anything is solved.
-    let report = check(document)?;
+pub fn solve(job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError> {
+    let document = job.document();
     let memo = MeshMemo::default();
     if document.kind != JobKind::Sweep {
-        let point = point::solve(document, context, &memo, &Wanted::WHOLE)?;
+        let point = point::solve(job, context, &memo, &Wanted::WHOLE)?;
         return Ok(Outcome { result: point.result, series: point.series });
     }
     let started_ms = (context.clock_ms)();
     let kept = context.points.load();
     let reused = if kept.rows.is_empty() { Vec::new() } else { vec![ReusedStage::Points] };
     let sweep = sweep::run(document, kept, context, &memo)?;
+    let report = job.report();
     let mut result = JobResult {
         geometry: Some(report.geometry),
         supports: report.supports,
@@ -196,6 +196,22 @@ pub fn solve(document: &JobDocument, context: &SolveContext) -> Result<Outcome, 
     result.numerics.solver_version = SOLVER_VERSION.to_owned();
     result.numerics.wall_ms.response = (context.clock_ms)() - started_ms;
     Ok(Outcome { result, series: Vec::new() })
+}
+
+/// Documents that tests check and solve in one go.
+#[cfg(test)]
+mod unchecked {
+    use super::{CheckReport, CheckedJob, Outcome, SolveContext, SolveError};
+    use crate::DocumentError;
+    use crate::document::JobDocument;
+
+    pub fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
+        CheckedJob::new(document.clone()).map(|job| job.report())
+    }
+
+    pub fn solve(document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
+        super::solve(&CheckedJob::new(document.clone())?, context)
+    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! One operating point: the stages a document needs, in their order.
 
+use super::check::CheckedJob;
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
-use super::prepare::{geometry, prepare};
+use super::prepare::geometry;
 use super::{Channel, SolveContext, SolveError, Stage, accuracy, bounds, impact, vibration};
 use crate::document::{JobDocument, JobKind, Recorded};
 use crate::result::{JobResult, NumericsResult, Poincare};
@@ -56,57 +57,48 @@ impl Staged<'_> {
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn solve(
-    document: &JobDocument,
-    context: &SolveContext,
-    memo: &MeshMemo,
-    wanted: &Wanted,
-) -> Result<Point, SolveError> {
-    let progress = |stage, fraction| (context.progress)(stage, of_whole(document.kind, stage, fraction));
+pub fn solve(job: &CheckedJob, context: &SolveContext, memo: &MeshMemo, wanted: &Wanted) -> Result<Point, SolveError> {
+    let progress = |stage, fraction| (context.progress)(stage, of_whole(job.document().kind, stage, fraction));
     let context = &SolveContext { progress: &progress, ..*context };
-    let staged = stage(document, context, memo)?;
-    respond(document, staged, context, wanted)
+    let staged = stage(job, context, memo)?;
+    respond(job.document(), staged, context, wanted)
 }
 
 /// Geometry, contact and impact of a point, and the equations of motion that follow.
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn stage<'a>(
-    document: &JobDocument,
-    context: &SolveContext<'a>,
-    memo: &MeshMemo,
-) -> Result<Staged<'a>, SolveError> {
+pub fn stage<'a>(job: &CheckedJob, context: &SolveContext<'a>, memo: &MeshMemo) -> Result<Staged<'a>, SolveError> {
+    let (document, prepared) = (job.document(), job.prepared());
     let mut numerics = NumericsResult { solver_version: super::SOLVER_VERSION.to_owned(), ..NumericsResult::default() };
     let mut stopwatch = Stopwatch::new(context);
-    let prepared = prepare(document)?;
     let mut warnings = prepared.warnings.clone();
     numerics.wall_ms.geometry = stopwatch.lap_ms();
     (context.progress)(Stage::Geometry, 1.0);
 
-    let plane = MotionPlane::new(document.model.plane, &prepared);
-    let (mesh, reused) = mesh::run(document, &prepared, &plane, context, memo)?;
+    let plane = MotionPlane::new(document.model.plane, prepared);
+    let (mesh, reused) = mesh::run(document, prepared, &plane, context, memo)?;
     numerics.reused.extend(reused);
     warnings.extend(bounds::of_mesh(document, &mesh.summary));
     numerics.wall_ms.mesh = stopwatch.lap_ms();
 
-    let impact = impact::run(document, &prepared, &plane, &mesh, &mut warnings);
+    let impact = impact::run(document, prepared, &plane, &mesh, &mut warnings);
     numerics.wall_ms.impact = stopwatch.lap_ms();
     (context.progress)(Stage::Impact, 1.0);
 
     let parameters = (document.kind != JobKind::Mesh).then(|| {
         let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
-        let parameters = equations::parameters(document, &prepared, &plane, mesh.stiffness, impact.pulses, lead);
+        let parameters = equations::parameters(document, prepared, &plane, mesh.stiffness, impact.pulses, lead);
         match &mesh.forces {
             None => parameters,
             Some(contact) => equations::with_contact_forces(parameters, &contact.forces),
         }
     });
     let result = JobResult {
-        geometry: Some(geometry(&prepared)),
+        geometry: Some(geometry(prepared)),
         mesh: Some(mesh.summary),
         impact: impact.summary,
-        supports: (document.kind != JobKind::Mesh).then_some(prepared.supports),
+        supports: (document.kind != JobKind::Mesh).then(|| prepared.supports.clone()),
         warnings,
         numerics,
         ..JobResult::default()

@@ -4,8 +4,8 @@ use super::{bounds, supports};
 use crate::document::{self as doc, JobDocument, PressureAnglePlane};
 use crate::result::{GearGeometry, Geometry, SupportsResult};
 use crate::{DocumentError, Violation};
-use herringbone_physics::contact;
 use herringbone_physics::gear::{self, Infeasibility, Pair, PairSpec, Warning};
+use herringbone_physics::{compliance, contact};
 
 /// Default bore as a fraction of the reference diameter, where none is given.
 const DEFAULT_BORE_FRACTION: f64 = 0.4;
@@ -105,7 +105,10 @@ fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
         gap_width_m: gap_mm * 1e-3,
         center_distance_m: design.center_distance_mm.map(|mm| mm * 1e-3),
         material: material(&design.material),
-        rotation: document.operation.rotation,
+        rotation: match document.operation.rotation {
+            doc::RotationInput::ApexLeading => gear::Rotation::ApexLeading,
+            doc::RotationInput::ApexTrailing => gear::Rotation::ApexTrailing,
+        },
         pinion: gear_spec(design, &design.pinion, "/design/pinion", warnings),
         gear: gear_spec(design, &design.gear, "/design/gear", warnings),
         assembly: gear::Assembly {
@@ -166,7 +169,10 @@ fn flank(flank: &doc::FlankInput) -> gear::FlankModification {
         tip_relief: gear::TipRelief {
             amount_m: flank.tip_relief.amount_um * 1e-6,
             length_m: flank.tip_relief.length_mm * 1e-3,
-            shape: flank.tip_relief.shape,
+            shape: match flank.tip_relief.shape {
+                doc::ReliefShapeInput::Linear => gear::ReliefShape::Linear,
+                doc::ReliefShapeInput::Parabolic => gear::ReliefShape::Parabolic,
+            },
         },
         lead_crowning_m: flank.lead_crowning_um * 1e-6,
         helix_slope_m: flank.helix_slope_um * 1e-6,
@@ -196,7 +202,7 @@ fn held_elsewhere(document: &JobDocument, pair: &Pair) -> Vec<Warning> {
     [("pinion", &pair.pinion), ("gear", &pair.gear)]
         .into_iter()
         .filter_map(|(name, member)| {
-            let held_m = contact::hold_radius_m(member, contact::BodyHold::Bore, pair.spec.normal_module_m);
+            let held_m = compliance::hold_radius_m(member, compliance::BodyHold::Bore, pair.spec.normal_module_m);
             (held_m > member.bore_radius_m * (1.0 + 1e-9)).then(|| Warning {
                 code: "held-above-bore".to_owned(),
                 pointer: format!("/design/{name}/bore_diameter_mm"),

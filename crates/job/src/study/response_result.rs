@@ -18,8 +18,8 @@ fn tooth_force(force: response::ToothForce) -> ToothForceResult {
     ToothForceResult { static_n: force.static_n, max: force.max_n, min: force.min_n }
 }
 
-fn interval(halves: Halves<response::Interval>) -> IntervalPerHalf {
-    let of = |interval: response::Interval| IntervalResult { low: interval.low, high: interval.high };
+fn interval(halves: Halves<response::ConfidenceInterval>) -> IntervalPerHalf {
+    let of = |interval: response::ConfidenceInterval| IntervalResult { low: interval.low, high: interval.high };
     IntervalPerHalf { left: of(halves.left), right: of(halves.right) }
 }
 
@@ -84,7 +84,7 @@ pub fn natural_modes(parameters: &Parameters) -> Result<Vec<NaturalMode>, Dynami
         shape: mode.shape.to_vec(),
         modal_mass_kg: mode.modal_mass_kg,
         damping_ratio: mode.damping_ratio,
-        strain_energy: mode.strain_energy.iter().map(|(group, share)| (group.word().to_owned(), *share)).collect(),
+        strain_energy: mode.strain_energy.iter().map(|(group, share)| (group.as_str().to_owned(), *share)).collect(),
         kinetic_energy: mode.kinetic_energy.iter().map(|(kind, share)| ((*kind).to_owned(), *share)).collect(),
     });
     Ok(modes.collect())

@@ -1,16 +1,16 @@
 //! One row of a sweep: the document of a point, and what is kept of its solution.
 
-use super::axes::set;
+use super::axes;
+use super::check::CheckedJob;
 use super::mesh::MeshMemo;
 use super::point::{self, Point, Wanted};
 use super::{SolveContext, SolveError, vibration};
+use crate::DocumentError;
 use crate::document::JobDocument;
 use crate::result::SweepPoint;
-use crate::{DocumentError, parse_value};
 use herringbone_physics::dynamics::{DynamicsError, Parameters};
 use herringbone_physics::response::{self, Analysis, Response};
 use herringbone_physics::watch::Watch;
-use serde_json::Value;
 
 /// A row, and what its neighbours need of it.
 #[derive(Default)]
@@ -20,16 +20,13 @@ pub struct Solved {
     pub end_state: Option<Vec<f64>>,
 }
 
-/// The document of one point: `base` with the values of the axes put in.
+/// The job of one point: `base` with the values of the axes put in.
 ///
 /// # Errors
-/// [`SolveError::Document`] where the values do not go together.
-pub fn document(base: &Value, sweep: &JobDocument, values: &[f64]) -> Result<JobDocument, SolveError> {
-    let mut value = base.clone();
-    for (axis, number) in sweep.axes.iter().zip(values) {
-        axis.pointers().for_each(|pointer| set(&mut value, pointer, *number));
-    }
-    parse_value(&value).map_err(SolveError::from)
+/// [`SolveError::Document`] where the values do not go together, or make a gear that cannot exist.
+pub fn job(base: &JobDocument, sweep: &JobDocument, values: &[f64]) -> Result<CheckedJob, SolveError> {
+    let document = axes::at(base.clone(), sweep.axes.iter().zip(values.iter().copied()))?;
+    Ok(CheckedJob::of_point(document)?)
 }
 
 /// Solves one point. `start`: a neighbour's end state. A point that fails says so in its row.
@@ -37,7 +34,7 @@ pub fn document(base: &Value, sweep: &JobDocument, values: &[f64]) -> Result<Job
 /// # Errors
 /// [`SolveError::Canceled`].
 pub fn solve(
-    base: &Value,
+    base: &JobDocument,
     sweep: &JobDocument,
     values: Vec<f64>,
     start: Option<&[f64]>,
@@ -46,7 +43,7 @@ pub fn solve(
 ) -> Result<Solved, SolveError> {
     let quiet = SolveContext { progress: &|_, _| {}, ..*context };
     let wanted = Wanted { start, whole: false, record: &sweep.record };
-    let solved = document(base, sweep, &values).and_then(|document| point::solve(&document, &quiet, memo, &wanted));
+    let solved = job(base, sweep, &values).and_then(|job| point::solve(&job, &quiet, memo, &wanted));
     match solved {
         Ok(point) => Ok(of_point(values, point)),
         Err(error) => failed(values, error),
@@ -58,7 +55,7 @@ pub fn solve(
 /// # Errors
 /// [`SolveError::Canceled`].
 pub fn solve_together(
-    base: &Value,
+    base: &JobDocument,
     sweep: &JobDocument,
     group: Vec<Vec<f64>>,
     context: &SolveContext,
@@ -69,10 +66,10 @@ pub fn solve_together(
     let staged: Vec<_> = group
         .iter()
         .map(|values| {
-            let document = document(base, sweep, values)?;
-            let staged = point::stage(&document, &quiet, memo)?;
-            let analysis = vibration::analysis(&document, &wanted)?;
-            Ok::<_, SolveError>((document, staged, analysis))
+            let job = job(base, sweep, values)?;
+            let staged = point::stage(&job, &quiet, memo)?;
+            let analysis = vibration::analysis(job.document(), &wanted)?;
+            Ok::<_, SolveError>((job, staged, analysis))
         })
         .collect();
     // Together: those that ask the same of their equations.
@@ -96,7 +93,7 @@ pub fn solve_together(
         }
     }
     let solved = group.into_iter().zip(staged).zip(responses).map(|((values, staged), response)| {
-        let point = staged.and_then(|(document, staged, _)| point::answered(&document, staged, &wanted, response));
+        let point = staged.and_then(|(job, staged, _)| point::answered(job.document(), staged, &wanted, response));
         match point {
             Ok(point) => Ok(of_point(values, point)),
             Err(error) => failed(values, error),

@@ -3,7 +3,9 @@
 mod members;
 mod sides;
 
+use super::unchecked::{check, solve};
 use super::*;
+use crate::document::JobDocument;
 use crate::parse_value;
 use crate::result::{
     BranchDifference, BranchDirection, ContactStateResult, RegimeResult, ReusedStage, SpringOrigin, SweepPoint,

@@ -87,9 +87,9 @@ pub fn to_result(
 ) -> Result<Vibration, SolveError> {
     let mut response = response.map_err(failed)?;
     let summary = &response.summary;
-    numerics.steps = summary.numerics.steps;
-    numerics.rejected_steps = summary.numerics.rejected_steps;
-    numerics.force_evaluations = summary.numerics.force_evaluations;
+    numerics.steps = summary.counts.steps;
+    numerics.rejected_steps = summary.counts.rejected_steps;
+    numerics.force_evaluations = summary.counts.force_evaluations;
     numerics.degrees_of_freedom = summary.degrees_of_freedom;
     let mut block = response_result::summary(document, parameters, &response);
     if wanted.whole {
@@ -143,12 +143,12 @@ pub fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, Doc
     }
     Ok(Analysis {
         method: match requested.method {
-            MethodInput::Integrate => response::Method::Integrate {
+            MethodInput::Integrate => response::SolutionMethod::Integrate {
                 mesh_periods: u64::from(requested.mesh_periods),
                 record_mesh_periods: u64::from(requested.record_mesh_periods),
             },
-            MethodInput::Periodic => response::Method::Periodic,
-            MethodInput::Auto => response::Method::Auto,
+            MethodInput::Periodic => response::SolutionMethod::Periodic,
+            MethodInput::Auto => response::SolutionMethod::Auto,
         },
         integrator: match requested.integrator {
             IntegratorInput::Taylor => dynamics::Integrator::Taylor,

@@ -1,10 +1,11 @@
 //! Loaded contact of the coast flanks: the contact of the mirrored pair ([`Pair::coast`]), run backwards.
 
-use super::compliance::Compliance;
-use super::cycle::{HalfCycle, MESH_IN_PHASE, interpolate};
+use super::cycle::{HalfCycle, MESH_IN_PHASE};
+use super::error::ContactError;
 use super::halves::{LoadedContact, solve_from};
-use super::settings::{ContactError, Settings};
+use crate::compliance::{Compliance, Settings};
 use crate::gear::Pair;
+use crate::numerics::interpolation;
 use crate::watch::Watch;
 
 /// Solves both halves of `pair` on its coast flanks under a torque of the magnitude `torque_nm` that the gear drives the pinion with.
@@ -61,7 +62,7 @@ impl HalfCycle {
         self.load_share.reverse();
         self.load_share_phase.reverse();
         self.load_share_phase.iter_mut().for_each(|path| *path = pitches - *path);
-        self.load_share_at_mesh_in = interpolate(&self.load_share_phase, &self.load_share, MESH_IN_PHASE);
+        self.load_share_at_mesh_in = interpolation::linear(&self.load_share_phase, &self.load_share, MESH_IN_PHASE);
         let [begins, ends] = self.load_begins_and_ends;
         self.load_begins_and_ends = [pitches - ends, pitches - begins];
     }

@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::curve::PeriodicCurve;
+use super::error::ContactError;
 use super::half::HalfContact;
-use super::local::line_contact;
 use super::position::Loaded;
 use super::refine::Positions;
-use super::settings::ContactError;
+use crate::compliance::line_contact;
 use crate::gear::Pair;
+use crate::numerics::{PeriodicMonotoneCubic, interpolation};
 
 /// Mean, least and largest value over the mesh period (arithmetic mean over the positions).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -53,20 +53,13 @@ impl EntryDeflection {
     /// Deflection along the base tangent `overrun_m` before the theoretical start, interpolated linearly and held
     /// constant beyond the table.
     pub fn deflection_before_entry_m(&self, overrun_m: f64) -> f64 {
-        interpolate(&self.overrun_m, &self.deflection_m, overrun_m)
+        interpolation::linear(&self.overrun_m, &self.deflection_m, overrun_m)
     }
 
     /// Tangent stiffness of the pairs in mesh at the same state.
     pub fn stiffness_before_entry_n_per_m(&self, overrun_m: f64) -> f64 {
-        interpolate(&self.overrun_m, &self.stiffness_n_per_m, overrun_m)
+        interpolation::linear(&self.overrun_m, &self.stiffness_n_per_m, overrun_m)
     }
-}
-
-/// Linear interpolation between ascending `x`, constant beyond both ends.
-pub(super) fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
-    let i = x.partition_point(|&v| v <= at).clamp(1, x.len() - 1);
-    let t = ((at - x[i - 1]) / (x[i] - x[i - 1])).clamp(0.0, 1.0);
-    y[i - 1] + t * (y[i] - y[i - 1])
 }
 
 /// Loaded contact of one half over one mesh period. Forces and displacements along the transverse base tangent.
@@ -179,9 +172,8 @@ impl<'a> CycleBuilder<'a> {
             let solved: Vec<f64> = states.iter().map(f).collect();
             match self.resampled {
                 None => solved,
-                Some((from, _)) => {
-                    PeriodicCurve::new(states.iter().map(|s| s.0).collect(), solved).samples(from, CURVE_POSITIONS)
-                }
+                Some((from, _)) => PeriodicMonotoneCubic::new(states.iter().map(|s| s.0).collect(), solved)
+                    .samples(from, CURVE_POSITIONS),
             }
         };
         let phase = match self.resampled {

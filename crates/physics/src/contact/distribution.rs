@@ -172,7 +172,7 @@ fn force_for(local: &impl Local, i: usize, approach: f64, most: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::influence::{STENCIL, Stencil};
+    use crate::compliance::{STENCIL, Stencil};
     use herringbone_oracle::Tolerance::Relative;
     use herringbone_oracle::check;
 

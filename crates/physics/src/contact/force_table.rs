@@ -8,13 +8,13 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::compliance::Compliance;
+use super::error::ContactError;
 use super::half::HalfContact;
 use super::position::ForceCurve;
 use super::refine::start_phases;
-use super::settings::{ContactError, Settings};
-use super::spline::SplineKnots;
+use crate::compliance::{Compliance, Settings};
 use crate::gear::{Half, Pair};
+use crate::numerics::PeriodicSpline;
 use crate::watch::Watch;
 
 /// F_bt(δ, φ) of one half: values at knots of phase and levels of approach.
@@ -204,14 +204,14 @@ impl ForceTable {
 /// The splines of a table over the phase, with their slopes.
 struct Splines<'a> {
     table: &'a ForceTable,
-    knots: SplineKnots,
+    knots: PeriodicSpline,
     force_slopes: Vec<Vec<f64>>,
     free_slopes: Vec<f64>,
 }
 
 impl<'a> Splines<'a> {
     fn new(table: &'a ForceTable) -> Splines<'a> {
-        let knots = SplineKnots::new(table.phase.clone());
+        let knots = PeriodicSpline::new(table.phase.clone());
         let force_slopes = table.force_n.iter().map(|force| knots.slopes(force)).collect();
         let free_slopes = knots.slopes(&table.free_m);
         Splines { table, knots, force_slopes, free_slopes }

@@ -1,8 +1,8 @@
 //! Loaded contact of one helix half, ready to be asked at any phase of the mesh period.
 
-use super::compliance::Compliance;
+use super::error::ContactError;
 use super::position::{ForceCurve, Loaded, Solver, Trouble};
-use super::settings::{ContactError, Settings};
+use crate::compliance::{Compliance, Settings};
 use crate::gear::{Half, Pair};
 
 /// One half under one force.

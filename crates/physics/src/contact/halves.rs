@@ -8,11 +8,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::compliance::Compliance;
 use super::cycle::{CURVE_POSITIONS, CycleBuilder, HalfCycle};
+use super::error::ContactError;
 use super::half::HalfContact;
 use super::refine::refine;
-use super::settings::{ContactError, Settings};
+use crate::compliance::{Compliance, Settings};
 use crate::gear::{Half, Pair};
 use crate::watch::Watch;
 

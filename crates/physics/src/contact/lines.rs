@@ -1,6 +1,7 @@
 //! Points of possible contact at one position: every tooth pair cut into the width slices, with the parts of a slice
 //! before, on and after the path of contact kept apart.
 
+use crate::compliance::CORNER_REACH;
 use crate::gear::{Half, Pair};
 
 /// Part of one slice of one tooth pair.
@@ -22,10 +23,6 @@ pub struct Point {
     /// Twice what the mean gap is more than the least one: the difference between both ends of a linear gap.
     pub gap_spread_m: f64,
 }
-
-/// Corner contact is looked for this far beyond the path, in base pitches: gaps there are beyond any deflection that a
-/// tooth survives.
-pub const CORNER_REACH: f64 = 0.5;
 
 /// Most parts of a slice beyond the path.
 const CORNER_PARTS: f64 = 8.0;

@@ -2,12 +2,11 @@
 
 use std::ops::Range;
 
-use super::compliance::Compliance;
 use super::distribution::{Distribution, Prescribed, Stalled, distribute};
-use super::influence::{LineWeights, Stencil};
-use super::lines::{CORNER_REACH, CornerGaps, Point, Reach, collect, reference_roll_m};
-use super::local::LocalContacts;
+use super::lines::{CornerGaps, Point, Reach, collect, reference_roll_m};
+use super::point_contacts::PointContacts;
 use super::system::{System, Workspace};
+use crate::compliance::{CORNER_REACH, Compliance, LineWeights, Stencil};
 use crate::gear::{Half, Pair};
 
 /// The loaded points of one position.
@@ -67,7 +66,7 @@ pub struct Solver<'a> {
     bulk: Vec<f64>,
     block: Vec<f64>,
     scratch: Vec<f64>,
-    local: LocalContacts,
+    local: PointContacts,
     coupling: Vec<Vec<f64>>,
     work: Workspace,
     /// Largest corner gap that was worth looking at so far.
@@ -104,7 +103,7 @@ impl<'a> Solver<'a> {
             bulk: Vec::new(),
             block: Vec::new(),
             scratch: Vec::new(),
-            local: LocalContacts::default(),
+            local: PointContacts::default(),
             coupling: Vec::new(),
             work: Workspace::default(),
             corner_gap_m: 0.0,

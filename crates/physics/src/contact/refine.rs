@@ -1,10 +1,10 @@
 //! Where over the mesh period the contact is solved: coarse everywhere, fine where pairs enter and leave.
 
-use super::curve::PeriodicCurve;
 use super::cycle::harmonics;
+use super::error::ContactError;
 use super::position::Loaded;
-use super::settings::ContactError;
 use crate::gear::Pair;
+use crate::numerics::PeriodicMonotoneCubic;
 
 /// Equally spaced positions to begin with.
 const COARSE: usize = 16;
@@ -80,8 +80,8 @@ pub fn start_phases(pair: &Pair, count: usize, least: f64) -> Vec<f64> {
 
 /// Stiffness and transmission error over the period.
 struct Curves {
-    stiffness: PeriodicCurve,
-    error: PeriodicCurve,
+    stiffness: PeriodicMonotoneCubic,
+    error: PeriodicMonotoneCubic,
     mean: [f64; 2],
 }
 
@@ -95,7 +95,11 @@ impl Curves {
         let of = |f: fn(&Loaded) -> f64| states.iter().map(|s| f(&s.1)).collect::<Vec<_>>();
         let (k, e) = (of(|s| s.stiffness_n_per_m), of(|s| s.approach_m));
         let mean = [k.iter().sum::<f64>() / n, e.iter().map(|v| v.abs()).sum::<f64>() / n];
-        Curves { stiffness: PeriodicCurve::new(phase.clone(), k), error: PeriodicCurve::new(phase, e), mean }
+        Curves {
+            stiffness: PeriodicMonotoneCubic::new(phase.clone(), k),
+            error: PeriodicMonotoneCubic::new(phase, e),
+            mean,
+        }
     }
 
     /// Distance of a state from the interpolation, as a part of the means.
@@ -107,7 +111,7 @@ impl Curves {
 
     /// Largest change of mean or harmonics against `other`, as a part of the mean.
     fn coefficient_change(&self, other: &Curves) -> f64 {
-        let change = |a: &PeriodicCurve, b: &PeriodicCurve, mean: f64| {
+        let change = |a: &PeriodicMonotoneCubic, b: &PeriodicMonotoneCubic, mean: f64| {
             let (a, b) = (a.samples(0.0, SAMPLES), b.samples(0.0, SAMPLES));
             let difference: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a - b).collect();
             let offset = difference.iter().sum::<f64>() / SAMPLES as f64;

@@ -68,7 +68,8 @@ fn bracket(nodes: &[f64], value: f64) -> (usize, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Compliance, Settings, solve_half};
+    use crate::compliance::{Compliance, Settings};
+    use crate::contact::solve_half;
     use crate::fe::{FlankFlexibility, Resolution};
     use crate::gear::fixtures::{close, gear, pair, spec};
     use crate::gear::{GearSpec, Half};

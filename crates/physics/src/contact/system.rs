@@ -5,8 +5,8 @@
 
 use std::ops::Range;
 
-use super::influence::{STENCIL, Stencil};
-use super::linalg::{cholesky, cholesky_solve, dot, forward_solve, lu_solve};
+use crate::compliance::{STENCIL, Stencil};
+use crate::numerics::dense::{cholesky, cholesky_solve, dot, forward_solve, lu_solve};
 use crate::simd::vectorised;
 
 /// Approach of one point under its own force.

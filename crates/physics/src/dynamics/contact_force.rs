@@ -1,51 +1,57 @@
-//! The mesh force as the loaded contact gives it: a function of approach and phase, in place of a stiffness over the phase.
+//! Mesh force tabulated by the loaded tooth contact analysis, as a function of displacement and phase.
 //!
-//! On each flank F(e, φ), e the displacement along s beyond the place where the first point of the teeth touches at the phase φ. Between knots of the phase and levels of e
-//! it is a bicubic polynomial (Hermite's), continuous with its first derivatives everywhere; beyond the last level it goes on in a straight line.
-//! The Taylor method follows the polynomials exactly and stops at knots and levels; separation is the lowest level.
+//! On each flank the force is F(e, φ), where e is the displacement along s beyond the first contact of the teeth at the
+//! phase φ. Between the knots of the phase and the levels of e it is a bicubic Hermite polynomial with continuous first
+//! derivatives; beyond the last level it continues linearly. The Taylor method integrates the polynomials exactly, with
+//! events at knots and levels; the lowest level is the separation of the teeth.
 
 use super::error::DynamicsError;
 use super::lanes::Real;
-use super::model::Contact;
+use super::model::ContactSide;
 
-/// Force of one flank over phase and displacement, at the knots of a [`ContactForce`].
+/// Nodes of the force of one flank, at the knots of a [`ContactForce`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlankForce {
-    /// Displacement beyond the free one at the levels, ascending from 0, m.
+    /// Levels of e, ascending from 0, m.
     pub level_m: Vec<f64>,
-    /// Displacement along s, less the backlash, at which the first point touches: value and slope per phase at every knot, m.
+    /// Displacement along s, less half the backlash, at first contact: value (m) and derivative by the phase (m per
+    /// mesh period) at every knot.
     pub free_m: Vec<[f64; 2]>,
-    /// Level by level and knot by knot: force, its derivative with the displacement, with the phase, and with both; N, N/m.
+    /// By level and knot: force in N, its derivatives by displacement (N/m) and phase (N per mesh period), and the
+    /// mixed derivative.
     pub nodes: Vec<Vec<[f64; 4]>>,
 }
 
 /// Normal mesh force of one half as a function of displacement and phase, on both flanks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactForce {
-    /// Ascending in [0, 1).
+    /// Phases, ascending in [0, 1).
     knots: Vec<f64>,
-    driving: Flank,
-    back: Flank,
+    driving: FlankSurface,
+    back: FlankSurface,
 }
 
-/// One flank, ready for evaluation.
+/// Interpolated force of one flank.
 #[derive(Debug, Clone, PartialEq)]
-struct Flank {
+struct FlankSurface {
     level_m: Vec<f64>,
-    /// Interval by interval: cubic in the place within the interval.
+    /// By interval of the phase: cubic of the displacement at first contact in the relative position u within the
+    /// interval.
     free: Vec<[f64; 4]>,
-    /// Level by level, interval by interval: coefficient [a][b] belongs to e^a u^b, e in m above the level, u the place within the interval.
+    /// By level and interval: coefficient [a][b] belongs to e^a u^b, e in m above the level, u the relative position
+    /// within the interval.
     cells: Vec<Vec<[[f64; 4]; 4]>>,
 }
 
-/// The highest number of levels, no contact apart: a level is kept in a [`Contact`].
-const MOST_LEVELS: usize = 100;
+/// Largest number of levels; a level is stored in a [`ContactSide`].
+const MAX_LEVELS: usize = 100;
 
 impl ContactForce {
-    /// From the nodes of both flanks (driving, back) at `knots`, ascending phases in [0, 1).
+    /// Interpolates the nodes of the driving and the back flank at `knots`, ascending phases in [0, 1).
     ///
     /// # Errors
-    /// [`DynamicsError::InvalidParameter`] where a number is not finite, knots or levels do not ascend, or a force falls with the displacement.
+    /// [`DynamicsError::InvalidParameter`] where a number is not finite, knots or levels do not ascend, or a force
+    /// decreases with the displacement.
     pub fn new(knots: Vec<f64>, [driving, back]: [&FlankForce; 2]) -> Result<Self, DynamicsError> {
         let wrong =
             |value: f64, reason: &'static str| DynamicsError::InvalidParameter { name: "mesh force", value, reason };
@@ -55,7 +61,7 @@ impl ContactForce {
         }
         for flank in [driving, back] {
             let levels = flank.level_m.len();
-            if !(2..=MOST_LEVELS).contains(&levels) || flank.level_m[0] != 0.0 || !ascend(&flank.level_m) {
+            if !(2..=MAX_LEVELS).contains(&levels) || flank.level_m[0] != 0.0 || !ascend(&flank.level_m) {
                 return Err(wrong(levels as f64, "its levels must ascend from 0, 2 to 100"));
             }
             let sizes = flank.free_m.len() == knots.len()
@@ -74,63 +80,64 @@ impl ContactForce {
                 return Err(wrong(0.0, "must not fall with the displacement"));
             }
         }
-        let [driving, back] = [driving, back].map(|flank| Flank::new(&knots, flank));
+        let [driving, back] = [driving, back].map(|flank| FlankSurface::new(&knots, flank));
         Ok(Self { knots, driving, back })
     }
 
+    /// Phases of the knots, ascending in [0, 1).
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
 
-    fn flank(&self, contact: Contact) -> &Flank {
+    fn flank(&self, contact: ContactSide) -> &FlankSurface {
         if contact < 0 { &self.back } else { &self.driving }
     }
 
-    /// The interval that holds `inside`, and the place of `phase` in it.
-    fn interval(&self, phase: f64, inside: f64) -> (usize, f64, f64) {
+    /// Index and width of the interval that contains `interior`, and the relative position of `phase` in it.
+    fn interval(&self, phase: f64, interior: f64) -> (usize, f64, f64) {
         let n = self.knots.len();
         let first = self.knots[0];
-        let inside_turned = first + (inside - first).rem_euclid(1.0);
-        let i = self.knots.partition_point(|&k| k <= inside_turned).max(1) - 1;
+        let wrapped = first + (interior - first).rem_euclid(1.0);
+        let i = self.knots.partition_point(|&k| k <= wrapped).max(1) - 1;
         let width = if i + 1 < n { self.knots[i + 1] - self.knots[i] } else { first + 1.0 - self.knots[i] };
-        // Phase and the phase inside may stand on either side of the turn of the period.
-        let at = inside_turned + (phase - inside) - self.knots[i];
+        // `phase` and `interior` can be on either side of the end of the period.
+        let at = wrapped + (phase - interior) - self.knots[i];
         (i, at / width, width)
     }
 
-    /// Displacement beyond the backlash at which the first point of a flank (1 driving, −1 back) touches, m.
-    pub fn free_m(&self, side: Contact, phase: f64) -> f64 {
+    /// Displacement beyond half the backlash at first contact on a flank (1 driving, −1 back), m.
+    pub fn free_m(&self, side: ContactSide, phase: f64) -> f64 {
         let (i, u, _) = self.interval(phase, phase);
         cubic(&self.flank(side).free[i], u)
     }
 
-    /// A displacement below all of it over the mesh period, by no more than a hundredth of its range, m.
-    pub fn least_free_m(&self, side: Contact) -> f64 {
-        const PLACES: u32 = 16;
+    /// Lower bound of [`ContactForce::free_m`] over the mesh period, within a hundredth of its range, m.
+    pub fn min_free_m(&self, side: ContactSide) -> f64 {
+        const POINTS: u32 = 16;
         const MARGIN: f64 = 0.01;
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for c in &self.flank(side).free {
-            for i in 0..PLACES {
-                let free = cubic(c, f64::from(i) / f64::from(PLACES));
+            for i in 0..POINTS {
+                let free = cubic(c, f64::from(i) / f64::from(POINTS));
                 (least, most) = (least.min(free), most.max(free));
             }
         }
         least - MARGIN * (most - least)
     }
 
-    /// Its slope per mesh period.
-    pub(super) fn free_rate_m(&self, side: Contact, phase: f64) -> f64 {
+    /// Derivative of [`ContactForce::free_m`] by the phase, m per mesh period.
+    pub(super) fn free_rate_m(&self, side: ContactSide, phase: f64) -> f64 {
         let (i, u, width) = self.interval(phase, phase);
         let c = &self.flank(side).free[i];
         (c[1] + u * (2.0 * c[2] + u * 3.0 * c[3])) / width
     }
 
-    /// Force and stiffness on a flank at the displacement `e` beyond its free one.
-    fn at(&self, side: Contact, e: f64, phase: f64, inside: f64) -> (f64, f64) {
+    /// Force (N) and stiffness (N/m) of a flank at the displacement `e` (m) beyond first contact.
+    fn at(&self, side: ContactSide, e: f64, phase: f64, interior: f64) -> (f64, f64) {
         if e <= 0.0 {
             return (0.0, 0.0);
         }
-        let (i, u, _) = self.interval(phase, inside);
+        let (i, u, _) = self.interval(phase, interior);
         let flank = self.flank(side);
         let level = flank.level(e);
         let above = e - flank.level_m[level];
@@ -138,21 +145,21 @@ impl ContactForce {
         (c[0] + above * (c[1] + above * (c[2] + above * c[3])), c[1] + above * (2.0 * c[2] + above * 3.0 * c[3]))
     }
 
-    /// Force (signed as s) and stiffness at the displacement `s` with half the backlash `b`.
-    pub fn force(&self, s: f64, b: f64, phase: f64, inside: f64) -> (f64, f64) {
-        let (i, u, _) = self.interval(phase, inside);
+    /// Force (N, with the sign of s) and stiffness (N/m) at the displacement `s` (m) with half the backlash `b` (m).
+    pub fn force(&self, s: f64, b: f64, phase: f64, interior: f64) -> (f64, f64) {
+        let (i, u, _) = self.interval(phase, interior);
         let e = s - b - cubic(&self.driving.free[i], u);
         if e > 0.0 {
-            return self.at(1, e, phase, inside);
+            return self.at(1, e, phase, interior);
         }
         let e = -s - b - cubic(&self.back.free[i], u);
-        let (force, stiffness) = self.at(-1, e, phase, inside);
+        let (force, stiffness) = self.at(-1, e, phase, interior);
         (-force, stiffness)
     }
 
-    /// The displacement along s at which the mesh carries `force` (of either sign) at a phase, m.
+    /// Displacement s at which the mesh force equals `force` (N, of either sign) at a phase, m.
     pub fn displacement_under(&self, force: f64, b: f64, phase: f64) -> f64 {
-        let side: Contact = if force < 0.0 { -1 } else { 1 };
+        let side: ContactSide = if force < 0.0 { -1 } else { 1 };
         let flank = self.flank(side);
         let load = force.abs();
         let top = flank.level_m[flank.level_m.len() - 1];
@@ -181,47 +188,47 @@ impl ContactForce {
         f64::from(side) * (b + self.free_m(side, phase) + e)
     }
 
-    /// The side and level of a displacement: 0 apart, ±(1 + level) on a flank.
-    pub fn contact_of(&self, s: f64, b: f64, phase: f64) -> Contact {
+    /// Contact at a displacement: 0 apart, ±(1 + level) on a flank.
+    pub fn contact_of(&self, s: f64, b: f64, phase: f64) -> ContactSide {
         let driving = s - b - self.free_m(1, phase);
         if driving > 0.0 {
-            return 1 + self.driving.level(driving) as Contact;
+            return 1 + self.driving.level(driving) as ContactSide;
         }
         let back = -s - b - self.free_m(-1, phase);
-        if back > 0.0 { -1 - self.back.level(back) as Contact } else { 0 }
+        if back > 0.0 { -1 - self.back.level(back) as ContactSide } else { 0 }
     }
 
-    /// Largest stiffness of a flank (1 driving, −1 back) at any knot and level, N/m.
-    pub fn largest_stiffness_n_per_m(&self, side: Contact) -> f64 {
+    /// Largest stiffness of a flank (1 driving, −1 back) over knots and levels, N/m.
+    pub fn largest_stiffness_n_per_m(&self, side: ContactSide) -> f64 {
         self.flank(side).cells.iter().flatten().fold(0.0f64, |m, c| m.max(c[1][0]))
     }
 
-    /// What the Taylor method needs of the cell a motion is in: polynomials in scaled time about `phase`.
+    /// Cell of the current contact, as polynomials in scaled time about `phase`.
     #[inline(always)]
-    pub(super) fn cell(&self, contact: Contact, b: f64, phase: f64, inside: f64, period_tau: f64) -> Cell {
-        let (i, u, width) = self.interval(phase, inside);
+    pub(super) fn cell(&self, contact: ContactSide, b: f64, phase: f64, interior: f64, period_tau: f64) -> ForceCell {
+        let (i, u, width) = self.interval(phase, interior);
         let rate = 1.0 / (width * period_tau);
         let shifted = |c: &[f64; 4]| shifted(c, u, rate);
         if contact == 0 {
-            let (mut near, mut far) = (shifted(&self.driving.free[i]), shifted(&self.back.free[i]));
-            near[0] += b;
-            far[0] += b;
-            return Cell { side: -1.0, near, far, law: [[0.0; 4]; 4] };
+            let (mut lower, mut upper) = (shifted(&self.driving.free[i]), shifted(&self.back.free[i]));
+            lower[0] += b;
+            upper[0] += b;
+            return ForceCell { side: -1.0, lower, upper, coefficients: [[0.0; 4]; 4] };
         }
         let flank = self.flank(contact);
         let level = (usize::from(contact.unsigned_abs()) - 1).min(flank.level_m.len() - 1);
-        let mut far = shifted(&flank.free[i]);
-        let mut near = far.map(|c| -c);
-        near[0] -= b + flank.level_m[level];
-        far[0] += b + flank.level_m.get(level + 1).copied().unwrap_or(BEYOND_M);
+        let mut upper = shifted(&flank.free[i]);
+        let mut lower = upper.map(|c| -c);
+        lower[0] -= b + flank.level_m[level];
+        upper[0] += b + flank.level_m.get(level + 1).copied().unwrap_or(UNREACHABLE_M);
         let side = if contact < 0 { -1.0 } else { 1.0 };
-        Cell { side, near, far, law: flank.cells[level][i].map(|row| shifted(&row)) }
+        ForceCell { side, lower, upper, coefficients: flank.cells[level][i].map(|row| shifted(&row)) }
     }
 
-    /// The contact beyond the end of a cell through its near end (false) or its far one.
+    /// Contact in the adjacent cell beyond the lower (`upper` false) or upper boundary.
     #[inline(always)]
-    pub(super) fn next(contact: Contact, far: bool) -> Contact {
-        match (contact, far) {
+    pub(super) fn adjacent(contact: ContactSide, upper: bool) -> ContactSide {
+        match (contact, upper) {
             (0, false) => 1,
             (0, true) => -1,
             (c, false) => c - c.signum(),
@@ -230,44 +237,44 @@ impl ContactForce {
     }
 }
 
-/// A level that no motion reaches, m.
-const BEYOND_M: f64 = 1e300;
+/// Upper boundary of the last level: a displacement that no motion reaches, m.
+const UNREACHABLE_M: f64 = 1e300;
 
-/// The cell of one half that a motion is in, polynomials in scaled time: the force is side Σ_a law[a](τ) e^a with e = side s + near(τ); the cell is left
-/// where side s + near(τ) or −side s + far(τ) falls below zero.
+/// Cell of one half as polynomials in scaled time τ. The force is side · Σ_a coefficients[a](τ) e^a with e = side · s +
+/// lower(τ). The motion leaves the cell where side · s + lower(τ) or −side · s + upper(τ) becomes negative.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Cell {
+pub(crate) struct ForceCell {
     pub side: f64,
-    pub near: [f64; 4],
-    pub far: [f64; 4],
-    pub law: [[f64; 4]; 4],
+    pub lower: [f64; 4],
+    pub upper: [f64; 4],
+    pub coefficients: [[f64; 4]; 4],
 }
 
-/// The cells of both halves in all lanes.
+/// Cells of one half in all lanes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Cells<R> {
-    /// The mesh force of a half comes from its cell.
+pub(crate) struct ForceCells<R> {
+    /// Whether the mesh force of the half is that of the cell.
     pub in_use: bool,
     pub side: R,
-    pub near: [R; 4],
-    pub far: [R; 4],
-    pub law: [[R; 4]; 4],
+    pub lower: [R; 4],
+    pub upper: [R; 4],
+    pub coefficients: [[R; 4]; 4],
 }
 
-impl<R: Real> Cells<R> {
+impl<R: Real> ForceCells<R> {
     pub fn none() -> Self {
         let zero = R::splat(0.0);
-        Self { in_use: false, side: zero, near: [zero; 4], far: [zero; 4], law: [[zero; 4]; 4] }
+        Self { in_use: false, side: zero, lower: [zero; 4], upper: [zero; 4], coefficients: [[zero; 4]; 4] }
     }
 
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, cell: &Cell) {
+    pub fn set(&mut self, lane: usize, cell: &ForceCell) {
         self.side.set(lane, cell.side);
         for k in 0..4 {
-            self.near[k].set(lane, cell.near[k]);
-            self.far[k].set(lane, cell.far[k]);
+            self.lower[k].set(lane, cell.lower[k]);
+            self.upper[k].set(lane, cell.upper[k]);
             for a in 0..4 {
-                self.law[a][k].set(lane, cell.law[a][k]);
+                self.coefficients[a][k].set(lane, cell.coefficients[a][k]);
             }
         }
     }
@@ -278,7 +285,7 @@ fn cubic(c: &[f64; 4], u: f64) -> f64 {
     c[0] + u * (c[1] + u * (c[2] + u * c[3]))
 }
 
-/// The cubic about the place `u`, over a variable of which one unit is `rate` units of u.
+/// The cubic about `u`, in a variable of which one unit is `rate` units of u.
 #[inline(always)]
 fn shifted(c: &[f64; 4], u: f64, rate: f64) -> [f64; 4] {
     [
@@ -289,13 +296,13 @@ fn shifted(c: &[f64; 4], u: f64, rate: f64) -> [f64; 4] {
     ]
 }
 
-/// Hermite's cubic over a place 0 … 1 from values and derivatives by the place at both ends.
+/// Cubic Hermite interpolant on 0 … 1 from values and derivatives at both ends.
 fn hermite(v0: f64, v1: f64, m0: f64, m1: f64) -> [f64; 4] {
     let rise = v1 - v0;
     [v0, m0, 3.0 * rise - 2.0 * m0 - m1, m0 + m1 - 2.0 * rise]
 }
 
-impl Flank {
+impl FlankSurface {
     fn new(knots: &[f64], flank: &FlankForce) -> Self {
         let n = knots.len();
         let width = |i: usize| if i + 1 < n { knots[i + 1] - knots[i] } else { knots[0] + 1.0 - knots[i] };
@@ -309,7 +316,7 @@ impl Flank {
             .map(|level| {
                 (0..n)
                     .map(|i| {
-                        // Cubics over the phase: force and stiffness at this level and the next.
+                        // Cubics over the phase of force and stiffness at this level and the next.
                         let force = |l: usize| over_phase(&|j| [flank.nodes[l][j][0], flank.nodes[l][j][2]], i);
                         let slope = |l: usize| over_phase(&|j| [flank.nodes[l][j][1], flank.nodes[l][j][3]], i);
                         let (f0, k0) = (force(level), slope(level));

@@ -1,16 +1,16 @@
-//! The first zero of a polynomial that starts positive: where a tooth changes the side of its backlash.
+//! First zero crossing of a polynomial, for the location of contact events.
 
 use super::lanes::Real;
 
-/// First τ in (0, h] at which the polynomial Σ c_n τ^n, not negative at 0, passes below zero; infinite where there is none or
-/// `wanted` is 0.
+/// First τ in (0, h] at which the polynomial Σ c_n τ^n, not negative at 0, becomes negative; infinite where there is
+/// none or `active` is 0.
 ///
-/// The search advances by d with g + g' d − ½ A d² = 0, where A bounds −g'' over d: no zero can be passed over, minima
-/// that dip below zero between the ends of the step included, and towards a simple zero it converges as Newton's method
-/// does, from the near side. The bound is that of g'' over all of [0, h] or, where it leads further, what −g'' can come to over d from
-/// where it is, by the bound of the third derivative. A dip shallower than rounding (1e-16 of A h²) is not seen.
+/// The search advances by d with g + g' d − ½ A d² = 0, where A bounds −g'' over d. It cannot pass a zero, including
+/// minima below zero between the ends of the step, and it converges to a simple zero from below as fast as Newton's
+/// method. A is the bound over [0, h] or, where the step becomes longer by it, the bound over d that follows from the
+/// third derivative. A minimum that is negative by less than rounding (1e-16 of A h²) is not detected.
 #[inline(always)]
-pub(super) fn first_crossing<R: Real>(c: &[R], h: R, wanted: R) -> R {
+pub(super) fn first_crossing<R: Real>(c: &[R], h: R, active: R) -> R {
     let zero = R::splat(0.0);
     let (mut reach, mut second, mut third) = (zero, zero, zero);
     let mut power = R::splat(1.0);
@@ -23,8 +23,8 @@ pub(super) fn first_crossing<R: Real>(c: &[R], h: R, wanted: R) -> R {
         power = power * h;
     }
     let mut at = R::splat(f64::INFINITY);
-    // Lanes still searching: 1.
-    let mut open = R::from_fn(|l| if wanted.get(l) != 0.0 && c[0].get(l) <= reach.get(l) { 1.0 } else { 0.0 });
+    // 1 in lanes that are still searching.
+    let mut open = R::from_fn(|l| if active.get(l) != 0.0 && c[0].get(l) <= reach.get(l) { 1.0 } else { 0.0 });
     if !open.any(|o| o != 0.0) {
         return at;
     }
@@ -39,8 +39,8 @@ pub(super) fn first_crossing<R: Real>(c: &[R], h: R, wanted: R) -> R {
         let g = g.zip(here, |g, here| if here == 0.0 { g.max(0.0) } else { g });
         for l in 0..R::LANES {
             if open.get(l) != 0.0 && g.get(l) < 0.0 {
-                // The search comes up to a simple zero in steps that shrink with the distance: the last point before it is as
-                // close as needs be for one step of Newton's method. Elsewhere, near a minimum, bisection helps.
+                // Steps shrink with the distance to a simple zero, so the last point before it is close enough for one
+                // Newton step. Near a minimum it is not: there bisection brackets Newton's method.
                 let (low, high) = (previous.get(l), here.get(l));
                 let newton = -g_before.get(l) / dg_before.get(l);
                 let simple = high - low <= 2e-9 * h.get(l) && newton >= 0.0 && newton < high - low;
@@ -54,14 +54,15 @@ pub(super) fn first_crossing<R: Real>(c: &[R], h: R, wanted: R) -> R {
         }
         let left = h - here;
         let mut step = safe_step(g, dg, second, left);
-        // Steps over which g'' has bounds of its own, tried from the whole rest down.
+        // Steps over which g'' has tighter bounds, from the whole remaining interval down.
         for part in [1.0, 0.2] {
             let length = left * R::splat(part);
             let local = (third * length * R::splat(1.0 / 3.0) - half_ddg * R::splat(2.0)).map(|a| a.max(0.0));
             step = step.zip(safe_step(g, dg, local, length), f64::max);
         }
         if iteration > 60 {
-            // Only a long stretch that nearly touches comes here; the resolution is lowered so that the search ends.
+            // Reached only where the polynomial stays close to zero over a long interval. The resolution is reduced so
+            // that the search ends.
             floor = floor * R::splat(1.5);
         }
         (previous, g_before, dg_before) = (here, g, dg);
@@ -70,7 +71,7 @@ pub(super) fn first_crossing<R: Real>(c: &[R], h: R, wanted: R) -> R {
     at
 }
 
-/// The d up to `most` to which g + g' d − ½ A d² stays above zero, A ≥ 0 being a bound of −g'' as far as `most`.
+/// Largest d up to `most` with g + g' d − ½ A d² > 0, where A = `bound` ≥ 0 bounds −g'' up to `most`.
 #[inline(always)]
 fn safe_step<R: Real>(g: R, dg: R, bound: R, most: R) -> R {
     let root = (dg * dg + R::splat(2.0) * bound * g).map(f64::sqrt);
@@ -96,7 +97,7 @@ fn evaluate<R: Real>(c: &[R], t: R) -> (R, R, R) {
     (g, dg, half_ddg)
 }
 
-/// The zero of one lane's polynomial between `low` (not negative) and `high` (negative), to rounding.
+/// Zero of one lane's polynomial between `low` (not negative) and `high` (negative), to rounding.
 fn bisected_newton<R: Real>(c: &[R], lane: usize, mut low: f64, mut high: f64) -> f64 {
     let value = |t: f64| {
         let (mut g, mut dg) = (0.0, 0.0);
@@ -106,7 +107,7 @@ fn bisected_newton<R: Real>(c: &[R], lane: usize, mut low: f64, mut high: f64) -
         }
         (g, dg)
     };
-    // The search comes up to the zero in steps that shrink with the distance, so the last point before it is close.
+    // Steps shrink with the distance to the zero, so the last point before it is a good start.
     let mut at = low;
     for _ in 0..80 {
         let (g, dg) = value(at);
@@ -157,7 +158,7 @@ mod tests {
 
     #[test]
     fn finds_the_first_of_two_close_roots() {
-        // Positive, dips below zero between 0.5 and 0.5 + 1e-6, comes back.
+        // Positive, negative between 0.5 and 0.5 + 1e-6, positive again.
         let c = polynomial(&[0.5, 0.5 + 1e-6, -2.0], 1.0);
         let root = first(&c, 1.0).unwrap();
         assert!((root - 0.5).abs() < 1e-9, "{root}");

@@ -1,17 +1,18 @@
-//! The linear part of the equations of motion, in the coordinates they are solved in.
+//! Linear part of the equations of motion, in solver coordinates.
 //!
 //! # Coordinates
-//! Per half: y_p, z_p, u, y_g, z_g, w (all lengths) with u = R_p θ_p − R_g θ_g and w = I_p θ_p/R_p + I_g θ_g/R_g scaled to a
-//! length by 1/(I_p/R_p² + I_g/R_g²). u is all the mesh feels of the rotations, w is the free rotation: it is driven only by torsional couplings,
-//! so rigid rotation neither drifts numerically nor costs accuracy. x = y_p − y_g + u and s = cosβ x + sinβ_j (z_p − z_g).
+//! Per half: y_p, z_p, u, y_g, z_g, w (all lengths) with u = R_p θ_p − R_g θ_g and w = (I_p θ_p/R_p + I_g
+//! θ_g/R_g)/(I_p/R_p² + I_g/R_g²). The mesh acts on u alone. w is the rigid rotation, excited only by torsional
+//! couplings, so that a rigid rotation neither drifts numerically nor costs accuracy. x = y_p − y_g + u and s = cosβ x
+//! + sinβ_j (z_p − z_g).
 //!
-//! `Equations<6>` are those of one half of a mirror-symmetric pair (the other half has z and w mirrored as the symmetry says),
+//! `Equations<6>` are those of one half of a mirror-symmetric pair (z of the other half is the opposite),
 //! `Equations<12>` those of both halves. Time is scaled by a reference frequency: τ = ω_ref t; velocities are dx/dτ.
 
 use super::lanes::Real;
 use super::parameters::{ImpactActsOn, Parameters, Spring};
 
-/// Coordinates per half, and their places.
+/// Coordinates per half, and their indices.
 pub(crate) const PER_HALF: usize = 6;
 pub(crate) const YP: usize = 0;
 pub(crate) const ZP: usize = 1;
@@ -20,74 +21,74 @@ pub(crate) const YG: usize = 3;
 pub(crate) const ZG: usize = 4;
 pub(crate) const W: usize = 5;
 
-/// Spring and damper in scaled time, already divided by the mass they act on.
+/// Spring and damper in scaled time, divided by the mass they act on.
 #[derive(Debug, Clone, Copy, Default)]
-struct Rate<R> {
+struct ScaledSpring<R> {
     k: R,
     c: R,
 }
 
-impl Rate<f64> {
+impl ScaledSpring<f64> {
     fn new(spring: Spring, mass: f64, omega: f64) -> Self {
         Self { k: spring.stiffness / (mass * omega * omega), c: spring.damping / (mass * omega) }
     }
 }
 
-impl<R: Real> Rate<R> {
+impl<R: Real> ScaledSpring<R> {
     #[inline(always)]
     fn of(self, x: R, v: R) -> R {
         self.k * x + self.c * v
     }
 }
 
-/// What belongs to one half.
+/// Coefficients of one half.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct HalfEquations<R> {
     pub sin: R,
-    /// Force to scaled acceleration: 1/(m ω²).
+    /// Force to acceleration in scaled time: 1/(m ω²).
     inv_mp: R,
     pub(super) inv_mg: R,
     pub inv_me: R,
-    yp: Rate<R>,
-    zp: Rate<R>,
-    yg: Rate<R>,
-    zg: Rate<R>,
-    yp_other: Rate<R>,
-    zp_other: Rate<R>,
-    yg_other: Rate<R>,
-    zg_other: Rate<R>,
-    /// Torsional couplings act on R_p θ_p and R_g θ_g as forces (per length).
-    torsion_p: Rate<R>,
-    torsion_g: Rate<R>,
-    /// Reduced inertias I_p/R_p², I_g/R_g², and their parts of the sum of both.
+    yp: ScaledSpring<R>,
+    zp: ScaledSpring<R>,
+    yg: ScaledSpring<R>,
+    zg: ScaledSpring<R>,
+    yp_other: ScaledSpring<R>,
+    zp_other: ScaledSpring<R>,
+    yg_other: ScaledSpring<R>,
+    zg_other: ScaledSpring<R>,
+    /// Torsional couplings, acting on R_p θ_p and R_g θ_g as forces.
+    torsion_p: ScaledSpring<R>,
+    torsion_g: ScaledSpring<R>,
+    /// Reduced inertias I_p/R_p² and I_g/R_g² in kg, and their fractions of the sum.
     pub reduced_p: R,
     pub reduced_g: R,
     part_p: R,
     part_g: R,
-    /// 1/(reduced ω²).
+    /// 1/(reduced inertia · ω²).
     inv_rp: R,
     inv_rg: R,
     inv_rw: R,
-    /// Mesh damper times ω, in contact and in the gap.
+    /// Mesh damping coefficient times ω, in contact and in the gap.
     pub cm: R,
     pub cm_in_gap: R,
     /// T_p/R_p, N.
     pub load: R,
 }
 
-/// The linear part of the equations of one half (D = 6, mirror symmetric) or both (D = 12).
+/// Linear part of the equations of one half (D = 6, mirror-symmetric pair) or of both (D = 12).
 #[derive(Debug, Clone)]
 pub(crate) struct Equations<const D: usize, R> {
     pub halves: [HalfEquations<R>; 2],
     pub cos: R,
     /// Half the backlash, m.
     pub b: R,
-    /// What an impact of 1 N along the mesh is beside the load on the torsional equations, and as a normal force on all: 1 and 0, or 0
-    /// and 1/cosβ.
+    /// Contribution of an impact force of 1 N to the tangential force of the torsional equations, and to the normal
+    /// force of all equations: 1 and 0, or 0 and 1/cosβ.
     pub(super) impact_along: R,
     pub(super) impact_normal: R,
     torsional: bool,
-    /// D = 6 only: the other half moves as the mirror image (1) or as its opposite (−1, for variations).
+    /// D = 6 only: the other half moves as the mirror image (1) or as its opposite (−1, antisymmetric perturbations).
     parity: f64,
 }
 
@@ -106,23 +107,23 @@ impl<const D: usize> Equations<D, f64> {
         }
     }
 
-    /// The equations that variations against the mirror symmetry obey (D = 6).
-    pub fn against_symmetry(&self) -> Self {
+    /// The equations of antisymmetric perturbations (D = 6): the other half moves as the opposite of the mirror image.
+    pub fn antisymmetric(&self) -> Self {
         Self { parity: -1.0, ..self.clone() }
     }
 
-    /// A torsional spring joins the halves of a gear.
+    /// Whether a torsional spring couples the halves of a gear.
     pub fn couples_rotations(&self) -> bool {
         self.torsional
     }
 
-    /// Coordinates without which the motion is complete: w, when no torsional spring reads it.
+    /// Indices of the coordinates that are integrated: all, or all but w where no torsional spring acts.
     pub fn active(&self) -> impl Iterator<Item = usize> + use<D> {
         let with_w = self.torsional && (D > PER_HALF || self.parity < 0.0);
         (0..D).filter(move |c| with_w || c % PER_HALF != W)
     }
 
-    /// The diagonal mass matrix of the solver coordinates, kg.
+    /// Diagonal of the mass matrix in solver coordinates, kg.
     pub fn masses_kg(&self, omega_ref: f64) -> [f64; D] {
         let mut out = [0.0; D];
         let square = omega_ref * omega_ref;
@@ -134,7 +135,7 @@ impl<const D: usize> Equations<D, f64> {
     }
 
     /// The same equations in every lane.
-    pub fn in_all_lanes<R: Real>(&self) -> Equations<D, R> {
+    pub fn broadcast<R: Real>(&self) -> Equations<D, R> {
         let mut out = Equations::at_rest();
         for lane in 0..R::LANES {
             out.put(lane, self);
@@ -146,7 +147,7 @@ impl<const D: usize> Equations<D, f64> {
 impl<const D: usize, R: Real> Equations<D, R> {
     pub const HALVES: usize = D / PER_HALF;
 
-    /// Equations under which nothing moves: for lanes not in use.
+    /// Equations without forces, for unused lanes.
     pub fn at_rest() -> Self {
         Self {
             halves: [HalfEquations::default(); 2],
@@ -159,9 +160,9 @@ impl<const D: usize, R: Real> Equations<D, R> {
         }
     }
 
-    /// Puts one motion's equations into a lane. All lanes have the same parity.
+    /// Sets the equations of one lane. All lanes have the same parity.
     pub fn put(&mut self, lane: usize, one: &Equations<D, f64>) {
-        fn rate<R: Real>(to: &mut Rate<R>, lane: usize, from: &Rate<f64>) {
+        fn rate<R: Real>(to: &mut ScaledSpring<R>, lane: usize, from: &ScaledSpring<f64>) {
             to.k.set(lane, from.k);
             to.c.set(lane, from.c);
         }
@@ -199,7 +200,7 @@ impl<const D: usize, R: Real> Equations<D, R> {
         }
     }
 
-    /// The other half's place in the coordinates and the factors of its y and w, and of its z.
+    /// Index of the other half's first coordinate, and the sign of its y and w and of its z.
     #[inline(always)]
     fn other(&self, j: usize) -> (usize, R, R) {
         if D > PER_HALF {
@@ -209,16 +210,16 @@ impl<const D: usize, R: Real> Equations<D, R> {
         }
     }
 
-    /// s of a half.
+    /// Displacement s of a half along the tooth normal, m.
     #[inline(always)]
     pub fn s(&self, j: usize, x: &[R; D]) -> R {
         let i = j * PER_HALF;
         self.cos * (x[i + YP] - x[i + YG] + x[i + U]) + self.halves[j].sin * (x[i + ZP] - x[i + ZG])
     }
 
-    /// Scaled accelerations of one half given its normal force on the teeth and the other force along the mesh, T_p/R_p − F_s (of an
-    /// impact that acts on all motions: T_p/R_p, F_s being part of the normal force). Linear
-    /// and homogeneous, so it serves single Taylor coefficients and deviations too.
+    /// Accelerations in scaled time of one half from its normal tooth force and the tangential force, T_p/R_p − F_s
+    /// (T_p/R_p for an impact that acts on all motions, whose F_s is part of the normal force), N. Linear and
+    /// homogeneous, so it holds for single Taylor coefficients and for perturbations too.
     #[inline(always)]
     pub(super) fn half_acceleration(&self, j: usize, x: &[R; D], v: &[R; D], force: R, along: R) -> [R; PER_HALF] {
         let h = &self.halves[j];
@@ -263,7 +264,7 @@ impl<const D: usize, R: Real> Equations<D, R> {
     }
 }
 
-/// A coordinate and its velocity less the mirrored ones of the other half.
+/// Difference of a coordinate and its mirrored counterpart on the other half, and of their velocities.
 #[inline(always)]
 fn difference<const D: usize, R: Real>(x: &[R; D], v: &[R; D], at: (usize, usize), mirrored: R) -> (R, R) {
     (x[at.0] - mirrored * x[at.1], v[at.0] - mirrored * v[at.1])
@@ -275,9 +276,9 @@ fn half(p: &Parameters, j: usize, omega: f64) -> HalfEquations<f64> {
     let square = omega * omega;
     let reduced_p = h.pinion_inertia_kg_m2 / (p.pinion_radius_m * p.pinion_radius_m);
     let reduced_g = h.gear_inertia_kg_m2 / (p.gear_radius_m * p.gear_radius_m);
-    let on_pinion = |s| Rate::new(s, h.pinion_mass_kg, omega);
-    let on_gear = |s| Rate::new(s, h.gear_mass_kg, omega);
-    let per_arc = |s: Spring, r: f64| Rate { k: s.stiffness / (r * r), c: s.damping * omega / (r * r) };
+    let on_pinion = |s| ScaledSpring::new(s, h.pinion_mass_kg, omega);
+    let on_gear = |s| ScaledSpring::new(s, h.gear_mass_kg, omega);
+    let per_arc = |s: Spring, r: f64| ScaledSpring { k: s.stiffness / (r * r), c: s.damping * omega / (r * r) };
     let cm = h.mesh_damping_n_s_per_m * omega;
     HalfEquations {
         sin: if j == 0 { p.helix_angle_rad.sin() } else { -p.helix_angle_rad.sin() },

@@ -1,4 +1,4 @@
-//! The two excitations of the equations: mesh stiffness and mesh-in impact, as periodic functions of the mesh phase.
+//! Excitations of the equations as periodic functions of the mesh phase: mesh stiffness and mesh-in impact.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,12 +6,14 @@ use serde::{Deserialize, Serialize};
 
 use super::error::DynamicsError;
 use super::lanes::Real;
+use crate::numerics::monotone_cubics;
 
-/// One harmonic of a Fourier series: `amplitude · cos(2π i φ + phase_rad)` for the i-th entry (i from 1).
+/// One harmonic of a Fourier series: `amplitude · cos(2π i φ + phase_rad)` for entry i, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Harmonic {
-    /// Relative to the mean for stiffnesses, in N for forces.
+    /// Relative to the mean for a stiffness, N for a force.
     pub amplitude: f64,
+    /// Phase angle, rad.
     pub phase_rad: f64,
 }
 
@@ -19,13 +21,14 @@ pub struct Harmonic {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stiffness {
-    /// The same at every phase.
+    /// Constant stiffness.
     Constant { mean_n_per_m: f64 },
     /// k(φ) = mean (1 + Σ_i amplitude_i cos(2π i φ + phase_i)).
     Fourier { mean_n_per_m: f64, harmonics: Vec<Harmonic> },
-    /// Equally spaced over one period, the first at φ = 0. Between samples: the periodic monotone cubic of Fritsch and
-    /// Carlson (SIAM J. Numer. Anal. 17 (1980) 238) with Brodlie's harmonic-mean slopes. It passes through every sample, has no
-    /// extremum between samples and so keeps a kink as sharp as the sampling does. The methods use the cubics exactly.
+    /// Samples, equally spaced over one period, the first at φ = 0. Interpolation: periodic monotone cubic (F. N.
+    /// Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238–246, doi:10.1137/0717021) with the harmonic-mean
+    /// slopes of Brodlie. It passes through all samples and has no extremum between them. The integrators use the
+    /// cubics exactly.
     Samples { values_n_per_m: Vec<f64> },
 }
 
@@ -42,11 +45,11 @@ impl Stiffness {
         }
     }
 
-    /// Value at the phase `phase` (any real number), N/m.
+    /// Value at any phase, N/m.
     pub fn at(&self, phase: f64) -> f64 {
-        let course = StiffnessCourse::new(self, 0.0, 1.0);
+        let waveform = StiffnessWaveform::new(self, 0.0, 1.0);
         let phase = phase.rem_euclid(1.0);
-        course.value(phase, phase)
+        waveform.value(phase, phase)
     }
 
     pub(super) fn validate(&self) -> Result<(), DynamicsError> {
@@ -73,34 +76,36 @@ impl Stiffness {
     }
 }
 
-/// Periodic force F_s along the mesh of one half in the transverse plane, N.
+/// Periodic impact force F_s of one half, tangential in the transverse plane, N.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Impact {
-    /// F_s(φ) = force · sin(π (φ − start) / duration) while 0 ≤ φ − start < duration, once per mesh period. Pulses longer than
-    /// a mesh period overlap and add up.
+pub enum ImpactExcitation {
+    /// F_s(φ) = force · sin(π (φ − start) / duration) for 0 ≤ φ − start < duration, once per mesh period. Pulses longer
+    /// than a mesh period overlap and add up.
     HalfSine { force_n: f64, duration_mesh_periods: f64, start_mesh_periods: f64 },
-    /// F_s(φ) = Σ_i amplitude_i cos(2π i φ + phase_i), amplitudes in N: any smooth periodic force along the mesh.
+    /// F_s(φ) = Σ_i amplitude_i cos(2π i φ + phase_i), amplitudes in N.
     Harmonics { harmonics: Vec<Harmonic> },
 }
 
-/// The longest half sine, in mesh periods: beyond it the pulses of a dozen tooth pairs would overlap.
-const LONGEST_PULSE_MESH_PERIODS: f64 = 16.0;
+/// Longest half sine, in mesh periods; up to 16 pulses then overlap.
+const MAX_PULSE_MESH_PERIODS: f64 = 16.0;
 
-impl Impact {
+impl ImpactExcitation {
     /// Mean over one mesh period, N.
     pub fn mean_n(&self) -> f64 {
         match self {
-            Impact::HalfSine { force_n, duration_mesh_periods, .. } => force_n * duration_mesh_periods * 2.0 / PI,
-            Impact::Harmonics { .. } => 0.0,
+            ImpactExcitation::HalfSine { force_n, duration_mesh_periods, .. } => {
+                force_n * duration_mesh_periods * 2.0 / PI
+            }
+            ImpactExcitation::Harmonics { .. } => 0.0,
         }
     }
 
-    /// Whether there is no force at any phase.
+    /// Whether the force is zero at all phases.
     pub fn is_zero(&self) -> bool {
         match self {
-            Impact::HalfSine { force_n, .. } => *force_n == 0.0,
-            Impact::Harmonics { harmonics } => harmonics.iter().all(|h| h.amplitude == 0.0),
+            ImpactExcitation::HalfSine { force_n, .. } => *force_n == 0.0,
+            ImpactExcitation::Harmonics { harmonics } => harmonics.iter().all(|h| h.amplitude == 0.0),
         }
     }
 
@@ -109,61 +114,41 @@ impl Impact {
             if ok { Ok(()) } else { Err(DynamicsError::InvalidParameter { name: "impact", value, reason }) }
         };
         match self {
-            Impact::HalfSine { force_n, duration_mesh_periods: d, start_mesh_periods } => {
+            ImpactExcitation::HalfSine { force_n, duration_mesh_periods: d, start_mesh_periods } => {
                 check(force_n.is_finite(), *force_n, "the force must be finite")?;
                 check(start_mesh_periods.is_finite(), *start_mesh_periods, "the start must be finite")?;
-                check(
-                    *d >= 1e-9 && *d <= LONGEST_PULSE_MESH_PERIODS,
-                    *d,
-                    "the duration must be 1e-9 to 16 mesh periods",
-                )
+                check(*d >= 1e-9 && *d <= MAX_PULSE_MESH_PERIODS, *d, "the duration must be 1e-9 to 16 mesh periods")
             }
-            Impact::Harmonics { harmonics } => harmonics.iter().try_for_each(|h| {
+            ImpactExcitation::Harmonics { harmonics } => harmonics.iter().try_for_each(|h| {
                 check(h.amplitude.is_finite() && h.phase_rad.is_finite(), h.amplitude, "harmonics must be finite")
             }),
         }
     }
 }
 
-/// Slopes and cubics of the periodic monotone interpolant: c0 + c1 u + c2 u² + c3 u³, u = 0 … 1 between neighbours.
-fn monotone_cubics(values: &[f64]) -> Vec<[f64; 4]> {
-    let n = values.len();
-    let rise = |i: usize| values[(i + 1) % n] - values[i % n];
-    let slope = |i: usize| {
-        let (before, after) = (rise(i + n - 1), rise(i));
-        if before * after > 0.0 { 2.0 * before * after / (before + after) } else { 0.0 }
-    };
-    (0..n)
-        .map(|i| {
-            let (d, m0, m1) = (rise(i), slope(i), slope(i + 1));
-            [values[i], m0, 3.0 * d - 2.0 * m0 - m1, m0 + m1 - 2.0 * d]
-        })
-        .collect()
-}
-
-/// Taylor coefficients of one parity: 0, 2, 4 … or 1, 3, 5 ….
+/// Number of Taylor coefficients of one parity (orders 0, 2, 4 … or 1, 3, 5 …).
 const PER_PARITY: usize = MAX_ORDER / 2 + 1;
 
-/// Truncated Fourier series with the tables that give its Taylor coefficients in scaled time.
+/// Truncated Fourier series with the tables of its Taylor coefficients in scaled time.
 #[derive(Debug, Clone)]
-pub(crate) struct Series<R> {
+pub(crate) struct FourierSeries<R> {
     constant: R,
-    terms: Vec<Term<R>>,
+    terms: Vec<HarmonicTerm<R>>,
 }
 
 /// One harmonic a cos(iθ + φ).
 #[derive(Debug, Clone)]
-struct Term<R> {
+struct HarmonicTerm<R> {
     /// a cosφ and a sinφ.
     cos: R,
     sin: R,
-    /// (i ω/ω_ref)^n / n! with the signs of the derivatives of the cosine: n even, multiplying a cos(iθ + φ), and n odd, multiplying
-    /// a sin(iθ + φ).
+    /// (i ω/ω_ref)^n / n! with the signs of the derivatives of the cosine: n even, factor of a cos(iθ + φ); n odd,
+    /// factor of a sin(iθ + φ).
     even: [R; PER_PARITY],
     odd: [R; PER_PARITY],
 }
 
-impl Series<f64> {
+impl FourierSeries<f64> {
     fn new(constant: f64, factor: f64, harmonics: &[Harmonic], shift: f64, period_tau: f64) -> Self {
         let term = |(i, h): (usize, &Harmonic)| {
             let order = (i + 1) as f64;
@@ -179,7 +164,7 @@ impl Series<f64> {
                 }
                 power *= TAU * order / (period_tau * (n + 1) as f64);
             }
-            Term { cos: factor * h.amplitude * cos, sin: factor * h.amplitude * sin, even, odd }
+            HarmonicTerm { cos: factor * h.amplitude * cos, sin: factor * h.amplitude * sin, even, odd }
         };
         Self { constant, terms: harmonics.iter().enumerate().map(term).collect() }
     }
@@ -192,16 +177,16 @@ impl Series<f64> {
     }
 }
 
-impl<R: Real> Series<R> {
+impl<R: Real> FourierSeries<R> {
     pub fn zero() -> Self {
         Self { constant: R::splat(0.0), terms: Vec::new() }
     }
 
-    /// Puts one motion's series into a lane. Shorter series have zero terms.
-    pub fn put(&mut self, lane: usize, one: &Series<f64>) {
+    /// Sets the series of one lane. Shorter series are padded with zero terms.
+    pub fn put(&mut self, lane: usize, one: &FourierSeries<f64>) {
         let zero = R::splat(0.0);
         while self.terms.len() < one.terms.len() {
-            self.terms.push(Term { cos: zero, sin: zero, even: [zero; PER_PARITY], odd: [zero; PER_PARITY] });
+            self.terms.push(HarmonicTerm { cos: zero, sin: zero, even: [zero; PER_PARITY], odd: [zero; PER_PARITY] });
         }
         self.constant.set(lane, one.constant);
         for (i, to) in self.terms.iter_mut().enumerate() {
@@ -215,7 +200,7 @@ impl<R: Real> Series<R> {
         }
     }
 
-    /// No lane has harmonics.
+    /// Whether no lane has harmonics.
     #[inline(always)]
     pub fn is_constant(&self) -> bool {
         self.terms.is_empty()
@@ -259,10 +244,9 @@ pub(crate) const MAX_ORDER: usize = 24;
 /// Taylor coefficients of one quantity.
 pub(crate) type Coefficients = [f64; MAX_ORDER + 1];
 
-/// A stiffness made ready for the methods. Scaled time τ is time times a reference frequency; `period_tau` is one mesh
-/// period in it.
+/// Stiffness waveform in the form the integrators use. `period_tau` is one mesh period in scaled time.
 #[derive(Debug, Clone)]
-pub(crate) struct StiffnessCourse {
+pub(crate) struct StiffnessWaveform {
     kind: StiffnessKind,
     shift: f64,
     period_tau: f64,
@@ -270,25 +254,25 @@ pub(crate) struct StiffnessCourse {
 
 #[derive(Debug, Clone)]
 enum StiffnessKind {
-    Fourier(Series<f64>),
+    Fourier(FourierSeries<f64>),
     Pieces(Vec<[f64; 4]>),
 }
 
-impl StiffnessCourse {
+impl StiffnessWaveform {
     pub fn new(stiffness: &Stiffness, shift: f64, period_tau: f64) -> Self {
         let kind = match stiffness {
             Stiffness::Constant { mean_n_per_m } => {
-                StiffnessKind::Fourier(Series::new(*mean_n_per_m, 0.0, &[], shift, period_tau))
+                StiffnessKind::Fourier(FourierSeries::new(*mean_n_per_m, 0.0, &[], shift, period_tau))
             }
             Stiffness::Fourier { mean_n_per_m, harmonics } => {
-                StiffnessKind::Fourier(Series::new(*mean_n_per_m, *mean_n_per_m, harmonics, shift, period_tau))
+                StiffnessKind::Fourier(FourierSeries::new(*mean_n_per_m, *mean_n_per_m, harmonics, shift, period_tau))
             }
             Stiffness::Samples { values_n_per_m } => StiffnessKind::Pieces(monotone_cubics(values_n_per_m)),
         };
         Self { kind, shift, period_tau }
     }
 
-    /// Phases at which the course is not smooth.
+    /// Appends the phases at which the waveform is not smooth.
     pub fn breakpoints(&self, out: &mut Vec<f64>) {
         if let StiffnessKind::Pieces(pieces) = &self.kind
             && pieces.len() > 1
@@ -297,12 +281,12 @@ impl StiffnessCourse {
         }
     }
 
-    /// Index of the cubic that holds around `inside`, and the position of `phase` in it.
-    fn piece(&self, count: usize, phase: f64, inside: f64) -> (usize, f64) {
+    /// Index of the cubic that contains `interior`, and the position of `phase` in it.
+    fn piece(&self, count: usize, phase: f64, interior: f64) -> (usize, f64) {
         let n = count as f64;
-        let index = (((inside - self.shift).rem_euclid(1.0) * n) as usize).min(count - 1);
+        let index = (((interior - self.shift).rem_euclid(1.0) * n) as usize).min(count - 1);
         let mut u = (phase - self.shift).rem_euclid(1.0) * n - index as f64;
-        // The start of a piece may be its neighbour's end, one period away.
+        // The start of a piece can be the end of its neighbour, one period away.
         if u > 0.5 * n + 0.5 {
             u -= n;
         } else if u < 0.5 - 0.5 * n {
@@ -311,31 +295,31 @@ impl StiffnessCourse {
         (index, u)
     }
 
-    /// Value at `phase`; `inside` is a phase in the interior of the smooth stretch that is meant.
-    pub fn value(&self, phase: f64, inside: f64) -> f64 {
+    /// Value at `phase`, on the smooth interval that contains `interior`, N/m.
+    pub fn value(&self, phase: f64, interior: f64) -> f64 {
         match &self.kind {
             StiffnessKind::Fourier(series) => series.value(phase),
             StiffnessKind::Pieces(pieces) => {
-                let (i, u) = self.piece(pieces.len(), phase, inside);
+                let (i, u) = self.piece(pieces.len(), phase, interior);
                 let c = &pieces[i];
                 c[0] + u * (c[1] + u * (c[2] + u * c[3]))
             }
         }
     }
 
-    /// The series, where the course is one (a constant is a series without terms).
-    pub fn series(&self) -> Option<&Series<f64>> {
+    /// The Fourier series, if the waveform is one (a constant is a series without terms).
+    pub fn series(&self) -> Option<&FourierSeries<f64>> {
         match &self.kind {
             StiffnessKind::Fourier(series) => Some(series),
             StiffnessKind::Pieces(_) => None,
         }
     }
 
-    /// Taylor coefficients about `phase`, those above the third zero; None where the course is a series.
+    /// Taylor coefficients about `phase`, orders 0 to 3; the higher ones are zero. None for a Fourier series.
     #[inline(always)]
-    pub fn cubic(&self, phase: f64, inside: f64) -> Option<[f64; 4]> {
+    pub fn cubic(&self, phase: f64, interior: f64) -> Option<[f64; 4]> {
         let StiffnessKind::Pieces(pieces) = &self.kind else { return None };
-        let (i, u) = self.piece(pieces.len(), phase, inside);
+        let (i, u) = self.piece(pieces.len(), phase, interior);
         let c = &pieces[i];
         let scale = pieces.len() as f64 / self.period_tau;
         Some([
@@ -347,55 +331,55 @@ impl StiffnessCourse {
     }
 }
 
-/// An impact made ready for the methods.
+/// Impact waveform in the form the integrators use.
 #[derive(Debug, Clone)]
-pub(crate) enum ImpactCourse {
+pub(crate) enum ImpactWaveform {
     None,
     HalfSine { force_n: f64, duration: f64, start: f64, power: Coefficients },
-    Harmonics(Series<f64>),
+    Harmonics(FourierSeries<f64>),
 }
 
-impl ImpactCourse {
-    pub fn new(impact: Option<&Impact>, shift: f64, period_tau: f64) -> Self {
+impl ImpactWaveform {
+    pub fn new(impact: Option<&ImpactExcitation>, shift: f64, period_tau: f64) -> Self {
         match impact {
-            None => ImpactCourse::None,
-            Some(Impact::HalfSine { force_n, .. }) if *force_n == 0.0 => ImpactCourse::None,
-            Some(Impact::HalfSine { force_n, duration_mesh_periods: duration, start_mesh_periods }) => {
+            None => ImpactWaveform::None,
+            Some(ImpactExcitation::HalfSine { force_n, .. }) if *force_n == 0.0 => ImpactWaveform::None,
+            Some(ImpactExcitation::HalfSine { force_n, duration_mesh_periods: duration, start_mesh_periods }) => {
                 let mut power = [1.0; MAX_ORDER + 1];
                 for n in 1..=MAX_ORDER {
                     power[n] = power[n - 1] * PI / (duration * period_tau * n as f64);
                 }
                 let start = (start_mesh_periods + shift).rem_euclid(1.0);
-                ImpactCourse::HalfSine { force_n: *force_n, duration: *duration, start, power }
+                ImpactWaveform::HalfSine { force_n: *force_n, duration: *duration, start, power }
             }
-            Some(Impact::Harmonics { harmonics }) => {
-                ImpactCourse::Harmonics(Series::new(0.0, 1.0, harmonics, shift, period_tau))
+            Some(ImpactExcitation::Harmonics { harmonics }) => {
+                ImpactWaveform::Harmonics(FourierSeries::new(0.0, 1.0, harmonics, shift, period_tau))
             }
         }
     }
 
-    /// An upper estimate of the force's size, N.
+    /// Upper bound of the magnitude of the force, N.
     pub fn largest_n(&self) -> f64 {
         match self {
-            ImpactCourse::None => 0.0,
-            ImpactCourse::HalfSine { force_n, duration, .. } => force_n.abs() * duration.ceil(),
-            ImpactCourse::Harmonics(series) => series.terms.iter().map(|t| t.cos.hypot(t.sin)).sum(),
+            ImpactWaveform::None => 0.0,
+            ImpactWaveform::HalfSine { force_n, duration, .. } => force_n.abs() * duration.ceil(),
+            ImpactWaveform::Harmonics(series) => series.terms.iter().map(|t| t.cos.hypot(t.sin)).sum(),
         }
     }
 
     pub fn breakpoints(&self, out: &mut Vec<f64>) {
-        if let ImpactCourse::HalfSine { duration, start, .. } = self {
+        if let ImpactWaveform::HalfSine { duration, start, .. } = self {
             out.push(start.rem_euclid(1.0));
             out.push((start + duration).rem_euclid(1.0));
         }
     }
 
-    /// Sine and cosine parts of the pulses under way at `phase` (those that are under way at `inside`).
-    fn sine(phase: f64, inside: f64, duration: f64, start: f64) -> (f64, f64) {
-        let mut offset = inside - start;
+    /// Sine and cosine of the pulses that are active at `interior`, at `phase`, summed.
+    fn sine(phase: f64, interior: f64, duration: f64, start: f64) -> (f64, f64) {
+        let mut offset = interior - start;
         offset -= offset.floor();
-        // offset is the age of the youngest pulse at `inside`; older ones are whole periods older.
-        let age = offset + (phase - inside);
+        // `offset` is the age of the youngest pulse at `interior`; the others are older by whole periods.
+        let age = offset + (phase - interior);
         let (mut sin, mut cos, mut older) = (0.0, 0.0, 0.0);
         while offset + older < duration {
             let (s, c) = (PI * (age + older) / duration).sin_cos();
@@ -406,35 +390,35 @@ impl ImpactCourse {
         (sin, cos)
     }
 
-    pub fn value(&self, phase: f64, inside: f64) -> f64 {
+    pub fn value(&self, phase: f64, interior: f64) -> f64 {
         match self {
-            ImpactCourse::None => 0.0,
-            ImpactCourse::HalfSine { force_n, duration, start, .. } => {
-                force_n * Self::sine(phase, inside, *duration, *start).0
+            ImpactWaveform::None => 0.0,
+            ImpactWaveform::HalfSine { force_n, duration, start, .. } => {
+                force_n * Self::sine(phase, interior, *duration, *start).0
             }
-            ImpactCourse::Harmonics(series) => series.value(phase),
+            ImpactWaveform::Harmonics(series) => series.value(phase),
         }
     }
 
-    /// F sin and F cos of the pulses under way at `phase` (those that are under way at `inside`); None where the force is no pulse.
+    /// F sin and F cos of the active pulses at `phase` (those that are active at `interior`), N; None for harmonics.
     #[inline(always)]
-    pub fn pulse(&self, phase: f64, inside: f64) -> Option<(f64, f64)> {
-        let ImpactCourse::HalfSine { force_n, duration, start, .. } = self else { return None };
-        let (sin, cos) = Self::sine(phase, inside, *duration, *start);
+    pub fn pulse(&self, phase: f64, interior: f64) -> Option<(f64, f64)> {
+        let ImpactWaveform::HalfSine { force_n, duration, start, .. } = self else { return None };
+        let (sin, cos) = Self::sine(phase, interior, *duration, *start);
         Some((force_n * sin, force_n * cos))
     }
 
     /// (π/(duration · period))^n / n! of a half sine.
     pub fn powers(&self) -> Option<&Coefficients> {
         match self {
-            ImpactCourse::HalfSine { power, .. } => Some(power),
+            ImpactWaveform::HalfSine { power, .. } => Some(power),
             _ => None,
         }
     }
 
-    pub fn series(&self) -> Option<&Series<f64>> {
+    pub fn series(&self) -> Option<&FourierSeries<f64>> {
         match self {
-            ImpactCourse::Harmonics(series) => Some(series),
+            ImpactWaveform::Harmonics(series) => Some(series),
             _ => None,
         }
     }

@@ -1,24 +1,24 @@
-//! Taylor coefficients of the excitations about a phase: of one motion, or of the motions in all lanes.
+//! Taylor coefficients of the excitations about a phase, for one motion or for the motions in all lanes.
 
-use super::contact_force::Cells;
-use super::excitation::{Coefficients, ImpactCourse, MAX_ORDER, Series, StiffnessCourse};
+use super::contact_force::ForceCells;
+use super::excitation::{Coefficients, FourierSeries, ImpactWaveform, MAX_ORDER, StiffnessWaveform};
 use super::lanes::{Lanes, Real};
-use super::model::{Contact, ContactCourse, Excitation, Model};
+use super::model::{ContactForceWaveform, ContactSide, DynamicModel, Excitation};
 use super::recurrence::ContactSeries;
 use super::segment::Segment;
 
 /// Taylor coefficients of the excitations of both halves over one step.
 pub(crate) struct ExcitationTerms<R> {
     pub stiffness: [[R; MAX_ORDER + 1]; 2],
-    /// The stiffness again, highest order first, so that a convolution is a product of two rows.
-    pub backwards: [[R; MAX_ORDER + 1]; 2],
+    /// The stiffness in descending order, for convolutions.
+    pub reversed: [[R; MAX_ORDER + 1]; 2],
     /// Highest order of the stiffness that is not zero.
     pub degree: [usize; 2],
     pub impact: [[R; MAX_ORDER + 1]; 2],
-    /// The impact is not zero.
-    pub pushed: [bool; 2],
-    /// Where the mesh force is that of the loaded contact: the cell of each half.
-    pub cells: [Cells<R>; 2],
+    /// Whether the impact is not zero.
+    pub impact_active: [bool; 2],
+    /// Cells of a tabulated contact force, one per half.
+    pub cells: [ForceCells<R>; 2],
 }
 
 impl<R: Real> ExcitationTerms<R> {
@@ -26,25 +26,25 @@ impl<R: Real> ExcitationTerms<R> {
         let zero = [[R::splat(0.0); MAX_ORDER + 1]; 2];
         Self {
             stiffness: zero,
-            backwards: zero,
+            reversed: zero,
             degree: [0; 2],
             impact: zero,
-            pushed: [false; 2],
-            cells: [Cells::none(); 2],
+            impact_active: [false; 2],
+            cells: [ForceCells::none(); 2],
         }
     }
 
     /// Copies the terms of one motion into all lanes.
     #[inline(always)]
-    pub fn spread(&mut self, one: &ExcitationTerms<f64>, order: usize) {
+    pub fn broadcast(&mut self, one: &ExcitationTerms<f64>, order: usize) {
         for j in 0..2 {
             for n in 0..=order {
                 self.stiffness[j][n] = R::splat(one.stiffness[j][n]);
-                self.backwards[j][MAX_ORDER - n] = R::splat(one.backwards[j][MAX_ORDER - n]);
+                self.reversed[j][MAX_ORDER - n] = R::splat(one.reversed[j][MAX_ORDER - n]);
                 self.impact[j][n] = R::splat(one.impact[j][n]);
             }
         }
-        (self.degree, self.pushed) = (one.degree, one.pushed);
+        (self.degree, self.impact_active) = (one.degree, one.impact_active);
     }
 
     /// Sets the stiffness of a half from its Taylor coefficients.
@@ -52,82 +52,82 @@ impl<R: Real> ExcitationTerms<R> {
     pub fn set_stiffness(&mut self, j: usize, coefficients: &[R], order: usize) {
         self.stiffness[j][..coefficients.len()].copy_from_slice(coefficients);
         self.degree[j] = order;
-        self.mirror(j, order);
+        self.reverse_stiffness(j, order);
     }
 
     #[inline(always)]
-    fn mirror(&mut self, j: usize, order: usize) {
+    fn reverse_stiffness(&mut self, j: usize, order: usize) {
         for n in 0..=order {
-            self.backwards[j][MAX_ORDER - n] = self.stiffness[j][n];
+            self.reversed[j][MAX_ORDER - n] = self.stiffness[j][n];
         }
     }
 }
 
-/// Gives the excitations' Taylor coefficients in scaled time, orders 0 to `order`, about `phase`; `inside` is a phase in the
-/// interior of the smooth stretch that is meant, `contact` the sides and levels the halves are on.
-pub(crate) trait Excite<R> {
-    fn excite(&self, phase: R, inside: R, contact: [R; 2], order: usize, terms: &mut ExcitationTerms<R>);
+/// Taylor coefficients of the excitations in scaled time, orders 0 to `order`, about `phase`, on the smooth interval
+/// that contains `interior`, with the given contact of both halves.
+pub(crate) trait ExcitationExpansion<R> {
+    fn expand(&self, phase: R, interior: R, contact: [R; 2], order: usize, terms: &mut ExcitationTerms<R>);
 }
 
-impl ContactCourse {
-    /// Puts the cell that a half is in into a lane.
+impl ContactForceWaveform {
+    /// Sets the cell of a half in one lane.
     #[inline(always)]
-    fn put<R: Real>(&self, phase: f64, inside: f64, contact: Contact, lane: usize, cells: &mut Cells<R>) {
+    fn put<R: Real>(&self, phase: f64, interior: f64, contact: ContactSide, lane: usize, cells: &mut ForceCells<R>) {
         let Self { force, shift, b, period_tau } = self;
-        cells.set(lane, &force.cell(contact, *b, phase - shift, inside - shift, *period_tau));
+        cells.set(lane, &force.cell(contact, *b, phase - shift, interior - shift, *period_tau));
     }
 }
 
-impl<const D: usize> Excite<f64> for Model<D> {
+impl<const D: usize> ExcitationExpansion<f64> for DynamicModel<D> {
     #[inline(always)]
-    fn excite(&self, phase: f64, inside: f64, contact: [f64; 2], order: usize, terms: &mut ExcitationTerms<f64>) {
+    fn expand(&self, phase: f64, interior: f64, contact: [f64; 2], order: usize, terms: &mut ExcitationTerms<f64>) {
         for (j, e) in self.excitations.iter().enumerate() {
             terms.cells[j].in_use = e.contact.is_some();
-            if let Some(course) = &e.contact {
-                course.put(phase, inside, contact[j] as Contact, 0, &mut terms.cells[j]);
+            if let Some(waveform) = &e.contact {
+                waveform.put(phase, interior, contact[j] as ContactSide, 0, &mut terms.cells[j]);
             } else {
                 let stiffness = &mut terms.stiffness[j];
                 if let Some(series) = e.stiffness.series() {
                     series.fill(phase, order, stiffness);
                     terms.degree[j] = if series.is_constant() { 0 } else { order };
                 }
-                if let Some(cubic) = e.stiffness.cubic(phase, inside) {
+                if let Some(cubic) = e.stiffness.cubic(phase, interior) {
                     stiffness[..4].copy_from_slice(&cubic);
                     stiffness[4..=order].fill(0.0);
                     terms.degree[j] = 3;
                 }
-                terms.mirror(j, order);
+                terms.reverse_stiffness(j, order);
             }
-            terms.pushed[j] = false;
-            if let Some((sin, cos)) = e.impact.pulse(phase, inside)
+            terms.impact_active[j] = false;
+            if let Some((sin, cos)) = e.impact.pulse(phase, interior)
                 && let Some(powers) = e.impact.powers()
                 && (sin != 0.0 || cos != 0.0)
             {
                 pulse(sin, cos, powers, order, &mut terms.impact[j]);
-                terms.pushed[j] = true;
+                terms.impact_active[j] = true;
             }
             if let Some(series) = e.impact.series() {
                 series.fill(phase, order, &mut terms.impact[j]);
-                terms.pushed[j] = true;
+                terms.impact_active[j] = true;
             }
         }
     }
 }
 
-impl<const D: usize> Model<D> {
-    /// The excitations that deviations from a motion feel, about the scaled time `at` of one of its segments: where the mesh force is that of the
-    /// loaded contact, its stiffness along the motion.
+impl<const D: usize> DynamicModel<D> {
+    /// Excitations of the variational equations about the scaled time `at` of a segment: for a tabulated contact force
+    /// its stiffness along the motion.
     #[inline(always)]
-    pub fn excite_variation(
+    pub fn expand_for_perturbations(
         &self,
         segment: &Segment<'_, D>,
         at: f64,
-        inside: f64,
+        interior: f64,
         order: usize,
         terms: &mut ExcitationTerms<f64>,
     ) {
         let phase = segment.phase + at / self.period_tau;
-        self.excite(phase, inside, segment.contact.map(f64::from), order, terms);
+        self.expand(phase, interior, segment.contact.map(f64::from), order, terms);
         for j in 0..self.excitations.len() {
             if !terms.cells[j].in_use {
                 continue;
@@ -151,7 +151,7 @@ impl<const D: usize> Model<D> {
     }
 }
 
-/// The polynomial about `at` instead of 0.
+/// Re-expands the polynomial about `at`.
 fn recentre(c: &mut [f64], at: f64) {
     if at == 0.0 {
         return;
@@ -164,7 +164,7 @@ fn recentre(c: &mut [f64], at: f64) {
     }
 }
 
-/// Taylor coefficients of half sines: their derivatives are sine, cosine, −sine, −cosine in turn.
+/// Taylor coefficients of half sines, whose derivatives are sine, cosine, −sine, −cosine in turn.
 #[inline(always)]
 fn pulse<R: Real>(sin: R, cos: R, powers: &[R; MAX_ORDER + 1], order: usize, out: &mut [R; MAX_ORDER + 1]) {
     let signed = [sin, cos, -sin, -cos];
@@ -173,20 +173,20 @@ fn pulse<R: Real>(sin: R, cos: R, powers: &[R; MAX_ORDER + 1], order: usize, out
     }
 }
 
-/// The excitations of one half in all lanes.
+/// Excitations of one half in all lanes.
 struct LaneExcitation<'m, const L: usize> {
     /// Stiffnesses that are Fourier series; zero in the other lanes.
-    stiffness: Series<Lanes<L>>,
-    /// Stiffnesses that are cubics.
-    cubics: [Option<&'m StiffnessCourse>; L],
-    /// Contact forces: in all lanes in use, or in none.
-    contacts: [Option<&'m ContactCourse>; L],
-    pulses: [Option<&'m ImpactCourse>; L],
+    stiffness: FourierSeries<Lanes<L>>,
+    /// Stiffnesses that are piecewise cubic.
+    cubics: [Option<&'m StiffnessWaveform>; L],
+    /// Tabulated contact forces: in all lanes in use, or in none.
+    contacts: [Option<&'m ContactForceWaveform>; L],
+    pulses: [Option<&'m ImpactWaveform>; L],
     powers: [Lanes<L>; MAX_ORDER + 1],
-    impact: Series<Lanes<L>>,
+    impact: FourierSeries<Lanes<L>>,
 }
 
-/// The excitations of the motions in all lanes.
+/// Excitations of the motions in all lanes.
 pub(crate) struct LaneExcitations<'m, const L: usize> {
     halves: [LaneExcitation<'m, L>; 2],
 }
@@ -194,39 +194,39 @@ pub(crate) struct LaneExcitations<'m, const L: usize> {
 impl<'m, const L: usize> LaneExcitations<'m, L> {
     pub fn none() -> Self {
         let half = || LaneExcitation {
-            stiffness: Series::zero(),
+            stiffness: FourierSeries::zero(),
             cubics: [None; L],
             contacts: [None; L],
             pulses: [None; L],
             powers: [Lanes::splat(0.0); MAX_ORDER + 1],
-            impact: Series::zero(),
+            impact: FourierSeries::zero(),
         };
         Self { halves: [half(), half()] }
     }
 
-    /// Puts the excitations of one motion into a lane.
+    /// Sets the excitations of one lane.
     pub fn put(&mut self, lane: usize, one: &'m [Excitation]) {
         const NONE: Coefficients = [0.0; MAX_ORDER + 1];
         for (to, from) in self.halves.iter_mut().zip(one) {
             let series = from.stiffness.series();
             to.cubics[lane] = series.is_none().then_some(&from.stiffness);
             to.contacts[lane] = from.contact.as_ref();
-            to.stiffness.put(lane, series.unwrap_or(&Series::zero()));
+            to.stiffness.put(lane, series.unwrap_or(&FourierSeries::zero()));
             to.pulses[lane] = from.impact.powers().map(|_| &from.impact);
             for (to, from) in to.powers.iter_mut().zip(from.impact.powers().unwrap_or(&NONE)) {
                 to.set(lane, *from);
             }
-            to.impact.put(lane, from.impact.series().unwrap_or(&Series::zero()));
+            to.impact.put(lane, from.impact.series().unwrap_or(&FourierSeries::zero()));
         }
     }
 }
 
-impl<const L: usize> Excite<Lanes<L>> for LaneExcitations<'_, L> {
+impl<const L: usize> ExcitationExpansion<Lanes<L>> for LaneExcitations<'_, L> {
     #[inline(always)]
-    fn excite(
+    fn expand(
         &self,
         phase: Lanes<L>,
-        inside: Lanes<L>,
+        interior: Lanes<L>,
         contact: [Lanes<L>; 2],
         order: usize,
         terms: &mut ExcitationTerms<Lanes<L>>,
@@ -236,9 +236,9 @@ impl<const L: usize> Excite<Lanes<L>> for LaneExcitations<'_, L> {
             terms.cells[j].in_use = e.contacts.iter().any(Option::is_some);
             if terms.cells[j].in_use {
                 for lane in 0..L {
-                    if let Some(course) = e.contacts[lane] {
-                        let (phase, inside) = (phase.get(lane), inside.get(lane));
-                        course.put(phase, inside, contact[j].get(lane) as Contact, lane, &mut terms.cells[j]);
+                    if let Some(waveform) = e.contacts[lane] {
+                        let (phase, interior) = (phase.get(lane), interior.get(lane));
+                        waveform.put(phase, interior, contact[j].get(lane) as ContactSide, lane, &mut terms.cells[j]);
                     }
                 }
             } else {
@@ -246,33 +246,33 @@ impl<const L: usize> Excite<Lanes<L>> for LaneExcitations<'_, L> {
                 e.stiffness.fill(phase, order, stiffness);
                 terms.degree[j] = if e.stiffness.is_constant() { 3 } else { order };
                 for lane in 0..L {
-                    if let Some(cubic) = e.cubics[lane].and_then(|c| c.cubic(phase.get(lane), inside.get(lane))) {
+                    if let Some(cubic) = e.cubics[lane].and_then(|c| c.cubic(phase.get(lane), interior.get(lane))) {
                         for (n, c) in cubic.into_iter().enumerate() {
                             stiffness[n].set(lane, c);
                         }
                     }
                 }
-                terms.mirror(j, order);
+                terms.reverse_stiffness(j, order);
             }
             let (mut sin, mut cos) = (zero, zero);
             for lane in 0..L {
-                let pulse = e.pulses[lane].and_then(|p| p.pulse(phase.get(lane), inside.get(lane)));
+                let pulse = e.pulses[lane].and_then(|p| p.pulse(phase.get(lane), interior.get(lane)));
                 let (s, c) = pulse.unwrap_or((0.0, 0.0));
                 sin.set(lane, s);
                 cos.set(lane, c);
             }
-            terms.pushed[j] = sin.any(|s| s != 0.0) || cos.any(|c| c != 0.0);
-            if terms.pushed[j] {
+            terms.impact_active[j] = sin.any(|s| s != 0.0) || cos.any(|c| c != 0.0);
+            if terms.impact_active[j] {
                 pulse(sin, cos, &e.powers, order, &mut terms.impact[j]);
             }
             if !e.impact.is_constant() {
                 let mut harmonics = [zero; MAX_ORDER + 1];
                 e.impact.fill(phase, order, &mut harmonics);
                 for n in 0..=order {
-                    let pulse = if terms.pushed[j] { terms.impact[j][n] } else { zero };
+                    let pulse = if terms.impact_active[j] { terms.impact[j][n] } else { zero };
                     terms.impact[j][n] = pulse + harmonics[n];
                 }
-                terms.pushed[j] = true;
+                terms.impact_active[j] = true;
             }
         }
     }

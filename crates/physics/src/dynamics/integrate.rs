@@ -1,36 +1,38 @@
-//! Drives a method through mesh periods.
+//! Integration of a motion over mesh periods by either method.
 
 use serde::{Deserialize, Serialize};
 
 use super::equations::{PER_HALF, W};
 use super::error::DynamicsError;
-use super::model::{Model, State};
+use super::model::{DynamicModel, MotionState};
 use super::runge_kutta::RungeKutta;
 use super::segment::Observer;
 use super::taylor::{Taylor, order_for};
 use crate::watch::Watch;
 
-/// How the equations are stepped through time.
+/// Method of numerical integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Integrator {
-    /// Taylor series of high order, restarted exactly at every event.
+    /// Taylor series of high order with event location at every change of contact.
     #[default]
     Taylor,
-    /// Embedded Runge–Kutta 4(5) with variable step, blind to changes of contact: what the source used.
+    /// Embedded Runge–Kutta 4(5) with variable step, without event location, as in the source paper.
     RungeKutta,
 }
 
-/// What a solution took.
+/// Work of an integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct Numerics {
+pub struct StepCounts {
+    /// Accepted steps.
     pub steps: u64,
+    /// Rejected steps (Runge–Kutta only).
     pub rejected_steps: u64,
-    /// Evaluations of the mesh forces; for the Taylor method, of their derivatives of each order.
+    /// Evaluations of the mesh forces; for the Taylor method of their derivatives of each order.
     pub force_evaluations: u64,
 }
 
-impl std::ops::AddAssign for Numerics {
+impl std::ops::AddAssign for StepCounts {
     fn add_assign(&mut self, other: Self) {
         self.steps += other.steps;
         self.rejected_steps += other.rejected_steps;
@@ -38,23 +40,23 @@ impl std::ops::AddAssign for Numerics {
     }
 }
 
-/// Steps between two looks at the watch: well below 50 ms of work for either method.
+/// Steps between two calls of [`Watch::checkpoint`]: well below 50 ms of work for either method.
 const STEPS_PER_CHECKPOINT: u64 = 1024;
 
-/// A displacement (or velocity in scaled time) beyond which a motion has diverged, m.
-const LARGEST_M: f64 = 1e3;
+/// Displacement (or velocity in scaled time) beyond which a motion counts as diverged, m.
+pub(crate) const DIVERGENCE_LIMIT_M: f64 = 1e3;
 
 enum Stepper<const D: usize> {
     Taylor(Taylor<D>),
     RungeKutta(RungeKutta<D>),
 }
 
-/// A motion under way.
+/// Numerical integration of one motion.
 pub(crate) struct Motion<'a, const D: usize> {
-    pub model: &'a Model<D>,
-    pub state: State<D>,
-    pub numerics: Numerics,
-    /// A tooth has changed the side of its backlash since the start.
+    pub model: &'a DynamicModel<D>,
+    pub state: MotionState<D>,
+    pub counts: StepCounts,
+    /// Whether the contact of a half has changed since the start.
     pub contact_changed: bool,
     stepper: Stepper<D>,
     max_steps: u64,
@@ -62,8 +64,14 @@ pub(crate) struct Motion<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Motion<'a, D> {
-    /// `tolerance`: local error of a step relative to the size of the motion; `max_steps`: budget over the life of the motion.
-    pub fn new(model: &'a Model<D>, state: State<D>, integrator: Integrator, tolerance: f64, max_steps: u64) -> Self {
+    /// `tolerance`: local error of a step relative to the size of the motion. `max_steps`: limit over all mesh periods.
+    pub fn new(
+        model: &'a DynamicModel<D>,
+        state: MotionState<D>,
+        integrator: Integrator,
+        tolerance: f64,
+        max_steps: u64,
+    ) -> Self {
         let stepper = match integrator {
             Integrator::Taylor => Stepper::Taylor(Taylor::new(tolerance, order_for(tolerance), None)),
             Integrator::RungeKutta => Stepper::RungeKutta(RungeKutta::new(tolerance, None)),
@@ -71,7 +79,7 @@ impl<'a, const D: usize> Motion<'a, D> {
         Self {
             model,
             state,
-            numerics: Numerics::default(),
+            counts: StepCounts::default(),
             contact_changed: false,
             stepper,
             max_steps,
@@ -91,7 +99,10 @@ impl<'a, const D: usize> Motion<'a, D> {
         self
     }
 
-    /// Goes to the end of the current mesh period. `fraction`: progress reported to the watch.
+    /// Integrates to the end of the current mesh period. `fraction`: completed fraction reported to the watch.
+    ///
+    /// # Errors
+    /// [`DynamicsError`].
     pub fn advance_period(
         &mut self,
         observer: &mut impl Observer<D>,
@@ -100,15 +111,15 @@ impl<'a, const D: usize> Motion<'a, D> {
     ) -> Result<(), DynamicsError> {
         let mut from = 0.0;
         for &end in &self.model.breakpoints {
-            let inside = 0.5 * (from + end);
+            let interior = 0.5 * (from + end);
             while self.state.phase < end {
                 let contact = self.state.contact;
                 match &mut self.stepper {
                     Stepper::Taylor(t) => {
-                        t.step(self.model, &mut self.state, end, inside, &mut self.numerics, observer)?
+                        t.step(self.model, &mut self.state, end, interior, &mut self.counts, observer)?
                     }
                     Stepper::RungeKutta(r) => {
-                        r.step(self.model, &mut self.state, end, inside, &mut self.numerics, observer)?
+                        r.step(self.model, &mut self.state, end, interior, &mut self.counts, observer)?
                     }
                 }
                 self.contact_changed |= contact != self.state.contact;
@@ -116,14 +127,14 @@ impl<'a, const D: usize> Motion<'a, D> {
                 if self.since_checkpoint >= STEPS_PER_CHECKPOINT {
                     self.since_checkpoint = 0;
                     watch.checkpoint(fraction)?;
-                    if self.numerics.steps + self.numerics.rejected_steps > self.max_steps {
+                    if self.counts.steps + self.counts.rejected_steps > self.max_steps {
                         return Err(DynamicsError::TooManySteps { time_s: self.time_s(), limit: self.max_steps });
                     }
                 }
             }
             from = end;
         }
-        if grown(&self.state) {
+        if has_diverged(&self.state) {
             return Err(DynamicsError::Diverged { time_s: self.time_s() });
         }
         self.state.period += 1;
@@ -131,14 +142,15 @@ impl<'a, const D: usize> Motion<'a, D> {
         Ok(())
     }
 
+    /// Time since the start of the integration, s.
     pub fn time_s(&self) -> f64 {
         (self.state.period as f64 + self.state.phase) * self.model.period_tau / self.model.omega_ref
     }
 }
 
-/// A state beyond all reason: free rotation may go on for ever, everything else is a few micrometres.
-pub(super) fn grown<const D: usize>(state: &State<D>) -> bool {
-    [&state.x, &state.v]
-        .iter()
-        .any(|row| row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > LARGEST_M)))
+/// Whether a component exceeds the limit or is not finite. Rigid rotation is not limited.
+pub(super) fn has_diverged<const D: usize>(state: &MotionState<D>) -> bool {
+    [&state.x, &state.v].iter().any(|row| {
+        row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > DIVERGENCE_LIMIT_M))
+    })
 }

@@ -1,13 +1,12 @@
-//! Numbers of several motions side by side.
+//! Numbers of several motions side by side, for vector instructions.
 //!
-//! The hot parts of the room are written once, over [`Real`]: a plain `f64` for one motion, [`Lanes`] for several that go through
-//! the same operations together, which the compiler turns into vector instructions. Every operation on lanes is the scalar one lane
-//! by lane in the same order (no fused multiply-add, no sums across lanes), so a motion comes out the same to the last bit
-//! whatever lane it is in and whatever instructions the processor has.
+//! The inner loops are written once, over [`Real`]: `f64` for one motion, [`Lanes`] for several. Every operation on
+//! lanes is the scalar operation in each lane, in the same order (no fused multiply-add, no sums across lanes), so that
+//! results are bit-identical in any lane and with any vector instructions.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// One number, or one number per lane.
+/// A number, or one number per lane.
 pub(crate) trait Real:
     Copy
     + Default
@@ -19,9 +18,10 @@ pub(crate) trait Real:
     + AddAssign
     + SubAssign
 {
+    /// Number of lanes.
     const LANES: usize;
 
-    /// The number of each lane from the lane's index.
+    /// Sets each lane from its index.
     fn from_fn(number: impl FnMut(usize) -> f64) -> Self;
 
     fn get(self, lane: usize) -> f64;
@@ -43,7 +43,7 @@ pub(crate) trait Real:
         Self::from_fn(|lane| f(self.get(lane), other.get(lane)))
     }
 
-    /// Whether the number of any lane satisfies `test`. Tests all lanes, so that it needs no branches.
+    /// Whether `test` holds in any lane. Evaluates all lanes, without branches.
     #[inline(always)]
     fn any(self, test: impl Fn(f64) -> bool) -> bool {
         let mut found = false;
@@ -73,7 +73,7 @@ impl Real for f64 {
     }
 }
 
-/// The numbers of `L` motions.
+/// One number per lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(transparent)]
 pub(crate) struct Lanes<const L: usize>([f64; L]);
@@ -87,7 +87,7 @@ impl<const L: usize> Default for Lanes<L> {
 impl<const L: usize> Real for Lanes<L> {
     const LANES: usize = L;
 
-    // Plain loops, here and below: the closures of std's array functions are not always inlined.
+    // Plain loops, here and below: the closures of the array functions of `std` are not always inlined.
     #[inline(always)]
     fn from_fn(mut number: impl FnMut(usize) -> f64) -> Self {
         let mut out = [0.0; L];
@@ -153,19 +153,19 @@ impl<const L: usize> SubAssign for Lanes<L> {
     }
 }
 
-/// x^(1/k) to about one part in ten thousand, without branches: for step lengths, where powf would cost as much as the
-/// step. x from 1e-300 to 1e300; 0 gives something tiny, infinity something huge, NaN is the caller's business.
+/// x^(1/k) with a relative error of about 1e-4, without branches, for step lengths. Valid from 1e-300 to 1e300; 0 gives
+/// a very small number, infinity a very large one, NaN is not handled.
 #[inline(always)]
-pub(super) fn rough_root(x: f64, k: f64) -> f64 {
-    rough_exp2(rough_log2(x) / k)
+pub(super) fn approximate_root(x: f64, k: f64) -> f64 {
+    approximate_exp2(approximate_log2(x) / k)
 }
 
-/// 2^52: adding it to a small whole number puts the number into the last bits of the sum.
+/// 2^52: adding it to a small integer puts the integer into the last bits of the sum.
 const WHOLE: f64 = 4_503_599_627_370_496.0;
 
-/// From the exponent's bits and the series of the area tangent for the mantissa m: ln m = 2 artanh((m − 1)/(m + 1)).
+/// Exponent bits, plus the logarithm of the mantissa m by the series ln m = 2 artanh((m − 1)/(m + 1)).
 #[inline(always)]
-fn rough_log2(x: f64) -> f64 {
+fn approximate_log2(x: f64) -> f64 {
     let bits = x.to_bits();
     let exponent = f64::from_bits((bits >> 52) & 0x7ff | WHOLE.to_bits()) - WHOLE - 1023.0;
     let mantissa = f64::from_bits(bits & 0x000f_ffff_ffff_ffff | 1.0f64.to_bits());
@@ -175,11 +175,11 @@ fn rough_log2(x: f64) -> f64 {
     exponent + 2.0 * std::f64::consts::LOG2_E * artanh
 }
 
-/// From the power series of e^t on |t| ≤ ln 2 / 2, and the whole part put into the exponent's bits.
+/// Power series of e^t for |t| ≤ ln 2 / 2, with the integer part put into the exponent bits.
 #[inline(always)]
-fn rough_exp2(x: f64) -> f64 {
+fn approximate_exp2(x: f64) -> f64 {
     let x = x.clamp(-1000.0, 1000.0);
-    // 1.5 · 2^52 rounds to whole numbers of either sign.
+    // Adding 1.5 · 2^52 rounds to integers of either sign.
     let shifted = x + 1.5 * WHOLE;
     let t = (x - (shifted - 1.5 * WHOLE)) * std::f64::consts::LN_2;
     let series = 1.0 + t * (1.0 + t * (0.5 + t * (1.0 / 6.0 + t * (1.0 / 24.0 + t * (1.0 / 120.0)))));
@@ -194,11 +194,11 @@ mod tests {
     fn roots_are_good_enough_for_steps() {
         for x in [1e-290, 3e-17, 0.7, 1.0, 1.5, 2.0, 1e9, 7e288] {
             for k in [4.0, 13.0, 24.0] {
-                let ratio = rough_root(x, k) / f64::powf(x, 1.0 / k);
+                let ratio = approximate_root(x, k) / f64::powf(x, 1.0 / k);
                 assert!((ratio - 1.0).abs() < 1e-4, "{x} {k} {ratio}");
             }
         }
-        assert!(rough_root(0.0, 10.0) < 1e-30 && rough_root(f64::INFINITY, 10.0) > 1e30);
+        assert!(approximate_root(0.0, 10.0) < 1e-30 && approximate_root(f64::INFINITY, 10.0) > 1e30);
     }
 
     #[test]

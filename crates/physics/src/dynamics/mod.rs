@@ -1,6 +1,15 @@
-//! The twelve equations of motion of a double-helical pair, their natural frequencies and the methods that solve them.
+//! Equations of motion of a double-helical gear pair: parameters, natural modes, numerical integration.
 //!
-//! Everything is SI. Each helix half has six displacements: y (along the mesh in the transverse plane), z (axial) and θ of pinion and gear.
+//! The model is that of the source paper, *Effect of Contact Ratio on Dynamic Behavior of a Herringbone Gear Nonlinear
+//! System*, section 2: twelve coupled bending, torsional and axial degrees of freedom. All quantities are in SI units.
+//!
+//! # Degrees of freedom
+//! Each helix half has six displacements: y (m, lateral, along the mesh in the transverse plane),
+//! z (m, axial) and θ (rad) of the pinion, then of the gear. Vectors of 12 hold, in this order, y_p, z_p,
+//! θ_p, y_g, z_g, θ_g of the left half, then those of the right half; vectors of 24 hold the displacements, then the
+//! velocities.
+//!
+//! # Equations
 //! For half j, with β_1 = β and β_2 = −β:
 //!
 //! ```text
@@ -9,33 +18,36 @@
 //! f(s) = s − b (s > b),  0 (|s| ≤ b),  s + b (s < −b)
 //! ```
 //!
-//! The mesh forces act on y, z and θ, the impact F_s on the two torsional equations of its half only, as the source paper writes
-//! it, or on y, z and θ like a mesh force (an option). Damping in the gap and springs between the halves of a shaft are options. The plane in use (pitch: R pitch radius, β; base: R_b, β_b) is the caller's choice: it passes the radii and the angle.
+//! The mesh force acts on y, z and θ. The impact force F_s acts on the two torsional equations of its half, as in the
+//! source paper, or on y, z and θ like the mesh force ([`ImpactActsOn`]). Options beyond the source paper: no mesh
+//! damping in the gap, springs between the halves of a shaft, an axial support of the pinion, and a mesh force
+//! tabulated by the contact analysis ([`ContactForce`]). The reference plane (pitch plane: R pitch radius, β; base
+//! plane: R_b, β_b) is set by the radii and the helix angle of [`Parameters`].
 //!
-//! # How it was validated
-//! Three reference cases solved event-exact in 113-bit arithmetic (`tests/reference.rs`): states after 1, 5 and 20 mesh periods within
-//! 1e-13 (with contact kept, and on a period-2 motion) and 1e-11 (chaotic), RMS within 1e-13, by the Taylor method at its finest.
-//! The clearance oscillator's amplitudes and jumps (`tests/oscillator.rs`), twelve coupled natural frequencies to five
-//! digits, energy, symmetry and scaling (`tests/physics.rs`), measured orders (`tests/order.rs`), the linear map against
-//! differences of motions (`tests/variation.rs`).
+//! # Validation
+//! Three reference cases solved event-exact in 113-bit arithmetic (`tests/reference.rs`): states after 1, 5 and 20 mesh
+//! periods within 1e-13 (contact kept; period-2 motion) and 1e-11 (chaotic motion), RMS within 1e-13, by the Taylor
+//! method at its finest tolerance. Amplitudes and jumps of the clearance oscillator (`tests/oscillator.rs`); twelve
+//! coupled natural frequencies to five digits, energy, symmetry and scaling (`tests/physics.rs`); measured orders of
+//! convergence (`tests/order.rs`); the monodromy matrix against differences of motions (`tests/variation.rs`).
 
-// Loops over coordinates and Taylor orders read as the formulas do with an index.
+// Loops over coordinates and Taylor orders are written with an index, as the formulas are.
 #![allow(clippy::needless_range_loop)]
 
 mod contact_force;
-mod convoy;
 mod crossing;
 mod equations;
 mod error;
 mod excitation;
 mod expansion;
-mod free;
 mod integrate;
+mod lane_batch;
 mod lanes;
 mod modal;
 mod model;
 mod parameters;
 mod recurrence;
+mod rigid_body;
 mod runge_kutta;
 mod segment;
 mod shooting;
@@ -45,25 +57,25 @@ mod variation;
 
 pub use contact_force::{ContactForce, FlankForce};
 pub use error::DynamicsError;
-pub use excitation::{Harmonic, Impact, Stiffness};
-pub use integrate::{Integrator, Numerics};
-pub use modal::NaturalModes;
-pub use model::Contact;
+pub use excitation::{Harmonic, ImpactExcitation, Stiffness};
+pub use integrate::{Integrator, StepCounts};
+pub use modal::{Mode, NaturalModes, SpringGroup};
+pub use model::ContactSide;
 pub use parameters::{
     Couplings, HalfParameters, ImpactActsOn, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m,
 };
-pub use trajectory::{Reached, advance, advance_many};
+pub use trajectory::{FinalState, advance, advance_many};
 
-pub(crate) use convoy::{Passenger, carry, carry_one};
 pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP};
 pub(crate) use excitation::MAX_ORDER;
-pub(crate) use free::FreeMotions;
-pub(crate) use integrate::Motion;
-pub(crate) use model::{Model, State};
+pub(crate) use integrate::{DIVERGENCE_LIMIT_M, Motion};
+pub(crate) use lane_batch::{POINTS_PER_TASK, TrajectoryObserver, integrate_trajectories, integrate_trajectory};
+pub(crate) use model::{DynamicModel, MotionState};
+pub(crate) use rigid_body::RigidBodyModes;
 pub(crate) use segment::{Observer, Segment, Unobserved};
-pub(crate) use shooting::{Limits, Shooting};
+pub(crate) use shooting::{IntegrationLimits, Shooting};
 pub(crate) use trajectory::is_mirrored;
-pub(crate) use variation::{Both, Deviation, Variation, difference};
+pub(crate) use variation::{ObserverPair, Perturbation, Variation, state_difference};
 
 #[cfg(test)]
 pub(crate) mod tests;

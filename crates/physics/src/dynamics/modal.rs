@@ -1,12 +1,15 @@
-//! Natural frequencies and static deflection with the mean mesh stiffness, in the source's twelve displacements.
+//! Natural frequencies, mode shapes and static deflection with the mean mesh stiffness.
 
-mod members;
 mod mode;
+mod springs;
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
-use members::{members, mesh_direction};
+use springs::{mesh_direction, spring_elements};
+
+pub use mode::Mode;
+pub use springs::SpringGroup;
 
 use super::error::DynamicsError;
 use super::parameters::Parameters;
@@ -14,23 +17,26 @@ use super::parameters::Parameters;
 /// Natural frequencies and mode shapes of the undamped system with mean mesh stiffness and closed contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NaturalModes {
-    /// Ascending, Hz; motions that nothing holds have 0.
+    /// Ascending, Hz; 0 for rigid-body modes.
     pub frequencies_hz: Vec<f64>,
-    /// One per frequency, in the source's order of displacements, normalised to φᵀ M φ = 1, with the largest displacement (of
-    /// rotations: the arc) positive. Of several modes with one frequency, which may be any mixture, those that are as plain as they can be:
-    /// free rotation first, then what moves both halves alike or against each other.
+    /// One shape per frequency, in the order of displacements of [the module](crate::dynamics) (m, rad), normalised to
+    /// φᵀ M φ = 1, with the largest displacement (of rotations: the arc) positive. For equal frequencies the basis is
+    /// unique: rigid rotation first, then the directions of `preferred_directions` in turn.
     pub shapes: Vec<[f64; 12]>,
 }
 
-/// Squared frequencies below this fraction of the largest are motions that nothing holds, and those closer than this are equal: far
-/// above rounding (1e-15), far below any spring that matters.
-const RIGID: f64 = 1e-12;
+/// Squared frequency, relative to the largest, below which a mode is a rigid-body mode and within which frequencies are
+/// equal: far above rounding (1e-15), far below any spring of practical stiffness.
+pub(super) const RIGID_BODY_EIGENVALUE: f64 = 1e-12;
 
-/// Values over the source's twelve displacements.
-type Row = [f64; 12];
+/// One value per displacement.
+type DisplacementVector = [f64; 12];
 
 impl NaturalModes {
     /// Solves K φ = ω² M φ by the eigenvalues of M^-½ K M^-½.
+    ///
+    /// # Errors
+    /// [`DynamicsError::InvalidParameter`].
     pub fn new(p: &Parameters) -> Result<Self, DynamicsError> {
         p.validate()?;
         let k = stiffness_matrix(p);
@@ -44,36 +50,42 @@ impl NaturalModes {
         let mut order: Vec<usize> = (0..12).collect();
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
         let largest = eigen.eigenvalues.amax();
-        // What nothing holds is one group of equal frequencies.
-        let squares: Vec<f64> =
-            order.iter().map(|&i| eigen.eigenvalues[i]).map(|l| if l > RIGID * largest { l } else { 0.0 }).collect();
+        // All rigid-body modes form one group of equal frequencies.
+        let squares: Vec<f64> = order
+            .iter()
+            .map(|&i| eigen.eigenvalues[i])
+            .map(|l| if l > RIGID_BODY_EIGENVALUE * largest { l } else { 0.0 })
+            .collect();
         let frequencies_hz = squares.iter().map(|l| l.sqrt() / std::f64::consts::TAU).collect();
-        let vectors: Vec<Row> = order.iter().map(|&i| std::array::from_fn(|c| eigen.eigenvectors[(c, i)])).collect();
-        let wanted = preferred(p).map(|row| std::array::from_fn(|c| row[c] / root[c]));
+        let vectors: Vec<DisplacementVector> =
+            order.iter().map(|&i| std::array::from_fn(|c| eigen.eigenvectors[(c, i)])).collect();
+        let directions = preferred_directions(p).map(|row| std::array::from_fn(|c| row[c] / root[c]));
         let mut shapes = Vec::with_capacity(12);
         let mut from = 0;
         while from < 12 {
-            let group = squares[from..].iter().take_while(|l| **l - squares[from] <= RIGID * largest).count();
-            shapes.extend(canonical(&vectors[from..from + group], &wanted));
+            let group =
+                squares[from..].iter().take_while(|l| **l - squares[from] <= RIGID_BODY_EIGENVALUE * largest).count();
+            shapes.extend(canonical_basis(&vectors[from..from + group], &directions));
             from += group;
         }
-        let shapes = shapes.into_iter().map(|v| upright(p, std::array::from_fn(|c| v[c] * root[c]))).collect();
+        let shapes =
+            shapes.into_iter().map(|v| with_positive_largest(p, std::array::from_fn(|c| v[c] * root[c]))).collect();
         Ok(Self { frequencies_hz, shapes })
     }
 
-    /// The shapes of the motions that nothing holds.
-    pub fn free_motions(&self) -> impl Iterator<Item = &[f64; 12]> {
+    /// Shapes of the rigid-body modes.
+    pub fn rigid_body_modes(&self) -> impl Iterator<Item = &[f64; 12]> {
         self.shapes.iter().zip(&self.frequencies_hz).filter(|(_, f)| **f == 0.0).map(|(shape, _)| shape)
     }
 
-    /// Deflection under the mean torques with the mean mesh stiffness, no impact, each half pressed to the flank its torque asks
-    /// for; nothing moved along free motions.
+    /// Deflection (m, rad) under the mean torques with the mean mesh stiffness, without impact, each half in contact on
+    /// the flank loaded by its torque; no component along rigid-body modes.
     pub fn static_deflection(&self, p: &Parameters) -> [f64; 12] {
         let mut force = torques(p);
         for j in 0..2 {
             let side = if p.halves[j].pinion_torque_nm < 0.0 { -1.0 } else { 1.0 };
-            let seat = p.halves[j].mesh_stiffness.mean_n_per_m() * side * p.half_backlash_m;
-            force += DVector::from_row_slice(&mesh_direction(p, j)) * seat;
+            let preload = p.halves[j].mesh_stiffness.mean_n_per_m() * side * p.half_backlash_m;
+            force += DVector::from_row_slice(&mesh_direction(p, j)) * preload;
         }
         let mut q = [0.0; 12];
         for (shape, f) in self.shapes.iter().zip(&self.frequencies_hz) {
@@ -98,9 +110,9 @@ fn torques(p: &Parameters) -> DVector<f64> {
     f
 }
 
-/// The directions that modes of one frequency are turned to, in this order: free rotation of both halves alike and against each
-/// other, then every displacement alike (as mirror images) and against each other.
-fn preferred(p: &Parameters) -> [Row; 14] {
+/// Directions for the basis of equal frequencies, in this order: rigid rotation of both halves alike and opposed, then
+/// each displacement alike (as a mirror image) and opposed.
+fn preferred_directions(p: &Parameters) -> [DisplacementVector; 14] {
     let rotation = |c: usize| match c {
         2 => 1.0 / p.pinion_radius_m,
         5 => 1.0 / p.gear_radius_m,
@@ -113,50 +125,52 @@ fn preferred(p: &Parameters) -> [Row; 14] {
     })
 }
 
-/// −1 for the axial displacements, which a mirror between the halves turns over.
+/// −1 for the axial displacements, which change sign in the mirror image.
 fn mirrored(c: usize) -> f64 {
     if c % 6 == 1 || c % 6 == 4 { -1.0 } else { 1.0 }
 }
 
-/// An orthonormal basis of the space of the orthonormal `vectors` that depends on that space alone: the directions of `wanted` in
-/// turn, as far as they lie in it and are new.
-fn canonical(vectors: &[Row], wanted: &[Row]) -> Vec<Row> {
-    // As the directions span everything, one of those left always has a twelfth of its square in what is left of the space.
-    const NEW: f64 = 1e-2;
+/// Orthonormal basis of the span of the orthonormal `vectors` that depends on that span alone: projections of
+/// `directions` in turn, orthogonalised, dependent ones skipped.
+fn canonical_basis(vectors: &[DisplacementVector], directions: &[DisplacementVector]) -> Vec<DisplacementVector> {
+    // The directions span the whole space, so one of those left has at least a twelfth of its square in the rest of the
+    // span.
+    const INDEPENDENT: f64 = 1e-2;
     if vectors.len() == 1 {
         return vectors.to_vec();
     }
-    let dot = |a: &Row, b: &Row| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let mut basis: Vec<Row> = Vec::with_capacity(vectors.len());
-    for least in [NEW, 1e-9] {
-        for direction in wanted {
+    let dot = |a: &DisplacementVector, b: &DisplacementVector| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let mut basis: Vec<DisplacementVector> = Vec::with_capacity(vectors.len());
+    for least in [INDEPENDENT, 1e-9] {
+        for direction in directions {
             if basis.len() == vectors.len() {
                 return basis;
             }
-            let mut inside = [0.0; 12];
+            let mut projection = [0.0; 12];
             for v in vectors {
                 let amount = dot(v, direction);
-                (0..12).for_each(|c| inside[c] += amount * v[c]);
+                (0..12).for_each(|c| projection[c] += amount * v[c]);
             }
             for _ in 0..2 {
                 for b in &basis {
-                    let amount = dot(b, &inside);
-                    (0..12).for_each(|c| inside[c] -= amount * b[c]);
+                    let amount = dot(b, &projection);
+                    (0..12).for_each(|c| projection[c] -= amount * b[c]);
                 }
             }
-            let square = dot(&inside, &inside);
+            let square = dot(&projection, &projection);
             if square > least * dot(direction, direction) {
-                basis.push(inside.map(|value| value / square.sqrt()));
+                basis.push(projection.map(|value| value / square.sqrt()));
             }
         }
     }
-    // Only numbers that are not finite lead here.
+    // Reached only with numbers that are not finite.
     basis.extend_from_slice(&vectors[basis.len()..]);
     basis
 }
 
-/// The shape with its largest displacement (of rotations: the arc at the radius) positive; of equal ones the first counts.
-fn upright(p: &Parameters, shape: Row) -> Row {
+/// Shape with the sign that makes its largest displacement (of rotations: the arc at the radius) positive; of equal
+/// ones the first counts.
+fn with_positive_largest(p: &Parameters, shape: DisplacementVector) -> DisplacementVector {
     const EQUAL: f64 = 1.0 - 1e-6;
     let arcs = arcs(p, &shape);
     let largest = arcs.iter().fold(0.0f64, |m, a| m.max(a.abs()));
@@ -164,8 +178,8 @@ fn upright(p: &Parameters, shape: Row) -> Row {
     shape.map(|value| sign * value)
 }
 
-/// The displacements with rotations as arcs at the radii of the plane in use.
-fn arcs(p: &Parameters, shape: &Row) -> Row {
+/// Displacements with rotations as arcs at the radii of the reference plane, m.
+fn arcs(p: &Parameters, shape: &DisplacementVector) -> DisplacementVector {
     std::array::from_fn(|c| match c % 6 {
         2 => shape[c] * p.pinion_radius_m,
         5 => shape[c] * p.gear_radius_m,
@@ -187,9 +201,9 @@ fn masses(p: &Parameters) -> [f64; 12] {
 
 fn stiffness_matrix(p: &Parameters) -> DMatrix<f64> {
     let mut k = DMatrix::zeros(12, 12);
-    for member in members(p) {
-        let row = DVector::from_row_slice(&member.row);
-        k += &row * row.transpose() * member.spring.stiffness;
+    for element in spring_elements(p) {
+        let row = DVector::from_row_slice(&element.row);
+        k += &row * row.transpose() * element.spring.stiffness;
     }
     k
 }

@@ -1,4 +1,5 @@
-//! One pair's equations with their excitations, and the way between solver coordinates and the source's displacements.
+//! The equations of one pair with their excitations, and the transformation between solver coordinates and physical
+//! displacements.
 
 use std::ops::Deref;
 use std::sync::Arc;
@@ -6,63 +7,67 @@ use std::sync::Arc;
 use super::contact_force::ContactForce;
 use super::equations::{Equations, PER_HALF, U, YG, YP, ZG, ZP};
 use super::error::DynamicsError;
-use super::excitation::{ImpactCourse, MAX_ORDER, Stiffness, StiffnessCourse};
+use super::excitation::{ImpactWaveform, MAX_ORDER, Stiffness, StiffnessWaveform};
 use super::parameters::{HalfParameters, Parameters};
 
-/// Which side of the backlash a half is on: positive driving flanks, 0 apart, negative back flanks. 1 and −1; where the mesh force is that of
-/// the loaded contact, 1 + the level of displacement with the side's sign.
-pub type Contact = i8;
+/// Contact of a half: positive on the driving flanks, 0 apart, negative on the back flanks. The magnitude is 1 for a
+/// mesh stiffness, and 1 + the level of the displacement for a tabulated contact force.
+pub type ContactSide = i8;
 
 /// State in solver coordinates at a mesh phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct State<const D: usize> {
-    /// Whole mesh periods since the start.
+pub(crate) struct MotionState<const D: usize> {
+    /// Whole mesh periods since the start of the integration.
     pub period: u64,
     /// Phase within the mesh period, 0 … 1.
     pub phase: f64,
+    /// Displacements, m.
     pub x: [f64; D],
-    /// dx/dτ.
+    /// dx/dτ, m.
     pub v: [f64; D],
-    pub contact: [Contact; 2],
+    /// Contact of each half.
+    pub contact: [ContactSide; 2],
 }
 
-/// The two excitations of one half.
+/// Excitations of one half.
 #[derive(Debug, Clone)]
 pub(crate) struct Excitation {
-    pub stiffness: StiffnessCourse,
-    pub contact: Option<ContactCourse>,
-    pub impact: ImpactCourse,
+    pub stiffness: StiffnessWaveform,
+    pub contact: Option<ContactForceWaveform>,
+    pub impact: ImpactWaveform,
 }
 
-/// The loaded contact's force, coming a fraction of a mesh period later than tabulated.
+/// Tabulated contact force with a phase shift.
 #[derive(Debug, Clone)]
-pub(crate) struct ContactCourse {
+pub(crate) struct ContactForceWaveform {
     pub force: Arc<ContactForce>,
+    /// Delay of the force, in mesh periods.
     pub shift: f64,
-    /// Half the backlash, and one mesh period in scaled time.
+    /// Half the backlash in m, and one mesh period in scaled time.
     pub b: f64,
     pub period_tau: f64,
 }
 
-/// The equations of one half (D = 6, mirror symmetric) or both (D = 12) with their excitations.
+/// Equations of one half (D = 6, mirror-symmetric pair) or of both (D = 12), with their excitations.
 #[derive(Debug, Clone)]
-pub(crate) struct Model<const D: usize> {
+pub(crate) struct DynamicModel<const D: usize> {
     equations: Equations<D, f64>,
-    /// Of each half that is solved.
+    /// One per solved half.
     pub excitations: Vec<Excitation>,
-    /// Contact is taken to stay as it is: the linear system with periodic coefficients.
-    pub hold_contact: bool,
+    /// Contact is fixed: the equations are linear with periodic coefficients.
+    pub fixed_contact: bool,
+    /// Reference frequency of the scaled time τ = ω_ref t, rad/s.
     pub omega_ref: f64,
     /// One mesh period in scaled time.
     pub period_tau: f64,
     /// Phases in (0, 1], ascending, at which an excitation is not smooth; the last is 1.
     pub breakpoints: Vec<f64>,
-    /// Radii, for the source's displacements.
+    /// Radii of pinion and gear in the reference plane, m.
     pub radius_p: f64,
     pub radius_g: f64,
 }
 
-impl<const D: usize> Deref for Model<D> {
+impl<const D: usize> Deref for DynamicModel<D> {
     type Target = Equations<D, f64>;
 
     fn deref(&self) -> &Equations<D, f64> {
@@ -70,12 +75,17 @@ impl<const D: usize> Deref for Model<D> {
     }
 }
 
-/// Breakpoints closer than this are one, in mesh periods.
+/// Distance below which two breakpoints count as one, in mesh periods.
 const SAME_PHASE: f64 = 1e-12;
 
-impl<const D: usize> Model<D> {
+impl<const D: usize> DynamicModel<D> {
+    /// Number of solved halves.
     pub const HALVES: usize = D / PER_HALF;
 
+    /// Scales the equations by the highest of the mesh frequency and the estimated natural frequencies.
+    ///
+    /// # Errors
+    /// [`DynamicsError::InvalidParameter`].
     pub fn new(p: &Parameters) -> Result<Self, DynamicsError> {
         p.validate()?;
         let mesh_omega = std::f64::consts::TAU * p.mesh_frequency_hz;
@@ -94,7 +104,7 @@ impl<const D: usize> Model<D> {
         }
         breakpoints.retain(|&phase| phase > SAME_PHASE && phase <= 1.0);
         breakpoints.sort_by(f64::total_cmp);
-        // Of two that coincide the later one stays, so that the end of the period is met exactly.
+        // Of two breakpoints that coincide the later one is kept, so that the end of the period is reached exactly.
         breakpoints.reverse();
         breakpoints.dedup_by(|earlier, later| *later - *earlier < SAME_PHASE);
         breakpoints.reverse();
@@ -109,7 +119,7 @@ impl<const D: usize> Model<D> {
         Ok(Self {
             equations: Equations::new(p, omega_ref),
             excitations,
-            hold_contact: false,
+            fixed_contact: false,
             omega_ref,
             period_tau,
             breakpoints,
@@ -118,33 +128,34 @@ impl<const D: usize> Model<D> {
         })
     }
 
-    /// The same equations with the contact held as it is.
-    pub fn holding_contact(&self) -> Self {
-        Self { hold_contact: true, ..self.clone() }
+    /// The same model with fixed contact.
+    pub fn with_fixed_contact(&self) -> Self {
+        Self { fixed_contact: true, ..self.clone() }
     }
 
-    /// The same with the equations that variations against the mirror symmetry obey (D = 6).
-    pub fn against_symmetry(&self) -> Self {
-        Self { equations: self.equations.against_symmetry(), ..self.clone() }
+    /// The same model with the equations of antisymmetric perturbations (D = 6), see [`Equations::antisymmetric`].
+    pub fn antisymmetric(&self) -> Self {
+        Self { equations: self.equations.antisymmetric(), ..self.clone() }
     }
 
-    /// The diagonal mass matrix of the solver coordinates, kg.
+    /// Diagonal of the mass matrix in solver coordinates, kg.
     pub fn masses_kg(&self) -> [f64; D] {
         self.equations.masses_kg(self.omega_ref)
     }
 
-    /// Contact can change.
-    pub fn switches(&self) -> bool {
-        self.follows_contact() || (self.b > 0.0 && !self.hold_contact)
+    /// Whether contact can change.
+    pub fn contact_can_change(&self) -> bool {
+        self.uses_contact_force() || (self.b > 0.0 && !self.fixed_contact)
     }
 
-    /// The mesh force is that of the loaded contact, on all halves.
-    pub fn follows_contact(&self) -> bool {
+    /// Whether the mesh force is a tabulated contact force, on all halves.
+    pub fn uses_contact_force(&self) -> bool {
         self.excitations.iter().any(|e| e.contact.is_some())
     }
 
-    /// The side of the backlash the s of a half is on. Without backlash the mesh law of a stiffness is linear: always driving.
-    pub fn contact_of(&self, j: usize, s: f64, phase: f64) -> Contact {
+    /// Contact of half `j` at the displacement `s`. Without backlash the law of a mesh stiffness is linear: always
+    /// driving.
+    pub fn contact_of(&self, j: usize, s: f64, phase: f64) -> ContactSide {
         if let Some(contact) = &self.excitations[j].contact {
             return contact.force.contact_of(s, self.b, phase - contact.shift);
         }
@@ -157,38 +168,39 @@ impl<const D: usize> Model<D> {
         }
     }
 
-    /// The largest s of a half at which its driving flanks carry nothing at any phase, m.
-    pub fn touching_m(&self, j: usize) -> f64 {
+    /// Largest s of a half without force on its driving flanks at any phase, m.
+    pub fn first_contact_displacement_m(&self, j: usize) -> f64 {
         let contact = self.excitations[j].contact.as_ref();
-        self.b + contact.map_or(0.0, |c| c.force.least_free_m(1))
+        self.b + contact.map_or(0.0, |c| c.force.min_free_m(1))
     }
 
-    /// Scaled rate at which the distance from mid-gap to where contact of a side (1 driving, −1 back) begins grows: 0 but for contact forces.
-    pub fn contact_begins_rate(&self, j: usize, side: Contact, phase: f64) -> f64 {
+    /// Rate in scaled time of the displacement at which contact of a side (1 driving, −1 back) begins, measured from
+    /// mid-gap; 0 for a mesh stiffness.
+    pub fn contact_onset_rate(&self, j: usize, side: ContactSide, phase: f64) -> f64 {
         let contact = self.excitations[j].contact.as_ref();
         contact.map_or(0.0, |c| c.force.free_rate_m(side, phase - c.shift) / self.period_tau)
     }
 
     /// Normal mesh force, N.
     #[inline(always)]
-    pub fn mesh_force(&self, j: usize, (phase, inside): (f64, f64), s: f64, s_v: f64) -> f64 {
+    pub fn mesh_force(&self, j: usize, (phase, interior): (f64, f64), s: f64, s_v: f64) -> f64 {
         let e = &self.excitations[j];
         let damper = |closed: bool| if closed { self.halves[j].cm } else { self.halves[j].cm_in_gap } * s_v;
         if let Some(contact) = &e.contact {
-            let (force, _) = contact.force.force(s, self.b, phase - contact.shift, inside - contact.shift);
+            let (force, _) = contact.force.force(s, self.b, phase - contact.shift, interior - contact.shift);
             return damper(self.contact_of(j, s, phase) != 0) + force;
         }
         let contact = self.contact_of(j, s, phase);
-        let spring = e.stiffness.value(phase, inside) * (s - f64::from(contact) * self.b);
+        let spring = e.stiffness.value(phase, interior) * (s - f64::from(contact) * self.b);
         damper(contact != 0) + if contact != 0 { spring } else { 0.0 }
     }
 
-    /// Scaled accelerations at a phase: the right-hand side for Runge–Kutta methods.
-    pub fn acceleration(&self, phase: f64, inside: f64, x: &[f64; D], v: &[f64; D]) -> [f64; D] {
+    /// Accelerations in scaled time at a phase: right-hand side for Runge–Kutta methods.
+    pub fn acceleration(&self, phase: f64, interior: f64, x: &[f64; D], v: &[f64; D]) -> [f64; D] {
         let mut a = [0.0; D];
         for j in 0..Self::HALVES {
-            let force = self.mesh_force(j, (phase, inside), self.s(j, x), self.s(j, v));
-            let impact = self.excitations[j].impact.value(phase, inside);
+            let force = self.mesh_force(j, (phase, interior), self.s(j, x), self.s(j, v));
+            let impact = self.excitations[j].impact.value(phase, interior);
             let along = self.halves[j].load - self.impact_along * impact;
             let normal = force + self.impact_normal * impact;
             a[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, x, v, normal, along));
@@ -196,20 +208,20 @@ impl<const D: usize> Model<D> {
         a
     }
 
-    /// An upper estimate of the forces that load and impact put on the mesh of a half, N.
-    pub fn largest_push_n(&self, j: usize) -> f64 {
+    /// Upper bound of load and impact on the mesh of a half, N.
+    pub fn max_excitation_force_n(&self, j: usize) -> f64 {
         self.halves[j].load.abs() + self.excitations[j].impact.largest_n()
     }
 
-    /// Scaled accelerations that a normal mesh force `force` of half `j` causes by itself.
-    pub fn push(&self, j: usize, force: f64) -> [f64; D] {
+    /// Accelerations in scaled time due to a normal mesh force (N) of half `j` alone.
+    pub fn acceleration_of_mesh_force(&self, j: usize, force: f64) -> [f64; D] {
         let mut out = [0.0; D];
         out[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, &[0.0; D], &[0.0; D], force, 0.0));
         out
     }
 
-    /// Scaled accelerations of the springs outside the mesh.
-    pub fn springs(&self, x: &[f64; D]) -> [f64; D] {
+    /// Accelerations in scaled time due to the springs other than the mesh.
+    pub fn acceleration_of_springs(&self, x: &[f64; D]) -> [f64; D] {
         let mut out = [0.0; D];
         for j in 0..Self::HALVES {
             out[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, x, &[0.0; D], 0.0, 0.0));
@@ -217,10 +229,11 @@ impl<const D: usize> Model<D> {
         out
     }
 
-    /// Coefficient `n` of the whole normal force on the teeth of a half, mesh force and impact F_s/cosβ, N: what turns the gears as the
-    /// polynomials `rows` say, whatever law the mesh force has. Over a motion that repeats its mean is that of the load, T_p/(R_p cosβ),
-    /// as far as no torsional spring carries torque from half to half; over both halves together always.
-    pub fn tooth_force_behind(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
+    /// Taylor coefficient `n` of the total normal tooth force of a half, mesh force plus F_s/cosβ, N, from the
+    /// rotational equation of motion and the polynomials `rows`; it does not depend on the law of the mesh force. Over
+    /// a periodic motion its mean is T_p/(R_p cosβ) if no torsional spring couples the halves, and always in the sum of
+    /// both halves.
+    pub fn tooth_force_coefficient(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
         let n1 = (n + 1) as f64;
         let free = self.half_acceleration(j, &rows[n], &rows[n + 1].map(|c| c * n1), 0.0, 0.0);
         let a = rows[n + 2][j * PER_HALF + U] * n1 * (n1 + 1.0);
@@ -228,13 +241,13 @@ impl<const D: usize> Model<D> {
         (load - (a - free[U]) / self.halves[j].inv_me) / self.cos
     }
 
-    /// The part of the normal force that moves the gear along y and z which is the impact, as a cubic through four phases of a step: powers of
-    /// the step's fraction.
-    pub fn impact_in_normal(&self, j: usize, phase: f64, step: f64, inside: f64) -> [f64; 4] {
+    /// The impact's contribution to the normal force in the lateral and axial equations, N: interpolating cubic through
+    /// four phases of a step, in powers of the fraction of the step.
+    pub fn impact_in_normal(&self, j: usize, phase: f64, step: f64, interior: f64) -> [f64; 4] {
         if self.impact_normal == 0.0 {
             return [0.0; 4];
         }
-        let at = |part: f64| self.impact_normal * self.excitations[j].impact.value(phase + part * step, inside);
+        let at = |part: f64| self.impact_normal * self.excitations[j].impact.value(phase + part * step, interior);
         let [y0, y1, y2, y3] = [at(0.0), at(1.0 / 3.0), at(2.0 / 3.0), at(1.0)];
         [
             y0,
@@ -244,18 +257,18 @@ impl<const D: usize> Model<D> {
         ]
     }
 
-    /// Coefficient `n` of the normal force (mesh force, and an impact that acts on all motions) that moves the gear along y as the
-    /// polynomials `rows` say.
-    pub fn force_behind(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
+    /// Taylor coefficient `n` of the normal force (mesh force, and an impact that acts on all motions), N, from the
+    /// lateral equation of motion of the gear and the polynomials `rows`.
+    pub fn mesh_force_coefficient(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
         let n1 = (n + 1) as f64;
         let free = self.half_acceleration(j, &rows[n], &rows[n + 1].map(|c| c * n1), 0.0, 0.0);
         let a = rows[n + 2][j * PER_HALF + YG] * n1 * (n1 + 1.0);
         (a - free[YG]) / (self.halves[j].inv_mg * self.cos)
     }
 
-    /// State from the source's 12 displacements and 12 velocities.
-    pub fn state_from(&self, source: &[f64; 24]) -> State<D> {
-        let mut state = State { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [1; 2] };
+    /// State from 12 displacements and 12 velocities.
+    pub fn state_from(&self, physical: &[f64; 24]) -> MotionState<D> {
+        let mut state = MotionState { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [1; 2] };
         for j in 0..Self::HALVES {
             let h = &self.halves[j];
             let sum = h.reduced_p + h.reduced_g;
@@ -267,8 +280,8 @@ impl<const D: usize> Model<D> {
                     out[j * PER_HALF + c] = row[c] * scale;
                 }
             };
-            convert(&source[6 * j..6 * j + 6], &mut state.x, 1.0);
-            convert(&source[12 + 6 * j..18 + 6 * j], &mut state.v, 1.0 / self.omega_ref);
+            convert(&physical[6 * j..6 * j + 6], &mut state.x, 1.0);
+            convert(&physical[12 + 6 * j..18 + 6 * j], &mut state.v, 1.0 / self.omega_ref);
         }
         for j in 0..Self::HALVES {
             state.contact[j] = self.contact_of(j, self.s(j, &state.x), state.phase);
@@ -276,9 +289,9 @@ impl<const D: usize> Model<D> {
         state
     }
 
-    /// Where the mesh force is that of the loaded contact: turns the teeth together until each half carries its load at the state's phase, halves
-    /// that are coupled in torsion by the mean of what each needs.
-    pub fn seat_teeth(&self, state: &mut State<D>) {
+    /// For a tabulated contact force: rotates the gears until each half carries its load at the phase of the state.
+    /// Halves coupled in torsion rotate by the mean of their angles.
+    pub fn close_contact(&self, state: &mut MotionState<D>) {
         let mut turns = [0.0; 2];
         for (j, e) in self.excitations.iter().enumerate() {
             let Some(contact) = &e.contact else { return };
@@ -295,16 +308,16 @@ impl<const D: usize> Model<D> {
         }
     }
 
-    /// The source's 12 displacements and 12 velocities of a state.
-    pub fn source_state(&self, state: &State<D>) -> [f64; 24] {
+    /// 12 displacements (m, rad) and 12 velocities (m/s, rad/s) of a state.
+    pub fn physical_state(&self, state: &MotionState<D>) -> [f64; 24] {
         let mut out = [0.0; 24];
-        out[..12].copy_from_slice(&self.source_displacements(&state.x));
-        out[12..].copy_from_slice(&self.source_displacements(&state.v).map(|v| v * self.omega_ref));
+        out[..12].copy_from_slice(&self.physical_displacements(&state.x));
+        out[12..].copy_from_slice(&self.physical_displacements(&state.v).map(|v| v * self.omega_ref));
         out
     }
 
-    /// The source's 12 displacements (or velocities, accelerations when `row` holds those) of solver coordinates.
-    pub fn source_displacements(&self, row: &[f64; D]) -> [f64; 12] {
+    /// 12 displacements of solver coordinates; of velocities or accelerations when `row` holds those.
+    pub fn physical_displacements(&self, row: &[f64; D]) -> [f64; 12] {
         let mut out = [0.0; 12];
         for j in 0..2 {
             let (from, mirrored) = if D > PER_HALF { (j, 1.0) } else { (0, if j == 0 { 1.0 } else { -1.0 }) };
@@ -324,7 +337,7 @@ impl<const D: usize> Model<D> {
     }
 }
 
-/// Upper estimate of the fastest natural frequency of a half, rad/s: every spring on every mass.
+/// Upper estimate of the highest natural frequency of a half, rad/s: all springs acting on each mass.
 fn fastest(p: &Parameters, h: &HalfParameters, equivalent_mass: f64) -> f64 {
     let c = &p.couplings;
     let k_m = match &h.mesh_stiffness {
@@ -347,14 +360,15 @@ fn fastest(p: &Parameters, h: &HalfParameters, equivalent_mass: f64) -> f64 {
 
 fn excitation(h: &HalfParameters, b: f64, period_tau: f64) -> Excitation {
     let shift = h.phase_shift_mesh_periods.rem_euclid(1.0);
-    let contact = h.contact_force.as_ref().map(|force| ContactCourse { force: force.clone(), shift, b, period_tau });
-    // Where the contact gives the force, the stiffness has no say and no knots.
+    let contact =
+        h.contact_force.as_ref().map(|force| ContactForceWaveform { force: force.clone(), shift, b, period_tau });
+    // With a tabulated contact force the stiffness is not used and adds no breakpoints.
     let stiffness = match &contact {
-        None => StiffnessCourse::new(&h.mesh_stiffness, shift, period_tau),
+        None => StiffnessWaveform::new(&h.mesh_stiffness, shift, period_tau),
         Some(_) => {
             let mean_n_per_m = h.mesh_stiffness.mean_n_per_m();
-            StiffnessCourse::new(&Stiffness::Constant { mean_n_per_m }, shift, period_tau)
+            StiffnessWaveform::new(&Stiffness::Constant { mean_n_per_m }, shift, period_tau)
         }
     };
-    Excitation { stiffness, contact, impact: ImpactCourse::new(h.impact.as_ref(), shift, period_tau) }
+    Excitation { stiffness, contact, impact: ImpactWaveform::new(h.impact.as_ref(), shift, period_tau) }
 }

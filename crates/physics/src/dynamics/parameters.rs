@@ -1,4 +1,4 @@
-//! The numbers in the equations of motion, SI.
+//! Parameters of the equations of motion, SI.
 
 use std::sync::Arc;
 
@@ -6,100 +6,105 @@ use serde::{Deserialize, Serialize};
 
 use super::contact_force::ContactForce;
 use super::error::DynamicsError;
-use super::excitation::{Impact, Stiffness};
+use super::excitation::{ImpactExcitation, Stiffness};
 
-/// A linear spring with a viscous damper beside it. Zero for both: not there. N/m and N s/m, or N m/rad and N m s/rad for
-/// torsional ones.
+/// A linear spring with a viscous damper in parallel. Zero stiffness and damping: no spring.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Spring {
+    /// N/m; torsional: N m/rad.
     pub stiffness: f64,
+    /// N s/m; torsional: N m s/rad.
     pub damping: f64,
 }
 
 impl Spring {
-    /// A spring whose damper is c = 2 ζ √(k m), m the mass (or inertia) it acts on.
+    /// Spring with the damping coefficient c = 2 ζ √(k m). `mass`: the mass in kg or inertia in kg m² it acts on.
     pub fn with_damping_ratio(stiffness: f64, damping_ratio: f64, mass: f64) -> Self {
         Self { stiffness, damping: 2.0 * damping_ratio * (stiffness * mass).sqrt() }
     }
 }
 
-/// What belongs to one helix half of the pair (half of a whole gear's mass and inertia, and so on).
+/// Parameters of one helix half of the pair (half of the mass and inertia of a whole gear).
 #[derive(Debug, Clone, PartialEq)]
 pub struct HalfParameters {
     pub pinion_mass_kg: f64,
     pub pinion_inertia_kg_m2: f64,
     pub gear_mass_kg: f64,
     pub gear_inertia_kg_m2: f64,
-    /// Torque on this half of the pinion, N m. The gear's is this times R_g/R_p, so that rigid rotation is not accelerated.
+    /// Torque on this half of the pinion, N m. That of the gear is R_g/R_p times as large, so that rigid rotation is
+    /// not accelerated.
     pub pinion_torque_nm: f64,
-    /// k_py, c_py: the pinion's support along y.
+    /// k_py, c_py: support of the pinion along y.
     pub pinion_lateral: Spring,
-    /// k_gy, c_gy.
+    /// k_gy, c_gy: support of the gear along y.
     pub gear_lateral: Spring,
-    /// The pinion's axial support; zero in the source, whose pinion floats.
+    /// Axial support of the pinion; zero in the source paper (floating pinion).
     pub pinion_axial: Spring,
-    /// k_gz, c_gz.
+    /// k_gz, c_gz: axial support of the gear.
     pub gear_axial: Spring,
-    /// k_m over the mesh phase, along s. With a `contact_force`: the tangent stiffness at the working load, for natural modes and as a
-    /// scale; the force is then not taken from it.
+    /// k_m over the mesh phase, along s. With a `contact_force`: tangent stiffness at the operating load, used for the
+    /// natural modes and as a scale only.
     pub mesh_stiffness: Stiffness,
-    /// The mesh force as a function of displacement and phase, in place of k_m(φ) f(s); both halves have one, or neither.
+    /// Mesh force as a function of displacement and phase in place of k_m(φ) f(s). Both halves have one, or neither.
     pub contact_force: Option<Arc<ContactForce>>,
     /// c_m along s, N s/m; see [`mesh_damping_n_s_per_m`].
     pub mesh_damping_n_s_per_m: f64,
-    /// F_s, along the mesh in the transverse plane; what it moves is said by [`Parameters::impact_acts_on`].
-    pub impact: Option<Impact>,
-    /// The excitations of this half come this fraction of a mesh period later than written (half stagger).
+    /// F_s, tangential in the transverse plane; see [`Parameters::impact_acts_on`].
+    pub impact: Option<ImpactExcitation>,
+    /// Delay of the excitations of this half, in mesh periods (stagger of the halves).
     pub phase_shift_mesh_periods: f64,
 }
 
-/// Which motions the mesh-in impact moves.
+/// Equations in which the mesh-in impact acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ImpactActsOn {
-    /// The two torsional equations of its half only, as the source paper prints it.
+    /// The two torsional equations of its half only, as in the source paper.
     #[default]
     Torsion,
-    /// All motions of its half, as a normal force on the tooth does: with F_s along the mesh in the transverse plane, F_y = F_s and
-    /// F_z = F_s tanβ_j beside the mesh force's.
+    /// All equations of its half, as a normal tooth force: F_y = F_s and F_z = F_s tanβ_j are added to the mesh force.
     All,
 }
 
 /// Springs and dampers between the two halves of a shaft.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Couplings {
-    /// k_p12z, c_p12z.
+    /// k_p12z, c_p12z: between z_p1 and z_p2.
     pub pinion_axial: Spring,
-    /// k_g12z, c_g12z.
+    /// k_g12z, c_g12z: between z_g1 and z_g2.
     pub gear_axial: Spring,
-    /// Between y_p1 and y_p2; zero in the source.
+    /// Between y_p1 and y_p2; zero in the source paper.
     pub pinion_lateral: Spring,
+    /// Between y_g1 and y_g2; zero in the source paper.
     pub gear_lateral: Spring,
-    /// Between θ_p1 and θ_p2; zero in the source.
+    /// Between θ_p1 and θ_p2; zero in the source paper.
     pub pinion_torsion: Spring,
+    /// Between θ_g1 and θ_g2; zero in the source paper.
     pub gear_torsion: Spring,
 }
 
-/// Everything the twelve equations need.
+/// All parameters of the twelve equations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     pub mesh_frequency_hz: f64,
-    /// R_p of the plane in use: pitch radius (`pitch`) or base radius (`base`).
+    /// R_p in the reference plane: pitch or base radius.
     pub pinion_radius_m: f64,
     pub gear_radius_m: f64,
-    /// β of the left half in the plane in use (β or β_b); the right half has −β.
+    /// β of the left half in the reference plane (β or β_b); the right half has −β.
     pub helix_angle_rad: f64,
-    /// b: half of the total play along s.
+    /// b: half of the total backlash along s.
     pub half_backlash_m: f64,
-    /// True: the mesh damper acts always (the source's law). False: not while |s| ≤ b.
+    /// True: the mesh damper always acts (law of the source paper). False: only while |s| > b.
     pub damping_in_gap: bool,
+    /// Equations in which the impact acts.
     pub impact_acts_on: ImpactActsOn,
-    /// Left, right.
+    /// Left half, right half.
     pub halves: [HalfParameters; 2],
+    /// Springs between the halves of the shafts.
     pub couplings: Couplings,
 }
 
-/// m_e = 1/(R_p²/I_p + R_g²/I_g), kg: the mass that the mesh of one half sees.
+/// Equivalent mass of the mesh of one half, m_e = 1/(R_p²/I_p + R_g²/I_g), kg.
 pub fn equivalent_mass_kg(
     pinion_radius_m: f64,
     pinion_inertia_kg_m2: f64,
@@ -110,42 +115,47 @@ pub fn equivalent_mass_kg(
         + gear_radius_m * gear_radius_m / gear_inertia_kg_m2)
 }
 
-/// c_m = 2 ζ_m √(k_mean m_e), N s/m.
+/// Mesh damping coefficient c_m = 2 ζ_m √(k_mean m_e), N s/m.
 pub fn mesh_damping_n_s_per_m(damping_ratio: f64, mean_stiffness_n_per_m: f64, equivalent_mass_kg: f64) -> f64 {
     2.0 * damping_ratio * (mean_stiffness_n_per_m * equivalent_mass_kg).sqrt()
 }
 
 impl Parameters {
-    /// m_e of a half (0 left, 1 right).
+    /// m_e of a half (0 left, 1 right), kg.
     pub fn equivalent_mass_kg(&self, half: usize) -> f64 {
         let h = &self.halves[half];
         equivalent_mass_kg(self.pinion_radius_m, h.pinion_inertia_kg_m2, self.gear_radius_m, h.gear_inertia_kg_m2)
     }
 
+    /// Mesh period, s.
     pub fn mesh_period_s(&self) -> f64 {
         1.0 / self.mesh_frequency_hz
     }
 
-    /// Both halves equal in every respect, phase included: the motion is then mirror symmetric (z_2 = −z_1).
+    /// Whether both halves are equal, phase included: the motion is then mirror-symmetric (z_2 = −z_1).
     pub fn is_symmetric(&self) -> bool {
         self.halves[0] == self.halves[1]
     }
 
-    /// Moves torque between the halves until the mean impacts no longer push the floating pinion along its screw motion:
-    /// the total stays. ΔT = R_p (mean F_s1 − mean F_s2)/2. Needed only when the impacts of the halves differ, and act on torsion
-    /// alone: an impact that pushes the pinion along its axis too is balanced by the same torque that balances its mesh forces.
+    /// Shifts torque between the halves until the mean impact forces have no component along the screw motion of the
+    /// floating pinion; the total torque stays: ΔT = R_p (mean F_s1 − mean F_s2)/2. Needed only for unequal impacts
+    /// that act on torsion alone: the axial component of an impact that acts on all equations is balanced by the torque
+    /// that balances its mesh forces.
     pub fn balance_axially(&mut self) {
         if self.impact_acts_on == ImpactActsOn::All {
             return;
         }
-        let mean = |h: &HalfParameters| h.impact.as_ref().map_or(0.0, Impact::mean_n);
+        let mean = |h: &HalfParameters| h.impact.as_ref().map_or(0.0, ImpactExcitation::mean_n);
         let total = self.halves[0].pinion_torque_nm + self.halves[1].pinion_torque_nm;
-        let moved = 0.5 * self.pinion_radius_m * (mean(&self.halves[0]) - mean(&self.halves[1]));
-        self.halves[0].pinion_torque_nm = 0.5 * total + moved;
-        self.halves[1].pinion_torque_nm = 0.5 * total - moved;
+        let shift_nm = 0.5 * self.pinion_radius_m * (mean(&self.halves[0]) - mean(&self.halves[1]));
+        self.halves[0].pinion_torque_nm = 0.5 * total + shift_nm;
+        self.halves[1].pinion_torque_nm = 0.5 * total - shift_nm;
     }
 
-    /// Fails with the first parameter the equations cannot use.
+    /// Checks all parameters.
+    ///
+    /// # Errors
+    /// [`DynamicsError::InvalidParameter`] for the first invalid one.
     pub fn validate(&self) -> Result<(), DynamicsError> {
         positive("mesh frequency", self.mesh_frequency_hz)?;
         positive("pinion radius", self.pinion_radius_m)?;
@@ -171,7 +181,7 @@ impl Parameters {
             spring("pinion axial support", h.pinion_axial)?;
             spring("gear axial support", h.gear_axial)?;
             h.mesh_stiffness.validate()?;
-            h.impact.as_ref().map_or(Ok(()), Impact::validate)?;
+            h.impact.as_ref().map_or(Ok(()), ImpactExcitation::validate)?;
         }
         let c = &self.couplings;
         spring("pinion axial coupling", c.pinion_axial)?;

@@ -1,12 +1,12 @@
-//! The recurrence that gives the Taylor coefficients of the motion between two events.
+//! Recurrence for the Taylor coefficients of the motion between two events.
 
-use super::contact_force::Cells;
+use super::contact_force::ForceCells;
 use super::equations::{Equations, PER_HALF, W};
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
 use super::lanes::Real;
 
-/// Working memory of a Taylor step: coefficients of every coordinate, of s and of F_n.
+/// Working memory of a Taylor step: coefficients of all coordinates, of s and of F_n.
 #[repr(align(64))]
 pub(crate) struct TaylorWork<const D: usize, R> {
     pub rows: [[R; D]; MAX_ORDER + 1],
@@ -16,12 +16,12 @@ pub(crate) struct TaylorWork<const D: usize, R> {
     contact: [ContactSeries<R>; 2],
 }
 
-/// Powers of a displacement within a cell of the contact force.
+/// Taylor coefficients of the powers of e within a cell of the contact force.
 #[derive(Clone, Copy)]
 pub(super) struct ContactSeries<R> {
-    /// e, and e again with the highest order first.
+    /// e, and e in descending order.
     e: [R; MAX_ORDER + 1],
-    backwards: [R; MAX_ORDER + 1],
+    reversed: [R; MAX_ORDER + 1],
     square: [R; MAX_ORDER + 1],
     cube: [R; MAX_ORDER + 1],
 }
@@ -29,42 +29,44 @@ pub(super) struct ContactSeries<R> {
 impl<R: Real> ContactSeries<R> {
     pub fn new() -> Self {
         let zero = [R::splat(0.0); MAX_ORDER + 1];
-        Self { e: zero, backwards: zero, square: zero, cube: zero }
+        Self { e: zero, reversed: zero, square: zero, cube: zero }
     }
 
-    /// Adds coefficient `n` of s to the series, and returns coefficient `n` of Σ_a law[a] e^a.
+    /// Adds coefficient `n` of s, and returns coefficient `n` of Σ_a coefficients[a] e^a.
     #[inline(always)]
-    fn force(&mut self, cells: &Cells<R>, n: usize, s: R) -> R {
-        self.push(cells, n, s);
+    fn force(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
+        self.add_displacement(cells, n, s);
         let mut sum = R::splat(0.0);
         for m in 0..=n.min(3) {
             let k = n - m;
-            sum += cells.law[1][m] * self.e[k] + cells.law[2][m] * self.square[k] + cells.law[3][m] * self.cube[k];
+            sum += cells.coefficients[1][m] * self.e[k]
+                + cells.coefficients[2][m] * self.square[k]
+                + cells.coefficients[3][m] * self.cube[k];
         }
-        if n < 4 { sum + cells.law[0][n] } else { sum }
+        if n < 4 { sum + cells.coefficients[0][n] } else { sum }
     }
 
-    /// The same of the stiffness, Σ_a a law[a] e^(a-1).
+    /// Adds coefficient `n` of s, and returns coefficient `n` of the stiffness Σ_a a coefficients[a] e^(a−1).
     #[inline(always)]
-    pub fn stiffness(&mut self, cells: &Cells<R>, n: usize, s: R) -> R {
-        self.push(cells, n, s);
+    pub fn stiffness(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
+        self.add_displacement(cells, n, s);
         let (two, three) = (R::splat(2.0), R::splat(3.0));
         let mut sum = R::splat(0.0);
         for m in 0..=n.min(3) {
             let k = n - m;
-            sum += two * cells.law[2][m] * self.e[k] + three * cells.law[3][m] * self.square[k];
+            sum += two * cells.coefficients[2][m] * self.e[k] + three * cells.coefficients[3][m] * self.square[k];
         }
-        if n < 4 { sum + cells.law[1][n] } else { sum }
+        if n < 4 { sum + cells.coefficients[1][n] } else { sum }
     }
 
     #[inline(always)]
-    fn push(&mut self, cells: &Cells<R>, n: usize, s: R) {
+    fn add_displacement(&mut self, cells: &ForceCells<R>, n: usize, s: R) {
         self.e[n] = cells.side * s;
         if n < 4 {
-            self.e[n] += cells.near[n];
+            self.e[n] += cells.lower[n];
         }
-        self.backwards[MAX_ORDER - n] = self.e[n];
-        let back = &self.backwards[MAX_ORDER - n..];
+        self.reversed[MAX_ORDER - n] = self.e[n];
+        let back = &self.reversed[MAX_ORDER - n..];
         self.square[n] = convolution(back, &self.e[..=n], 0);
         self.cube[n] = convolution(back, &self.square[..=n], 0);
     }
@@ -83,31 +85,32 @@ impl<const D: usize, R: Real> TaylorWork<D, R> {
     }
 }
 
-/// When a series need not be carried to its full order: a stretch of `remaining` scaled time is all that is wanted of it, and
-/// its last two terms there are below `tolerance` times the size of the motion.
+/// Condition for ending a series below its full order: over `remaining` scaled time its last two terms are below
+/// `tolerance` times the size of the motion.
 #[derive(Clone, Copy)]
-pub(crate) struct Enough<R> {
+pub(crate) struct EarlyTermination<R> {
     pub remaining: R,
     pub tolerance: R,
     /// Size of the recent motion.
     pub size: R,
 }
 
-/// The lowest order at which a series is looked at, and the longest stretch (in scaled time, about an angle of the fastest
-/// natural motion) for which it can end below the orders in use.
-const LOWEST_ORDER: usize = 6;
-const LONGEST_SHORT: f64 = 2.0;
+/// Lowest order at which the condition is tested, and the longest `remaining` (scaled time, about the phase angle of
+/// the fastest natural mode) for which it can hold below the orders in use.
+const MIN_ORDER: usize = 6;
+const MAX_EARLY_TERMINATION_SPAN: f64 = 2.0;
 
 /// Taylor coefficients of the motion up to `order` in scaled time, from `rows[0]`, `rows[1]` (x and dx/dτ) and the
-/// excitation in `work`. `loads` 0 gives the variation about a motion with the same contacts, 1 the motion itself. With `enough`, lanes whose
-/// series are good enough stop early (their higher coefficients are 0). Returns which lanes have (1) and the highest order computed.
+/// excitation in `work`. `loads` is 1 for a motion and 0 for the variational equations with the same contact. With
+/// `early_end`, lanes that satisfy the condition end early (their higher coefficients are 0). Returns these lanes (1)
+/// and the highest order computed.
 #[inline(always)]
-pub(crate) fn taylor<const D: usize, R: Real>(
+pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
     equations: &Equations<D, R>,
     contact: [R; 2],
     order: usize,
     loads: R,
-    enough: Option<Enough<R>>,
+    early_end: Option<EarlyTermination<R>>,
     work: &mut TaylorWork<D, R>,
 ) -> (R, usize) {
     let TaylorWork { rows, s, force, excitation, contact: series } = work;
@@ -115,21 +118,21 @@ pub(crate) fn taylor<const D: usize, R: Real>(
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let mut damper = [zero; 2];
     let mut closed = [zero; 2];
-    let mut seat = [zero; 2];
+    let mut backlash_offset = [zero; 2];
     let mut any_closed = [false; 2];
     for j in 0..halves {
         let h = &equations.halves[j];
         closed[j] = contact[j].map(|c| if c != 0.0 { 1.0 } else { 0.0 });
         any_closed[j] = closed[j].any(|c| c != 0.0);
         damper[j] = R::from_fn(|l| if closed[j].get(l) != 0.0 { h.cm.get(l) } else { h.cm_in_gap.get(l) });
-        seat[j] = loads * contact[j] * equations.b;
+        backlash_offset[j] = loads * contact[j] * equations.b;
         s[j][0] = equations.s(j, &rows[0]);
         s[j][1] = equations.s(j, &rows[1]);
     }
-    let short = |r: f64| r <= LONGEST_SHORT;
-    let enough = enough.filter(|e| e.remaining.any(short));
-    let mut alive = one;
-    let mut power = enough.map_or(zero, |e| e.remaining);
+    let short = |r: f64| r <= MAX_EARLY_TERMINATION_SPAN;
+    let early_end = early_end.filter(|e| e.remaining.any(short));
+    let mut active = one;
+    let mut power = early_end.map_or(zero, |e| e.remaining);
     for n in 0..order - 1 {
         let n1 = (n + 1) as f64;
         let (known, next) = rows.split_at_mut(n + 2);
@@ -138,7 +141,7 @@ pub(crate) fn taylor<const D: usize, R: Real>(
         for c in &mut v {
             *c = *c * R::splat(n1);
         }
-        let scale = R::splat(1.0 / (n1 * (n1 + 1.0))) * alive;
+        let scale = R::splat(1.0 / (n1 * (n1 + 1.0))) * active;
         for j in 0..halves {
             let h = &equations.halves[j];
             let mut f = damper[j] * R::splat(n1) * s[j][n + 1];
@@ -150,20 +153,20 @@ pub(crate) fn taylor<const D: usize, R: Real>(
             } else {
                 let degree = excitation.degree[j].min(n);
                 if any_closed[j] {
-                    let k = &excitation.backwards[j][MAX_ORDER - n..];
+                    let k = &excitation.reversed[j][MAX_ORDER - n..];
                     f += closed[j] * convolution(k, &s[j][..=n], n - degree);
                     if n <= excitation.degree[j] {
-                        f -= excitation.stiffness[j][n] * seat[j];
+                        f -= excitation.stiffness[j][n] * backlash_offset[j];
                     }
                 }
             }
             force[j][n] = f;
             let mut along = zero;
             let mut normal = f;
-            if excitation.pushed[j] {
-                let push = loads * excitation.impact[j][n];
-                along -= equations.impact_along * push;
-                normal += equations.impact_normal * push;
+            if excitation.impact_active[j] {
+                let impact_force = loads * excitation.impact[j][n];
+                along -= equations.impact_along * impact_force;
+                normal += equations.impact_normal * impact_force;
             }
             if n == 0 {
                 along += loads * h.load;
@@ -177,28 +180,28 @@ pub(crate) fn taylor<const D: usize, R: Real>(
         for j in 0..halves {
             s[j][n + 2] = equations.s(j, next);
         }
-        if let Some(e) = &enough {
+        if let Some(e) = &early_end {
             let before = power;
             power = power * e.remaining;
-            if n + 2 >= LOWEST_ORDER && n % 2 == 0 {
+            if n + 2 >= MIN_ORDER && n % 2 == 0 {
                 let size = e.size.zip(larger(norm(&rows[1]), norm(&rows[2])), f64::max);
                 let allowed = e.tolerance * size;
                 let terms = larger(norm(&rows[n + 1]) * before, norm(&rows[n + 2]) * power);
-                alive = R::from_fn(|l| {
+                active = R::from_fn(|l| {
                     let done = short(e.remaining.get(l)) && terms.get(l) <= allowed.get(l);
-                    if done { 0.0 } else { alive.get(l) }
+                    if done { 0.0 } else { active.get(l) }
                 });
-                if !alive.any(|a| a != 0.0) {
+                if !active.any(|a| a != 0.0) {
                     return (one, n + 2);
                 }
             }
         }
     }
-    (one - alive, order)
+    (one - active, order)
 }
 
-/// Σ a_i b_i from `from` on, in four partial sums, which the processor adds side by side. Which sum a product goes to depends on its
-/// distance from the end alone, so that leading zeros change nothing.
+/// Σ a_i b_i from `from` on, in four partial sums for parallel execution. The partial sum of a product depends only on
+/// its distance from the end, so that leading zeros do not change the result.
 #[inline(always)]
 fn convolution<R: Real>(a: &[R], b: &[R], from: usize) -> R {
     let mut sums = [R::splat(0.0); 4];
@@ -217,19 +220,19 @@ fn convolution<R: Real>(a: &[R], b: &[R], from: usize) -> R {
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The larger of two sizes; NaN when one is.
+/// Maximum; NaN if either is NaN.
 #[inline(always)]
 pub(super) fn larger<R: Real>(a: R, b: R) -> R {
     a.zip(b, |a, b| if a <= b || b.is_nan() { b } else { a })
 }
 
-/// Largest coordinate, free rotation apart.
+/// Largest coordinate, rigid rotation excluded.
 #[inline(always)]
 pub(super) fn norm<const D: usize, R: Real>(row: &[R; D]) -> R {
     let mut largest = R::splat(0.0);
     for (c, value) in row.iter().enumerate() {
         if c % PER_HALF != W {
-            // Keeps a NaN, which f64::max would drop.
+            // `f64::max` would drop a NaN.
             largest = largest.zip(*value, |m, v| if v.abs() <= m { m } else { v.abs() });
         }
     }

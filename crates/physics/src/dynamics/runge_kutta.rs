@@ -1,13 +1,15 @@
-//! Runge–Kutta of fourth order with variable step: Fehlberg's embedded 4(5) pair, the kind of method the source used.
+//! Embedded Runge–Kutta 4(5) method of Fehlberg with variable step, advancing the fourth-order result as the source
+//! paper's method does.
 //!
-//! It runs blindly over changes of contact, as the source's did; only edges of pulses, knots of the stiffness and the ends of mesh periods
-//! are step ends. Tableau: E. Fehlberg, NASA TR R-315 (1969), table III.
+//! Changes of contact are not located. Edges of pulses, knots of the stiffness and ends of mesh periods are ends of
+//! steps. Tableau: E. Fehlberg, Low-order classical Runge-Kutta formulas with stepsize control, NASA TR R-315 (1969),
+//! table III.
 
 use super::equations::{PER_HALF, W};
 use super::error::DynamicsError;
 use super::excitation::{Coefficients, MAX_ORDER};
-use super::integrate::Numerics;
-use super::model::{Model, State};
+use super::integrate::StepCounts;
+use super::model::{DynamicModel, MotionState};
 use super::segment::{Observer, Segment};
 
 const C: [f64; 6] = [0.0, 1.0 / 4.0, 3.0 / 8.0, 12.0 / 13.0, 1.0, 1.0 / 2.0];
@@ -22,10 +24,10 @@ const A: [[f64; 5]; 6] = [
 const B4: [f64; 6] = [25.0 / 216.0, 0.0, 1408.0 / 2565.0, 2197.0 / 4104.0, -1.0 / 5.0, 0.0];
 const B5: [f64; 6] = [16.0 / 135.0, 0.0, 6656.0 / 12825.0, 28561.0 / 56430.0, -9.0 / 50.0, 2.0 / 55.0];
 
-/// Working memory of the Runge–Kutta method.
+/// Runge–Kutta method for one motion, with its working memory.
 pub(super) struct RungeKutta<const D: usize> {
     tolerance: f64,
-    /// None: step chosen from the error; Some: fixed step in scaled time (for measuring the order).
+    /// None: the step follows from the error estimate. Some: fixed step in scaled time, to measure the order.
     fixed: Option<f64>,
     next: f64,
     size: f64,
@@ -47,20 +49,20 @@ impl<const D: usize> RungeKutta<D> {
 
     pub fn step(
         &mut self,
-        model: &Model<D>,
-        state: &mut State<D>,
+        model: &DynamicModel<D>,
+        state: &mut MotionState<D>,
         end: f64,
-        inside: f64,
-        numerics: &mut Numerics,
+        interior: f64,
+        counts: &mut StepCounts,
         observer: &mut impl Observer<D>,
     ) -> Result<(), DynamicsError> {
         let time_s = (state.period as f64 + state.phase) * model.period_tau / model.omega_ref;
         let remaining = (end - state.phase) * model.period_tau;
         let mut k = [([0.0; D], [0.0; D]); 6];
-        k[0] = (state.v, model.acceleration(state.phase, inside, &state.x, &state.v));
+        k[0] = (state.v, model.acceleration(state.phase, interior, &state.x, &state.v));
         loop {
-            let wanted = self.fixed.unwrap_or(self.next);
-            let count = (remaining / wanted - 1e-9).ceil().max(1.0);
+            let desired = self.fixed.unwrap_or(self.next);
+            let count = (remaining / desired - 1e-9).ceil().max(1.0);
             let to_end = count <= 1.0;
             let h = if to_end { remaining } else { remaining / count };
             let phase_step = h / model.period_tau;
@@ -75,9 +77,9 @@ impl<const D: usize> RungeKutta<D> {
                         v[c] += h * a * kv[c];
                     }
                 }
-                k[i] = (v, model.acceleration(state.phase + C[i] * phase_step, inside, &x, &v));
+                k[i] = (v, model.acceleration(state.phase + C[i] * phase_step, interior, &x, &v));
             }
-            numerics.force_evaluations += 5;
+            counts.force_evaluations += 5;
             let (mut x, mut v) = (state.x, state.v);
             let mut error = 0.0f64;
             let mut moving = 0.0f64;
@@ -90,7 +92,7 @@ impl<const D: usize> RungeKutta<D> {
                     ev += h * (B5[i] - B4[i]) * k[i].1[c];
                 }
                 if c % PER_HALF != W {
-                    // `max` would lose a NaN.
+                    // `max` would drop a NaN.
                     let both = ex.abs() + ev.abs();
                     error = if both > error || both.is_nan() { both } else { error };
                     moving = moving.max(state.v[c].abs()).max(k[0].1[c].abs());
@@ -104,10 +106,10 @@ impl<const D: usize> RungeKutta<D> {
             // Error per step of the fourth-order result: order 5 in h.
             let factor = if error == 0.0 { 4.0 } else { (0.9 * (allowed / error).powf(0.2)).clamp(0.2, 4.0) };
             if self.fixed.is_none() {
-                // After a last, shortened step the next one need not be short.
+                // The step after a last, shortened one is not limited by it.
                 self.next = if to_end && factor >= 1.0 { (h * factor).max(self.next.min(4.0 * h)) } else { h * factor };
                 if error > allowed {
-                    numerics.rejected_steps += 1;
+                    counts.rejected_steps += 1;
                     if h < 1e-13 * model.period_tau {
                         return Err(DynamicsError::StepSizeTooSmall { time_s, step_s: h / model.omega_ref });
                     }
@@ -115,13 +117,13 @@ impl<const D: usize> RungeKutta<D> {
                 }
             }
             self.size = 0.999 * size;
-            numerics.steps += 1;
+            counts.steps += 1;
             let phase = if to_end { end } else { state.phase + phase_step };
-            let a = model.acceleration(phase, inside, &x, &v);
-            numerics.force_evaluations += 1;
+            let a = model.acceleration(phase, interior, &x, &v);
+            counts.force_evaluations += 1;
             self.quintic(model, (&state.x, &state.v, &k[0].1), (&x, &v, &a), h);
-            for j in 0..Model::<D>::HALVES {
-                let impact = model.impact_in_normal(j, state.phase, phase_step, inside);
+            for j in 0..DynamicModel::<D>::HALVES {
+                let impact = model.impact_in_normal(j, state.phase, phase_step, interior);
                 for (n, part) in impact.into_iter().enumerate() {
                     self.force[j][n] -= part / h.powi(n as i32);
                 }
@@ -137,16 +139,16 @@ impl<const D: usize> RungeKutta<D> {
                 contact: state.contact,
             });
             (state.phase, state.x, state.v) = (phase, x, v);
-            for j in 0..Model::<D>::HALVES {
+            for j in 0..DynamicModel::<D>::HALVES {
                 state.contact[j] = model.contact_of(j, model.s(j, &state.x), state.phase);
             }
             return Ok(());
         }
     }
 
-    /// Dense output: the quintic with the positions, velocities and accelerations of both ends (Hermite). The mesh
-    /// force is the one that moves the gear as the quintic says.
-    fn quintic(&mut self, model: &Model<D>, start: Ends<'_, D>, end: Ends<'_, D>, h: f64) {
+    /// Dense output: quintic Hermite interpolant of positions, velocities and accelerations at both ends. The mesh
+    /// force is that of the gear's lateral equation of motion along the quintic.
+    fn quintic(&mut self, model: &DynamicModel<D>, start: Ends<'_, D>, end: Ends<'_, D>, h: f64) {
         let r = &mut self.rows;
         for c in 0..D {
             let (x0, v0, a0) = (start.0[c], start.1[c] * h, start.2[c] * h * h);
@@ -161,13 +163,13 @@ impl<const D: usize> RungeKutta<D> {
             r[4][c] = (-15.0 * dx + 7.0 * dv - da) / h.powi(4);
             r[5][c] = (6.0 * dx - 3.0 * dv + 0.5 * da) / h.powi(5);
         }
-        for j in 0..Model::<D>::HALVES {
+        for j in 0..DynamicModel::<D>::HALVES {
             for n in 0..=3 {
-                self.force[j][n] = model.force_behind(j, n, r);
+                self.force[j][n] = model.mesh_force_coefficient(j, n, r);
             }
         }
     }
 }
 
-/// Position, velocity and acceleration of one end of a step.
+/// Position, velocity and acceleration at one end of a step.
 type Ends<'a, const D: usize> = (&'a [f64; D], &'a [f64; D], &'a [f64; D]);

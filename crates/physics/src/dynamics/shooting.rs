@@ -1,113 +1,119 @@
-//! Periodic motions by the period map: where a motion comes back to itself, and whether it stays there.
+//! Shooting method for periodic motions: period map, monodromy matrix, Newton correction, Floquet multipliers.
 
 use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
 
 use super::equations::PER_HALF;
 use super::error::DynamicsError;
-use super::integrate::{Integrator, Motion, Numerics};
-use super::model::{Model, State};
+use super::integrate::{Integrator, Motion, StepCounts};
+use super::modal::RIGID_BODY_EIGENVALUE;
+use super::model::{DynamicModel, MotionState};
 use super::recurrence::norm;
 use super::segment::{Observer, Segment};
-use super::variation::{Both, Deviation, Variation};
+use super::variation::{ObserverPair, Perturbation, Variation};
 use crate::watch::Watch;
 
-/// Motions held by nothing move this little, in squared frequency relative to the largest (see `modal`).
-const FREE: f64 = 1e-12;
-
-/// How far and how well the motions of a search may go.
+/// Accuracy and limits of the integrations of a search.
 #[derive(Clone, Copy)]
-pub(crate) struct Limits<'a> {
+pub(crate) struct IntegrationLimits<'a> {
     /// Local error of a step relative to the size of the motion.
     pub tolerance: f64,
     pub max_steps: u64,
     pub watch: &'a Watch<'a>,
 }
 
-/// The period map of a model with its free motions (no spring holds them) set apart.
+/// Shooting method for a model, with its rigid-body modes separated.
 pub(crate) struct Shooting<'m, const D: usize> {
-    model: &'m Model<D>,
+    model: &'m DynamicModel<D>,
     active: Vec<usize>,
     masses: [f64; D],
-    /// Free motions, normalised to nᵀ M n = 1.
-    free: Vec<[f64; D]>,
-    limits: Limits<'m>,
+    /// Rigid-body modes, normalised to nᵀ M n = 1.
+    rigid_body: Vec<[f64; D]>,
+    limits: IntegrationLimits<'m>,
 }
 
-/// A motion over whole periods, and the linear map of deviations over the same time.
-pub(crate) struct MapResult<const D: usize> {
-    pub end: State<D>,
-    /// Over (active displacements, active velocities).
-    pub map: DMatrix<f64>,
-    /// Largest scaled velocity at the start of a step.
+/// Motion over whole mesh periods, with its monodromy matrix.
+pub(crate) struct PeriodMap<const D: usize> {
+    pub end: MotionState<D>,
+    /// Derivative of the end by the start, over (active displacements, active velocities).
+    pub monodromy: DMatrix<f64>,
+    /// Largest velocity in scaled time at the start of a step.
     pub size: f64,
-    /// A half has left its flank.
+    /// Whether a half has left its flank.
     pub separated: bool,
-    pub numerics: Numerics,
+    pub counts: StepCounts,
 }
 
-/// Watches how large a motion is and whether it keeps to its flanks.
-struct Extent {
+/// Records the largest velocity and any loss of contact.
+struct AmplitudeMonitor {
     size: f64,
     separated: bool,
     first: Option<[i8; 2]>,
 }
 
-impl<const D: usize> Observer<D> for Extent {
+impl<const D: usize> Observer<D> for AmplitudeMonitor {
     fn segment(&mut self, segment: &Segment<'_, D>) {
         let sides = segment.contact.map(i8::signum);
-        self.separated |= *self.first.get_or_insert(sides) != sides || sides[..Model::<D>::HALVES].contains(&0);
+        self.separated |= *self.first.get_or_insert(sides) != sides || sides[..DynamicModel::<D>::HALVES].contains(&0);
         self.size = self.size.max(norm(&segment.rows[1]));
     }
 }
 
 impl<'m, const D: usize> Shooting<'m, D> {
     pub fn new(
-        model: &'m Model<D>,
+        model: &'m DynamicModel<D>,
         mean_stiffness_n_per_m: [f64; 2],
-        limits: Limits<'m>,
+        limits: IntegrationLimits<'m>,
     ) -> Result<Self, DynamicsError> {
         let active: Vec<usize> = model.active().collect();
         let masses = model.masses_kg();
-        let free = free_motions(model, &active, &masses, mean_stiffness_n_per_m)?;
-        Ok(Self { model, active, masses, free, limits })
+        let rigid_body = rigid_body_modes(model, &active, &masses, mean_stiffness_n_per_m)?;
+        Ok(Self { model, active, masses, rigid_body, limits })
     }
 
-    /// Goes through `periods` mesh periods of the motion of `motion_model` from `start` with the unit deviations of this model
-    /// (another one than the motion's to look against the symmetry).
-    pub fn map(&self, motion_model: &Model<D>, start: State<D>, periods: u64) -> Result<MapResult<D>, DynamicsError> {
-        let Limits { tolerance, max_steps, watch } = self.limits;
-        let mut variation = Variation::new(self.model, Variation::units(self.model), tolerance);
+    /// Integrates the motion of `motion_model` from `start` over `periods` mesh periods, with the unit perturbations of
+    /// this model (that of antisymmetric perturbations, or the motion's own).
+    ///
+    /// # Errors
+    /// [`DynamicsError`].
+    pub fn period_map(
+        &self,
+        motion_model: &DynamicModel<D>,
+        start: MotionState<D>,
+        periods: u64,
+    ) -> Result<PeriodMap<D>, DynamicsError> {
+        let IntegrationLimits { tolerance, max_steps, watch } = self.limits;
+        let mut variation = Variation::new(self.model, Variation::unit_perturbations(self.model), tolerance);
         let mut motion = Motion::new(motion_model, start, Integrator::Taylor, tolerance, max_steps);
-        let mut extent = Extent { size: 0.0, separated: false, first: None };
+        let mut amplitude = AmplitudeMonitor { size: 0.0, separated: false, first: None };
         for _ in 0..periods {
-            motion.advance_period(&mut Both(&mut variation, &mut extent), watch, 0.0)?;
+            motion.advance_period(&mut ObserverPair(&mut variation, &mut amplitude), watch, 0.0)?;
             watch.checkpoint(0.0)?;
         }
         let n = self.active.len();
-        let map = DMatrix::from_fn(2 * n, 2 * n, |r, c| {
+        let monodromy = DMatrix::from_fn(2 * n, 2 * n, |r, c| {
             let (x, v) = &variation.columns[c];
             if r < n { x[self.active[r]] } else { v[self.active[r - n]] }
         });
-        if map.iter().any(|c| !c.is_finite()) {
+        if monodromy.iter().any(|c| !c.is_finite()) {
             return Err(DynamicsError::Diverged { time_s: motion.time_s() });
         }
-        let Extent { size, separated, .. } = extent;
-        Ok(MapResult { end: motion.state, map, size, separated, numerics: motion.numerics })
+        let AmplitudeMonitor { size, separated, .. } = amplitude;
+        Ok(PeriodMap { end: motion.state, monodromy, size, separated, counts: motion.counts })
     }
 
-    /// Along a free motion: nᵀ M q.
+    /// Component along a rigid-body mode: nᵀ M q.
     fn along(&self, n: &[f64; D], q: &[f64; D]) -> f64 {
         (0..D).map(|c| n[c] * self.masses[c] * q[c]).sum()
     }
 
-    /// Projector that takes the free motions out of (active displacements, active velocities).
-    fn held(&self) -> DMatrix<f64> {
+    /// Projector onto the complement of the rigid-body modes, over (active displacements, active velocities).
+    fn rigid_body_projector(&self) -> DMatrix<f64> {
         let n = self.active.len();
         let mut q = DMatrix::identity(2 * n, 2 * n);
-        for free in &self.free {
+        for mode in &self.rigid_body {
             for (r, &cr) in self.active.iter().enumerate() {
                 for (c, &cc) in self.active.iter().enumerate() {
-                    let part = free[cr] * free[cc] * self.masses[cc];
+                    let part = mode[cr] * mode[cc] * self.masses[cc];
                     q[(r, c)] -= part;
                     q[(r + n, c + n)] -= part;
                 }
@@ -116,55 +122,62 @@ impl<'m, const D: usize> Shooting<'m, D> {
         q
     }
 
-    /// What to add to the start so that the motion closes after `periods` mesh periods, to first order. Free motions get
-    /// the velocity with which they close.
-    pub fn correction(&self, defect: &Deviation<D>, map: &DMatrix<f64>, periods: u64) -> Option<Deviation<D>> {
+    /// Newton correction of the start for a motion that is to repeat after `periods` mesh periods; `defect` is end −
+    /// start. Rigid-body modes get the velocity that cancels their drift. None if the linear system is singular.
+    pub fn correction(
+        &self,
+        defect: &Perturbation<D>,
+        monodromy: &DMatrix<f64>,
+        periods: u64,
+    ) -> Option<Perturbation<D>> {
         let n = self.active.len();
-        let held = self.held();
+        let projector = self.rigid_body_projector();
         let r =
             DVector::from_fn(2 * n, |i, _| if i < n { defect.0[self.active[i]] } else { defect.1[self.active[i - n]] });
-        let system = DMatrix::identity(2 * n, 2 * n) - &held * map * &held;
-        let solution = &held * system.lu().solve(&(&held * r))?;
+        let system = DMatrix::identity(2 * n, 2 * n) - &projector * monodromy * &projector;
+        let solution = &projector * system.lu().solve(&(&projector * r))?;
         let (mut x, mut v) = ([0.0; D], [0.0; D]);
         for (i, &c) in self.active.iter().enumerate() {
             x[c] = solution[i];
             v[c] = solution[i + n];
         }
         let time = periods as f64 * self.model.period_tau;
-        for free in &self.free {
-            let speed = -self.along(free, &defect.0) / time;
+        for mode in &self.rigid_body {
+            let speed = -self.along(mode, &defect.0) / time;
             for c in 0..D {
-                v[c] += speed * free[c];
+                v[c] += speed * mode[c];
             }
         }
         x.iter().chain(&v).all(|c| c.is_finite()).then_some((x, v))
     }
 
-    /// Largest mean force along a free motion over a motion of `periods`, N.
-    pub fn unbalanced_n(&self, defect: &Deviation<D>, periods: u64) -> f64 {
+    /// Largest mean force along a rigid-body mode over `periods`, N.
+    pub fn unbalanced_force_n(&self, defect: &Perturbation<D>, periods: u64) -> f64 {
         let omega = self.model.omega_ref;
         let time = periods as f64 * self.model.period_tau;
-        self.free.iter().fold(0.0f64, |worst, free| {
-            let largest = free.iter().fold(0.0f64, |m, c| m.max(c.abs()));
-            worst.max((self.along(free, &defect.1) * omega * omega / time / largest).abs())
+        self.rigid_body.iter().fold(0.0f64, |worst, mode| {
+            let largest = mode.iter().fold(0.0f64, |m, c| m.max(c.abs()));
+            worst.max((self.along(mode, &defect.1) * omega * omega / time / largest).abs())
         })
     }
 
-    /// Floquet multipliers, free motions left out, largest first.
-    pub fn multipliers(&self, map: &DMatrix<f64>) -> Vec<Complex<f64>> {
-        let held = self.held();
-        let Some(schur) = Schur::try_new(&held * map * &held, f64::EPSILON, 10_000) else { return Vec::new() };
+    /// Floquet multipliers, rigid-body modes excluded, largest first.
+    pub fn multipliers(&self, monodromy: &DMatrix<f64>) -> Vec<Complex<f64>> {
+        let projector = self.rigid_body_projector();
+        let Some(schur) = Schur::try_new(&projector * monodromy * &projector, f64::EPSILON, 10_000) else {
+            return Vec::new();
+        };
         let mut all: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
         all.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
-        // What was projected out is the zeros at the end.
-        all.truncate((all.len() - 2 * self.free.len()).max(1));
+        // The eigenvalues of the removed modes are the zeros at the end.
+        all.truncate((all.len() - 2 * self.rigid_body.len()).max(1));
         all
     }
 }
 
-/// Displacements along which no spring acts, from the eigenvectors of M^-½ K M^-½ in solver coordinates.
-pub(super) fn free_motions<const D: usize>(
-    model: &Model<D>,
+/// Rigid-body modes: eigenvectors of M^-½ K M^-½ with eigenvalue zero, in solver coordinates.
+pub(super) fn rigid_body_modes<const D: usize>(
+    model: &DynamicModel<D>,
     active: &[usize],
     masses: &[f64; D],
     mean_stiffness_n_per_m: [f64; 2],
@@ -174,11 +187,11 @@ pub(super) fn free_motions<const D: usize>(
     for (column, &c) in active.iter().enumerate() {
         let mut unit = [0.0; D];
         unit[c] = 1.0;
-        let mut a = model.springs(&unit);
-        for j in 0..Model::<D>::HALVES {
-            let push = model.push(j, mean_stiffness_n_per_m[j] * model.s(j, &unit));
+        let mut a = model.acceleration_of_springs(&unit);
+        for j in 0..DynamicModel::<D>::HALVES {
+            let acceleration = model.acceleration_of_mesh_force(j, mean_stiffness_n_per_m[j] * model.s(j, &unit));
             for i in j * PER_HALF..(j + 1) * PER_HALF {
-                a[i] += push[i];
+                a[i] += acceleration[i];
             }
         }
         for (row, &r) in active.iter().enumerate() {
@@ -194,13 +207,13 @@ pub(super) fn free_motions<const D: usize>(
     })?;
     let largest = eigen.eigenvalues.amax();
     Ok((0..n)
-        .filter(|&i| eigen.eigenvalues[i] <= FREE * largest)
+        .filter(|&i| eigen.eigenvalues[i] <= RIGID_BODY_EIGENVALUE * largest)
         .map(|i| {
-            let mut free = [0.0; D];
+            let mut mode = [0.0; D];
             for (row, &r) in active.iter().enumerate() {
-                free[r] = eigen.eigenvectors[(row, i)] / masses[r].sqrt();
+                mode[r] = eigen.eigenvectors[(row, i)] / masses[r].sqrt();
             }
-            free
+            mode
         })
         .collect())
 }

@@ -1,27 +1,27 @@
-//! Taylor series of high order on the piecewise-linear equations, restarted exactly where they change.
+//! Taylor series of high order for the piecewise analytic equations, restarted at every event.
 //!
-//! Between two events (an edge of a pulse, a knot of the stiffness, a change of contact) the equations are linear with analytic
-//! coefficients, so the Taylor coefficients of the motion follow from a recurrence and the step may be as long as the wanted
-//! accuracy allows. Changes of contact are zeros of the polynomial s(τ) ∓ b and are located to rounding. Step length after Jorba
-//! and Zou (Experimental Mathematics 14 (2005) 99), from the last two coefficients.
+//! Between two events (an edge of a pulse, a knot of the stiffness, a change of contact) the equations are linear with
+//! analytic coefficients, so the Taylor coefficients of the motion follow from a recurrence. Changes of contact are
+//! zeros of the polynomial s(τ) ∓ b and are located to rounding. Step length after À. Jorba and M. Zou, Experimental
+//! Mathematics 14 (2005) 99–117, doi:10.1080/10586458.2005.10128904, from the last two coefficients.
 
-use super::contact_force::{Cells, ContactForce};
+use super::contact_force::{ContactForce, ForceCells};
 use super::crossing::first_crossing;
 use super::equations::{Equations, PER_HALF};
 use super::error::DynamicsError;
 use super::excitation::MAX_ORDER;
-use super::expansion::Excite;
-use super::integrate::Numerics;
-use super::lanes::{Real, rough_root};
-use super::model::{Contact, Model, State};
-use super::recurrence::{Enough, TaylorWork, larger, norm, taylor};
+use super::expansion::ExcitationExpansion;
+use super::integrate::StepCounts;
+use super::lanes::{Real, approximate_root};
+use super::model::{ContactSide, DynamicModel, MotionState};
+use super::recurrence::{EarlyTermination, TaylorWork, larger, norm, taylor_coefficients};
 use super::segment::{Observer, Segment};
 use crate::simd::vectorised;
 
-/// Changes of contact per mesh period beyond which they are no longer located but left to short steps.
-const MOST_CHANGES_PER_PERIOD: u32 = 20_000;
+/// Changes of contact per mesh period beyond which they are no longer located.
+const MAX_CONTACT_CHANGES_PER_PERIOD: u32 = 20_000;
 
-/// The order that costs least at a tolerance (measured on the reference cases).
+/// Order with the lowest cost at a tolerance, measured on the reference cases.
 pub(super) fn order_for(tolerance: f64) -> usize {
     match tolerance {
         t if t >= 1e-6 => 14,
@@ -31,70 +31,71 @@ pub(super) fn order_for(tolerance: f64) -> usize {
     }
 }
 
-/// What a step sets out from and how far it may go.
+/// An interval of the phase in which the excitations are smooth, and the step control within it.
 #[derive(Clone, Copy)]
-pub(super) struct Stretch<R> {
+pub(super) struct SmoothInterval<R> {
     pub phase: R,
-    /// Phase at which the smooth stretch ends, and a phase inside it.
+    /// Phase at which the interval ends, and a phase in its interior.
     pub end: R,
-    pub inside: R,
+    pub interior: R,
     /// One mesh period in scaled time.
     pub period_tau: R,
     /// Local error of a step relative to the size of the motion.
     pub tolerance: R,
-    /// Step to take; not finite: chosen from the coefficients.
+    /// Fixed step in scaled time; not finite: the step follows from the coefficients.
     pub fixed: R,
-    /// 1 where contact may change, 0 where it is held.
+    /// 1 where contact can change, 0 where it is fixed.
     pub switching: R,
 }
 
-/// What a step came to.
+/// Result of a step.
 #[derive(Clone, Copy)]
-pub(super) struct Stepped<R> {
+pub(super) struct StepOutcome<R> {
     /// Length in scaled time. NaN where the motion has diverged; not positive where no step is possible.
     pub h: R,
-    /// 1 where the step ends the stretch.
+    /// 1 where the step reaches the end of the smooth interval.
     pub to_end: R,
-    /// The half whose contact changed (0 or 1) and to what; −1: none.
+    /// Half whose contact changes at the end of the step (0 or 1; −1: none), and its new contact.
     pub changed: R,
     pub contact: R,
     /// Highest power of the polynomials.
     pub degree: usize,
 }
 
-/// Computes the polynomials of a step from `work.rows[0]` and `[1]`, and how far they are followed. `size`: size of the recent
-/// motion, kept from step to step.
+/// Computes the polynomials of a step from `work.rows[0]` and `[1]` and the length over which they are used. `size` is
+/// the size of the recent motion, kept from step to step.
 #[inline(always)]
 pub(super) fn step<const D: usize, R: Real>(
     equations: &Equations<D, R>,
-    excitations: &impl Excite<R>,
+    excitations: &impl ExcitationExpansion<R>,
     order: usize,
-    stretch: Stretch<R>,
+    interval: SmoothInterval<R>,
     contact: [R; 2],
     size: &mut R,
     work: &mut TaylorWork<D, R>,
-) -> Stepped<R> {
-    let Stretch { phase, end, inside, period_tau, tolerance, fixed, switching } = stretch;
-    excitations.excite(phase, inside, contact, order, &mut work.excitation);
+) -> StepOutcome<R> {
+    let SmoothInterval { phase, end, interior, period_tau, tolerance, fixed, switching } = interval;
+    excitations.expand(phase, interior, contact, order, &mut work.excitation);
     let remaining = (end - phase) * period_tau;
     *size = *size * R::splat(0.98);
-    let enough = Enough { remaining, tolerance, size: *size };
+    let early_end = EarlyTermination { remaining, tolerance, size: *size };
     let free = !fixed.any(f64::is_finite);
-    let (short, degree) = taylor(equations, contact, order, R::splat(1.0), free.then_some(enough), work);
+    let (short, degree) =
+        taylor_coefficients(equations, contact, order, R::splat(1.0), free.then_some(early_end), work);
     let moving = larger(norm(&work.rows[1]), norm(&work.rows[2]));
     *size = larger(moving, *size);
     // Below the rounding of the positions no tolerance can be met.
     let allowed = (tolerance * *size).zip(norm(&work.rows[0]), |a, x| a.max(1e-17 * x));
-    let reached = reach(&work.rows, degree, allowed);
-    let wanted = R::from_fn(|l| {
-        let reached = if short.get(l) != 0.0 { f64::INFINITY } else { reached.get(l) };
-        if fixed.get(l).is_finite() { fixed.get(l) } else { reached }
+    let accurate_step = step_of_last_terms(&work.rows, degree, allowed);
+    let desired = R::from_fn(|l| {
+        let accurate_step = if short.get(l) != 0.0 { f64::INFINITY } else { accurate_step.get(l) };
+        if fixed.get(l).is_finite() { fixed.get(l) } else { accurate_step }
     });
-    let mut to_end = R::from_fn(|l| if remaining.get(l) <= wanted.get(l) * (1.0 + 1e-9) { 1.0 } else { 0.0 });
+    let mut to_end = R::from_fn(|l| if remaining.get(l) <= desired.get(l) * (1.0 + 1e-9) { 1.0 } else { 0.0 });
     let mut h = R::from_fn(|l| {
-        let (remaining, wanted) = (remaining.get(l), wanted.get(l));
-        // Two equal steps rather than a long one and a stub.
-        if to_end.get(l) != 0.0 { remaining } else { remaining / (remaining / wanted - 1e-9).ceil() }
+        let (remaining, desired) = (remaining.get(l), desired.get(l));
+        // Two equal steps rather than a long and a very short one.
+        if to_end.get(l) != 0.0 { remaining } else { remaining / (remaining / desired - 1e-9).ceil() }
     });
     let mut changed = R::splat(-1.0);
     let mut to = R::splat(0.0);
@@ -116,15 +117,15 @@ pub(super) fn step<const D: usize, R: Real>(
             }
         }
     }
-    Stepped { h, to_end, changed, contact: to, degree }
+    StepOutcome { h, to_end, changed, contact: to, degree }
 }
 
-/// The first change of contact of a half within `h`: when (infinite: none), and to what.
+/// First change of contact of a half within `h`: its time (infinite: none) and the new contact.
 #[inline(always)]
 fn next_contact<R: Real>(s: &[R], b: R, contact: R, h: R, switching: R) -> (R, R) {
     let mut g = [R::splat(0.0); MAX_ORDER + 1];
     let g = &mut g[..s.len()];
-    // On a flank: side·s − b falls to 0. In the gap: b − s does, or s + b.
+    // On a flank the zero of side·s − b, in the gap the zero of b − s or s + b.
     let first = contact.map(|c| if c == 0.0 { -1.0 } else { c });
     for (g, s) in g.iter_mut().zip(s) {
         *g = first * *s;
@@ -143,9 +144,9 @@ fn next_contact<R: Real>(s: &[R], b: R, contact: R, h: R, switching: R) -> (R, R
     (at, to)
 }
 
-/// The first change of the cell of a half's contact force within `h`: when (infinite: none), and to what.
+/// First change of the cell of a half's contact force within `h`: its time (infinite: none) and the new contact.
 #[inline(always)]
-fn next_cell<R: Real>(s: &[R], cells: &Cells<R>, contact: R, h: R, switching: R) -> (R, R) {
+fn next_cell<R: Real>(s: &[R], cells: &ForceCells<R>, contact: R, h: R, switching: R) -> (R, R) {
     let mut g = [R::splat(0.0); MAX_ORDER + 1];
     let g = &mut g[..s.len()];
     let mut leaves = |side: R, ends: &[R; 4], h: R| {
@@ -157,34 +158,39 @@ fn next_cell<R: Real>(s: &[R], cells: &Cells<R>, contact: R, h: R, switching: R)
         }
         first_crossing(g, h, switching)
     };
-    let near = leaves(cells.side, &cells.near, h);
-    let far = leaves(-cells.side, &cells.far, near.zip(h, f64::min));
-    let to = R::from_fn(|l| f64::from(ContactForce::next(contact.get(l) as Contact, far.get(l) < f64::INFINITY)));
-    (near.zip(far, f64::min), to)
+    let lower = leaves(cells.side, &cells.lower, h);
+    let upper = leaves(-cells.side, &cells.upper, lower.zip(h, f64::min));
+    let to =
+        R::from_fn(|l| f64::from(ContactForce::adjacent(contact.get(l) as ContactSide, upper.get(l) < f64::INFINITY)));
+    (lower.zip(upper, f64::min), to)
 }
 
-/// The step at which the last two terms are as large as `allowed`.
+/// Step at which the larger of the last two terms equals `allowed`.
 #[inline(always)]
-fn reach<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, allowed: R) -> R {
-    let before = term_reach(norm(&rows[order - 1]), order - 1, allowed);
-    before.zip(term_reach(norm(&rows[order]), order, allowed), |a, b| if a < b || a.is_nan() { a } else { b })
+fn step_of_last_terms<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, allowed: R) -> R {
+    let before = step_of_term(norm(&rows[order - 1]), order - 1, allowed);
+    before.zip(step_of_term(norm(&rows[order]), order, allowed), |a, b| if a < b || a.is_nan() { a } else { b })
 }
 
-/// The step at which a term of size `last` and power `k` is as large as `allowed`.
+/// Step at which a term of size `last` and power `k` equals `allowed`.
 #[inline(always)]
-fn term_reach<R: Real>(last: R, k: usize, allowed: R) -> R {
+fn step_of_term<R: Real>(last: R, k: usize, allowed: R) -> R {
     allowed.zip(last, |allowed, last| {
-        let root = rough_root(allowed / last, k as f64);
+        let root = approximate_root(allowed / last, k as f64);
         let root = if last == 0.0 { f64::INFINITY } else { root };
         if last.is_nan() { f64::NAN } else { root }
     })
 }
 
-/// The step that keeps the local error at `tolerance` times the size of the polynomials' own motion.
+/// Step with a local error of `tolerance` times the size of the polynomials' own motion.
 #[inline(always)]
-pub(super) fn step_reach<const D: usize, R: Real>(rows: &[[R; D]; MAX_ORDER + 1], order: usize, tolerance: f64) -> R {
+pub(super) fn step_for_tolerance<const D: usize, R: Real>(
+    rows: &[[R; D]; MAX_ORDER + 1],
+    order: usize,
+    tolerance: f64,
+) -> R {
     let size = larger(norm(&rows[0]), larger(norm(&rows[1]), norm(&rows[2])));
-    reach(rows, order, size * R::splat(tolerance))
+    step_of_last_terms(rows, order, size * R::splat(tolerance))
 }
 
 /// Values and derivatives of all coordinates at τ = t.
@@ -200,22 +206,27 @@ pub(super) fn evaluate_rows<const D: usize, R: Real>(rows: &[[R; D]], t: R) -> (
     (x, v)
 }
 
-/// Counts the changes of contact of a motion, and goes on when there are too many.
+/// Limits the number of located changes of contact per mesh period (chatter, Zeno behaviour).
 #[derive(Clone, Copy, Default)]
-pub(super) struct Rattling {
+pub(super) struct ChatterGuard {
     period: u64,
     changes: u32,
 }
 
-impl Rattling {
-    /// To be told of each change. Rattling faster than can be followed goes on by a short free step and takes the contact it
-    /// finds; returns whether it did.
-    pub fn changed<const D: usize>(&mut self, model: &Model<D>, state: &mut State<D>, end: f64) -> bool {
+impl ChatterGuard {
+    /// Counts a change of contact. Beyond the limit it takes a short step without event location, sets the contact from
+    /// the new displacement and returns true.
+    pub fn contact_changed<const D: usize>(
+        &mut self,
+        model: &DynamicModel<D>,
+        state: &mut MotionState<D>,
+        end: f64,
+    ) -> bool {
         if self.period != state.period {
             *self = Self { period: state.period, changes: 0 };
         }
         self.changes += 1;
-        if self.changes <= MOST_CHANGES_PER_PERIOD {
+        if self.changes <= MAX_CONTACT_CHANGES_PER_PERIOD {
             return false;
         }
         let step = (end - state.phase).min(1e-4);
@@ -226,17 +237,17 @@ impl Rattling {
             state.x[c] += h * state.v[c];
         }
         state.phase += step;
-        for j in 0..Model::<D>::HALVES {
+        for j in 0..DynamicModel::<D>::HALVES {
             state.contact[j] = model.contact_of(j, model.s(j, &state.x), state.phase);
         }
         true
     }
 }
 
-/// Why a step of length `h` cannot be taken, if it cannot. `advances`: it changes the phase or the contact.
+/// Error of a step of length `h`, if it cannot be taken. `advances`: the step changes the phase or the contact.
 #[inline(always)]
-pub(super) fn refused<const D: usize>(
-    model: &Model<D>,
+pub(super) fn step_error<const D: usize>(
+    model: &DynamicModel<D>,
     period: u64,
     phase: f64,
     h: f64,
@@ -253,16 +264,16 @@ pub(super) fn refused<const D: usize>(
     })
 }
 
-/// The method for one motion.
+/// Taylor method for one motion.
 pub(super) struct Taylor<const D: usize> {
     order: usize,
     tolerance: f64,
-    /// Not finite: step chosen from the coefficients; else fixed step in scaled time (for measuring the order).
+    /// Not finite: the step follows from the coefficients; else a fixed step in scaled time, to measure the order.
     fixed: f64,
     work: Box<TaylorWork<D, f64>>,
     /// Size of the recent motion: scaled velocity and acceleration, as lengths.
     size: f64,
-    rattling: Rattling,
+    chatter: ChatterGuard,
 }
 
 impl<const D: usize> Taylor<D> {
@@ -274,43 +285,43 @@ impl<const D: usize> Taylor<D> {
             fixed: fixed.unwrap_or(f64::INFINITY),
             work: TaylorWork::new(),
             size: 0.0,
-            rattling: Rattling::default(),
+            chatter: ChatterGuard::default(),
         }
     }
 
-    /// Advances by one step, at most to the phase `end`; `inside` is a phase in the smooth stretch.
+    /// Advances by one step, at most to the phase `end`; `interior` is a phase inside the smooth interval.
     pub fn step(
         &mut self,
-        model: &Model<D>,
-        state: &mut State<D>,
+        model: &DynamicModel<D>,
+        state: &mut MotionState<D>,
         end: f64,
-        inside: f64,
-        numerics: &mut Numerics,
+        interior: f64,
+        counts: &mut StepCounts,
         observer: &mut impl Observer<D>,
     ) -> Result<(), DynamicsError> {
         self.work.rows[0] = state.x;
         self.work.rows[1] = state.v;
-        let stretch = Stretch {
+        let interval = SmoothInterval {
             phase: state.phase,
             end,
-            inside,
+            interior,
             period_tau: model.period_tau,
             tolerance: self.tolerance,
             fixed: self.fixed,
-            switching: if model.switches() { 1.0 } else { 0.0 },
+            switching: if model.contact_can_change() { 1.0 } else { 0.0 },
         };
         let contact = state.contact.map(f64::from);
         let Self { order, work, size, .. } = self;
         let stepped = vectorised(
             #[inline(always)]
-            || step(model, model, *order, stretch, contact, size, work),
+            || step(model, model, *order, interval, contact, size, work),
         );
-        numerics.steps += 1;
-        numerics.force_evaluations += (stepped.degree - 1) as u64;
+        counts.steps += 1;
+        counts.force_evaluations += (stepped.degree - 1) as u64;
         let h = stepped.h;
         let phase = if stepped.to_end != 0.0 { end } else { (state.phase + h / model.period_tau).min(end) };
         let advances = phase > state.phase || stepped.changed >= 0.0;
-        if let Some(error) = refused(model, state.period, state.phase, h, advances) {
+        if let Some(error) = step_error(model, state.period, state.phase, h, advances) {
             return Err(error);
         }
         observer.segment(&Segment {
@@ -326,8 +337,8 @@ impl<const D: usize> Taylor<D> {
         (state.x, state.v) = evaluate_rows(&self.work.rows[..=stepped.degree], h);
         state.phase = phase;
         if stepped.changed >= 0.0 {
-            state.contact[stepped.changed as usize] = stepped.contact as Contact;
-            self.rattling.changed(model, state, end);
+            state.contact[stepped.changed as usize] = stepped.contact as ContactSide;
+            self.chatter.contact_changed(model, state, end);
         }
         Ok(())
     }

@@ -1,28 +1,31 @@
-//! A motion from a start through a number of mesh periods, without statistics or series: what work is measured on.
+//! Trajectories from an initial state through a number of mesh periods, without statistics or time series.
 
 use rayon::prelude::*;
 
-use super::convoy::{Passenger, carry, carry_one};
 use super::error::DynamicsError;
-use super::integrate::{Integrator, Numerics};
-use super::model::{Model, State};
+use super::integrate::{Integrator, StepCounts};
+use super::lane_batch::{POINTS_PER_TASK, TrajectoryObserver, integrate_trajectories, integrate_trajectory};
+use super::model::{DynamicModel, MotionState};
 use super::parameters::Parameters;
 use super::segment::Segment;
 use crate::watch::{Canceled, Watch};
 
-/// Where a motion has got to.
+/// End of a trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reached {
-    /// 12 displacements in the source's order (m, rad), then 12 velocities (m/s, rad/s).
+pub struct FinalState {
+    /// 12 displacements in the order of [the module](crate::dynamics) (m, rad), then 12 velocities (m/s, rad/s).
     pub state: [f64; 24],
-    pub numerics: Numerics,
+    /// Steps and force evaluations of the trajectory.
+    pub counts: StepCounts,
 }
 
-/// Follows the motion from `start` (12 displacements, then 12 velocities, in the source's order, SI) through `mesh_periods`. `tolerance`:
-/// local error of a step relative to the size of the motion. Mirrored motions of equal halves are solved in six coordinates.
+/// Integrates the equations of motion of `p` from `start` (12 displacements in m and rad, then 12 velocities in m/s and
+/// rad/s, in the order of [the module](crate::dynamics)) through `mesh_periods`. `tolerance` is the local error of a
+/// step relative to the size of the motion. Equal halves with a mirror-symmetric start are integrated in six
+/// coordinates.
 ///
 /// # Errors
-/// [`DynamicsError`] for parameters the equations cannot use and motions that cannot be followed.
+/// [`DynamicsError`] for invalid parameters, for a motion that diverges and for steps below the resolution of time.
 pub fn advance(
     p: &Parameters,
     start: &[f64; 24],
@@ -30,20 +33,20 @@ pub fn advance(
     integrator: Integrator,
     tolerance: f64,
     watch: &Watch<'_>,
-) -> Result<Reached, DynamicsError> {
+) -> Result<FinalState, DynamicsError> {
     fn run<const D: usize>(
         p: &Parameters,
         start: &[f64; 24],
         mesh_periods: u64,
         (integrator, tolerance): (Integrator, f64),
         watch: &Watch<'_>,
-    ) -> Result<Reached, DynamicsError> {
-        let model = Model::<D>::new(p)?;
-        let mut traveller = Traveller::new(&model, start, mesh_periods, tolerance);
+    ) -> Result<FinalState, DynamicsError> {
+        let model = DynamicModel::<D>::new(p)?;
+        let mut observer = FinalStateObserver::new(&model, start, mesh_periods, tolerance);
         if mesh_periods > 0 {
-            carry_one(&mut traveller, integrator, u64::MAX, watch)?;
+            integrate_trajectory(&mut observer, integrator, u64::MAX, watch)?;
         }
-        traveller.reached
+        observer.outcome
     }
     if p.is_symmetric() && is_mirrored(start) {
         run::<6>(p, start, mesh_periods, (integrator, tolerance), watch)
@@ -52,87 +55,85 @@ pub fn advance(
     }
 }
 
-/// Follows several motions as [`advance`] does by Taylor series, eight side by side in vector instructions and on all threads of the
-/// pool. `starts`: one state per point. The results are those of [`advance`] to the last bit.
+/// Integrates several trajectories by Taylor series as [`advance`] does, eight per thread in vector lanes and on all
+/// threads of the pool. `starts` holds one state per entry of `points`. The results are bit-identical to those of
+/// [`advance`].
 ///
 /// # Errors
-/// Per point as [`advance`]; cancellation for all.
+/// [`Canceled`] for all; [`DynamicsError`] per point as [`advance`].
 pub fn advance_many(
     points: &[Parameters],
     starts: &[[f64; 24]],
     mesh_periods: u64,
     tolerance: f64,
     watch: &Watch<'_>,
-) -> Result<Vec<Result<Reached, DynamicsError>>, Canceled> {
-    let asked: Vec<_> = points.iter().zip(starts).collect();
-    let groups: Result<Vec<_>, Canceled> = asked
-        .par_chunks(POINTS_PER_GROUP)
+) -> Result<Vec<Result<FinalState, DynamicsError>>, Canceled> {
+    let pairs: Vec<_> = points.iter().zip(starts).collect();
+    let groups: Result<Vec<_>, Canceled> = pairs
+        .par_chunks(POINTS_PER_TASK)
         .map(|group| {
             let mut out = vec![Err(DynamicsError::Canceled(Canceled)); group.len()];
             let mirrored = |(p, start): &(&Parameters, &[f64; 24])| p.is_symmetric() && is_mirrored(start);
             let (halves, whole): (Vec<usize>, Vec<usize>) = (0..group.len()).partition(|&i| mirrored(&group[i]));
-            travel::<6>(group, &halves, mesh_periods, tolerance, watch, &mut out)?;
-            travel::<12>(group, &whole, mesh_periods, tolerance, watch, &mut out)?;
+            advance_group::<6>(group, &halves, mesh_periods, tolerance, watch, &mut out)?;
+            advance_group::<12>(group, &whole, mesh_periods, tolerance, watch, &mut out)?;
             Ok(out)
         })
         .collect();
     Ok(groups?.into_iter().flatten().collect())
 }
 
-/// Points that one thread takes at a time.
-const POINTS_PER_GROUP: usize = 32;
-
-/// A motion that only wants to get there.
-struct Traveller<'m, const D: usize> {
-    model: &'m Model<D>,
-    state: State<D>,
+/// Observer that keeps only the final state.
+struct FinalStateObserver<'m, const D: usize> {
+    model: &'m DynamicModel<D>,
+    state: MotionState<D>,
     mesh_periods: u64,
     tolerance: f64,
-    reached: Result<Reached, DynamicsError>,
+    outcome: Result<FinalState, DynamicsError>,
 }
 
-impl<'m, const D: usize> Traveller<'m, D> {
-    fn new(model: &'m Model<D>, start: &[f64; 24], mesh_periods: u64, tolerance: f64) -> Self {
-        let reached = Ok(Reached { state: *start, numerics: Numerics::default() });
-        Self { model, state: model.state_from(start), mesh_periods, tolerance, reached }
+impl<'m, const D: usize> FinalStateObserver<'m, D> {
+    fn new(model: &'m DynamicModel<D>, start: &[f64; 24], mesh_periods: u64, tolerance: f64) -> Self {
+        let outcome = Ok(FinalState { state: *start, counts: StepCounts::default() });
+        Self { model, state: model.state_from(start), mesh_periods, tolerance, outcome }
     }
 }
 
-fn travel<const D: usize>(
+fn advance_group<const D: usize>(
     points: &[(&Parameters, &[f64; 24])],
     indices: &[usize],
     mesh_periods: u64,
     tolerance: f64,
     watch: &Watch<'_>,
-    out: &mut [Result<Reached, DynamicsError>],
+    out: &mut [Result<FinalState, DynamicsError>],
 ) -> Result<(), Canceled> {
-    let models: Vec<_> = indices.iter().map(|&i| Model::<D>::new(points[i].0)).collect();
-    let mut travellers = Vec::with_capacity(indices.len());
-    let mut places = Vec::with_capacity(indices.len());
+    let models: Vec<_> = indices.iter().map(|&i| DynamicModel::<D>::new(points[i].0)).collect();
+    let mut observers = Vec::with_capacity(indices.len());
+    let mut positions = Vec::with_capacity(indices.len());
     for (&index, model) in indices.iter().zip(&models) {
         match model {
             Ok(model) => {
-                travellers.push(Traveller::new(model, points[index].1, mesh_periods, tolerance));
-                places.push(index);
+                observers.push(FinalStateObserver::new(model, points[index].1, mesh_periods, tolerance));
+                positions.push(index);
             }
             Err(error) => out[index] = Err(error.clone()),
         }
     }
     if mesh_periods > 0 {
-        carry(&mut travellers, tolerance, u64::MAX, watch)?;
+        integrate_trajectories(&mut observers, tolerance, u64::MAX, watch)?;
     }
-    for (index, traveller) in places.into_iter().zip(travellers) {
-        out[index] = traveller.reached;
+    for (index, observer) in positions.into_iter().zip(observers) {
+        out[index] = observer.outcome;
     }
     Ok(())
 }
 
-impl<'m, const D: usize> Passenger<'m, D> for Traveller<'m, D> {
-    fn model(&self) -> &'m Model<D> {
+impl<'m, const D: usize> TrajectoryObserver<'m, D> for FinalStateObserver<'m, D> {
+    fn model(&self) -> &'m DynamicModel<D> {
         self.model
     }
 
-    fn start(&self) -> State<D> {
+    fn start(&self) -> MotionState<D> {
         self.state
     }
 
@@ -144,24 +145,24 @@ impl<'m, const D: usize> Passenger<'m, D> for Traveller<'m, D> {
         self.state.period as f64 / self.mesh_periods as f64
     }
 
-    fn looks(&self) -> bool {
+    fn wants_segments(&self) -> bool {
         false
     }
 
     fn segment(&mut self, _: &Segment<'_, D>) {}
 
-    fn period_ended(&mut self, state: &State<D>) -> bool {
+    fn finish_period(&mut self, state: &MotionState<D>) -> bool {
         self.state = *state;
         state.period < self.mesh_periods
     }
 
-    fn ended(&mut self, numerics: Numerics, error: Option<DynamicsError>) {
-        let reached = Reached { state: self.model.source_state(&self.state), numerics };
-        self.reached = error.map_or(Ok(reached), Err);
+    fn finished(&mut self, counts: StepCounts, error: Option<DynamicsError>) {
+        let reached = FinalState { state: self.model.physical_state(&self.state), counts };
+        self.outcome = error.map_or(Ok(reached), Err);
     }
 }
 
-/// z of one half the opposite of the other's, the rest equal, displacements and velocities.
+/// Whether z of one half is the opposite of the other's and all else is equal, for displacements and velocities.
 pub(crate) fn is_mirrored(state: &[f64; 24]) -> bool {
     [0, 12].iter().all(|&at| {
         (0..6).all(|c| {

@@ -1,60 +1,62 @@
-//! Small deviations from a motion: the linear map over mesh periods, and how fast they grow.
+//! Variational equations: small perturbations of a motion over mesh periods.
 
 use super::equations::Equations;
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
 use super::lanes::{Lanes, Real};
-use super::model::{Contact, Model, State};
-use super::recurrence::{TaylorWork, taylor};
+use super::model::{ContactSide, DynamicModel, MotionState};
+use super::recurrence::{TaylorWork, taylor_coefficients};
 use super::segment::{Observer, Segment};
-use super::taylor::{evaluate_rows, step_reach};
+use super::taylor::{evaluate_rows, step_for_tolerance};
 use crate::simd::vectorised;
 
-/// Deviations carried side by side.
-const COLUMNS: usize = 12;
+/// Perturbations integrated side by side.
+const PERTURBATION_LANES: usize = 12;
 
-/// What has died away as far as this is nothing: below the normal range of numbers it would have no digits left to choose a step by, and
-/// the steps would shrink for ever.
-const GONE: f64 = 1e-200;
+/// Magnitude below which a component of a perturbation is set to zero. In the subnormal range it would have too few
+/// digits to choose a step by, and steps would become ever shorter.
+const NEGLIGIBLE: f64 = 1e-200;
 
-/// A deviation: displacements and scaled velocities.
-pub(crate) type Deviation<const D: usize> = ([f64; D], [f64; D]);
+/// A perturbation: displacements, and velocities in scaled time.
+pub(crate) type Perturbation<const D: usize> = ([f64; D], [f64; D]);
 
-/// Carries deviations along a motion, as the observer of that motion. `model` holds the equations the deviations obey:
-/// the motion's own, or those against its mirror symmetry.
+/// Integrates the variational equations along a motion, as the observer of that motion. `model` holds the equations of
+/// the perturbations: the motion's own, or those of antisymmetric perturbations ([`DynamicModel::antisymmetric`]).
 ///
-/// With damping in the gap the mesh force is continuous in the state, so deviations pass a change of contact unchanged; without,
-/// the force jumps by c_m ds/dt and the deviation of the velocity by (a₊ − a₋) δs/(ds/dt).
+/// With damping in the gap the mesh force is continuous in the state, so a perturbation passes a change of contact
+/// unchanged. Without it the force jumps by c_m ds/dt and the velocity of the perturbation by the saltation term (a₊ −
+/// a₋) δs/(ds/dt) (R. I. Leine, H. Nijmeijer: Dynamics and Bifurcations of Non-Smooth Mechanical Systems, Springer
+/// 2004, doi:10.1007/978-3-540-44398-8).
 pub(crate) struct Variation<'m, const D: usize> {
-    model: &'m Model<D>,
-    pub columns: Vec<Deviation<D>>,
+    model: &'m DynamicModel<D>,
+    pub columns: Vec<Perturbation<D>>,
     tolerance: f64,
-    last_contact: Option<[Contact; 2]>,
-    /// Taken out while in use.
-    memory: Option<Box<Memory<D>>>,
+    last_contact: Option<[ContactSide; 2]>,
+    /// `None` only during [`Observer::segment`].
+    workspace: Option<Box<Workspace<D>>>,
 }
 
-/// Working memory for one deviation and for several.
-struct Memory<const D: usize> {
+/// Working memory for one perturbation and for several.
+struct Workspace<const D: usize> {
     one: Box<TaylorWork<D, f64>>,
-    several: Box<TaylorWork<D, Lanes<COLUMNS>>>,
-    equations: Equations<D, Lanes<COLUMNS>>,
+    several: Box<TaylorWork<D, Lanes<PERTURBATION_LANES>>>,
+    equations: Equations<D, Lanes<PERTURBATION_LANES>>,
     terms: ExcitationTerms<f64>,
 }
 
 impl<'m, const D: usize> Variation<'m, D> {
-    pub fn new(model: &'m Model<D>, columns: Vec<Deviation<D>>, tolerance: f64) -> Self {
-        let memory = Memory {
+    pub fn new(model: &'m DynamicModel<D>, columns: Vec<Perturbation<D>>, tolerance: f64) -> Self {
+        let workspace = Workspace {
             one: TaylorWork::new(),
             several: TaylorWork::new(),
-            equations: model.in_all_lanes(),
+            equations: model.broadcast(),
             terms: ExcitationTerms::new(),
         };
-        Self { model, columns, tolerance, last_contact: None, memory: Some(Box::new(memory)) }
+        Self { model, columns, tolerance, last_contact: None, workspace: Some(Box::new(workspace)) }
     }
 
-    /// One unit deviation per active displacement, then one per active velocity.
-    pub fn units(model: &Model<D>) -> Vec<Deviation<D>> {
+    /// The unit perturbations: one per active displacement, then one per active velocity.
+    pub fn unit_perturbations(model: &DynamicModel<D>) -> Vec<Perturbation<D>> {
         let unit = |c: usize| {
             let mut row = [0.0; D];
             row[c] = 1.0;
@@ -65,36 +67,36 @@ impl<'m, const D: usize> Variation<'m, D> {
         places.chain(speeds).collect()
     }
 
-    fn jump(&mut self, segment: &Segment<'_, D>, before: [Contact; 2]) {
-        for j in 0..Model::<D>::HALVES {
+    fn apply_saltation(&mut self, segment: &Segment<'_, D>, before: [ContactSide; 2]) {
+        for j in 0..DynamicModel::<D>::HALVES {
             let (was, is) = (before[j], segment.contact[j]);
             let speed = self.model.s(j, &segment.rows[1]);
             let h = &self.model.halves[j];
-            // Passing from one level of a contact force to the next changes nothing.
+            // A change from one level of a contact force to the next leaves the force continuous.
             if (was == 0) == (is == 0) || speed == 0.0 || h.cm == h.cm_in_gap {
                 continue;
             }
             let damper = (h.cm - h.cm_in_gap) * speed;
             let change = f64::from(i8::from(is != 0) - i8::from(was != 0)) * damper;
-            let push = self.model.push(j, change);
-            // How fast s passes the place where contact begins, which may move itself.
+            let acceleration = self.model.acceleration_of_mesh_force(j, change);
+            // Velocity of s relative to the displacement at which contact begins, which may depend on time.
             let side = if is != 0 { is.signum() } else { was.signum() };
-            let passing = speed - f64::from(side) * self.model.contact_begins_rate(j, side, segment.phase);
-            if passing == 0.0 {
+            let crossing_speed = speed - f64::from(side) * self.model.contact_onset_rate(j, side, segment.phase);
+            if crossing_speed == 0.0 {
                 continue;
             }
             for (x, v) in &mut self.columns {
-                let later = self.model.s(j, x) / passing;
+                let delay = self.model.s(j, x) / crossing_speed;
                 for c in 0..D {
-                    v[c] += push[c] * later;
+                    v[c] += acceleration[c] * delay;
                 }
             }
         }
     }
 
-    /// Carries the columns from `first` on, one per lane, over a segment.
+    /// Integrates the columns from `first` on, one per lane, over a segment.
     #[inline(always)]
-    fn carry<R: Real>(
+    fn propagate<R: Real>(
         &mut self,
         segment: &Segment<'_, D>,
         first: usize,
@@ -105,23 +107,23 @@ impl<'m, const D: usize> Variation<'m, D> {
         let count = (self.columns.len() - first).min(R::LANES);
         // Lanes without a column of their own repeat the last one.
         let column = |lane: usize| first + lane.min(count - 1);
-        let alive = |c: f64| if c.abs() < GONE { 0.0 } else { c };
-        let mut x: [R; D] = std::array::from_fn(|c| R::from_fn(|l| alive(self.columns[column(l)].0[c])));
-        let mut v: [R; D] = std::array::from_fn(|c| R::from_fn(|l| alive(self.columns[column(l)].1[c])));
+        let flushed = |c: f64| if c.abs() < NEGLIGIBLE { 0.0 } else { c };
+        let mut x: [R; D] = std::array::from_fn(|c| R::from_fn(|l| flushed(self.columns[column(l)].0[c])));
+        let mut v: [R; D] = std::array::from_fn(|c| R::from_fn(|l| flushed(self.columns[column(l)].1[c])));
         let order = segment.degree.clamp(12, MAX_ORDER);
         let period_tau = self.model.period_tau;
-        let inside = segment.phase + 0.5 * segment.h / period_tau;
+        let interior = segment.phase + 0.5 * segment.h / period_tau;
         let contact = segment.contact.map(|c| R::splat(f64::from(c.signum())));
         let mut at = 0.0;
         loop {
-            self.model.excite_variation(segment, at, inside, order, terms);
-            work.excitation.spread(terms, order);
+            self.model.expand_for_perturbations(segment, at, interior, order, terms);
+            work.excitation.broadcast(terms, order);
             (work.rows[0], work.rows[1]) = (x, v);
-            taylor(equations, contact, order, R::splat(0.0), None, work);
+            taylor_coefficients(equations, contact, order, R::splat(0.0), None, work);
             let left = segment.h - at;
-            let reaches: R = step_reach(&work.rows, order, self.tolerance);
+            let reaches: R = step_for_tolerance(&work.rows, order, self.tolerance);
             let reach = (0..R::LANES).fold(f64::INFINITY, |least, lane| least.min(reaches.get(lane)));
-            // A NaN reach takes the whole step: the motion itself has diverged and says so.
+            // A NaN step takes the whole segment: the motion itself has diverged and reports it.
             let h = if reach < left { left / (left / reach).ceil().min(1e4) } else { left };
             (x, v) = evaluate_rows(&work.rows[..=order], R::splat(h));
             if h >= left {
@@ -140,11 +142,11 @@ impl<const D: usize> Observer<D> for Variation<'_, D> {
         if let Some(before) = self.last_contact
             && before != segment.contact
         {
-            self.jump(segment, before);
+            self.apply_saltation(segment, before);
         }
         self.last_contact = Some(segment.contact);
-        let Some(mut memory) = self.memory.take() else { return };
-        let Memory { one, several, equations, terms } = &mut *memory;
+        let Some(mut workspace) = self.workspace.take() else { return };
+        let Workspace { one, several, equations, terms } = &mut *workspace;
         vectorised(
             #[inline(always)]
             || {
@@ -152,30 +154,30 @@ impl<const D: usize> Observer<D> for Variation<'_, D> {
                 while first < self.columns.len() {
                     if self.columns.len() - first == 1 {
                         let alone: &Equations<D, f64> = self.model;
-                        self.carry::<f64>(segment, first, alone, terms, one);
+                        self.propagate::<f64>(segment, first, alone, terms, one);
                         first += 1;
                     } else {
-                        self.carry::<Lanes<COLUMNS>>(segment, first, equations, terms, several);
-                        first += COLUMNS;
+                        self.propagate::<Lanes<PERTURBATION_LANES>>(segment, first, equations, terms, several);
+                        first += PERTURBATION_LANES;
                     }
                 }
             },
         );
-        self.memory = Some(memory);
+        self.workspace = Some(workspace);
     }
 }
 
-/// Looks through two observers at once.
-pub(crate) struct Both<'a, A, B>(pub &'a mut A, pub &'a mut B);
+/// Passes segments to two observers.
+pub(crate) struct ObserverPair<'a, A, B>(pub &'a mut A, pub &'a mut B);
 
-impl<const D: usize, A: Observer<D>, B: Observer<D>> Observer<D> for Both<'_, A, B> {
+impl<const D: usize, A: Observer<D>, B: Observer<D>> Observer<D> for ObserverPair<'_, A, B> {
     fn segment(&mut self, segment: &Segment<'_, D>) {
         self.0.segment(segment);
         self.1.segment(segment);
     }
 }
 
-/// Deviation of one state from another.
-pub(crate) fn difference<const D: usize>(a: &State<D>, b: &State<D>) -> Deviation<D> {
+/// Difference of two states, `a` − `b`.
+pub(crate) fn state_difference<const D: usize>(a: &MotionState<D>, b: &MotionState<D>) -> Perturbation<D> {
     (std::array::from_fn(|c| a.x[c] - b.x[c]), std::array::from_fn(|c| a.v[c] - b.v[c]))
 }

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::loads::{Grid, hat_lengths};
-use super::quadrature::{gauss, gauss_on};
 use super::surface::Involute;
+use crate::numerics::gauss::{gauss_legendre, on_interval};
 use crate::watch::{Canceled, Watch};
 
 /// Two cells along the face at a given distance.
@@ -60,7 +60,7 @@ fn strips(stations: &[f64], twist_per_m: f64) -> Vec<Strip> {
     let rounded = |value: f64| (value / unit).round() as i64;
     let mut found: BTreeMap<(i64, i64, i64), Strip> = BTreeMap::new();
     let longest = stations.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
-    let rule = gauss(5);
+    let rule = gauss_legendre(5);
     for p in 0..count {
         for q in 0..count {
             let lengths = (stations[p + 1] - stations[p], stations[q + 1] - stations[q]);
@@ -72,7 +72,7 @@ fn strips(stations: &[f64], twist_per_m: f64) -> Vec<Strip> {
                     let mut strip = Strip { lengths, shift, cells: Vec::new(), far: Vec::new(), near };
                     let mut far = Vec::new();
                     for (a, b) in strip.pieces() {
-                        for (t, weight) in gauss_on(&rule, a, b) {
+                        for (t, weight) in on_interval(&rule, a, b) {
                             let (sin, cos) = (twist_per_m * (shift + t)).sin_cos();
                             far.push((shift + t, correlation(lengths, t).map(|c| c * weight), sin, cos));
                         }
@@ -135,11 +135,11 @@ pub(super) fn half_space(
     progress: (f64, f64),
 ) -> Result<Vec<f64>, Canceled> {
     let strips = strips(&grid.stations_m, twist_per_m);
-    let near_rule = gauss(NEAR_POINTS);
+    let near_rule = gauss_legendre(NEAR_POINTS);
     let profile = &grid.profile_m;
     let rows = profile.len();
-    let (inner, outer) = (gauss(6), gauss(8));
-    let plain = gauss(4);
+    let (inner, outer) = (gauss_legendre(6), gauss_legendre(8));
+    let plain = gauss_legendre(4);
     let stations = grid.stations_m.len();
     let size = grid.len();
     let pairs: Vec<(usize, usize)> = (0..rows - 1).flat_map(|i| (i..rows - 1).map(move |j| (i, j))).collect();
@@ -151,22 +151,22 @@ pub(super) fn half_space(
             let (b0, b1) = (profile[j], profile[j + 1]);
             let mut points: Vec<(f64, f64, f64)> = Vec::new();
             if i == j {
-                for (s, ws) in gauss_on(&outer, a0, a1) {
-                    for (v, wv) in gauss_on(&inner, 0.0, 1.0) {
+                for (s, ws) in on_interval(&outer, a0, a1) {
+                    for (v, wv) in on_interval(&inner, 0.0, 1.0) {
                         points.push((s, s - (s - a0) * v * v, ws * wv * 2.0 * v * (s - a0)));
                         points.push((s, s + (a1 - s) * v * v, ws * wv * 2.0 * v * (a1 - s)));
                     }
                 }
             } else if j == i + 1 {
-                for (u, wu) in gauss_on(&inner, 0.0, 1.0) {
-                    for (v, wv) in gauss_on(&inner, 0.0, 1.0) {
+                for (u, wu) in on_interval(&inner, 0.0, 1.0) {
+                    for (v, wv) in on_interval(&inner, 0.0, 1.0) {
                         let (la, lb) = (a1 - a0, b1 - b0);
                         points.push((a1 - la * u * u, b0 + lb * v * v, wu * wv * 4.0 * u * v * la * lb));
                     }
                 }
             } else {
-                for (s, ws) in gauss_on(&plain, a0, a1) {
-                    for (t, wt) in gauss_on(&plain, b0, b1) {
+                for (s, ws) in on_interval(&plain, a0, a1) {
+                    for (t, wt) in on_interval(&plain, b0, b1) {
                         points.push((s, t, ws * wt));
                     }
                 }
@@ -242,7 +242,7 @@ impl Strip {
                     continue;
                 }
                 let (ta, tb) = (((a - w0) / scale).asinh(), ((b - w0) / scale).asinh());
-                for (t, weight) in gauss_on(near_rule, ta, tb) {
+                for (t, weight) in on_interval(near_rule, ta, tb) {
                     let grown = t.exp();
                     let w = w0 + 0.5 * scale * (grown - 1.0 / grown);
                     let (sin, cos) = (distance.twist_per_m * w).sin_cos();

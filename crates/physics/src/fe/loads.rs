@@ -1,9 +1,9 @@
 //! Unit forces spread as hats over the loaded flank, and the same hats as weights of the displacement.
 
 use super::operator::Operator;
-use super::quadrature::{gauss, gauss_on};
 use super::section::{Section, edge_shapes};
 use super::surface::Involute;
+use crate::numerics::gauss::{gauss_legendre, on_interval};
 
 /// The load grid: hats bilinear in the arc length of the involute and in the axial place.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +39,7 @@ impl Loads {
         let lengths = hat_lengths(&grid.profile_m);
         let widths = hat_lengths(&grid.stations_m);
         let mut at_node = vec![Vec::new(); section.nodes.len()];
-        let rule = gauss(5);
+        let rule = gauss_legendre(5);
         // The flank is a helicoid: normal to it is the transverse normal with an axial part of r_b times the twist.
         let axial = twist_per_m * involute.base_radius_m;
         let scale = 1.0 / axial.hypot(1.0);
@@ -53,7 +53,7 @@ impl Loads {
                     if high - low <= 1e-9 * involute.length_m {
                         continue;
                     }
-                    for (s, weight) in gauss_on(&rule, low, high) {
+                    for (s, weight) in on_interval(&rule, low, high) {
                         let value = 1.0 - (s - at).abs() / (to - from);
                         let n = edge_shapes(2.0 * (s - edge.from_m) / (edge.to_m - edge.from_m) - 1.0);
                         let (_, normal) = involute.at(s);

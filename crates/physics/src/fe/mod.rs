@@ -17,7 +17,6 @@ mod half_space;
 mod input;
 mod loads;
 mod operator;
-mod quadrature;
 mod section;
 mod sector;
 mod sizes;

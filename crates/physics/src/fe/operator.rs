@@ -8,9 +8,9 @@
 
 use std::collections::BTreeMap;
 
-use super::quadrature::gauss;
 use super::section::{Border, Section, shapes};
 use super::spline::{Products, SplineSpace};
+use crate::numerics::gauss::gauss_legendre;
 
 /// Section integrals between two nodes, `[A00, A01, A10, A11]`, row-major.
 type Coupling = [[f64; 9]; 4];
@@ -137,7 +137,7 @@ fn couplings(body: &Body) -> Vec<Vec<(u32, Coupling)>> {
     let shear = e / (2.0 * (1.0 + nu));
     // Angles grow from y to x, against the sense of e_z.
     let tau = -body.twist_per_m;
-    let rule = gauss(RULE);
+    let rule = gauss_legendre(RULE);
     let mut rows: Vec<BTreeMap<u32, Coupling>> = vec![BTreeMap::new(); section.nodes.len()];
     for element in &section.elements {
         let frames = element.map(|node| {

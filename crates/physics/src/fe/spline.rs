@@ -1,6 +1,6 @@
 //! Functions along the face: cubic B-splines on graded cells (de Boor, A Practical Guide to Splines).
 
-use super::quadrature::{gauss, gauss_on};
+use crate::numerics::gauss::{gauss_legendre, on_interval};
 
 /// Order (degree + 1) of the splines.
 const ORDER: usize = 4;
@@ -102,9 +102,9 @@ impl SplineSpace {
     /// Integrals of every function against every piecewise linear hat between `stations`.
     pub fn hat_integrals(&self, stations: &[f64]) -> Vec<Vec<(usize, f64)>> {
         let mut table = vec![vec![0.0; stations.len()]; self.len()];
-        let rule = gauss(4);
+        let rule = gauss_legendre(4);
         for piece in self.borders_with(stations).windows(2) {
-            for (z, weight) in gauss_on(&rule, piece[0], piece[1]) {
+            for (z, weight) in on_interval(&rule, piece[0], piece[1]) {
                 let cell = stations.partition_point(|&s| s <= z).clamp(1, stations.len() - 1) - 1;
                 let t = (z - stations[cell]) / (stations[cell + 1] - stations[cell]);
                 let (first, values, _) = self.at(z);
@@ -133,9 +133,9 @@ impl Products {
         let columns = second.len();
         let mut values = vec![[0.0; 4]; first.len() * columns];
         let mut ranges = vec![(usize::MAX, 0); first.len()];
-        let rule = gauss(ORDER);
+        let rule = gauss_legendre(ORDER);
         for piece in first.borders_with(&second.borders).windows(2) {
-            for (z, weight) in gauss_on(&rule, piece[0], piece[1]) {
+            for (z, weight) in on_interval(&rule, piece[0], piece[1]) {
                 let (i0, f, df) = first.at(z);
                 let (j0, g, dg) = second.at(z);
                 for r in 0..first.order {

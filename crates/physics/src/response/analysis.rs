@@ -1,45 +1,47 @@
-//! What is asked of a response, and what comes back.
+//! Input and result types of a response.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use super::channel::{Channel, ChannelId};
-use super::confidence::Interval;
+use super::confidence::ConfidenceInterval;
 use super::statistics::Statistics;
-use crate::dynamics::{Integrator, Numerics};
+use crate::dynamics::{Integrator, StepCounts};
 
-/// How the steady state is found.
+/// Method by which the reported motion is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Method {
-    /// The periodic solution without loss of contact if there is a stable one, else integration until the motion repeats (made
-    /// exact by Newton's method on the period map), else a long record of a motion that does not repeat.
+pub enum SolutionMethod {
+    /// The periodic solution without loss of contact if a stable one exists; otherwise integration until the motion
+    /// nearly repeats, refined by Newton's method on the period map; otherwise a long record of a motion that does not
+    /// repeat.
     #[default]
     Auto,
     /// As `Auto`, but a motion that does not repeat is an error.
     Periodic,
-    /// From the initial state through `mesh_periods`, the last `record_mesh_periods` of which are recorded.
+    /// Integration from the initial state over `mesh_periods`; the last `record_mesh_periods` are recorded.
     Integrate { mesh_periods: u64, record_mesh_periods: u64 },
 }
 
-/// What is asked of a response.
+/// Settings of an analysis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Analysis {
-    pub method: Method,
-    /// For `Integrate`; the other methods use Taylor series.
+    /// Method by which the reported motion is found.
+    pub method: SolutionMethod,
+    /// Integrator of `Integrate`; the other methods use Taylor series.
     pub integrator: Integrator,
     /// Relative error of the RMS values, 1e-13 … 0.1.
     pub accuracy: f64,
-    /// Density of the series; 0: none.
+    /// Sampling density of the time series; 0: none.
     pub samples_per_mesh_period: usize,
-    /// Channels to record as series (and to give statistics of).
+    /// Channels recorded as time series, with statistics.
     pub channels: Vec<ChannelId>,
-    /// 12 displacements in the source's order, then 12 velocities. `Integrate` begins there; the other methods report the steady motion
-    /// that is reached from there, of several. None: static deflection under the mean mesh stiffness, at rest; the other
-    /// methods then prefer the motion that keeps contact.
+    /// 12 displacements in the order of [the module](crate::dynamics), then 12 velocities. `Integrate` begins there; of
+    /// several steady motions the other methods report the one reached from there. None: static deflection under the
+    /// mean mesh stiffness, at rest; the other methods then prefer a motion without loss of contact.
     pub initial_state: Option<[f64; 24]>,
-    /// Steps after which an integration gives up.
+    /// Limit of the steps of one integration.
     pub max_steps: u64,
     /// Whether to check the recorded motion by its energy balance.
     pub energy_balance: bool,
@@ -48,7 +50,7 @@ pub struct Analysis {
 impl Default for Analysis {
     fn default() -> Self {
         Self {
-            method: Method::Auto,
+            method: SolutionMethod::Auto,
             integrator: Integrator::Taylor,
             accuracy: 1e-6,
             samples_per_mesh_period: 256,
@@ -60,145 +62,167 @@ impl Default for Analysis {
     }
 }
 
-/// How the motion repeats.
+/// Regime of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Regime {
     /// Repeats every mesh period.
     #[serde(rename = "period-1")]
     Period1,
-    /// Repeats after several mesh periods (how many: [`Summary::period_mesh_periods`]).
+    /// Repeats after several mesh periods, see [`Summary::period_mesh_periods`].
     #[serde(rename = "period-n")]
     PeriodN,
+    /// Does not repeat; perturbations neither grow nor decay.
     #[serde(rename = "quasi-periodic")]
     QuasiPeriodic,
+    /// Does not repeat; perturbations grow exponentially (positive Lyapunov exponent).
     #[serde(rename = "chaotic")]
     Chaotic,
-    /// The record ended before the motion did: what is left of its start still decays (or grows towards another motion).
+    /// The record ended before the transient: a component still decays, or grows towards another motion.
     #[serde(rename = "not-settled")]
     NotSettled,
-    /// Grows without bound: the stiffness's fluctuation feeds the vibration more than the dampers take (parametric instability).
+    /// Grows without bound by parametric instability.
     #[serde(rename = "unstable")]
     Unstable,
 }
 
-/// What the teeth do over the recorded periods.
+/// Contact of the teeth over the recorded periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactState {
     /// Always in contact on one flank.
     Continuous,
-    /// They separate and come back to the same flank.
+    /// Loss of contact, without contact on the opposite flank.
     SingleSided,
-    /// They separate and reach the back flanks too.
+    /// Contact on both flanks.
     DoubleSided,
-    /// They never touch: a pair without load in the middle of its backlash.
+    /// No contact: a pair without load in the middle of its backlash.
     Apart,
 }
 
-/// Normal force on the teeth of a half, N, positive on driving flanks.
+/// Normal tooth force of a half, N, positive on driving flanks.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ToothForce {
     /// T_p/(R_p cosβ) of the half's torque.
     pub static_n: f64,
-    /// Extremes over the record of everything that acts between the teeth: mesh force and, where one is applied, the impact.
+    /// Largest value of mesh force plus impact over the record.
     pub max_n: f64,
+    /// Smallest value of mesh force plus impact over the record.
     pub min_n: f64,
 }
 
-/// A value of each half.
+/// One value per half.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Halves<T> {
+    /// Left half.
     pub left: T,
+    /// Right half.
     pub right: T,
 }
 
-/// RMS values, exact time means; the mean removed except of accelerations (see [`Statistics::rms`]).
+/// RMS values, exact time means; without the mean except for accelerations (see [`Statistics::rms`]).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Rms {
     /// x'' of each half.
     pub mesh_circumferential_acceleration_m_s2: Halves<f64>,
     /// z_p'' of each half.
     pub pinion_axial_acceleration_m_s2: Halves<f64>,
-    /// Every channel that was recorded, by name, in the channel's unit.
+    /// All recorded channels by name, in the unit of the channel.
     pub channels: BTreeMap<String, f64>,
 }
 
-/// Intervals of the two accelerations' RMS values.
+/// Confidence intervals of the RMS values of the two accelerations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RmsIntervals {
-    pub mesh_circumferential_acceleration_m_s2: Halves<Interval>,
-    pub pinion_axial_acceleration_m_s2: Halves<Interval>,
+    /// Of x'' of each half.
+    pub mesh_circumferential_acceleration_m_s2: Halves<ConfidenceInterval>,
+    /// Of z_p'' of each half.
+    pub pinion_axial_acceleration_m_s2: Halves<ConfidenceInterval>,
 }
 
-/// A Floquet multiplier: what a small deviation of its kind is multiplied by over one period of the motion.
+/// A Floquet multiplier: factor of a perturbation in one direction over one period of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Multiplier {
+    /// Modulus; above 1 the perturbation grows.
     pub modulus: f64,
-    /// −π … π; 0 grows or decays on one side, ±π changes sides every period (a period doubling where the modulus reaches 1).
+    /// Argument, −π … π; ±π at a period doubling where the modulus reaches 1.
     pub angle_rad: f64,
 }
 
-/// The numbers of a response, without its series.
+/// Results of a response without its time series.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
+    /// RMS values.
     pub rms: Rms,
-    /// Mean, RMS, minimum and maximum of every channel recorded as a series.
+    /// Mean, RMS, minimum and maximum of every channel recorded as a time series.
     pub statistics: BTreeMap<String, Statistics>,
-    /// Largest normal force on the teeth of either half (mesh force and impact) over the static one, T_p/(R_p cosβ); None without
-    /// torque. Never below 1: the mean of the tooth force is the static one over a motion that repeats, and a record of a motion on its way
-    /// there counts the load it goes to.
+    /// Largest normal tooth force of either half (mesh force and impact) over the static one, T_p/(R_p cosβ); None
+    /// without torque. At least 1: the mean tooth force of a periodic motion is the static one, and a record of a
+    /// transient counts the static load.
     pub dynamic_factor: Option<f64>,
+    /// Tooth force of each half.
     pub tooth_force: Halves<ToothForce>,
+    /// Regime of the motion.
     pub regime: Regime,
-    /// Mesh periods after which the motion repeats, when it does.
+    /// Mesh periods after which the motion repeats.
     pub period_mesh_periods: Option<u64>,
+    /// Contact of the teeth over the record.
     pub contact: ContactState,
-    /// Share of the recorded time in contact (either flank).
+    /// Fraction of the recorded time in contact (either flank).
     pub contact_share: Halves<f64>,
     /// Smallest s of either half, m.
     pub min_displacement_m: f64,
+    /// Natural frequencies, Hz, ascending.
     pub natural_frequencies_hz: Vec<f64>,
-    /// Estimated relative error of the RMS values: of the method for a motion that repeats (or whose record is followed
-    /// exactly), of the finite record (standard error over its parts) for one that does not.
+    /// Estimated relative error of the RMS values: of the integration for a periodic motion or a record that is
+    /// integrated accurately, otherwise the standard error of the finite record.
     pub error_estimate: f64,
-    /// `periodic` or `integrate`: how the reported motion was found.
+    /// `periodic` or `integrate`: method by which the reported motion was found.
     pub method: String,
-    /// Modulus of the largest Floquet multiplier over one mesh period, free motions apart; only from the periodic method.
+    /// Modulus of the largest Floquet multiplier over one mesh period, rigid-body modes excluded; None unless the
+    /// motion was found as a periodic orbit.
     pub floquet_modulus: Option<f64>,
-    /// All Floquet multipliers over one period of the motion, free motions apart, largest modulus first; only from the periodic
-    /// method. With mirror-symmetric halves those against the symmetry are among them.
+    /// All Floquet multipliers over one period of the motion, rigid-body modes excluded, largest modulus first; None
+    /// unless the motion was found as a periodic orbit. For mirror-symmetric halves those of antisymmetric
+    /// perturbations are included.
     pub floquet_multipliers: Option<Vec<Multiplier>>,
-    /// Largest Lyapunov exponent per mesh period, where the motion did not repeat; of one that grows without bound its growth rate.
+    /// Largest Lyapunov exponent per mesh period of a motion that does not repeat, averaged over at most 400 mesh
+    /// periods; of an unstable motion its growth rate.
     pub lyapunov_per_mesh_period: Option<f64>,
-    /// Where the true RMS values lie with a probability of 95 %, for a motion that does not repeat (see `confidence`); None for
-    /// one that does, or when the record is too short to say.
+    /// 95 % confidence intervals of the RMS values of a motion that does not repeat (module `confidence`); None for a
+    /// periodic motion or a record too short for its correlation.
     pub rms_interval_95: Option<RmsIntervals>,
-    /// What the work of the forces does not explain of the change of kinetic energy, as a part of the energy that changed hands;
-    /// None when not asked for or when nothing moves.
+    /// Difference between the change of kinetic energy and the work of the forces, relative to the integral of the
+    /// absolute power; None unless requested, or when nothing moves.
     pub energy_balance_residual: Option<f64>,
+    /// Mesh periods of the record.
     pub recorded_mesh_periods: u64,
-    /// 6 when the halves mirror each other, else 12.
+    /// 6 for mirror-symmetric halves, otherwise 12.
     pub degrees_of_freedom: u32,
+    /// Whether the mesh damper acts in the gap.
     pub damping_in_gap: bool,
-    pub numerics: Numerics,
+    /// Work of all integrations.
+    pub counts: StepCounts,
 }
 
-/// A motion at the start of a mesh period: the left half's mesh displacement and velocity.
+/// Point of the Poincaré section at the start of a mesh period: displacement and velocity of the left half's mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PoincarePoint {
+    /// x of the left half, m.
     pub x_left_m: f64,
+    /// dx/dt of the left half, m/s.
     pub v_x_left_m_s: f64,
 }
 
-/// The response of a pair at one operating point.
+/// Response of a pair at one operating point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Response {
+    /// Results without time series.
     pub summary: Summary,
-    /// The channels asked for, in their order.
+    /// Time series of the requested channels, in their order.
     pub channels: Vec<Channel>,
     /// One point per recorded mesh period.
     pub poincare: Vec<PoincarePoint>,
-    /// State at the end of the record: 12 displacements in the source's order, then 12 velocities. A neighbouring operating
-    /// point can continue from it.
+    /// State at the end of the record: 12 displacements (m, rad), then 12 velocities (m/s, rad/s). The integration of a
+    /// neighbouring operating point can start from it.
     pub final_state: [f64; 24],
 }

@@ -1,24 +1,24 @@
-//! What a search for a steady motion may spend.
+//! Work limit of a steady-state search.
 
-use crate::dynamics::{DynamicsError, Limits, Model, Numerics, PER_HALF};
+use crate::dynamics::{DynamicModel, DynamicsError, IntegrationLimits, PER_HALF, StepCounts};
 
-/// Work of a search in all its parts: transient, maps, exponents. One unit is one step of the six coordinates of one half, or
-/// of one deviation carried along with them: 0.5 to 2 µs on a processor of 2020, so that a search ends within some 20 s and an
-/// answer with its record and its error within 30 s. It counts steps, not seconds, so that equal input ends in the same way on every
-/// machine.
+/// Work of all parts of a search: transient, period maps, exponents. One unit is one step of the six coordinates of one
+/// half, or of one perturbation integrated along with them: 0.5 to 2 µs on a processor of 2020, so that a search ends
+/// within about 20 s, and within 30 s with its record and error estimate. It counts steps, not time, so that the result
+/// does not depend on the machine.
 const SEARCH_UNITS: u64 = 10_000_000;
 
-/// Work that is left.
+/// Remaining work.
 pub(super) struct Budget {
     left: u64,
-    /// Steps after which any one motion ends, whatever is left.
+    /// Step limit of a single integration.
     max_steps: u64,
-    /// Units of one step of the motion itself.
+    /// Units per step of the motion itself.
     per_step: u64,
 }
 
 impl Budget {
-    pub fn new<const D: usize>(limits: &Limits<'_>) -> Self {
+    pub fn new<const D: usize>(limits: &IntegrationLimits<'_>) -> Self {
         let per_step = (D / PER_HALF) as u64;
         Self {
             left: SEARCH_UNITS.min(limits.max_steps.saturating_mul(per_step)),
@@ -27,43 +27,43 @@ impl Budget {
         }
     }
 
-    /// Steps that a motion which carries `deviations` may still take.
-    pub fn steps(&self, deviations: usize) -> u64 {
-        (self.left / (self.per_step * (1 + deviations as u64))).min(self.max_steps)
+    /// Remaining steps of a motion with `perturbations`.
+    pub fn steps(&self, perturbations: usize) -> u64 {
+        (self.left / (self.per_step * (1 + perturbations as u64))).min(self.max_steps)
     }
 
-    /// Whether a motion of `steps` steps that carries `deviations` can be afforded.
-    pub fn affords(&self, steps: u64, deviations: usize) -> bool {
-        steps <= self.steps(deviations)
+    /// Whether `steps` steps of a motion with `perturbations` are within the remaining work.
+    pub fn affords(&self, steps: u64, perturbations: usize) -> bool {
+        steps <= self.steps(perturbations)
     }
 
-    /// Limits under which a motion that carries `deviations` keeps within the budget.
-    pub fn limits<'a>(&self, of: &Limits<'a>, deviations: usize) -> Limits<'a> {
-        Limits { max_steps: self.steps(deviations), ..*of }
+    /// Integration limits of a motion with `perturbations` within the remaining work.
+    pub fn limits<'a>(&self, of: &IntegrationLimits<'a>, perturbations: usize) -> IntegrationLimits<'a> {
+        IntegrationLimits { max_steps: self.steps(perturbations), ..*of }
     }
 
-    /// Takes off what a motion that carried `deviations` has spent.
-    pub fn spend(&mut self, numerics: &Numerics, deviations: usize) {
-        let steps = numerics.steps + numerics.rejected_steps;
-        self.left = self.left.saturating_sub(steps * self.per_step * (1 + deviations as u64));
+    /// Subtracts the work of a motion with `perturbations`.
+    pub fn spend(&mut self, counts: &StepCounts, perturbations: usize) {
+        let steps = counts.steps + counts.rejected_steps;
+        self.left = self.left.saturating_sub(steps * self.per_step * (1 + perturbations as u64));
     }
 }
 
-/// A rough upper estimate of the steps of a mesh period: what the fastest vibration and the fastest decay ask of a series of finite
-/// reach, and the edges of the excitations. Good enough to choose a way by.
-pub(super) fn steps_per_period<const D: usize>(model: &Model<D>) -> f64 {
+/// Rough upper estimate of the steps per mesh period from the highest natural frequency, the fastest decay and the
+/// number of breakpoints.
+pub(super) fn steps_per_period<const D: usize>(model: &DynamicModel<D>) -> f64 {
     /// Scaled time (of the fastest rate) that a step of the usual order covers.
     const REACH: f64 = 3.0;
     let masses = model.masses_kg();
     let rest = model.acceleration(0.5, 0.5, &[0.0; D], &[0.0; D]);
-    // Frobenius norm of the damping matrix over roots of the masses: no decay is faster. At rest in mid-gap the mesh damper may not act, so
-    // it is looked at in contact too.
+    // The Frobenius norm of the mass-normalised damping matrix bounds all decay rates. At rest in mid-gap the mesh
+    // damper may not act, so the norm is evaluated in contact too.
     let mut norm = 0.0f64;
     for pressed in [0.0, 1.0] {
         let mut x = [0.0; D];
         let mut at = rest;
         if pressed > 0.0 {
-            for j in 0..Model::<D>::HALVES {
+            for j in 0..DynamicModel::<D>::HALVES {
                 x[j * PER_HALF + crate::dynamics::U] = 2.0 * model.b / model.cos + f64::MIN_POSITIVE;
             }
             at = model.acceleration(0.5, 0.5, &x, &[0.0; D]);
@@ -80,7 +80,7 @@ pub(super) fn steps_per_period<const D: usize>(model: &Model<D>) -> f64 {
     model.period_tau * norm.max(1.0) / REACH + model.breakpoints.len() as f64
 }
 
-/// The answer to a search whose budget is used up at `time_s`.
-pub(super) fn exhausted(steps: u64, time_s: f64) -> DynamicsError {
+/// Error of a search whose work limit is reached at `time_s`.
+pub(super) fn budget_exhausted(steps: u64, time_s: f64) -> DynamicsError {
     DynamicsError::TooManySteps { time_s, limit: steps }
 }

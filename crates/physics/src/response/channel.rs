@@ -1,24 +1,31 @@
-//! The channels a response can record: their names, and how each follows from the solver's coordinates.
+//! Recordable channels: names, quantities, and their evaluation from solver coordinates.
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::{MAX_ORDER, Model, PER_HALF, Segment, U, W, YG, YP, ZG, ZP};
+use crate::dynamics::{DynamicModel, MAX_ORDER, PER_HALF, Segment, U, W, YG, YP, ZG, ZP};
 
-/// What a channel is a course of.
+/// Physical quantity of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
+    /// m.
     Displacement,
+    /// m/s.
     Velocity,
+    /// m/s².
     Acceleration,
+    /// rad.
     Rotation,
+    /// rad/s.
     AngularVelocity,
+    /// rad/s².
     AngularAcceleration,
+    /// N.
     Force,
 }
 
 impl Quantity {
-    /// The unit of the channel's values.
+    /// Unit of the channel's values.
     pub fn unit(self) -> &'static str {
         match self {
             Quantity::Displacement => "m",
@@ -32,21 +39,26 @@ impl Quantity {
     }
 }
 
-/// A recorded course, uniformly sampled.
+/// Uniformly sampled time series.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Channel {
+    /// Name of the channel, see [`ChannelId`].
     pub name: String,
+    /// Physical quantity.
     pub quantity: Quantity,
+    /// Unit of the values.
     pub unit: String,
-    /// Time of the first value, counted from the start of the integration (0 for a periodic solution: phase 0).
+    /// Time of the first value from the start of the integration, s (0 for a periodic solution: phase 0).
     pub t0_s: f64,
+    /// Sampling interval, s.
     pub dt_s: f64,
+    /// Values in `unit`.
     pub values: Vec<f64>,
 }
 
-/// One of the displacements, or a mesh force.
+/// A displacement, or a force of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Source {
+enum ChannelKind {
     X,
     S,
     Yp,
@@ -61,33 +73,37 @@ enum Source {
     ToothForce,
 }
 
-impl Source {
+impl ChannelKind {
     fn is_force(self) -> bool {
-        matches!(self, Source::NormalForce | Source::TangentialForce | Source::AxialForce | Source::ToothForce)
+        matches!(
+            self,
+            ChannelKind::NormalForce | ChannelKind::TangentialForce | ChannelKind::AxialForce | ChannelKind::ToothForce
+        )
     }
 }
 
-const SOURCES: [(&str, Source); 12] = [
-    ("x", Source::X),
-    ("s", Source::S),
-    ("y_p", Source::Yp),
-    ("z_p", Source::Zp),
-    ("theta_p", Source::ThetaP),
-    ("y_g", Source::Yg),
-    ("z_g", Source::Zg),
-    ("theta_g", Source::ThetaG),
-    ("f_n", Source::NormalForce),
-    ("f_y", Source::TangentialForce),
-    ("f_z", Source::AxialForce),
-    ("tooth_force", Source::ToothForce),
+const CHANNEL_KINDS: [(&str, ChannelKind); 12] = [
+    ("x", ChannelKind::X),
+    ("s", ChannelKind::S),
+    ("y_p", ChannelKind::Yp),
+    ("z_p", ChannelKind::Zp),
+    ("theta_p", ChannelKind::ThetaP),
+    ("y_g", ChannelKind::Yg),
+    ("z_g", ChannelKind::Zg),
+    ("theta_g", ChannelKind::ThetaG),
+    ("f_n", ChannelKind::NormalForce),
+    ("f_y", ChannelKind::TangentialForce),
+    ("f_z", ChannelKind::AxialForce),
+    ("tooth_force", ChannelKind::ToothForce),
 ];
 
-/// The name of a channel, understood. Names: `x_left` (mesh displacement along the circumference), `s_right` (along the tooth normal), `y_p_left`,
-/// `z_p_…`, `theta_p_…`, `y_g_…`, `z_g_…`, `theta_g_…`, each also with `v_` or `a_` in front; `f_n_…`, `f_y_…`, `f_z_…` (mesh force);
-/// `tooth_force_…` (the whole normal force on the teeth: mesh force and impact).
+/// Identifier of a channel. Names: `x_left` (tangential mesh displacement), `s_right` (along the tooth normal),
+/// `y_p_left`, `z_p_…`, `theta_p_…`, `y_g_…`, `z_g_…`, `theta_g_…`, each also with the prefix `v_` (velocity) or `a_`
+/// (acceleration); `f_n_…`, `f_y_…`, `f_z_…` (mesh force); `tooth_force_…` (total normal tooth force: mesh force and
+/// impact).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ChannelId {
-    source: Source,
+    kind: ChannelKind,
     /// 0 displacement, 1 velocity, 2 acceleration.
     derivative: u8,
     /// 0 left, 1 right.
@@ -97,58 +113,60 @@ pub struct ChannelId {
 impl ChannelId {
     /// x'' of a half: the mesh circumferential acceleration.
     pub(super) fn mesh_acceleration(half: u8) -> Self {
-        Self { source: Source::X, derivative: 2, half }
+        Self { kind: ChannelKind::X, derivative: 2, half }
     }
 
-    /// z_p'' of a half: the pinion's axial acceleration.
+    /// z_p'' of a half: the axial acceleration of the pinion.
     pub(super) fn pinion_axial_acceleration(half: u8) -> Self {
-        Self { source: Source::Zp, derivative: 2, half }
+        Self { kind: ChannelKind::Zp, derivative: 2, half }
     }
 
     pub(super) fn s(half: u8) -> Self {
-        Self { source: Source::S, derivative: 0, half }
+        Self { kind: ChannelKind::S, derivative: 0, half }
     }
 
     pub(super) fn normal_force(half: u8) -> Self {
-        Self { source: Source::NormalForce, derivative: 0, half }
+        Self { kind: ChannelKind::NormalForce, derivative: 0, half }
     }
 
-    /// The normal force on the teeth of a half, impact included.
+    /// Normal tooth force of a half, impact included.
     pub(super) fn tooth_force(half: u8) -> Self {
-        Self { source: Source::ToothForce, derivative: 0, half }
+        Self { kind: ChannelKind::ToothForce, derivative: 0, half }
     }
 
-    /// Reads a name; None when there is no such channel.
+    /// The channel of this name, if there is one.
     pub fn parse(name: &str) -> Option<Self> {
         Self::all().into_iter().find(|id| id.name() == name)
     }
 
-    /// Every channel there is.
+    /// All channels.
     pub fn all() -> Vec<Self> {
         let mut out = Vec::new();
         for half in 0..2 {
-            for (_, source) in SOURCES {
-                for derivative in 0..if source.is_force() { 1 } else { 3 } {
-                    out.push(Self { source, derivative, half });
+            for (_, kind) in CHANNEL_KINDS {
+                for derivative in 0..if kind.is_force() { 1 } else { 3 } {
+                    out.push(Self { kind, derivative, half });
                 }
             }
         }
         out
     }
 
+    /// Name of the channel.
     pub fn name(self) -> String {
         let prefix = ["", "v_", "a_"][usize::from(self.derivative)];
-        let base = SOURCES.iter().find(|(_, s)| *s == self.source).map_or("", |(name, _)| name);
+        let base = CHANNEL_KINDS.iter().find(|(_, s)| *s == self.kind).map_or("", |(name, _)| name);
         let half = ["left", "right"][usize::from(self.half)];
         format!("{prefix}{base}_{half}")
     }
 
+    /// Physical quantity of the channel.
     pub fn quantity(self) -> Quantity {
         let linear = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
         let angular = [Quantity::Rotation, Quantity::AngularVelocity, Quantity::AngularAcceleration];
-        match self.source {
-            source if source.is_force() => Quantity::Force,
-            Source::ThetaP | Source::ThetaG => angular[usize::from(self.derivative)],
+        match self.kind {
+            kind if kind.is_force() => Quantity::Force,
+            ChannelKind::ThetaP | ChannelKind::ThetaG => angular[usize::from(self.derivative)],
             _ => linear[usize::from(self.derivative)],
         }
     }
@@ -157,56 +175,60 @@ impl ChannelId {
         self.derivative == 2
     }
 
-    /// How the channel follows from the solver's coordinates.
-    pub(super) fn probe<const D: usize>(self, model: &Model<D>) -> Probe<D> {
+    /// Evaluator of the channel from solver coordinates.
+    pub(super) fn evaluator<const D: usize>(self, model: &DynamicModel<D>) -> ChannelEvaluator<D> {
         let half = usize::from(self.half);
-        // With one half solved, the other is its mirror image.
+        // Where one half is solved, the other is its mirror image.
         let (j, mirrored) = if D > PER_HALF { (half, 1.0) } else { (0, if half == 0 { 1.0 } else { -1.0 }) };
         let mut row = [0.0; D];
         let i = j * PER_HALF;
         let h = &model.halves[j];
         let sum = h.reduced_p + h.reduced_g;
-        match self.source {
-            Source::X => (row[i + YP], row[i + YG], row[i + U]) = (1.0, -1.0, 1.0),
-            Source::S => {
+        match self.kind {
+            ChannelKind::X => (row[i + YP], row[i + YG], row[i + U]) = (1.0, -1.0, 1.0),
+            ChannelKind::S => {
                 (row[i + YP], row[i + YG], row[i + U]) = (model.cos, -model.cos, model.cos);
                 (row[i + ZP], row[i + ZG]) = (h.sin, -h.sin);
             }
-            Source::Yp => row[i + YP] = 1.0,
-            Source::Zp => row[i + ZP] = mirrored,
-            Source::Yg => row[i + YG] = 1.0,
-            Source::Zg => row[i + ZG] = mirrored,
-            Source::ThetaP => (row[i + U], row[i + W]) = (h.reduced_g / sum / model.radius_p, 1.0 / model.radius_p),
-            Source::ThetaG => (row[i + U], row[i + W]) = (-h.reduced_p / sum / model.radius_g, 1.0 / model.radius_g),
-            Source::NormalForce => return Probe::Force { half: j, factor: 1.0 },
-            Source::TangentialForce => return Probe::Force { half: j, factor: model.cos },
-            Source::AxialForce => return Probe::Force { half: j, factor: mirrored * h.sin },
-            Source::ToothForce => return Probe::ToothForce { half: j },
+            ChannelKind::Yp => row[i + YP] = 1.0,
+            ChannelKind::Zp => row[i + ZP] = mirrored,
+            ChannelKind::Yg => row[i + YG] = 1.0,
+            ChannelKind::Zg => row[i + ZG] = mirrored,
+            ChannelKind::ThetaP => {
+                (row[i + U], row[i + W]) = (h.reduced_g / sum / model.radius_p, 1.0 / model.radius_p)
+            }
+            ChannelKind::ThetaG => {
+                (row[i + U], row[i + W]) = (-h.reduced_p / sum / model.radius_g, 1.0 / model.radius_g)
+            }
+            ChannelKind::NormalForce => return ChannelEvaluator::Force { half: j, factor: 1.0 },
+            ChannelKind::TangentialForce => return ChannelEvaluator::Force { half: j, factor: model.cos },
+            ChannelKind::AxialForce => return ChannelEvaluator::Force { half: j, factor: mirrored * h.sin },
+            ChannelKind::ToothForce => return ChannelEvaluator::ToothForce { half: j },
         }
         let factor = model.omega_ref.powi(i32::from(self.derivative));
-        let places: Vec<usize> = (0..D).filter(|&c| row[c] != 0.0).collect();
-        Probe::Linear { row: row.map(|c| c * factor), places, derivative: usize::from(self.derivative) }
+        let positions: Vec<usize> = (0..D).filter(|&c| row[c] != 0.0).collect();
+        ChannelEvaluator::Linear { row: row.map(|c| c * factor), positions, derivative: usize::from(self.derivative) }
     }
 }
 
-/// How a channel is read off a segment.
+/// Evaluation of a channel on a segment.
 #[derive(Debug, Clone)]
-pub(super) enum Probe<const D: usize> {
-    Linear { row: [f64; D], places: Vec<usize>, derivative: usize },
+pub(super) enum ChannelEvaluator<const D: usize> {
+    Linear { row: [f64; D], positions: Vec<usize>, derivative: usize },
     Force { half: usize, factor: f64 },
     ToothForce { half: usize },
 }
 
-impl<const D: usize> Probe<D> {
-    /// The channel's polynomial in scaled time since the segment's start; returns its degree.
+impl<const D: usize> ChannelEvaluator<D> {
+    /// Polynomial of the channel in scaled time since the start of the segment; returns its degree.
     #[inline(always)]
     pub fn polynomial(&self, segment: &Segment<'_, D>, out: &mut [f64; MAX_ORDER + 1]) -> usize {
         match self {
-            Probe::Linear { row, places, derivative } => {
+            ChannelEvaluator::Linear { row, positions, derivative } => {
                 let degree = segment.degree - derivative;
                 for n in 0..=degree {
                     let from = &segment.rows[n + derivative];
-                    let value: f64 = places.iter().map(|&c| row[c] * from[c]).sum();
+                    let value: f64 = positions.iter().map(|&c| row[c] * from[c]).sum();
                     let factor = match derivative {
                         0 => 1.0,
                         1 => (n + 1) as f64,
@@ -216,17 +238,17 @@ impl<const D: usize> Probe<D> {
                 }
                 degree
             }
-            Probe::Force { half, factor } => {
+            ChannelEvaluator::Force { half, factor } => {
                 let degree = segment.degree - 2;
                 for n in 0..=degree {
                     out[n] = factor * segment.force[*half][n];
                 }
                 degree
             }
-            Probe::ToothForce { half } => {
+            ChannelEvaluator::ToothForce { half } => {
                 let degree = segment.degree - 2;
                 for n in 0..=degree {
-                    out[n] = segment.model.tooth_force_behind(*half, n, segment.rows);
+                    out[n] = segment.model.tooth_force_coefficient(*half, n, segment.rows);
                 }
                 degree
             }

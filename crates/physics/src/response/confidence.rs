@@ -1,20 +1,21 @@
-//! How well a finite record of a motion that does not repeat tells its RMS values: batch means.
+//! Confidence interval of the RMS values of a motion that does not repeat, by batch means.
 //!
-//! The mean squares of whole mesh periods are a stationary, correlated sequence. Their mean over the record is averaged over batches that are
-//! long against the correlation; the batches' means are then nearly independent and nearly normal, and Student's t over
-//! their scatter gives the interval of the mean square, whose roots are those of the RMS (Law and Kelton, Simulation Modeling and
-//! Analysis: batch means; Geyer 1992: where to cut the sum of autocorrelations).
+//! The mean squares of the mesh periods are a stationary, correlated sequence. It is divided into batches that are long
+//! against the correlation time; the batch means are then nearly independent and normal, and Student's t distribution
+//! gives the interval of the mean square and so of the RMS. Batch means: A. M. Law, W. D. Kelton, Simulation Modeling
+//! and Analysis, McGraw-Hill. Truncation of the sum of autocorrelations: C. J. Geyer, Statistical Science 7 (1992)
+//! 473–483, doi:10.1214/ss/1177011137.
 
 use serde::{Deserialize, Serialize};
 
 use super::channel::ChannelId;
-use super::recorder::Recorder;
+use super::recorder::ChannelRecorder;
 use super::report::solved_halves;
-use super::statistics::Gathered;
+use super::statistics::MomentAccumulator;
 
-/// Gathers the mean squares of the accelerations of every response, mesh period by mesh period.
+/// Mean squares of the accelerations of every response, by mesh period.
 pub(super) struct MeanSquares {
-    tracks: Vec<(ChannelId, Gathered, Vec<f64>)>,
+    tracks: Vec<(ChannelId, MomentAccumulator, Vec<f64>)>,
 }
 
 impl MeanSquares {
@@ -22,13 +23,13 @@ impl MeanSquares {
         let ids = solved_halves::<D>()
             .flat_map(|half| [ChannelId::mesh_acceleration(half), ChannelId::pinion_axial_acceleration(half)]);
         let room = periods.min(1 << 16) as usize;
-        Self { tracks: ids.map(|id| (id, Gathered::new(true), Vec::with_capacity(room))).collect() }
+        Self { tracks: ids.map(|id| (id, MomentAccumulator::new(true), Vec::with_capacity(room))).collect() }
     }
 
-    /// To be called at the end of every mesh period.
-    pub fn push<const D: usize>(&mut self, recorder: &Recorder<D>) {
+    /// Adds a mesh period; called at its end.
+    pub fn push<const D: usize>(&mut self, recorder: &ChannelRecorder<D>) {
         for (id, snapshot, squares) in &mut self.tracks {
-            if let Some(now) = recorder.gathered(*id) {
+            if let Some(now) = recorder.accumulator(*id) {
                 squares.push(now.square_since(snapshot));
                 *snapshot = *now;
             }
@@ -40,35 +41,36 @@ impl MeanSquares {
     }
 }
 
-/// An interval that holds the true value with a stated probability.
+/// A confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Interval {
+pub struct ConfidenceInterval {
+    /// Lower limit.
     pub low: f64,
+    /// Upper limit.
     pub high: f64,
 }
 
-/// A batch is at least this many correlation times long: what neighbouring batches then share is about a tenth of
-/// their variance.
+/// Length of a batch in correlation times: the common variance of neighbouring batches is then about a tenth.
 const CORRELATIONS_PER_BATCH: f64 = 5.0;
-/// More batches narrow Student's t no further worth mentioning.
-const MOST_BATCHES: usize = 30;
-/// Fewer batches do not say how much they scatter.
-const FEWEST_BATCHES: usize = 4;
+/// Largest number of batches; more hardly reduce the quantile of Student's t distribution.
+const MAX_BATCHES: usize = 30;
+/// Smallest number of batches from which a variance is estimated.
+const MIN_BATCHES: usize = 4;
 
-/// 97.5 % points of Student's t for 3 … 29 degrees of freedom (any table of the distribution).
-const STUDENT_975: [f64; MOST_BATCHES - FEWEST_BATCHES + 1] = [
+/// 97.5 % quantiles of Student's t distribution for 3 … 29 degrees of freedom (standard tables).
+const STUDENT_975: [f64; MAX_BATCHES - MIN_BATCHES + 1] = [
     3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101,
     2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045,
 ];
 
-/// The interval that holds the RMS with a probability of 95 %, from the mean squares of the record's mesh periods. None when the record is
-/// too short against its own correlation to say.
-pub(super) fn rms_interval_95(mean_squares: &[f64]) -> Option<Interval> {
+/// 95 % confidence interval of the RMS from the mean squares of the mesh periods of a record. None when the record is
+/// too short for its correlation time.
+pub(super) fn rms_interval_95(mean_squares: &[f64]) -> Option<ConfidenceInterval> {
     let n = mean_squares.len();
     let correlation = correlation_time(mean_squares);
-    let length = n.div_ceil(MOST_BATCHES).max((CORRELATIONS_PER_BATCH * correlation).ceil() as usize);
+    let length = n.div_ceil(MAX_BATCHES).max((CORRELATIONS_PER_BATCH * correlation).ceil() as usize);
     let batches = n / length.max(1);
-    if batches < FEWEST_BATCHES {
+    if batches < MIN_BATCHES {
         return None;
     }
     let mean = mean_squares.iter().sum::<f64>() / n as f64;
@@ -76,15 +78,15 @@ pub(super) fn rms_interval_95(mean_squares: &[f64]) -> Option<Interval> {
         mean_squares.chunks_exact(length).map(|batch| batch.iter().sum::<f64>() / length as f64).collect();
     let centre = of_batches.iter().sum::<f64>() / batches as f64;
     let scatter = of_batches.iter().map(|m| (m - centre).powi(2)).sum::<f64>() / (batches - 1) as f64;
-    // The mean is that of the whole record, the part behind the last batch included.
+    // The mean is that of the whole record, including the periods after the last batch.
     let error = (scatter * length as f64 / n as f64).sqrt();
-    let reach = STUDENT_975[batches.min(MOST_BATCHES) - FEWEST_BATCHES] * error;
-    let interval = Interval { low: (mean - reach).max(0.0).sqrt(), high: (mean + reach).sqrt() };
+    let reach = STUDENT_975[batches.min(MAX_BATCHES) - MIN_BATCHES] * error;
+    let interval = ConfidenceInterval { low: (mean - reach).max(0.0).sqrt(), high: (mean + reach).sqrt() };
     interval.high.is_finite().then_some(interval)
 }
 
-/// Integrated autocorrelation time of a sequence, 1 + 2 Σ ρ_k: the sum of neighbouring pairs is cut where it is no longer
-/// positive. At least 1.
+/// Integrated autocorrelation time 1 + 2 Σ ρ_k of a sequence; the sum ends before the first pair of neighbours that is
+/// not positive. At least 1.
 fn correlation_time(values: &[f64]) -> f64 {
     let n = values.len();
     let mean = values.iter().sum::<f64>() / n.max(1) as f64;
@@ -109,12 +111,13 @@ fn correlation_time(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::dynamics::tests::reference::{parameters, reference};
-    use crate::dynamics::{Integrator, Model, Motion, Unobserved};
-    use crate::response::{Analysis, Method, Regime, solve};
+    use crate::dynamics::{DynamicModel, Integrator, Motion, Unobserved};
+    use crate::response::{Analysis, Regime, SolutionMethod, solve};
     use crate::watch::Watch;
     use rayon::prelude::*;
 
-    /// A start of case B whose right half stands off the mirror image by a few per cent, another for every `number`.
+    /// Initial state of case B with a right half that differs from the mirror image by a few per cent, another for
+    /// every `number`.
     fn start(number: usize) -> [f64; 24] {
         let mut start: [f64; 24] = reference().cases["B"].initial_state.as_slice().try_into().unwrap();
         for (c, value) in start[..12].iter_mut().enumerate() {
@@ -126,7 +129,7 @@ mod tests {
 
     /// Mean squares of x_left'' of 20 chaotic records from different starts, 3000 mesh periods each.
     fn records() -> Vec<Vec<f64>> {
-        let model = Model::<12>::new(&parameters("B")).unwrap();
+        let model = DynamicModel::<12>::new(&parameters("B")).unwrap();
         (0..20)
             .into_par_iter()
             .map(|number| {
@@ -136,7 +139,7 @@ mod tests {
                     motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
                 }
                 let ids = [(ChannelId::mesh_acceleration(0), false), (ChannelId::pinion_axial_acceleration(0), false)];
-                let mut recorder = Recorder::<12>::new(&model, &ids, &[], 0, 0);
+                let mut recorder = ChannelRecorder::<12>::new(&model, &ids, &[], 0, 0);
                 let mut squares = MeanSquares::new::<12>(3000);
                 for _ in 0..3000 {
                     motion.advance_period(&mut recorder, &Watch::none(), 0.0).unwrap();
@@ -157,7 +160,7 @@ mod tests {
         let truth = mean(&mut records.iter().flatten().copied()).sqrt();
         for (length, least) in [(3000, 0.85), (1000, 0.9), (300, 0.9), (100, 0.9)] {
             let pieces: Vec<&[f64]> = records.iter().flat_map(|r| r.chunks_exact(length)).collect();
-            let intervals: Vec<Interval> = pieces.iter().filter_map(|piece| rms_interval_95(piece)).collect();
+            let intervals: Vec<ConfidenceInterval> = pieces.iter().filter_map(|piece| rms_interval_95(piece)).collect();
             let held = intervals.iter().filter(|i| i.low <= truth && truth <= i.high).count();
             let width = mean(&mut intervals.iter().map(|i| 0.5 * (i.high - i.low) / truth));
             let rate = held as f64 / intervals.len() as f64;
@@ -171,12 +174,13 @@ mod tests {
         }
     }
 
-    /// The interval of a response from each of 20 starts against an independent solution: 120.85 ± 0.15 over 20000 periods.
+    /// The interval of a response from each of 20 starts against an independent solution: 120.85 ± 0.15 over 20000
+    /// periods.
     #[test]
     fn responses_from_twenty_starts_hold_the_reference() {
         let held = (0..20).into_par_iter().filter(|&number| {
             let analysis = Analysis {
-                method: Method::Integrate { mesh_periods: 800, record_mesh_periods: 600 },
+                method: SolutionMethod::Integrate { mesh_periods: 800, record_mesh_periods: 600 },
                 initial_state: Some(start(number)),
                 ..Analysis::default()
             };
@@ -189,7 +193,7 @@ mod tests {
         });
         let held = held.count();
         println!("{held} of 20 hold the reference");
-        // At 95 % fewer than 17 come once in 60 such tests.
+        // At 95 % fewer than 17 have a probability of 1/60.
         assert!(held >= 17, "{held}");
     }
 

@@ -1,55 +1,54 @@
-//! The work–energy theorem over a record: a check of the solution that knows nothing of the method that made it.
+//! Energy balance of a recorded motion by the work–energy theorem, a check that is independent of the integrator.
 
-use super::quadrature::GAUSS;
-use crate::dynamics::{Model, Observer, PER_HALF, Segment, W};
+use super::statistics::GAUSS;
+use crate::dynamics::{DynamicModel, Observer, PER_HALF, Segment, W};
 
-/// Of longer records the first mesh periods are balanced, which says as much at a bounded cost.
-const MOST_MESH_PERIODS: u64 = 200;
+/// Longest record that is balanced; of longer ones the first mesh periods are.
+const MAX_MESH_PERIODS: u64 = 200;
 
-/// A motion whose velocities stay below this part of its displacements (scaled time) does not move: what it shows is rounding.
-const STILL: f64 = 1e-9;
+/// Ratio of velocities to displacements (scaled time) below which a motion counts as at rest.
+const REST_VELOCITY_RATIO: f64 = 1e-9;
 
-/// Change of the kinetic energy of a motion against the work of all forces on it, ∫ Σ_c F_c v_c dt with the forces of `model` (springs,
-/// dampers, mesh, impacts, torques) at the displacements and velocities of the solution, by quadrature on every segment. The free
-/// rotation of each half (w) is left out, as it is from every measure of the motion's size.
+/// Change of the kinetic energy of a motion against the work of all forces, ∫ Σ_c F_c v_c dt with the forces of `model`
+/// (springs, dampers, mesh, impacts, torques) along the solution, by Gauss–Legendre quadrature on every segment. The
+/// rigid rotation of each half (w) is excluded.
 pub(super) struct EnergyBalance<'m, const D: usize> {
-    model: &'m Model<D>,
+    model: &'m DynamicModel<D>,
     masses: [f64; D],
-    /// Over ω_ref², J s².
-    first: Option<f64>,
-    /// The mesh period before which the balance ends.
+    /// Kinetic energy at the start over ω_ref², J s².
+    initial_energy: Option<f64>,
+    /// Mesh period at which the balance ends.
     until: u64,
-    last: f64,
+    final_energy: f64,
     work: f64,
     /// ∫ Σ_c |F_c v_c| dt.
-    traffic: f64,
+    absolute_work: f64,
     largest_x: f64,
     largest_v: f64,
 }
 
 impl<'m, const D: usize> EnergyBalance<'m, D> {
-    pub fn new(model: &'m Model<D>) -> Self {
+    pub fn new(model: &'m DynamicModel<D>) -> Self {
         let mut masses = model.masses_kg();
         (0..D).filter(|c| c % PER_HALF == W).for_each(|c| masses[c] = 0.0);
         Self {
             model,
             masses,
-            first: None,
+            initial_energy: None,
             until: 0,
-            last: 0.0,
+            final_energy: 0.0,
             work: 0.0,
-            traffic: 0.0,
+            absolute_work: 0.0,
             largest_x: 0.0,
             largest_v: 0.0,
         }
     }
 
-    /// What the forces' work does not explain of the change of kinetic energy, over the integral of the absolute power of the
-    /// forces on each coordinate. None where nothing moved.
+    /// `abs(ΔE − work)` over the integral of the absolute power of the forces on each coordinate. None where nothing moved.
     pub fn residual(&self) -> Option<f64> {
-        let change = self.last - self.first?;
-        let moves = self.largest_v > STILL * self.largest_x && self.traffic > 0.0;
-        moves.then(|| (change - self.work).abs() / self.traffic)
+        let change = self.final_energy - self.initial_energy?;
+        let moves = self.largest_v > REST_VELOCITY_RATIO * self.largest_x && self.absolute_work > 0.0;
+        moves.then(|| (change - self.work).abs() / self.absolute_work)
     }
 
     fn kinetic(&self, v: &[f64; D]) -> f64 {
@@ -59,34 +58,34 @@ impl<'m, const D: usize> EnergyBalance<'m, D> {
 
 impl<const D: usize> Observer<D> for EnergyBalance<'_, D> {
     fn segment(&mut self, segment: &Segment<'_, D>) {
-        if self.first.is_none() {
-            self.first = Some(self.kinetic(&segment.rows[1]));
-            self.until = segment.period + MOST_MESH_PERIODS;
+        if self.initial_energy.is_none() {
+            self.initial_energy = Some(self.kinetic(&segment.rows[1]));
+            self.until = segment.period + MAX_MESH_PERIODS;
         }
         if segment.period >= self.until {
             return;
         }
         let per_tau = 1.0 / self.model.period_tau;
-        let inside = segment.phase + 0.5 * segment.h * per_tau;
+        let interior = segment.phase + 0.5 * segment.h * per_tau;
         for &(node, weight) in GAUSS.iter() {
             let t = node * segment.h;
             let (x, v) = segment.at(t);
-            let a = self.model.acceleration(segment.phase + t * per_tau, inside, &x, &v);
+            let a = self.model.acceleration(segment.phase + t * per_tau, interior, &x, &v);
             for c in 0..D {
                 let power = self.masses[c] * a[c] * v[c] * weight * segment.h;
                 self.work += power;
-                self.traffic += power.abs();
+                self.absolute_work += power.abs();
                 if self.masses[c] > 0.0 {
                     self.largest_x = self.largest_x.max(x[c].abs());
                     self.largest_v = self.largest_v.max(v[c].abs());
                 }
             }
         }
-        self.last = self.kinetic(&segment.at(segment.h).1);
+        self.final_energy = self.kinetic(&segment.at(segment.h).1);
     }
 }
 
-/// Only where it is asked for.
+/// For an optional balance.
 impl<const D: usize> Observer<D> for Option<EnergyBalance<'_, D>> {
     fn segment(&mut self, segment: &Segment<'_, D>) {
         if let Some(balance) = self {
@@ -106,8 +105,8 @@ mod tests {
 
     const TOPIC: &str = "Response: energy balance";
 
-    /// Residual over `periods` of the motion of `motion` from the case's start, by the forces of `judge`.
-    fn residual<'m, const D: usize>(judge: &'m Model<D>, mut motion: Motion<'m, D>, periods: u64) -> f64 {
+    /// Residual over `periods` of the motion `motion` from the case's start, by the forces of `judge`.
+    fn residual<'m, const D: usize>(judge: &'m DynamicModel<D>, mut motion: Motion<'m, D>, periods: u64) -> f64 {
         let mut balance = EnergyBalance::new(judge);
         for _ in 0..periods {
             motion.advance_period(&mut balance, &Watch::none(), 0.0).unwrap();
@@ -115,7 +114,7 @@ mod tests {
         balance.residual().unwrap()
     }
 
-    fn motion<'m, const D: usize>(model: &'m Model<D>, case: &str, tolerance: f64) -> Motion<'m, D> {
+    fn motion<'m, const D: usize>(model: &'m DynamicModel<D>, case: &str, tolerance: f64) -> Motion<'m, D> {
         let start: [f64; 24] = reference().cases[case].initial_state.as_slice().try_into().unwrap();
         Motion::new(model, model.state_from(&start), Integrator::Taylor, tolerance, u64::MAX)
     }
@@ -129,7 +128,7 @@ mod tests {
     #[test]
     fn the_taylor_method_balances_to_its_tolerance() {
         for case in ["A", "B", "C"] {
-            let model = Model::<12>::new(&parameters(case)).unwrap();
+            let model = DynamicModel::<12>::new(&parameters(case)).unwrap();
             for (tolerance, limit) in [(1e-6, 1e-6), (1e-9, 1e-9), (1e-13, 2e-13)] {
                 let found = residual(&model, motion(&model, case, tolerance), 40);
                 check_worst(TOPIC, &format!("case {case}, 40 periods, Taylor at {tolerance:.0e}"), [found], limit);
@@ -137,13 +136,13 @@ mod tests {
         }
     }
 
-    /// Contact kept, constant step: the residual falls with the step at least as fast as the method's error does, whose order is four (what
-    /// shifts a vibration in time carries no energy, so it falls faster).
+    /// Contact kept, constant step: the residual falls with the step at least with the order of the method, four.
+    /// (Phase errors do not change the energy, so it can fall faster.)
     #[test]
     fn a_coarse_method_is_seen_with_its_order() {
         let mut p: Parameters = parameters("A");
         p.halves.iter_mut().for_each(|h| h.impact = None);
-        let model = Model::<6>::new(&p).unwrap();
+        let model = DynamicModel::<6>::new(&p).unwrap();
         let found = [32.0, 64.0, 128.0, 256.0].map(|parts| {
             let step = model.period_tau / parts;
             residual(&model, motion(&model, "A", 1e-9).with_fixed_runge_kutta(step), 20)
@@ -154,15 +153,15 @@ mod tests {
         check(TOPIC, "order of the residual, Runge–Kutta on case A (at least 4)", order, 5.0, Absolute(1.0));
     }
 
-    /// The same motion judged by forces that are off by one part in a thousand in one place.
+    /// The same motion with forces that differ by one part in a thousand in one place.
     #[test]
     fn a_wrong_force_is_caught() {
         for case in ["A", "B", "C"] {
-            let right = Model::<6>::new(&parameters(case)).unwrap();
+            let right = DynamicModel::<6>::new(&parameters(case)).unwrap();
             let wrong = |change: fn(&mut Parameters)| {
                 let mut p = parameters(case);
                 change(&mut p);
-                let judge = Model::<6>::new(&p).unwrap();
+                let judge = DynamicModel::<6>::new(&p).unwrap();
                 assert_eq!(judge.omega_ref, right.omega_ref, "the same scale of time");
                 residual(&judge, motion(&right, case, 1e-11), 40)
             };
@@ -190,7 +189,7 @@ mod tests {
             h.impact = None;
             h.mesh_stiffness = Stiffness::Constant { mean_n_per_m: 9e8 };
         }
-        let model = Model::<6>::new(&p).unwrap();
+        let model = DynamicModel::<6>::new(&p).unwrap();
         let mut balance = EnergyBalance::new(&model);
         motion(&model, "A", 1e-9).advance_period(&mut balance, &Watch::none(), 0.0).unwrap();
         assert_eq!(balance.residual(), None);

@@ -1,31 +1,35 @@
-//! From a motion to what is reported of it: RMS values, extremes, contact, regime, series, spectra.
+//! Response of a pair at an operating point: steady-state search, RMS values, extremes, contact state, regime, time
+//! series, spectra.
+//!
+//! [`solve`] integrates the [equations of motion](crate::dynamics) by the chosen [`SolutionMethod`] and returns a
+//! [`Response`]; [`solve_many`] does so for many operating points in parallel.
 
-// Loops over coordinates and Taylor orders read as the formulas do with an index.
+// Loops over coordinates and Taylor orders are written with an index, as the formulas are.
 #![allow(clippy::needless_range_loop)]
 
 mod analysis;
 mod budget;
 mod channel;
+mod classification;
 mod confidence;
 mod energy;
-mod quadrature;
+mod lyapunov;
+mod poincare;
 mod recorder;
 mod recording;
-mod regime;
 mod report;
 mod rest;
-mod settling;
 mod solve;
 mod spectrum;
 mod statistics;
 mod steady;
 
 pub use analysis::{
-    Analysis, ContactState, Halves, Method, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals, Summary,
-    ToothForce,
+    Analysis, ContactState, Halves, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals, SolutionMethod,
+    Summary, ToothForce,
 };
 pub use channel::{Channel, ChannelId, Quantity};
-pub use confidence::Interval;
+pub use confidence::ConfidenceInterval;
 pub use solve::{solve, solve_many};
 pub use spectrum::Spectrum;
 pub use statistics::Statistics;

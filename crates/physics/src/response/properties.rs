@@ -1,11 +1,12 @@
-//! Tests of what must hold whatever the numbers: scaling, mirrors, threads, drift along free motions, honest estimates.
+//! Properties that hold at any parameters: scaling, mirror images, threads, drift along rigid-body modes, error
+//! estimates.
 
 use rayon::prelude::*;
 
-use super::regime::lyapunov;
+use super::lyapunov::lyapunov_exponent;
 use super::*;
 use crate::dynamics::tests::reference::{parameters, reference};
-use crate::dynamics::{DynamicsError, Integrator, Model, Motion, Parameters, Spring, Stiffness, Unobserved};
+use crate::dynamics::{DynamicModel, DynamicsError, Integrator, Motion, Parameters, Spring, Stiffness, Unobserved};
 use crate::watch::Watch;
 use herringbone_oracle::Tolerance::Absolute;
 use herringbone_oracle::{check, check_worst};
@@ -28,9 +29,9 @@ fn relative(a: [f64; 4], b: [f64; 4]) -> impl Iterator<Item = f64> {
     (0..4).map(move |i| a[i] / b[i] - 1.0)
 }
 
-/// A pair without any symmetry left: staggered halves, one of them stiffer held. (Of case C that makes a chaotic motion, of which only
-/// what holds bit by bit can be compared.)
-fn lopsided(name: &str) -> Parameters {
+/// A pair without symmetry: staggered halves, one with a stiffer support. (Case C then has a chaotic motion, of which
+/// only bit-identical results can be compared.)
+fn asymmetric(name: &str) -> Parameters {
     let mut p = parameters(name);
     p.halves[1].phase_shift_mesh_periods = 0.3;
     p.halves[0].gear_axial.stiffness *= 1.2;
@@ -48,10 +49,11 @@ fn every_spring(p: &mut Parameters, change: impl Fn(&mut Spring)) {
     [&mut c.pinion_torsion, &mut c.gear_torsion].into_iter().for_each(&change);
 }
 
-/// Stiffnesses, torques and impacts doubled at √2 of the speed, dampers √2 of theirs: the same path, accelerations doubled.
+/// Stiffnesses, torques and impacts doubled at √2 of the speed, dampers multiplied by √2: the same path, accelerations
+/// doubled.
 #[test]
 fn doubled_stiffness_and_load_double_the_accelerations() {
-    for (name, p) in [("A", parameters("A")), ("C", parameters("C")), ("A, lopsided", lopsided("A"))] {
+    for (name, p) in [("A", parameters("A")), ("C", parameters("C")), ("A, asymmetric", asymmetric("A"))] {
         let root = 2f64.sqrt();
         let mut q = p.clone();
         q.mesh_frequency_hz *= root;
@@ -62,7 +64,7 @@ fn doubled_stiffness_and_load_double_the_accelerations() {
             if let Stiffness::Fourier { mean_n_per_m, .. } = &mut h.mesh_stiffness {
                 *mean_n_per_m *= 2.0;
             }
-            if let Some(crate::dynamics::Impact::HalfSine { force_n, .. }) = &mut h.impact {
+            if let Some(crate::dynamics::ImpactExcitation::HalfSine { force_n, .. }) = &mut h.impact {
                 *force_n *= 2.0;
             }
         }
@@ -76,14 +78,14 @@ fn doubled_stiffness_and_load_double_the_accelerations() {
     }
 }
 
-/// Torque and impact the other way: the mirrored motion on the back flanks.
+/// Torque and impact reversed: the mirrored motion on the back flanks.
 #[test]
 fn reversed_torque_mirrors_the_motion() {
-    for (name, p) in [("A", parameters("A")), ("C", parameters("C")), ("C, lopsided", lopsided("C"))] {
+    for (name, p) in [("A", parameters("A")), ("C", parameters("C")), ("C, asymmetric", asymmetric("C"))] {
         let mut q = p.clone();
         for h in &mut q.halves {
             h.pinion_torque_nm = -h.pinion_torque_nm;
-            if let Some(crate::dynamics::Impact::HalfSine { force_n, .. }) = &mut h.impact {
+            if let Some(crate::dynamics::ImpactExcitation::HalfSine { force_n, .. }) = &mut h.impact {
                 *force_n = -*force_n;
             }
         }
@@ -99,21 +101,22 @@ fn reversed_torque_mirrors_the_motion() {
     }
 }
 
-/// The halves exchanged and the helix turned over: the answers of the halves exchanged.
+/// The halves exchanged and the helix angle reversed: the results of the halves exchanged.
 #[test]
 fn mirrored_gears_give_the_mirrored_answer() {
-    let p = lopsided("A");
+    let p = asymmetric("A");
     let mut q = p.clone();
     q.halves.swap(0, 1);
     q.helix_angle_rad = -q.helix_angle_rad;
     let (a, b) = (auto(&p, 1e-9), auto(&q, 1e-9));
     assert_eq!((a.summary.regime, a.summary.contact), (b.summary.regime, b.summary.contact));
     let [l, r, al, ar] = accelerations(&b);
-    let quantity = "halves exchanged, case A lopsided: RMS exchanged";
+    let quantity = "halves exchanged, case A asymmetric: RMS exchanged";
     check_worst(PROPERTIES, quantity, relative([r, l, ar, al], accelerations(&a)), 1e-9);
 }
 
-/// A hair of difference between the halves makes twelve coordinates of six: the same states at the end of the motion's period.
+/// A negligible difference of the halves makes twelve coordinates of six: the same states at the end of the period of
+/// the motion.
 #[test]
 fn states_of_six_and_twelve_coordinates_agree() {
     for (name, speed) in [("A", 1.0), ("A", 0.7), ("C", 1.0)] {
@@ -123,7 +126,7 @@ fn states_of_six_and_twelve_coordinates_agree() {
         q.halves[1].gear_mass_kg *= 1.0 + 1e-13;
         let (six, twelve) = (auto(&p, 1e-9), auto(&q, 1e-9));
         assert_eq!((six.summary.degrees_of_freedom, twelve.summary.degrees_of_freedom), (6, 12));
-        // Free rotations are as they happen to be; the others are lengths and velocities of their kind.
+        // Rigid rotations are arbitrary; the others are lengths and velocities of their kind.
         let kept = (0..24).filter(|c| !matches!(c % 6, 2 | 5));
         let scale = |c: usize| {
             let like = if c < 12 { 0..12 } else { 12..24 };
@@ -135,10 +138,10 @@ fn states_of_six_and_twelve_coordinates_agree() {
     }
 }
 
-/// Equal input, equal bits, whatever thread it runs on.
+/// Equal input gives bit-identical results on any thread.
 #[test]
 fn threads_change_nothing() {
-    let cases = || ["A", "C", "B"].map(|name| if name == "C" { lopsided(name) } else { parameters(name) });
+    let cases = || ["A", "C", "B"].map(|name| if name == "C" { asymmetric(name) } else { parameters(name) });
     let solved = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let all: Vec<Response> = pool.install(|| cases().par_iter().map(|p| auto(p, 1e-6)).collect());
@@ -146,22 +149,23 @@ fn threads_change_nothing() {
     };
     let here: Vec<Response> = cases().iter().map(|p| auto(p, 1e-6)).collect();
     for threads in [1, 2] {
-        // Debug prints every digit of a number.
+        // Debug output has every digit of a number.
         assert_eq!(format!("{here:?}"), format!("{:?}", solved(threads)), "{threads}");
     }
 }
 
-/// Staggered halves set a floating pinion off along its screw motion, at a speed that nothing slows: the rest repeats all the same.
+/// Staggered halves set a floating pinion in motion along its screw mode, at a speed that does not decay: the rest is
+/// periodic all the same.
 #[test]
-fn a_drifting_pinion_repeats() {
+fn a_drifting_pinion_is_periodic() {
     for (name, stagger) in [("A", 0.25), ("A", 0.5)] {
         let mut p = parameters(name);
         p.halves[1].phase_shift_mesh_periods = stagger;
         let r = auto(&p, 1e-9);
         assert!(r.summary.period_mesh_periods.is_some(), "{name} {stagger}: {:?}", r.summary);
         assert!(r.summary.error_estimate <= 1e-9, "{name} {stagger}: {}", r.summary.error_estimate);
-        // From rest the same motion drifts: followed, it is seen to repeat too.
-        let method = Method::Integrate { mesh_periods: 1200, record_mesh_periods: 120 };
+        // From rest the same motion drifts; integrated, it is found to be periodic too.
+        let method = SolutionMethod::Integrate { mesh_periods: 1200, record_mesh_periods: 120 };
         let analysis = Analysis { method, accuracy: 1e-9, samples_per_mesh_period: 0, ..Analysis::default() };
         let followed = solve(&p, &analysis, &Watch::none()).unwrap();
         assert_eq!(followed.summary.period_mesh_periods, r.summary.period_mesh_periods, "{name} {stagger}");
@@ -170,9 +174,10 @@ fn a_drifting_pinion_repeats() {
     }
 }
 
-/// A mesh period that is long against everything in the pair: the answer needs no linear map, and equals the one that has it.
+/// A mesh period that is long against all time constants of the pair: the orbit is found by integration and equals that
+/// of a longer one.
 #[test]
-fn slow_speeds_end_soon() {
+fn a_slow_speed_is_settled_by_integration() {
     let mut p = parameters("A");
     p.mesh_frequency_hz = 0.8;
     p.halves.iter_mut().for_each(|h| h.mesh_damping_n_s_per_m *= 20.0);
@@ -181,7 +186,7 @@ fn slow_speeds_end_soon() {
     let r = auto(&p, 1e-6);
     assert_eq!((r.summary.regime, r.summary.floquet_modulus), (Regime::Period1, None));
     let analysis = Analysis {
-        method: Method::Integrate { mesh_periods: 3, record_mesh_periods: 1 },
+        method: SolutionMethod::Integrate { mesh_periods: 3, record_mesh_periods: 1 },
         accuracy: 1e-9,
         samples_per_mesh_period: 0,
         ..Analysis::default()
@@ -189,17 +194,17 @@ fn slow_speeds_end_soon() {
     let followed = solve(&p, &analysis, &Watch::none()).unwrap();
     let errors: Vec<f64> = relative(accelerations(&followed), accelerations(&r)).collect();
     assert!(errors.iter().all(|e| e.abs() <= r.summary.error_estimate + followed.summary.error_estimate), "{errors:?}");
-    check_worst(PROPERTIES, "0.8 mesh periods per second, everything dies within one: RMS", errors, 1e-6);
+    check_worst(PROPERTIES, "0.8 mesh periods per second, transients decay within one: RMS", errors, 1e-6);
 }
 
-/// Largest Lyapunov exponents of case B per mesh period: within the mirror symmetry, against it, and of all twelve
-/// coordinates. An independent program states 0.27, 0.475 and 0.37. Averages over 4000 mesh periods of two runs that differ by
-/// rounding alone were 0.470 and 0.440 against the symmetry, 0.264 and 0.369 otherwise: the tolerance is four times that scatter at twice
-/// the length.
+/// Largest Lyapunov exponents of case B per mesh period: symmetric, antisymmetric, and of all twelve coordinates. An
+/// independent program states 0.27, 0.475 and 0.37. Averages over 4000 mesh periods of two runs that differ by rounding
+/// alone were 0.470 and 0.440 (antisymmetric), 0.264 and 0.369 otherwise: the tolerance is four times that scatter at
+/// twice the length.
 #[test]
 fn exponents_of_the_chaotic_case() {
     fn run<const D: usize>(against: bool, periods: u64) -> f64 {
-        let model = Model::<D>::new(&parameters("B")).unwrap();
+        let model = DynamicModel::<D>::new(&parameters("B")).unwrap();
         let mut start: [f64; 24] = reference().cases["B"].initial_state.as_slice().try_into().unwrap();
         if D == 12 {
             start[0] += 5e-7;
@@ -208,8 +213,8 @@ fn exponents_of_the_chaotic_case() {
         for _ in 0..300 {
             motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
         }
-        let of = if against { model.against_symmetry() } else { model.clone() };
-        lyapunov(&mut motion, &of, periods, &Watch::none()).unwrap()
+        let of = if against { model.antisymmetric() } else { model.clone() };
+        lyapunov_exponent(&mut motion, &of, periods, &Watch::none()).unwrap()
     }
     let topic = "Response: regime";
     let of = |what: &str| format!("Lyapunov exponent of case B over 8000 mesh periods, {what}");
@@ -230,8 +235,8 @@ fn variants() -> Vec<(String, Parameters, Option<[f64; 24]>)> {
     let mut off = start("C");
     (off[0], off[1]) = (off[0] + 5e-7, off[1] + 3e-7);
     out.push(("C started off its symmetry".into(), parameters("C"), Some(off)));
-    out.push(("A, lopsided".into(), lopsided("A"), None));
-    out.push(("C, lopsided".into(), lopsided("C"), None));
+    out.push(("A, asymmetric".into(), asymmetric("A"), None));
+    out.push(("C, asymmetric".into(), asymmetric("C"), None));
     let mut sampled = parameters("C");
     for h in &mut sampled.halves {
         let values_n_per_m = (0..64).map(|i| h.mesh_stiffness.at(f64::from(i) / 64.0)).collect();
@@ -244,8 +249,8 @@ fn variants() -> Vec<(String, Parameters, Option<[f64; 24]>)> {
     out
 }
 
-/// The estimate is never below the error, nor more than a hundred times above (above what rounding leaves), on motions that are
-/// followed by either method.
+/// The estimate is never below the error, nor more than a hundred times above it (above rounding), on motions
+/// integrated by either method.
 #[test]
 fn estimates_hold_off_the_reference_cases() {
     // RMS values of two runs in double precision agree no better than this.
@@ -255,7 +260,7 @@ fn estimates_hold_off_the_reference_cases() {
     for (what, p, initial_state) in variants() {
         let run = |p: &Parameters, integrator, accuracy| {
             let analysis = Analysis {
-                method: Method::Integrate { mesh_periods: 60, record_mesh_periods: 20 },
+                method: SolutionMethod::Integrate { mesh_periods: 60, record_mesh_periods: 20 },
                 integrator,
                 accuracy,
                 initial_state,
@@ -298,18 +303,19 @@ fn estimates_hold_off_the_reference_cases() {
     check_worst(topic, "estimate over error, the same motions", above, 100.0);
 }
 
-/// Springs that cannot carry the load are named as the reason.
+/// Springs that cannot carry the load are an invalid parameter.
 #[test]
-fn a_load_nothing_carries_is_refused() {
+fn a_load_beyond_the_springs_is_refused() {
     let mut p = parameters("A");
     p.halves.iter_mut().for_each(|h| h.pinion_lateral.stiffness = 1.0);
     let refused = solve(&p, &Analysis::default(), &Watch::none());
     assert!(matches!(refused, Err(DynamicsError::InvalidParameter { .. })), "{refused:?}");
 }
 
-/// No load, no play, at rest until the first pulse: the pulse is found, and the load adds nothing to a linear pair's motion.
+/// No load, no backlash, at rest until the first pulse: the motion starts, and the load adds nothing to the motion of a
+/// linear pair.
 #[test]
-fn an_unloaded_pair_wakes_up() {
+fn an_unloaded_pair_moves_from_the_first_pulse_on() {
     let mut p = parameters("A");
     p.half_backlash_m = 0.0;
     for h in &mut p.halves {
@@ -319,5 +325,5 @@ fn an_unloaded_pair_wakes_up() {
     p.halves.iter_mut().for_each(|h| h.pinion_torque_nm = 0.0);
     let unloaded = auto(&p, 1e-9);
     let errors = relative(accelerations(&unloaded), accelerations(&loaded));
-    check_worst(PROPERTIES, "constant stiffness, no play: RMS without load against RMS with load", errors, 1e-9);
+    check_worst(PROPERTIES, "constant stiffness, no backlash: RMS without load against RMS with load", errors, 1e-9);
 }

@@ -1,43 +1,44 @@
-//! Gathers what is asked of a motion while it runs: statistics, series, contact.
+//! Recording of channels during an integration: statistics, time series, contact times.
 
-use super::channel::{ChannelId, Probe};
-use super::statistics::{Gathered, horner};
-use crate::dynamics::{MAX_ORDER, Model, Observer, PER_HALF, Segment};
+use super::channel::{ChannelEvaluator, ChannelId};
+use super::statistics::{MomentAccumulator, horner};
+use crate::dynamics::{DynamicModel, MAX_ORDER, Observer, PER_HALF, Segment};
 use crate::simd::vectorised;
 
-/// What to record of one channel.
-struct Track<const D: usize> {
+/// Recording of one channel.
+struct ChannelTrack<const D: usize> {
     id: ChannelId,
-    probe: Probe<D>,
-    gathered: Gathered,
+    evaluator: ChannelEvaluator<D>,
+    accumulator: MomentAccumulator,
     extremes: bool,
     samples: Option<Vec<f64>>,
 }
 
-/// The observer of the recorded periods.
-pub(super) struct Recorder<const D: usize> {
-    tracks: Vec<Track<D>>,
+/// Observer of the recorded mesh periods.
+pub(super) struct ChannelRecorder<const D: usize> {
+    tracks: Vec<ChannelTrack<D>>,
     samples_per_mesh_period: usize,
-    /// The mesh period of the last segment, and the index of the next sample within it.
+    /// Mesh period of the last segment, and the index of the next sample within it.
     period: u64,
     next_sample: usize,
     sampling: bool,
-    /// Scaled time on driving flank, apart, on back flank, per half solved.
+    /// Scaled time on driving flank, apart, and on back flank, per solved half.
     contact: [[f64; 3]; 2],
 }
 
-impl<const D: usize> Recorder<D> {
-    /// Statistics of `statistics` (with extremes where the flag says so); samples of `series`, for `periods` mesh periods.
+impl<const D: usize> ChannelRecorder<D> {
+    /// `statistics`: channels with statistics, and whether extremes are needed. `series`: channels that are sampled,
+    /// over `periods` mesh periods.
     pub fn new(
-        model: &Model<D>,
+        model: &DynamicModel<D>,
         statistics: &[(ChannelId, bool)],
         series: &[ChannelId],
         samples_per_mesh_period: usize,
         periods: u64,
     ) -> Self {
-        // Long records grow as they go.
+        // Limited: long records grow during recording.
         let capacity = samples_per_mesh_period.saturating_mul(periods as usize).min(1 << 20);
-        let mut tracks: Vec<Track<D>> = Vec::new();
+        let mut tracks: Vec<ChannelTrack<D>> = Vec::new();
         let mut add = |id: ChannelId, extremes: bool, sampled: bool| {
             let samples = sampled.then(|| Vec::with_capacity(capacity));
             match tracks.iter_mut().find(|t| t.id == id) {
@@ -45,10 +46,10 @@ impl<const D: usize> Recorder<D> {
                     track.extremes |= extremes;
                     track.samples = track.samples.take().or(samples);
                 }
-                None => tracks.push(Track {
+                None => tracks.push(ChannelTrack {
                     id,
-                    probe: id.probe(model),
-                    gathered: Gathered::new(id.is_acceleration()),
+                    evaluator: id.evaluator(model),
+                    accumulator: MomentAccumulator::new(id.is_acceleration()),
                     extremes,
                     samples,
                 }),
@@ -70,19 +71,19 @@ impl<const D: usize> Recorder<D> {
         }
     }
 
-    pub fn gathered(&self, id: ChannelId) -> Option<&Gathered> {
-        self.tracks.iter().find(|t| t.id == id).map(|t| &t.gathered)
+    pub fn accumulator(&self, id: ChannelId) -> Option<&MomentAccumulator> {
+        self.tracks.iter().find(|t| t.id == id).map(|t| &t.accumulator)
     }
 
-    pub fn all(&self) -> impl Iterator<Item = (ChannelId, &Gathered, bool)> {
-        self.tracks.iter().map(|t| (t.id, &t.gathered, t.extremes))
+    pub fn all(&self) -> impl Iterator<Item = (ChannelId, &MomentAccumulator, bool)> {
+        self.tracks.iter().map(|t| (t.id, &t.accumulator, t.extremes))
     }
 
     pub fn take_samples(&mut self) -> Vec<(ChannelId, Vec<f64>)> {
         self.tracks.iter_mut().filter_map(|t| t.samples.take().map(|s| (t.id, s))).collect()
     }
 
-    /// Shares of time on driving flank, apart and on back flank, left and right.
+    /// Fractions of time on driving flank, apart and on back flank, left and right.
     pub fn contact_shares(&self) -> [[f64; 3]; 2] {
         let share = |j: usize| {
             let total: f64 = self.contact[j].iter().sum();
@@ -92,9 +93,9 @@ impl<const D: usize> Recorder<D> {
     }
 }
 
-impl<const D: usize> Observer<D> for Recorder<D> {
+impl<const D: usize> Observer<D> for ChannelRecorder<D> {
     fn segment(&mut self, segment: &Segment<'_, D>) {
-        for j in 0..Model::<D>::HALVES {
+        for j in 0..DynamicModel::<D>::HALVES {
             self.contact[j][(1 - segment.contact[j].signum()) as usize] += segment.h;
         }
         let mut polynomial = [0.0; MAX_ORDER + 1];
@@ -108,7 +109,7 @@ impl<const D: usize> Observer<D> for Recorder<D> {
         let first = self.next_sample;
         let mut last = first;
         if self.sampling {
-            // A sample on the end of the segment belongs to the next one.
+            // A sample at the end of the segment belongs to the next one.
             while last < per_period && (last as f64 / per_period as f64) < end {
                 last += 1;
             }
@@ -117,8 +118,8 @@ impl<const D: usize> Observer<D> for Recorder<D> {
             let degree = vectorised(
                 #[inline(always)]
                 || {
-                    let degree = track.probe.polynomial(segment, &mut polynomial);
-                    track.gathered.add(&polynomial[..=degree], segment.h, track.extremes);
+                    let degree = track.evaluator.polynomial(segment, &mut polynomial);
+                    track.accumulator.add(&polynomial[..=degree], segment.h, track.extremes);
                     degree
                 },
             );

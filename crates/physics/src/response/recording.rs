@@ -1,138 +1,150 @@
-//! A run from a start: followed through its mesh periods, recorded over the last of them.
+//! Integration of a trajectory whose last mesh periods are recorded.
 
 use super::analysis::PoincarePoint;
 use super::channel::ChannelId;
 use super::confidence::MeanSquares;
 use super::energy::EnergyBalance;
-use super::recorder::Recorder;
-use super::regime::Section;
-use super::report::Record;
-use super::statistics::Gathered;
-use crate::dynamics::{DynamicsError, Model, Numerics, Observer, Passenger, Segment, State, U, YG, YP};
+use super::poincare::PoincareSection;
+use super::recorder::ChannelRecorder;
+use super::report::RecordedMotion;
+use super::statistics::MomentAccumulator;
+use crate::dynamics::{
+    DynamicModel, DynamicsError, MotionState, Observer, Segment, StepCounts, TrajectoryObserver, U, YG, YP,
+};
 
-/// Parts of a record whose scatter gives its standard error.
+/// Number of parts of a record from which its standard error is estimated.
 const BATCHES: u64 = 10;
-/// Up to this many recorded mesh periods it is known that the motion repeats, and not asked.
-const KNOWN_TO_REPEAT: u64 = 8;
+/// Up to this many recorded mesh periods the record is one of a known period, and periodicity is not tested.
+const SHORT_RECORD_MESH_PERIODS: u64 = 8;
 
-/// The run, and what has been gathered of it. Mesh periods are counted as the start's are.
-pub(super) struct Run<'m, const D: usize> {
-    model: &'m Model<D>,
-    state: State<D>,
+/// A trajectory with its record. Mesh periods are counted as those of the start.
+pub(super) struct RecordedRun<'m, const D: usize> {
+    model: &'m DynamicModel<D>,
+    state: MotionState<D>,
     tolerance: f64,
-    first: u64,
+    first_period: u64,
     record_from: u64,
     end: u64,
-    /// The state at the start of this mesh period is kept.
-    keep_at: u64,
-    pub kept: State<D>,
-    /// The state from which the record starts.
-    pub from: State<D>,
-    pub recorder: Recorder<D>,
+    /// The state at the start of this mesh period is stored.
+    store_at: u64,
+    pub stored: MotionState<D>,
+    /// State at the start of the record.
+    pub from: MotionState<D>,
+    pub recorder: ChannelRecorder<D>,
     pub energy: Option<EnergyBalance<'m, D>>,
-    recent: Section<D>,
+    recent: PoincareSection<D>,
     points: Vec<PoincarePoint>,
     batch: u64,
     batches: Vec<f64>,
-    snapshot: Gathered,
+    snapshot: MomentAccumulator,
     squares: MeanSquares,
-    numerics: Numerics,
+    counts: StepCounts,
     error: Option<DynamicsError>,
 }
 
-impl<'m, const D: usize> Run<'m, D> {
-    /// From `start` to the mesh period `end`, recorded from `record_from` on.
+impl<'m, const D: usize> RecordedRun<'m, D> {
+    /// Trajectory from `start` to the mesh period `end`, recorded from the mesh period `record_from` on.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] of [`RigidBodyModes::new`](crate::dynamics).
     pub fn new(
-        model: &'m Model<D>,
-        start: State<D>,
+        model: &'m DynamicModel<D>,
+        start: MotionState<D>,
         tolerance: f64,
         (record_from, end): (u64, u64),
-        recorder: Recorder<D>,
+        recorder: ChannelRecorder<D>,
     ) -> Result<Self, DynamicsError> {
         let recorded = end - record_from;
         let mut run = Self {
             model,
             state: start,
             tolerance,
-            first: start.period,
+            first_period: start.period,
             record_from,
             end,
-            keep_at: start.period,
-            kept: start,
+            store_at: start.period,
+            stored: start,
             from: start,
             recorder,
             energy: None,
-            recent: if recorded > KNOWN_TO_REPEAT { Section::held(model)? } else { Section::new() },
+            recent: if recorded > SHORT_RECORD_MESH_PERIODS {
+                PoincareSection::without_rigid_body(model)?
+            } else {
+                PoincareSection::new()
+            },
             points: Vec::with_capacity(recorded.min(1 << 20) as usize),
             batch: (recorded / BATCHES).max(1),
             batches: Vec::new(),
-            snapshot: Gathered::new(false),
+            snapshot: MomentAccumulator::new(false),
             squares: MeanSquares::new::<D>(recorded),
-            numerics: Numerics::default(),
+            counts: StepCounts::default(),
             error: None,
         };
-        run.period_begins();
+        run.begin_period();
         Ok(run)
     }
 
-    /// With the energy balance of what is recorded.
+    /// Adds an energy balance of the record.
     pub fn with_energy(self, energy: Option<EnergyBalance<'m, D>>) -> Self {
         Self { energy, ..self }
     }
 
-    /// Keeps the state at the start of the mesh period `keep_at`.
-    pub fn keeping(self, keep_at: u64) -> Self {
-        Self { keep_at, ..self }
+    /// Stores the state at the start of the mesh period `store_at`.
+    pub fn storing_state_at(self, store_at: u64) -> Self {
+        Self { store_at, ..self }
     }
 
-    fn period_begins(&mut self) {
+    fn begin_period(&mut self) {
         let state = self.state;
-        if state.period == self.keep_at {
-            self.kept = state;
+        if state.period == self.store_at {
+            self.stored = state;
         }
         if state.period == self.record_from {
             self.from = state;
         }
-        if self.looks() {
+        if self.wants_segments() {
             self.recent.push(state);
             self.points.push(poincare(self.model, &state));
         }
     }
 
-    /// What was recorded; fails where the run did.
-    pub fn finish(self) -> Result<Finished<'m, D>, DynamicsError> {
+    /// The finished run.
+    ///
+    /// # Errors
+    /// The error that ended the integration.
+    pub fn finish(self) -> Result<FinishedRun<'m, D>, DynamicsError> {
         if let Some(error) = self.error {
             return Err(error);
         }
         let mut recent = self.recent;
         recent.push(self.state);
-        let record = Record {
+        let record = RecordedMotion {
             recent,
             points: self.points,
             last: self.state,
-            numerics: self.numerics,
+            counts: self.counts,
             batch_error: standard_error(&self.batches),
             mean_squares: self.squares.finish(),
         };
-        Ok(Finished { record, recorder: self.recorder, energy: self.energy, kept: self.kept, from: self.from })
+        Ok(FinishedRun { record, recorder: self.recorder, energy: self.energy, stored: self.stored, from: self.from })
     }
 }
 
-/// What a run leaves.
-pub(super) struct Finished<'m, const D: usize> {
-    pub record: Record<D>,
-    pub recorder: Recorder<D>,
+/// Result of a recorded run.
+pub(super) struct FinishedRun<'m, const D: usize> {
+    pub record: RecordedMotion<D>,
+    pub recorder: ChannelRecorder<D>,
     pub energy: Option<EnergyBalance<'m, D>>,
-    pub kept: State<D>,
-    pub from: State<D>,
+    pub stored: MotionState<D>,
+    pub from: MotionState<D>,
 }
 
-impl<'m, const D: usize> Passenger<'m, D> for Run<'m, D> {
-    fn model(&self) -> &'m Model<D> {
+impl<'m, const D: usize> TrajectoryObserver<'m, D> for RecordedRun<'m, D> {
+    fn model(&self) -> &'m DynamicModel<D> {
         self.model
     }
 
-    fn start(&self) -> State<D> {
+    fn start(&self) -> MotionState<D> {
         self.state
     }
 
@@ -141,10 +153,10 @@ impl<'m, const D: usize> Passenger<'m, D> for Run<'m, D> {
     }
 
     fn fraction_done(&self) -> f64 {
-        (self.state.period - self.first) as f64 / (self.end - self.first).max(1) as f64
+        (self.state.period - self.first_period) as f64 / (self.end - self.first_period).max(1) as f64
     }
 
-    fn looks(&self) -> bool {
+    fn wants_segments(&self) -> bool {
         self.state.period >= self.record_from && self.state.period < self.end
     }
 
@@ -153,13 +165,13 @@ impl<'m, const D: usize> Passenger<'m, D> for Run<'m, D> {
         self.energy.segment(segment);
     }
 
-    fn period_ended(&mut self, state: &State<D>) -> bool {
-        let recorded = self.looks();
+    fn finish_period(&mut self, state: &MotionState<D>) -> bool {
+        let recorded = self.wants_segments();
         self.state = *state;
         if recorded {
             self.squares.push(&self.recorder);
             if (state.period - self.record_from).is_multiple_of(self.batch)
-                && let Some(now) = self.recorder.gathered(ChannelId::mesh_acceleration(0))
+                && let Some(now) = self.recorder.accumulator(ChannelId::mesh_acceleration(0))
             {
                 self.batches.push(now.variance_since(&self.snapshot));
                 self.snapshot = *now;
@@ -167,17 +179,17 @@ impl<'m, const D: usize> Passenger<'m, D> for Run<'m, D> {
         }
         let goes_on = state.period < self.end;
         if goes_on {
-            self.period_begins();
+            self.begin_period();
         }
         goes_on
     }
 
-    fn ended(&mut self, numerics: Numerics, error: Option<DynamicsError>) {
-        (self.numerics, self.error) = (numerics, error);
+    fn finished(&mut self, counts: StepCounts, error: Option<DynamicsError>) {
+        (self.counts, self.error) = (counts, error);
     }
 }
 
-fn poincare<const D: usize>(model: &Model<D>, state: &State<D>) -> PoincarePoint {
+fn poincare<const D: usize>(model: &DynamicModel<D>, state: &MotionState<D>) -> PoincarePoint {
     let x = |row: &[f64; D]| row[YP] - row[YG] + row[U];
     PoincarePoint { x_left_m: x(&state.x), v_x_left_m_s: x(&state.v) * model.omega_ref }
 }

@@ -1,4 +1,4 @@
-//! From what was gathered to what is reported.
+//! Assembly of a response from a recorded motion.
 
 use std::collections::BTreeMap;
 
@@ -7,56 +7,56 @@ use super::analysis::{
 };
 use super::channel::{Channel, ChannelId};
 use super::confidence::rms_interval_95;
-use super::recorder::Recorder;
-use super::regime::Section;
-use crate::dynamics::{Model, NaturalModes, Numerics, PER_HALF, Parameters, State};
+use super::poincare::PoincareSection;
+use super::recorder::ChannelRecorder;
+use crate::dynamics::{DynamicModel, MotionState, NaturalModes, PER_HALF, Parameters, StepCounts};
 
-/// The question.
-pub(super) struct Asked<'a> {
+/// Parameters, settings and natural modes of the analysis.
+pub(super) struct ReportInput<'a> {
     pub p: &'a Parameters,
     pub analysis: &'a Analysis,
     pub modes: &'a NaturalModes,
 }
 
-/// What is known of the motion beside what the recorder gathered.
-pub(super) struct Verdict {
+/// Properties of the recorded motion that are not in its record.
+pub(super) struct MotionAssessment {
     pub regime: Regime,
     pub period: Option<u64>,
     pub floquet: Option<f64>,
-    /// Over the motion's period, largest first.
+    /// Over the period of the motion, largest first.
     pub multipliers: Option<Vec<Multiplier>>,
     pub lyapunov: Option<f64>,
     pub method: &'static str,
     pub error_estimate: f64,
     pub energy_residual: Option<f64>,
-    /// Time of the first recorded value.
+    /// Time of the first recorded value, s.
     pub t0_s: f64,
-    pub numerics: Numerics,
+    pub counts: StepCounts,
 }
 
-/// What `record` leaves beside the recorder's own.
-pub(super) struct Record<const D: usize> {
-    pub recent: Section<D>,
+/// Record of a motion without its channels.
+pub(super) struct RecordedMotion<const D: usize> {
+    pub recent: PoincareSection<D>,
     pub points: Vec<PoincarePoint>,
-    pub last: State<D>,
-    pub numerics: Numerics,
+    pub last: MotionState<D>,
+    pub counts: StepCounts,
     pub batch_error: f64,
-    /// Mean squares of the accelerations of every response, mesh period by mesh period.
+    /// Mean squares of the accelerations of every response, by mesh period.
     pub mean_squares: Vec<(ChannelId, Vec<f64>)>,
 }
 
-/// Puts a response together from what was gathered.
-pub(super) fn report<const D: usize>(
-    asked: &Asked<'_>,
-    model: &Model<D>,
-    mut recorder: Recorder<D>,
-    record: Record<D>,
-    verdict: Verdict,
+/// Assembles the response.
+pub(super) fn assemble_response<const D: usize>(
+    input: &ReportInput<'_>,
+    model: &DynamicModel<D>,
+    mut recorder: ChannelRecorder<D>,
+    record: RecordedMotion<D>,
+    assessment: MotionAssessment,
 ) -> Response {
     let recorded = record.points.len() as u64;
     let last = record.last;
     let right = if D > PER_HALF { 1 } else { 0 };
-    let rms_of = |id: ChannelId| recorder.gathered(id).map_or(0.0, |g| g.mean_and_square().1.sqrt());
+    let rms_of = |id: ChannelId| recorder.accumulator(id).map_or(0.0, |g| g.mean_and_square().1.sqrt());
     let both = |id: fn(u8) -> ChannelId| Halves { left: rms_of(id(0)), right: rms_of(id(right)) };
     let mesh = both(ChannelId::mesh_acceleration);
     let axial = both(ChannelId::pinion_axial_acceleration);
@@ -65,21 +65,21 @@ pub(super) fn report<const D: usize>(
         channels.insert(ChannelId::mesh_acceleration(half).name(), m);
         channels.insert(ChannelId::pinion_axial_acceleration(half).name(), a);
     }
-    let statistics = asked
+    let statistics = input
         .analysis
         .channels
         .iter()
-        .filter_map(|id| recorder.gathered(*id).map(|g| (id.name(), g.finish())))
+        .filter_map(|id| recorder.accumulator(*id).map(|g| (id.name(), g.finish())))
         .collect();
     let mut min_displacement_m = f64::INFINITY;
     for half in solved_halves::<D>() {
-        if let Some(s) = recorder.gathered(ChannelId::s(half)) {
+        if let Some(s) = recorder.accumulator(ChannelId::s(half)) {
             min_displacement_m = min_displacement_m.min(s.finish().min);
         }
     }
     let tooth_force = |half: u8| {
         let static_n = model.halves[usize::from(half)].load / model.cos;
-        let (max_n, min_n) = recorder.gathered(ChannelId::tooth_force(half)).map_or((static_n, static_n), |f| {
+        let (max_n, min_n) = recorder.accumulator(ChannelId::tooth_force(half)).map_or((static_n, static_n), |f| {
             let f = f.finish();
             (f.max, f.min)
         });
@@ -87,9 +87,9 @@ pub(super) fn report<const D: usize>(
     };
     let tooth_force = Halves { left: tooth_force(0), right: tooth_force(right) };
     let shares = recorder.contact_shares();
-    let dt_s = asked.p.mesh_period_s() / asked.analysis.samples_per_mesh_period.max(1) as f64;
+    let dt_s = input.p.mesh_period_s() / input.analysis.samples_per_mesh_period.max(1) as f64;
     let mut samples = recorder.take_samples();
-    let series = asked
+    let series = input
         .analysis
         .channels
         .iter()
@@ -97,10 +97,17 @@ pub(super) fn report<const D: usize>(
             let at = samples.iter().position(|(other, _)| other == id)?;
             let (id, values) = samples.swap_remove(at);
             let quantity = id.quantity();
-            Some(Channel { name: id.name(), quantity, unit: quantity.unit().into(), t0_s: verdict.t0_s, dt_s, values })
+            Some(Channel {
+                name: id.name(),
+                quantity,
+                unit: quantity.unit().into(),
+                t0_s: assessment.t0_s,
+                dt_s,
+                values,
+            })
         })
         .collect();
-    let final_state = model.source_state(&last);
+    let final_state = model.physical_state(&last);
     let interval = |id: ChannelId| {
         let (_, squares) = record.mean_squares.iter().find(|(other, _)| *other == id)?;
         rms_interval_95(squares)
@@ -117,27 +124,27 @@ pub(super) fn report<const D: usize>(
         statistics,
         dynamic_factor: dynamic_factor(&tooth_force),
         tooth_force,
-        regime: verdict.regime,
-        period_mesh_periods: verdict.period,
+        regime: assessment.regime,
+        period_mesh_periods: assessment.period,
         contact: contact_state(&shares),
         contact_share: Halves { left: 1.0 - shares[0][1], right: 1.0 - shares[1][1] },
         min_displacement_m,
-        natural_frequencies_hz: asked.modes.frequencies_hz.clone(),
-        error_estimate: verdict.error_estimate,
-        method: verdict.method.into(),
-        floquet_modulus: verdict.floquet,
-        floquet_multipliers: verdict.multipliers,
-        lyapunov_per_mesh_period: verdict.lyapunov,
-        rms_interval_95: if matches!(verdict.regime, Regime::QuasiPeriodic | Regime::Chaotic) {
+        natural_frequencies_hz: input.modes.frequencies_hz.clone(),
+        error_estimate: assessment.error_estimate,
+        method: assessment.method.into(),
+        floquet_modulus: assessment.floquet,
+        floquet_multipliers: assessment.multipliers,
+        lyapunov_per_mesh_period: assessment.lyapunov,
+        rms_interval_95: if matches!(assessment.regime, Regime::QuasiPeriodic | Regime::Chaotic) {
             rms_interval_95()
         } else {
             None
         },
-        energy_balance_residual: verdict.energy_residual,
+        energy_balance_residual: assessment.energy_residual,
         recorded_mesh_periods: recorded,
         degrees_of_freedom: D as u32,
-        damping_in_gap: asked.p.damping_in_gap,
-        numerics: verdict.numerics,
+        damping_in_gap: input.p.damping_in_gap,
+        counts: assessment.counts,
     };
     Response { summary, channels: series, poincare: record.points, final_state }
 }
@@ -148,7 +155,7 @@ fn dynamic_factor(tooth_force: &Halves<ToothForce>) -> Option<f64> {
     [tooth_force.left, tooth_force.right].into_iter().filter_map(of).reduce(f64::max).map(|factor| factor.max(1.0))
 }
 
-/// The halves that are solved: the left one alone when the other is its mirror image.
+/// Indices of the solved halves: the left one alone when the other is its mirror image.
 pub(super) fn solved_halves<const D: usize>() -> std::ops::Range<u8> {
     0..(D / PER_HALF) as u8
 }
@@ -170,8 +177,8 @@ fn contact_state(shares: &[[f64; 3]; 2]) -> ContactState {
 mod tests {
     use super::*;
     use crate::dynamics::tests::reference::parameters;
-    use crate::dynamics::{Impact, ImpactActsOn, Integrator, Spring};
-    use crate::response::{Method, solve};
+    use crate::dynamics::{ImpactActsOn, ImpactExcitation, Integrator, Spring};
+    use crate::response::{SolutionMethod, solve};
     use crate::watch::Watch;
     use herringbone_oracle::Tolerance::Relative;
     use herringbone_oracle::{check, check_worst};
@@ -181,8 +188,8 @@ mod tests {
         solve(p, &analysis, &Watch::none()).unwrap().summary.floquet_multipliers.unwrap()
     }
 
-    /// Liouville: the product of all multipliers is what the dampers take from a volume of states, exp(−T tr(M⁻¹ C)); the
-    /// free screw motion, which no damper feels, has a factor of one and is left out.
+    /// Liouville's formula: the product of all multipliers is exp(−T tr(M⁻¹ C)). The undamped screw mode has the
+    /// multiplier 1 and is left out.
     #[test]
     fn the_product_of_the_multipliers_is_that_of_the_dampers() {
         for (case, periods) in [("A", 1.0), ("C", 2.0)] {
@@ -209,7 +216,7 @@ mod tests {
         }
     }
 
-    /// Reference motions at other speeds, loads, pulses, staggered, with an impact on torsion or on all motions.
+    /// Reference motions at other speeds, loads and pulses, staggered, with an impact on torsion or on all motions.
     fn various() -> Vec<Parameters> {
         let mut out = Vec::new();
         for (i, case) in ["A", "C"].into_iter().cycle().take(40).enumerate() {
@@ -220,7 +227,7 @@ mod tests {
             p.impact_acts_on = if i % 3 == 0 { ImpactActsOn::All } else { ImpactActsOn::Torsion };
             for h in &mut p.halves {
                 h.pinion_torque_nm *= 0.5 + spread(1);
-                h.impact = (i % 5 != 0).then(|| Impact::HalfSine {
+                h.impact = (i % 5 != 0).then(|| ImpactExcitation::HalfSine {
                     force_n: 200.0 * 300f64.powf(spread(2)),
                     duration_mesh_periods: 0.02 * 60f64.powf(spread(3)),
                     start_mesh_periods: spread(4) - 0.5,
@@ -238,7 +245,7 @@ mod tests {
         out
     }
 
-    /// The mean of the tooth force is the static one, so the largest is never below it.
+    /// The mean tooth force is the static one, so the largest is not below it.
     #[test]
     fn the_mean_tooth_force_is_the_static_one() {
         let ids = ["tooth_force_left", "tooth_force_right"].map(|name| ChannelId::parse(name).unwrap()).to_vec();
@@ -264,14 +271,14 @@ mod tests {
         check_worst("Response: tooth force", "mean over static one, motions off the reference cases", errors, 1e-7);
     }
 
-    /// Mesh force plus pulse at every sample, by both integrators, and extremes no sample is beyond.
+    /// Tooth force = mesh force + pulse at every sample, by both integrators, and no sample beyond the extremes.
     #[test]
     fn the_tooth_force_is_mesh_force_and_impact() {
         let names = ["tooth_force_left", "f_n_left"];
         for (i, p) in various().into_iter().enumerate().filter(|(i, _)| i % 4 == 0 || i % 6 == 1) {
             for (integrator, limit) in [(Integrator::Taylor, 1e-7), (Integrator::RungeKutta, 1e-5)] {
                 let analysis = Analysis {
-                    method: Method::Integrate { mesh_periods: 12, record_mesh_periods: 3 },
+                    method: SolutionMethod::Integrate { mesh_periods: 12, record_mesh_periods: 3 },
                     integrator,
                     accuracy: 1e-7,
                     channels: names.map(|name| ChannelId::parse(name).unwrap()).to_vec(),
@@ -280,7 +287,7 @@ mod tests {
                 };
                 let r = solve(&p, &analysis, &Watch::none()).unwrap();
                 let pulse = |phase: f64| match &p.halves[0].impact {
-                    Some(Impact::HalfSine { force_n, duration_mesh_periods: d, start_mesh_periods }) => {
+                    Some(ImpactExcitation::HalfSine { force_n, duration_mesh_periods: d, start_mesh_periods }) => {
                         let age = (phase - start_mesh_periods).rem_euclid(1.0);
                         (0..2)
                             .map(|k| age + f64::from(k))
@@ -305,17 +312,18 @@ mod tests {
         }
     }
 
-    /// What an impact on all motions puts on the shafts: the mean axial force on the gear is the load's, not what the impact leaves of it.
+    /// An impact on all motions loads the shafts axially: the mean axial force on the gear is that of the load, not the
+    /// load less the mean impact.
     #[test]
     fn an_impact_on_all_motions_pushes_along_the_axis_too() {
         for (force_n, duration_mesh_periods) in [(3000.0, 0.08), (9000.0, 0.3)] {
             let mut p = parameters("A");
             for h in &mut p.halves {
-                h.impact = Some(Impact::HalfSine { force_n, duration_mesh_periods, start_mesh_periods: 0.1 });
+                h.impact = Some(ImpactExcitation::HalfSine { force_n, duration_mesh_periods, start_mesh_periods: 0.1 });
             }
             let mean = |p: &Parameters, integrator| {
                 let analysis = Analysis {
-                    method: Method::Integrate { mesh_periods: 600, record_mesh_periods: 20 },
+                    method: SolutionMethod::Integrate { mesh_periods: 600, record_mesh_periods: 20 },
                     integrator,
                     channels: vec![ChannelId::parse("z_g_left").unwrap()],
                     samples_per_mesh_period: 0,
@@ -343,7 +351,7 @@ mod tests {
         }
     }
 
-    /// Multipliers within and against the mirror symmetry of six coordinates are those of twelve.
+    /// The symmetric and antisymmetric multipliers of six coordinates are those of twelve.
     #[test]
     fn six_coordinates_have_the_multipliers_of_twelve() {
         for case in ["A", "C"] {

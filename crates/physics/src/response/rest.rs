@@ -1,19 +1,24 @@
-//! A pair that nothing moves: no load, no impact, and a start at rest. Its answer is exact, where a search would ask rounding.
+//! Exact response of a pair at rest: no load, no impact, and a start at rest.
 
-use super::analysis::{ContactState, Halves, Method, Regime, Response};
-use super::recording::Run;
-use super::report::{Verdict, report};
-use super::solve::Point;
-use crate::dynamics::{DynamicsError, Impact, Integrator, Model, Numerics, PER_HALF, Spring, State, U, carry_one};
+use super::analysis::{ContactState, Halves, Regime, Response, SolutionMethod};
+use super::recording::RecordedRun;
+use super::report::{MotionAssessment, assemble_response};
+use super::solve::OperatingPoint;
+use crate::dynamics::{
+    DynamicModel, DynamicsError, ImpactExcitation, Integrator, MotionState, PER_HALF, Spring, StepCounts, U,
+    integrate_trajectory,
+};
 
-impl Point<'_> {
-    /// Whether the pair stays where it starts: without load and impact, set out at rest in the middle of its backlash (all zero) or, where
-    /// no start is given, with the driving flanks just touching, which is where ever smaller loads leave it.
-    pub(super) fn rests(&self) -> bool {
+impl OperatingPoint<'_> {
+    /// Whether the pair stays at its start: without load and impact, at rest in the middle of its backlash (initial
+    /// state zero) or, without an initial state, with the driving flanks in contact without force, the limit of
+    /// vanishing load.
+    pub(super) fn stays_at_rest(&self) -> bool {
         let [left, right] = &self.p.halves;
-        let unloaded =
-            [left, right].iter().all(|h| h.pinion_torque_nm == 0.0 && h.impact.as_ref().is_none_or(Impact::is_zero));
-        // A torsional spring between unlike halves would be strained where both touch.
+        let unloaded = [left, right]
+            .iter()
+            .all(|h| h.pinion_torque_nm == 0.0 && h.impact.as_ref().is_none_or(ImpactExcitation::is_zero));
+        // A torsional coupling of unequal halves would be strained where both are in contact.
         let c = &self.p.couplings;
         let uncoupled = c.pinion_torsion == Spring::default() && c.gear_torsion == Spring::default();
         let inertias = |h: &crate::dynamics::HalfParameters| (h.pinion_inertia_kg_m2, h.gear_inertia_kg_m2);
@@ -21,37 +26,38 @@ impl Point<'_> {
         unloaded && still && (uncoupled || inertias(left) == inertias(right))
     }
 
-    /// The answer of a pair that rests.
+    /// Response of a pair at rest.
     ///
     /// # Errors
-    /// [`DynamicsError`] for parameters the equations cannot use.
-    pub(super) fn at_rest(&self) -> Result<Response, DynamicsError> {
-        if self.p.is_symmetric() { self.resting::<6>() } else { self.resting::<12>() }
+    /// [`DynamicsError`] for invalid parameters.
+    pub(super) fn rest_response(&self) -> Result<Response, DynamicsError> {
+        if self.p.is_symmetric() { self.rest_response_in::<6>() } else { self.rest_response_in::<12>() }
     }
 
-    fn resting<const D: usize>(&self) -> Result<Response, DynamicsError> {
-        let model = Model::<D>::new(self.p)?;
+    fn rest_response_in<const D: usize>(&self) -> Result<Response, DynamicsError> {
+        let model = DynamicModel::<D>::new(self.p)?;
         let touching = self.analysis.initial_state.is_none() || model.b == 0.0;
         let (method, from, periods) = match self.analysis.method {
-            Method::Integrate { mesh_periods, record_mesh_periods } => {
+            SolutionMethod::Integrate { mesh_periods, record_mesh_periods } => {
                 let end = mesh_periods.max(1);
                 let periods = record_mesh_periods.clamp(1, end);
                 ("integrate", end - periods, periods)
             }
-            Method::Auto | Method::Periodic => ("periodic", 0, 1),
+            SolutionMethod::Auto | SolutionMethod::Periodic => ("periodic", 0, 1),
         };
-        // Touching without force: the contact is held open, so that rounding closes nothing.
+        // In contact without force: the contact is fixed as open, so that rounding does not close it.
         let side = if model.b == 0.0 { 1 } else { 0 };
-        let mut start = State { period: from, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [side; 2] };
+        let mut start = MotionState { period: from, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [side; 2] };
         if touching {
-            (0..Model::<D>::HALVES).for_each(|j| start.x[j * PER_HALF + U] = model.touching_m(j) / model.cos);
+            (0..DynamicModel::<D>::HALVES)
+                .for_each(|j| start.x[j * PER_HALF + U] = model.first_contact_displacement_m(j) / model.cos);
         }
-        let held = model.holding_contact();
+        let fixed = model.with_fixed_contact();
         let span = (from, from + periods);
-        let mut run = Run::new(&held, start, 1e-6, span, self.recorder(&held, periods))?;
-        carry_one(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
+        let mut run = RecordedRun::new(&fixed, start, 1e-6, span, self.recorder(&fixed, periods))?;
+        integrate_trajectory(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
         let finished = run.finish()?;
-        let verdict = Verdict {
+        let assessment = MotionAssessment {
             regime: Regime::Period1,
             period: Some(1),
             floquet: None,
@@ -61,9 +67,10 @@ impl Point<'_> {
             error_estimate: 0.0,
             energy_residual: None,
             t0_s: from as f64 * self.p.mesh_period_s(),
-            numerics: Numerics::default(),
+            counts: StepCounts::default(),
         };
-        let mut response = report(&self.asked(), &held, finished.recorder, finished.record, verdict);
+        let mut response =
+            assemble_response(&self.report_input(), &fixed, finished.recorder, finished.record, assessment);
         if touching {
             response.summary.contact = ContactState::Continuous;
             response.summary.contact_share = Halves { left: 1.0, right: 1.0 };
@@ -75,22 +82,22 @@ impl Point<'_> {
 #[cfg(test)]
 mod tests {
     use crate::dynamics::tests::reference::parameters;
-    use crate::dynamics::{Impact, Stiffness};
-    use crate::response::{Analysis, ContactState, Method, Regime, solve, solve_many};
+    use crate::dynamics::{ImpactExcitation, Stiffness};
+    use crate::response::{Analysis, ContactState, Regime, SolutionMethod, solve, solve_many};
     use crate::watch::Watch;
 
-    /// Without load and impact: exactly at rest, whatever the stiffness, the play and the method.
+    /// Without load and impact: exactly at rest, with any stiffness, backlash and method.
     #[test]
     fn an_unloaded_pair_without_impact_rests() {
-        let integrate = Method::Integrate { mesh_periods: 30, record_mesh_periods: 10 };
+        let integrate = SolutionMethod::Integrate { mesh_periods: 30, record_mesh_periods: 10 };
         for (case, half_backlash_m) in [("A", 0.0), ("A", 2e-5), ("B", 1e-6), ("C", 3.7e-5)] {
-            for method in [Method::Auto, Method::Periodic, integrate] {
+            for method in [SolutionMethod::Auto, SolutionMethod::Periodic, integrate] {
                 for (pulse, initial_state) in [(None, None), (Some(0.0), None), (None, Some([0.0; 24]))] {
                     let mut p = parameters(case);
                     p.half_backlash_m = half_backlash_m;
                     for h in &mut p.halves {
                         h.pinion_torque_nm = 0.0;
-                        h.impact = pulse.map(|force_n| Impact::HalfSine {
+                        h.impact = pulse.map(|force_n| ImpactExcitation::HalfSine {
                             force_n,
                             duration_mesh_periods: 0.1,
                             start_mesh_periods: 0.0,
@@ -114,7 +121,7 @@ mod tests {
         }
     }
 
-    /// What moves the pair is not rest: a pulse, or a load however small.
+    /// A pulse, or any load, moves the pair.
     #[test]
     fn a_load_or_a_pulse_moves() {
         let mut p = parameters("A");

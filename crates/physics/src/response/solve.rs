@@ -1,56 +1,57 @@
-//! One operating point: from parameters to a response.
+//! Response of operating points: steady-state search or integration, record, error estimate.
 
-use super::analysis::{Analysis, Method, Multiplier, Regime, Response};
+use super::analysis::{Analysis, Multiplier, Regime, Response, SolutionMethod};
 use super::channel::ChannelId;
 use super::energy::EnergyBalance;
-use super::recorder::Recorder;
-use super::recording::{Finished, Run};
-use super::report::{Asked, Verdict, report, solved_halves};
-use super::steady::{Found, Search, moved};
+use super::recorder::ChannelRecorder;
+use super::recording::{FinishedRun, RecordedRun};
+use super::report::{MotionAssessment, ReportInput, assemble_response, solved_halves};
+use super::steady::{SteadyMotion, SteadyStateSearch, displaced};
 use crate::dynamics::{
-    Deviation, DynamicsError, Integrator, Limits, Model, NaturalModes, PER_HALF, Parameters, Shooting, State, carry,
-    carry_one, difference, is_mirrored,
+    DynamicModel, DynamicsError, IntegrationLimits, Integrator, MotionState, NaturalModes, PER_HALF, POINTS_PER_TASK,
+    Parameters, Perturbation, Shooting, integrate_trajectories, integrate_trajectory, is_mirrored, state_difference,
 };
 use crate::watch::{Canceled, Watch};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Solves the equations of motion and gathers what was asked for.
+/// Computes the response of a pair.
 ///
 /// # Errors
-/// [`DynamicsError`].
+/// [`DynamicsError`] for invalid parameters or settings, a missing steady state, and integrations that fail.
 pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<Response, DynamicsError> {
-    let modes = modes(p, analysis)?;
-    let point = Point { p, analysis, modes: &modes, watch };
-    if point.rests() {
-        return point.at_rest();
+    let modes = validated_modes(p, analysis)?;
+    let point = OperatingPoint { p, analysis, modes: &modes, watch };
+    if point.stays_at_rest() {
+        return point.rest_response();
     }
     let start = point.start();
     let mirrored = point.is_mirrored(&start);
     match analysis.method {
-        Method::Integrate { .. } => {
+        SolutionMethod::Integrate { .. } => {
             let points = std::slice::from_ref(&point);
-            let alone = Together::Alone(analysis.integrator);
+            let alone = LaneUse::Sequential(analysis.integrator);
             let mut responses = if mirrored { integrate::<6>(points, alone) } else { integrate::<12>(points, alone) }?;
             responses.pop().unwrap_or(Err(DynamicsError::Canceled(Canceled)))
         }
-        Method::Auto | Method::Periodic => {
-            if mirrored && let Some(response) = point.steady::<6>(&start, false)? {
+        SolutionMethod::Auto | SolutionMethod::Periodic => {
+            if mirrored && let Some(response) = point.solve_steady::<6>(&start, false)? {
                 return Ok(response);
             }
-            // Equal halves come here only when their motion leaves the mirror symmetry by itself: a start off the symmetry lets it.
-            let found = point.steady::<12>(&start, mirrored)?;
-            // Twelve coordinates are never given up for fewer.
+            // Equal halves come here only when their motion leaves the mirror symmetry: the start is perturbed out of
+            // it.
+            let found = point.solve_steady::<12>(&start, mirrored)?;
+            // A search in twelve coordinates always returns a motion.
             found.ok_or(DynamicsError::NotPeriodic { mesh_periods: 0, change: f64::NAN })
         }
     }
 }
 
-/// Solves many operating points as [`solve`] does each, on all threads of the pool and, where they are integrated by Taylor series, eight
-/// side by side in vector instructions. The answers are those of [`solve`] to the last bit.
+/// Computes the responses of many operating points as [`solve`] does, on all threads of the pool and, for integrations
+/// by Taylor series, in vector lanes. The results are bit-identical to those of [`solve`].
 ///
 /// # Errors
-/// Per point as [`solve`]; cancellation for all.
+/// [`Canceled`] for all; [`DynamicsError`] per point as [`solve`].
 pub fn solve_many(
     points: &[Parameters],
     analysis: &Analysis,
@@ -58,7 +59,7 @@ pub fn solve_many(
 ) -> Result<Vec<Result<Response, DynamicsError>>, Canceled> {
     let done = AtomicUsize::new(0);
     let groups: Result<Vec<_>, Canceled> = points
-        .par_chunks(POINTS_PER_GROUP)
+        .par_chunks(POINTS_PER_TASK)
         .map(|group| {
             let responses = solve_group(group, analysis, watch)?;
             let done = done.fetch_add(group.len(), Ordering::Relaxed) + group.len();
@@ -69,18 +70,16 @@ pub fn solve_many(
     Ok(groups?.into_iter().flatten().collect())
 }
 
-/// Points that one thread takes at a time.
-const POINTS_PER_GROUP: usize = 32;
-
 fn solve_group(
     group: &[Parameters],
     analysis: &Analysis,
     watch: &Watch<'_>,
 ) -> Result<Vec<Result<Response, DynamicsError>>, Canceled> {
-    // Their own progress would run back and forth.
+    // The progress of single points is not monotonic in that of the whole.
     let canceled = || watch.checkpoint_quietly().is_err();
     let watch = &Watch::new(&|_| {}, &canceled);
-    let lanes = matches!(analysis.method, Method::Integrate { .. }) && analysis.integrator == Integrator::Taylor;
+    let lanes =
+        matches!(analysis.method, SolutionMethod::Integrate { .. }) && analysis.integrator == Integrator::Taylor;
     if !lanes {
         let solved = group.iter().map(|p| match solve(p, analysis, watch) {
             Err(DynamicsError::Canceled(canceled)) => Err(canceled),
@@ -88,16 +87,16 @@ fn solve_group(
         });
         return solved.collect();
     }
-    let modes: Vec<_> = group.iter().map(|p| modes(p, analysis)).collect();
+    let modes: Vec<_> = group.iter().map(|p| validated_modes(p, analysis)).collect();
     let mut out = vec![Err(DynamicsError::Canceled(Canceled)); group.len()];
-    // Points in six coordinates, and in twelve, with their places.
-    let mut sides: [(Vec<usize>, Vec<Point<'_>>); 2] = Default::default();
+    // Indices and points in six coordinates, and in twelve.
+    let mut sides: [(Vec<usize>, Vec<OperatingPoint<'_>>); 2] = Default::default();
     for (i, (p, modes)) in group.iter().zip(&modes).enumerate() {
         match modes {
             Ok(modes) => {
-                let point = Point { p, analysis, modes, watch };
-                if point.rests() {
-                    out[i] = point.at_rest();
+                let point = OperatingPoint { p, analysis, modes, watch };
+                if point.stays_at_rest() {
+                    out[i] = point.rest_response();
                     continue;
                 }
                 let side = &mut sides[usize::from(!point.is_mirrored(&point.start()))];
@@ -108,17 +107,17 @@ fn solve_group(
         }
     }
     let [(halves, six), (whole, twelve)] = &sides;
-    for (i, response) in halves.iter().zip(integrate::<6>(six, Together::InLanes)?) {
+    for (i, response) in halves.iter().zip(integrate::<6>(six, LaneUse::Batched)?) {
         out[*i] = response;
     }
-    for (i, response) in whole.iter().zip(integrate::<12>(twelve, Together::InLanes)?) {
+    for (i, response) in whole.iter().zip(integrate::<12>(twelve, LaneUse::Batched)?) {
         out[*i] = response;
     }
     Ok(out)
 }
 
-/// Checks the question and solves for the natural modes.
-fn modes(p: &Parameters, analysis: &Analysis) -> Result<NaturalModes, DynamicsError> {
+/// Validates parameters and settings, and computes the natural modes.
+fn validated_modes(p: &Parameters, analysis: &Analysis) -> Result<NaturalModes, DynamicsError> {
     p.validate()?;
     if !(1e-13..=0.1).contains(&analysis.accuracy) {
         return Err(DynamicsError::InvalidParameter {
@@ -133,19 +132,19 @@ fn modes(p: &Parameters, analysis: &Analysis) -> Result<NaturalModes, DynamicsEr
     NaturalModes::new(p)
 }
 
-/// One operating point and what is asked of it.
-pub(super) struct Point<'a> {
+/// One operating point with the settings of the analysis.
+pub(super) struct OperatingPoint<'a> {
     pub p: &'a Parameters,
     pub analysis: &'a Analysis,
     pub modes: &'a NaturalModes,
     pub watch: &'a Watch<'a>,
 }
 
-/// Relative size of the push that takes a motion off the mirror symmetry: as far as manufacture keeps halves alike.
+/// Relative size of the perturbation out of the mirror symmetry: about the manufacturing difference of the halves.
 const OFF_SYMMETRY: f64 = 1e-3;
 
-impl Point<'_> {
-    /// Where it starts: as asked, or at rest under the mean load.
+impl OperatingPoint<'_> {
+    /// Initial state: as given, or at rest under the mean load.
     fn start(&self) -> [f64; 24] {
         self.analysis.initial_state.unwrap_or_else(|| {
             let mut at_rest = [0.0; 24];
@@ -154,47 +153,52 @@ impl Point<'_> {
         })
     }
 
-    /// Both halves and the start mirror each other.
+    /// Whether halves and start are mirror-symmetric.
     fn is_mirrored(&self, start: &[f64; 24]) -> bool {
         self.p.is_symmetric() && (self.analysis.initial_state.is_none() || is_mirrored(start))
     }
 
-    pub(super) fn asked(&self) -> Asked<'_> {
-        Asked { p: self.p, analysis: self.analysis, modes: self.modes }
+    pub(super) fn report_input(&self) -> ReportInput<'_> {
+        ReportInput { p: self.p, analysis: self.analysis, modes: self.modes }
     }
 
-    fn limits(&self, tolerance: f64) -> Limits<'_> {
-        Limits { tolerance, max_steps: self.analysis.max_steps, watch: self.watch }
+    fn limits(&self, tolerance: f64) -> IntegrationLimits<'_> {
+        IntegrationLimits { tolerance, max_steps: self.analysis.max_steps, watch: self.watch }
     }
 
     pub(super) fn mean_stiffness_n_per_m(&self) -> [f64; 2] {
         [0, 1].map(|j| self.p.halves[j].mesh_stiffness.mean_n_per_m())
     }
 
-    /// The steady state; None when six coordinates do not tell the whole story.
-    fn steady<const D: usize>(&self, start: &[f64; 24], off_symmetry: bool) -> Result<Option<Response>, DynamicsError> {
-        let model = Model::<D>::new(self.p)?;
-        let search = Search {
+    /// Steady state; None when the motion in six coordinates leaves the mirror symmetry.
+    fn solve_steady<const D: usize>(
+        &self,
+        start: &[f64; 24],
+        off_symmetry: bool,
+    ) -> Result<Option<Response>, DynamicsError> {
+        let model = DynamicModel::<D>::new(self.p)?;
+        let search = SteadyStateSearch {
             model: &model,
             mean_stiffness_n_per_m: self.mean_stiffness_n_per_m(),
             limits: self.limits((1e-3 * self.analysis.accuracy).clamp(1e-14, 1e-6)),
-            must_repeat: self.analysis.method == Method::Periodic,
+            must_repeat: self.analysis.method == SolutionMethod::Periodic,
             from_start: self.analysis.initial_state.is_some(),
         };
         let mut state = model.state_from(start);
         if self.analysis.initial_state.is_none() {
-            model.seat_teeth(&mut state);
+            model.close_contact(&mut state);
         }
         if off_symmetry {
-            let mut push: Deviation<D> = ([0.0; D], [0.0; D]);
+            let mut perturbation: Perturbation<D> = ([0.0; D], [0.0; D]);
             for c in 0..PER_HALF - 1 {
-                push.0[c] = OFF_SYMMETRY * state.x[c];
+                perturbation.0[c] = OFF_SYMMETRY * state.x[c];
             }
-            state = moved(&model, state, &push);
+            state = displaced(&model, state, &perturbation);
         }
         let bounded = |error: DynamicsError| {
-            let diverged = matches!(error, DynamicsError::Diverged { .. }) && self.analysis.method == Method::Auto;
-            if diverged { self.unbounded(&model, state, error).map(Some) } else { Err(error) }
+            let diverged =
+                matches!(error, DynamicsError::Diverged { .. }) && self.analysis.method == SolutionMethod::Auto;
+            if diverged { self.unstable_response(&model, state, error).map(Some) } else { Err(error) }
         };
         let found = match search.run(state) {
             Ok(found) => found,
@@ -203,7 +207,7 @@ impl Point<'_> {
         if found.leaves_symmetry {
             return Ok(None);
         }
-        let mut numerics = found.numerics;
+        let mut counts = found.counts;
         let recorded = self.record(
             &model,
             (found.start, found.tolerance),
@@ -215,32 +219,34 @@ impl Point<'_> {
             Ok(finished) => finished,
             Err(error) => return bounded(error),
         };
-        let fate = match &found.orbit {
+        let classification = match &found.orbit {
             Some(_) => None,
             None => {
                 let by = (Integrator::Taylor, found.tolerance);
-                Some(self.fate(&model, &finished, by, found.lyapunov)?)
+                Some(self.classify(&model, &finished, by, found.lyapunov)?)
             }
         };
-        if let Some(fate) = &fate {
-            numerics += fate.numerics;
-            if fate.regime == Regime::Unstable {
+        if let Some(classification) = &classification {
+            counts += classification.counts;
+            if classification.regime == Regime::Unstable {
                 return bounded(DynamicsError::Diverged {
                     time_s: finished.from.period as f64 * self.p.mesh_period_s(),
                 });
             }
         }
         let section = finished.record;
-        numerics += section.numerics;
+        counts += section.counts;
         let error_estimate = match &found.orbit {
-            Some((n, map)) => self.orbit_error(&model, &found, *n, map, &finished.recorder)?,
+            Some((n, monodromy)) => self.orbit_error(&model, &found, *n, monodromy, &finished.recorder)?,
             None => section.batch_error,
         };
-        let verdict = Verdict {
-            regime: match (&found.orbit, fate) {
+        let assessment = MotionAssessment {
+            regime: match (&found.orbit, classification) {
                 (Some((1, _)), _) => Regime::Period1,
                 (Some(_), _) => Regime::PeriodN,
-                (None, fate) => fate.map_or(Regime::QuasiPeriodic, |fate| fate.regime),
+                (None, classification) => {
+                    classification.map_or(Regime::QuasiPeriodic, |classification| classification.regime)
+                }
             },
             period: found.orbit.as_ref().map(|(n, _)| *n),
             floquet: found.floquet,
@@ -252,21 +258,21 @@ impl Point<'_> {
             error_estimate,
             energy_residual: finished.energy.and_then(|e| e.residual()),
             t0_s: if found.orbit.is_some() { 0.0 } else { found.start.period as f64 * self.p.mesh_period_s() },
-            numerics,
+            counts,
         };
-        Ok(Some(report(&self.asked(), &model, finished.recorder, section, verdict)))
+        Ok(Some(assemble_response(&self.report_input(), &model, finished.recorder, section, assessment)))
     }
 
-    /// What is known of an integrated record by itself; `compared` says whether its error is found by comparison.
-    fn verdict<const D: usize>(
+    /// Assessment of an integrated record, and whether its error is to be found by comparison.
+    fn assess<const D: usize>(
         &self,
-        model: &Model<D>,
-        finished: &Finished<'_, D>,
+        model: &DynamicModel<D>,
+        finished: &FinishedRun<'_, D>,
         tolerance: f64,
-    ) -> Result<(Verdict, bool), DynamicsError> {
+    ) -> Result<(MotionAssessment, bool), DynamicsError> {
         let record = &finished.record;
         let period = record.recent.settled_period(REPEATS);
-        let mut verdict = Verdict {
+        let mut assessment = MotionAssessment {
             regime: match period {
                 Some(1) => Regime::Period1,
                 Some(_) => Regime::PeriodN,
@@ -280,65 +286,65 @@ impl Point<'_> {
             error_estimate: 0.0,
             energy_residual: finished.energy.as_ref().and_then(|e| e.residual()),
             t0_s: finished.from.period as f64 * self.p.mesh_period_s(),
-            numerics: record.numerics,
+            counts: record.counts,
         };
         if period.is_none() {
-            let fate = self.fate(model, finished, (self.analysis.integrator, tolerance), None)?;
-            verdict.numerics += fate.numerics;
-            verdict.lyapunov = Some(fate.lyapunov);
-            verdict.regime = fate.regime;
-            if fate.regime == Regime::Chaotic {
-                verdict.error_estimate = record.batch_error;
+            let classification = self.classify(model, finished, (self.analysis.integrator, tolerance), None)?;
+            assessment.counts += classification.counts;
+            assessment.lyapunov = Some(classification.lyapunov);
+            assessment.regime = classification.regime;
+            if classification.regime == Regime::Chaotic {
+                assessment.error_estimate = record.batch_error;
             }
         }
-        let compared = verdict.regime != Regime::Chaotic;
-        Ok((verdict, compared))
+        let compared = assessment.regime != Regime::Chaotic;
+        Ok((assessment, compared))
     }
 
-    /// The energy balance, where it is asked for.
-    pub(super) fn energy<'m, const D: usize>(&self, model: &'m Model<D>) -> Option<EnergyBalance<'m, D>> {
+    /// Energy balance, if requested.
+    pub(super) fn energy<'m, const D: usize>(&self, model: &'m DynamicModel<D>) -> Option<EnergyBalance<'m, D>> {
         self.analysis.energy_balance.then(|| EnergyBalance::new(model))
     }
 
     /// Records `periods` mesh periods of the motion from `start`.
     pub(super) fn record<'m, const D: usize>(
         &self,
-        model: &'m Model<D>,
-        (start, tolerance): (State<D>, f64),
+        model: &'m DynamicModel<D>,
+        (start, tolerance): (MotionState<D>, f64),
         periods: u64,
-        recorder: Recorder<D>,
+        recorder: ChannelRecorder<D>,
         energy: Option<EnergyBalance<'m, D>>,
-    ) -> Result<Finished<'m, D>, DynamicsError> {
+    ) -> Result<FinishedRun<'m, D>, DynamicsError> {
         let span = (start.period, start.period + periods);
-        let mut run = Run::new(model, start, tolerance, span, recorder)?.with_energy(energy);
-        carry_one(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
+        let mut run = RecordedRun::new(model, start, tolerance, span, recorder)?.with_energy(energy);
+        integrate_trajectory(&mut run, Integrator::Taylor, self.analysis.max_steps, self.watch)?;
         run.finish()
     }
 
-    /// Relative error of the RMS values of a periodic motion: the map is repeated far more accurately, the start corrected by
-    /// what it then fails to close, and the values compared.
+    /// Relative error of the RMS values of a periodic motion: it is integrated again with a much finer tolerance, its
+    /// start is corrected by the remaining defect, and the values are compared.
     fn orbit_error<const D: usize>(
         &self,
-        model: &Model<D>,
-        found: &Found<D>,
+        model: &DynamicModel<D>,
+        found: &SteadyMotion<D>,
         n: u64,
-        map: &nalgebra::DMatrix<f64>,
-        recorder: &Recorder<D>,
+        monodromy: &nalgebra::DMatrix<f64>,
+        recorder: &ChannelRecorder<D>,
     ) -> Result<f64, DynamicsError> {
         let tight = (1e-3 * found.tolerance).max(1e-15);
-        let start = State { period: 0, ..found.start };
-        let once = self.record(model, (start, tight), n, self.recorder_of_rms(model), None)?.record;
+        let start = MotionState { period: 0, ..found.start };
+        let once = self.record(model, (start, tight), n, self.rms_recorder(model), None)?.record;
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tight))?;
-        let defect = difference(&once.last, &start);
-        let Some(correction) = shooting.correction(&defect, map, n) else { return Ok(f64::INFINITY) };
+        let defect = state_difference(&once.last, &start);
+        let Some(correction) = shooting.correction(&defect, monodromy, n) else { return Ok(f64::INFINITY) };
         let better = self
-            .record(model, (moved(model, start, &correction), tight), n, self.recorder_of_rms(model), None)?
+            .record(model, (displaced(model, start, &correction), tight), n, self.rms_recorder(model), None)?
             .recorder;
-        Ok(SAFETY * rms_difference(recorder, &better, smallest(model)) + ROUNDING)
+        Ok(SAFETY * rms_difference(recorder, &better, acceleration_floor(model)) + ROUNDING)
     }
 
-    /// Channels every response needs, and those asked for.
-    pub(super) fn recorder<const D: usize>(&self, model: &Model<D>, periods: u64) -> Recorder<D> {
+    /// Recorder of the channels of every response and of the requested ones.
+    pub(super) fn recorder<const D: usize>(&self, model: &DynamicModel<D>, periods: u64) -> ChannelRecorder<D> {
         let mut statistics = Vec::new();
         for half in solved_halves::<D>() {
             statistics.push((ChannelId::mesh_acceleration(half), false));
@@ -347,156 +353,168 @@ impl Point<'_> {
             statistics.push((ChannelId::normal_force(half), false));
             statistics.push((ChannelId::tooth_force(half), true));
         }
-        Recorder::new(model, &statistics, &self.analysis.channels, self.analysis.samples_per_mesh_period, periods)
+        ChannelRecorder::new(
+            model,
+            &statistics,
+            &self.analysis.channels,
+            self.analysis.samples_per_mesh_period,
+            periods,
+        )
     }
 
-    /// The accelerations alone.
-    fn recorder_of_rms<const D: usize>(&self, model: &Model<D>) -> Recorder<D> {
+    /// Recorder of the accelerations alone.
+    fn rms_recorder<const D: usize>(&self, model: &DynamicModel<D>) -> ChannelRecorder<D> {
         let mut statistics = Vec::new();
         for half in solved_halves::<D>() {
             statistics.push((ChannelId::mesh_acceleration(half), false));
             statistics.push((ChannelId::pinion_axial_acceleration(half), false));
         }
-        Recorder::new(model, &statistics, &[], 0, 0)
+        ChannelRecorder::new(model, &statistics, &[], 0, 0)
     }
 }
 
-/// How points are integrated: one after the other by any method, or side by side by Taylor series.
+/// Execution of integrations: sequential by any method, or batched in vector lanes by Taylor series.
 #[derive(Clone, Copy)]
-enum Together {
-    Alone(Integrator),
-    InLanes,
+enum LaneUse {
+    Sequential(Integrator),
+    Batched,
 }
 
-impl Together {
-    fn carry<const D: usize>(
+impl LaneUse {
+    fn integrate<const D: usize>(
         self,
-        runs: &mut [Run<'_, D>],
+        runs: &mut [RecordedRun<'_, D>],
         tolerance: f64,
         max_steps: u64,
         watch: &Watch<'_>,
     ) -> Result<(), Canceled> {
         match self {
-            Together::Alone(integrator) => {
-                runs.iter_mut().try_for_each(|run| carry_one(run, integrator, max_steps, watch))
+            LaneUse::Sequential(integrator) => {
+                runs.iter_mut().try_for_each(|run| integrate_trajectory(run, integrator, max_steps, watch))
             }
-            Together::InLanes => carry(runs, tolerance, max_steps, watch),
+            LaneUse::Batched => integrate_trajectories(runs, tolerance, max_steps, watch),
         }
     }
 
-    /// For the comparison that measures the error: by Taylor series always.
-    fn finely(self) -> Self {
+    /// Execution of the comparison for the error estimate: always by Taylor series.
+    fn for_comparison(self) -> Self {
         match self {
-            Together::Alone(_) => Together::Alone(Integrator::Taylor),
-            Together::InLanes => Together::InLanes,
+            LaneUse::Sequential(_) => LaneUse::Sequential(Integrator::Taylor),
+            LaneUse::Batched => LaneUse::Batched,
         }
     }
 }
 
-/// Integrates points that ask the same, and measures their errors by comparison with more accurate runs over the end of
-/// each.
+/// Integrates operating points with the same settings and estimates their errors by comparison with more accurate
+/// integrations of the last part of each.
 fn integrate<const D: usize>(
-    points: &[Point<'_>],
-    together: Together,
+    points: &[OperatingPoint<'_>],
+    lane_use: LaneUse,
 ) -> Result<Vec<Result<Response, DynamicsError>>, Canceled> {
-    let Some(Point { analysis, watch, .. }) = points.first() else { return Ok(Vec::new()) };
-    let Method::Integrate { mesh_periods, record_mesh_periods } = analysis.method else { return Ok(Vec::new()) };
+    let Some(OperatingPoint { analysis, watch, .. }) = points.first() else { return Ok(Vec::new()) };
+    let SolutionMethod::Integrate { mesh_periods, record_mesh_periods } = analysis.method else {
+        return Ok(Vec::new());
+    };
     let end = mesh_periods.max(1);
     let record_from = end - record_mesh_periods.clamp(1, end);
-    // Measured on the reference cases: RMS error over tolerance is up to 10 for Taylor series, up to 300 for Runge–Kutta.
+    // Measured on the reference cases: RMS error over tolerance is up to 10 for Taylor series, up to 300 for
+    // Runge–Kutta.
     let per_accuracy = match analysis.integrator {
         Integrator::Taylor => 0.05,
         Integrator::RungeKutta => 2e-3,
     };
     let tolerance = (per_accuracy * analysis.accuracy).max(1e-15);
     let tight = (1e-2 * tolerance).clamp(1e-15, 1e-9);
-    // Where the comparison sets out: far enough before the record for its own start to fade.
-    let compared_from = record_from.saturating_sub(COMPARED_LEAD_MESH_PERIODS);
+    // Start of the comparison: far enough before the record for the initial difference to decay.
+    let compared_from = record_from.saturating_sub(COMPARISON_LEAD_MESH_PERIODS);
 
-    let models: Vec<_> = points.iter().map(|point| Model::<D>::new(point.p)).collect();
+    let models: Vec<_> = points.iter().map(|point| DynamicModel::<D>::new(point.p)).collect();
     let mut runs = Vec::with_capacity(points.len());
     let mut out: Vec<Result<Response, DynamicsError>> = Vec::with_capacity(points.len());
-    let mut places = Vec::with_capacity(points.len());
+    let mut positions = Vec::with_capacity(points.len());
     for (i, (point, model)) in points.iter().zip(&models).enumerate() {
         out.push(Err(DynamicsError::Canceled(Canceled)));
         let run = model.as_ref().map_err(Clone::clone).and_then(|model| {
             let recorder = point.recorder(model, end - record_from);
             let mut start = model.state_from(&point.start());
             if point.analysis.initial_state.is_none() {
-                model.seat_teeth(&mut start);
+                model.close_contact(&mut start);
             }
-            let run = Run::new(model, start, tolerance, (record_from, end), recorder)?;
-            Ok(run.keeping(compared_from).with_energy(point.energy(model)))
+            let run = RecordedRun::new(model, start, tolerance, (record_from, end), recorder)?;
+            Ok(run.storing_state_at(compared_from).with_energy(point.energy(model)))
         });
         match run {
             Ok(run) => {
                 runs.push(run);
-                places.push(i);
+                positions.push(i);
             }
             Err(error) => out[i] = Err(error),
         }
     }
-    together.carry(&mut runs, tolerance, analysis.max_steps, watch)?;
+    lane_use.integrate(&mut runs, tolerance, analysis.max_steps, watch)?;
 
     let mut compared = Vec::new();
-    let mut waiting = Vec::new();
-    for (i, run) in places.into_iter().zip(runs) {
+    let mut pending = Vec::new();
+    for (i, run) in positions.into_iter().zip(runs) {
         let Ok(model) = &models[i] else { continue };
         let point = &points[i];
         let next = run.finish().and_then(|finished| {
-            let (verdict, compare) = point.verdict(model, &finished, tolerance)?;
-            let finely = compare
-                .then(|| Run::new(model, finished.kept, tight, (record_from, end), point.recorder_of_rms(model)));
-            Ok((finished, verdict, finely.transpose()?))
+            let (assessment, compare) = point.assess(model, &finished, tolerance)?;
+            let fine_run = compare.then(|| {
+                RecordedRun::new(model, finished.stored, tight, (record_from, end), point.rms_recorder(model))
+            });
+            Ok((finished, assessment, fine_run.transpose()?))
         });
         match next {
             Err(DynamicsError::Canceled(canceled)) => return Err(canceled),
             Err(error @ DynamicsError::Diverged { .. }) => {
-                out[i] = point.unbounded(model, model.state_from(&point.start()), error);
+                out[i] = point.unstable_response(model, model.state_from(&point.start()), error);
             }
             Err(error) => out[i] = Err(error),
-            Ok((finished, verdict, None)) => {
-                out[i] = Ok(report(&point.asked(), model, finished.recorder, finished.record, verdict));
+            Ok((finished, assessment, None)) => {
+                out[i] =
+                    Ok(assemble_response(&point.report_input(), model, finished.recorder, finished.record, assessment));
             }
-            Ok((finished, verdict, Some(finely))) => {
-                compared.push(finely);
-                waiting.push((i, finished, verdict));
+            Ok((finished, assessment, Some(fine_run))) => {
+                compared.push(fine_run);
+                pending.push((i, finished, assessment));
             }
         }
     }
-    together.finely().carry(&mut compared, tight, analysis.max_steps, watch)?;
-    for ((i, finished, mut verdict), finely) in waiting.into_iter().zip(compared) {
+    lane_use.for_comparison().integrate(&mut compared, tight, analysis.max_steps, watch)?;
+    for ((i, finished, mut assessment), fine_run) in pending.into_iter().zip(compared) {
         let Ok(model) = &models[i] else { continue };
-        out[i] = finely.finish().map(|fine| {
-            let difference = rms_difference(&finished.recorder, &fine.recorder, smallest(model));
-            verdict.error_estimate = SAFETY * difference + ROUNDING;
-            verdict.numerics += fine.record.numerics;
-            report(&points[i].asked(), model, finished.recorder, finished.record, verdict)
+        out[i] = fine_run.finish().map(|fine| {
+            let difference = rms_difference(&finished.recorder, &fine.recorder, acceleration_floor(model));
+            assessment.error_estimate = SAFETY * difference + ROUNDING;
+            assessment.counts += fine.record.counts;
+            assemble_response(&points[i].report_input(), model, finished.recorder, finished.record, assessment)
         });
     }
     Ok(out)
 }
 
-/// Relative change over its period below which an integrated motion counts as repeating.
+/// Relative change over its period below which an integrated motion counts as periodic.
 pub(super) const REPEATS: f64 = 1e-3;
-/// What an error found by comparison is multiplied by, because it is a comparison with something that has an error too.
+/// Factor on an error found by comparison with a result that has an error too.
 const SAFETY: f64 = 3.0;
-/// Mesh periods before the record from which a run is compared with a more accurate one.
-const COMPARED_LEAD_MESH_PERIODS: u64 = 50;
-/// RMS values in double precision are not better than this.
+/// Mesh periods before the record from which an integration is compared with a more accurate one.
+const COMPARISON_LEAD_MESH_PERIODS: u64 = 50;
+/// Lower limit of the relative error of RMS values in double precision.
 const ROUNDING: f64 = 1e-13;
 
-/// An acceleration that is nothing but rounding: 1e-12 of what the load would give the free mesh, m/s².
-fn smallest<const D: usize>(model: &Model<D>) -> f64 {
+/// Acceleration that counts as rounding: 1e-12 of the acceleration of the free mesh by the load, m/s².
+fn acceleration_floor<const D: usize>(model: &DynamicModel<D>) -> f64 {
     let square = model.omega_ref * model.omega_ref;
-    (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(model.largest_push_n(j) * model.halves[j].inv_me * square))
+    (0..DynamicModel::<D>::HALVES)
+        .fold(0.0f64, |m, j| m.max(model.max_excitation_force_n(j) * model.halves[j].inv_me * square))
         * 1e-12
 }
 
-/// Largest relative difference of the RMS accelerations of two records; below `floor` they count as equal.
-fn rms_difference<const D: usize>(a: &Recorder<D>, b: &Recorder<D>, floor: f64) -> f64 {
+/// Largest relative difference of the RMS accelerations of two records; values below `floor` count as equal.
+fn rms_difference<const D: usize>(a: &ChannelRecorder<D>, b: &ChannelRecorder<D>, floor: f64) -> f64 {
     b.all().fold(0.0f64, |worst, (id, gb, _)| {
-        let Some(ga) = a.gathered(id) else { return worst };
+        let Some(ga) = a.accumulator(id) else { return worst };
         let (ra, rb) = (ga.mean_and_square().1.sqrt(), gb.mean_and_square().1.sqrt());
         if rb > floor { worst.max((ra - rb).abs() / rb) } else { worst }
     })

@@ -5,19 +5,20 @@ use serde::{Deserialize, Serialize};
 
 use super::channel::Channel;
 
-/// One-sided amplitude spectrum: a sine of amplitude A shows as A at its order.
+/// One-sided amplitude spectrum: a sine of amplitude A has the value A at its order.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Spectrum {
     /// Multiples of the mesh frequency.
     pub mesh_order: Vec<f64>,
+    /// Frequencies of the lines, Hz.
     pub frequency_hz: Vec<f64>,
-    /// In the channel's unit; the mean is left out.
+    /// Amplitudes in the unit of the channel, without the mean.
     pub amplitude: Vec<f64>,
 }
 
 impl Spectrum {
-    /// Spectrum of a channel recorded over whole mesh periods: no window, so the mesh orders fall on lines exactly. An empty
-    /// channel gives an empty spectrum.
+    /// Spectrum of a channel recorded over whole mesh periods, without a window, so that the mesh orders are lines.
+    /// Empty for an empty channel.
     pub fn of(channel: &Channel, mesh_frequency_hz: f64) -> Self {
         let n = channel.values.len();
         if n == 0 {
@@ -27,7 +28,7 @@ impl Spectrum {
         let fft = RealFftPlanner::<f64>::new().plan_fft_forward(n);
         let mut input: Vec<f64> = channel.values.iter().map(|v| v - mean).collect();
         let mut output = fft.make_output_vec();
-        // The lengths are the plan's own, so this cannot fail; an empty spectrum would be the answer if it did.
+        // The lengths are those of the plan, so this cannot fail; if it did, the spectrum would be empty.
         if fft.process(&mut input, &mut output).is_err() {
             output.clear();
         }
@@ -42,11 +43,12 @@ impl Spectrum {
     }
 }
 
-/// Amplitudes of a spectrum gathered around equally spaced mesh orders.
+/// Band amplitudes.
 impl Spectrum {
-    /// One amplitude for each of the mesh orders 1/`per_order`, 2/`per_order`, … `last_order`: the root of the sum of squares of the lines
-    /// closer to that order than to the next ones. Of a line alone it is that line's amplitude; half the sum of the squares of all is the
-    /// mean square of the channel but for what lies below the first band or above the last one.
+    /// One amplitude for each of the mesh orders 1/`per_order`, 2/`per_order`, … `last_order`: the root of the sum of
+    /// squares of the lines nearest to that order. For a single line it is the amplitude of the line; half the sum of
+    /// the squares of all bands is the mean square of the channel, except for lines below the first or above the last
+    /// band.
     pub fn bands(&self, per_order: usize, last_order: usize) -> Vec<f64> {
         let mut squares = vec![0.0; per_order * last_order];
         for (order, amplitude) in self.mesh_order.iter().zip(&self.amplitude) {

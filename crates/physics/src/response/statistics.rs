@@ -1,20 +1,30 @@
-//! Exact time means and extremes of polynomials.
+//! Exact time means and extremes of piecewise polynomials.
 
 use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::quadrature::{GAUSS, NODES};
 use crate::dynamics::MAX_ORDER;
+use crate::numerics::gauss::gauss_legendre_unit;
 
-/// A channel over the recorded periods. Means are exact time means of the solution's polynomials, not of samples.
+/// Gauss–Legendre nodes per segment: exact for powers up to 2·24 − 1 = 47 in time, so for the square of any step's series.
+const NODES: usize = 24;
+
+/// Nodes and weights over 0 … 1.
+pub(super) static GAUSS: LazyLock<[(f64, f64); NODES]> = LazyLock::new(gauss_legendre_unit);
+
+/// Statistics of a channel over the recorded periods. Means are exact time means of the solution's polynomials, not of
+/// samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
+    /// Time mean, in the unit of the channel.
     pub mean: f64,
-    /// Root mean square: of displacements, velocities and forces with the mean removed; of accelerations as they are, because
-    /// their mean over a periodic motion is zero and over a transient it is part of the motion.
+    /// Root mean square: of displacements, velocities and forces without the mean; of accelerations with it, because
+    /// their mean is zero over a periodic motion and part of the motion over a transient.
     pub rms: f64,
+    /// Minimum.
     pub min: f64,
+    /// Maximum.
     pub max: f64,
 }
 
@@ -22,27 +32,27 @@ pub struct Statistics {
 static POWERS: LazyLock<[[f64; NODES]; MAX_ORDER + 1]> =
     LazyLock::new(|| std::array::from_fn(|n| std::array::from_fn(|q| GAUSS[q].0.powi(n as i32))));
 
-/// Integrals and extremes of one channel, gathered segment by segment.
+/// Integrals and extremes of one channel, accumulated by segment.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Gathered {
-    /// Taken off before squaring, so that a large mean costs no digits.
+pub(super) struct MomentAccumulator {
+    /// Subtracted before squaring, so that a large mean costs no digits.
     offset: Option<f64>,
-    first: f64,
-    second: f64,
+    integral: f64,
+    square_integral: f64,
     length: f64,
     min: f64,
     max: f64,
-    keeps_mean: bool,
+    includes_mean: bool,
 }
 
-impl Gathered {
-    /// `keeps_mean`: whether the mean counts in the mean square.
-    pub fn new(keeps_mean: bool) -> Self {
+impl MomentAccumulator {
+    /// `includes_mean`: whether the mean square includes the mean.
+    pub fn new(includes_mean: bool) -> Self {
         Self {
-            keeps_mean,
+            includes_mean,
             offset: None,
-            first: 0.0,
-            second: 0.0,
+            integral: 0.0,
+            square_integral: 0.0,
             length: 0.0,
             min: f64::INFINITY,
             max: f64::NEG_INFINITY,
@@ -61,7 +71,7 @@ impl Gathered {
         }
         b[0] -= offset;
         let b = &b[..c.len()];
-        // Exact: the square's degree is below that to which the nodes are.
+        // Exact: the degree of the square is within that of the quadrature.
         let mut values = [0.0; NODES];
         for (bi, row) in b.iter().zip(POWERS.iter()) {
             for (value, power) in values.iter_mut().zip(row) {
@@ -73,15 +83,15 @@ impl Gathered {
             mean += weight * value;
             square += weight * value * value;
         }
-        self.first += h * mean;
-        self.second += h * square;
+        self.integral += h * mean;
+        self.square_integral += h * square;
         self.length += h;
         if extremes {
             self.add_extremes(b, &values, offset);
         }
     }
 
-    /// Extremes over the unit interval: the nodes and both ends, then Newton's method on the derivative around the best of
+    /// Extremes over the unit interval: nodes and both ends, then Newton's method for the derivative from the best of
     /// them.
     fn add_extremes(&mut self, b: &[f64], at_nodes: &[f64; NODES], offset: f64) {
         const POINTS: usize = NODES + 2;
@@ -99,7 +109,8 @@ impl Gathered {
                 }
             }
             let mut top = sign * points[at].1;
-            // The tip of a parabola through neighbours lies above the middle one by less than the largest of the differences.
+            // The vertex of a parabola through neighbouring points exceeds the middle one by less than the larger
+            // difference.
             let neighbour = |i: usize| (points[i].1 - points[at].1).abs();
             let margin = neighbour(at.saturating_sub(1)).max(neighbour((at + 1).min(POINTS - 1)));
             if top + margin > best {
@@ -126,24 +137,24 @@ impl Gathered {
         }
     }
 
-    /// Mean of the channel, and mean square: about that mean unless the mean is kept.
+    /// Mean, and mean square about the mean unless the mean is included.
     pub fn mean_and_square(&self) -> (f64, f64) {
-        let first = self.first / self.length;
+        let first = self.integral / self.length;
         let mean = self.offset.unwrap_or(0.0) + first;
-        let variance = (self.second / self.length - first * first).max(0.0);
-        (mean, if self.keeps_mean { variance + mean * mean } else { variance })
+        let variance = (self.square_integral / self.length - first * first).max(0.0);
+        (mean, if self.includes_mean { variance + mean * mean } else { variance })
     }
 
-    /// Variance of what came after the snapshot `earlier`.
-    pub fn variance_since(&self, earlier: &Gathered) -> f64 {
-        let (first, second) = (self.first - earlier.first, self.second - earlier.second);
+    /// Variance of the part after the snapshot `earlier`.
+    pub fn variance_since(&self, earlier: &MomentAccumulator) -> f64 {
+        let (first, second) = (self.integral - earlier.integral, self.square_integral - earlier.square_integral);
         let length = self.length - earlier.length;
         (second / length - (first / length).powi(2)).max(0.0)
     }
 
-    /// Mean square, the mean included, of what came after the snapshot `earlier`.
-    pub fn square_since(&self, earlier: &Gathered) -> f64 {
-        let (first, second) = (self.first - earlier.first, self.second - earlier.second);
+    /// Mean square, mean included, of the part after the snapshot `earlier`.
+    pub fn square_since(&self, earlier: &MomentAccumulator) -> f64 {
+        let (first, second) = (self.integral - earlier.integral, self.square_integral - earlier.square_integral);
         let length = self.length - earlier.length;
         let offset = self.offset.unwrap_or(0.0);
         second / length + offset * (2.0 * first / length + offset)
@@ -177,13 +188,13 @@ mod tests {
     #[test]
     fn means_and_extremes_of_a_parabola() {
         // 5 + t - t² over [0, 1], in two pieces: mean 5 + 1/6, variance 1/180, maximum 5.25 inside.
-        let mut g = Gathered::new(false);
+        let mut g = MomentAccumulator::new(false);
         g.add(&[5.0, 1.0, -1.0], 0.25, true);
         g.add(&[5.1875, 0.5, -1.0], 0.75, true);
         let s = g.finish();
         assert!((s.mean - (5.0 + 1.0 / 6.0)).abs() < 1e-15);
         assert!((s.rms * s.rms - 1.0 / 180.0).abs() < 1e-16);
-        let mut kept = Gathered::new(true);
+        let mut kept = MomentAccumulator::new(true);
         kept.add(&[5.0, 1.0, -1.0], 1.0, false);
         assert!((kept.finish().rms.powi(2) - (31.0_f64 / 6.0).powi(2) - 1.0 / 180.0).abs() < 1e-13);
         assert!((s.max - 5.25).abs() < 1e-15 && (s.min - 5.0).abs() < 1e-15, "{s:?}");

@@ -1,102 +1,103 @@
-//! Finds the motion to report: periodic without loss of contact, periodic with it, or a record of one that does not repeat.
+//! Search for the steady motion: periodic without loss of contact, periodic with it, or a motion that does not repeat.
 
 use nalgebra::{Complex, DMatrix};
 
-use super::budget::{Budget, exhausted, steps_per_period};
-use super::regime::{CHAOS_PER_MESH_PERIOD, Section, faded, largest, lyapunov};
+use super::budget::{Budget, budget_exhausted, steps_per_period};
+use super::lyapunov::{CHAOS_PER_MESH_PERIOD, LYAPUNOV_MESH_PERIODS, lyapunov_exponent, perturbation_decay};
+use super::poincare::{PoincareSection, largest_component};
 use crate::dynamics::{
-    Deviation, DynamicsError, FreeMotions, Integrator, Limits, Model, Motion, Numerics, PER_HALF, Shooting, State, U,
-    Unobserved, difference,
+    DIVERGENCE_LIMIT_M, DynamicModel, DynamicsError, IntegrationLimits, Integrator, Motion, MotionState, PER_HALF,
+    Perturbation, RigidBodyModes, Shooting, StepCounts, U, Unobserved, state_difference,
 };
 
-/// Mesh periods after which a motion that has not come near to repeating is taken not to repeat.
-const PATIENCE_MESH_PERIODS: u64 = 1500;
-/// With fewer mesh periods than this a motion cannot be said not to repeat.
-const LEAST_PATIENCE_MESH_PERIODS: u64 = 40;
-/// Relative change over its period from which Newton's method is tried.
-const NEAR_REPEAT: f64 = 1e-3;
-/// Relative change over a part of its period below which a motion made exact repeats after that part.
-const SAME_MOTION: f64 = 1e-6;
-/// Mesh periods between two tries.
-const BETWEEN_TRIES: u64 = 40;
-/// Mesh periods over which a Lyapunov exponent is averaged.
-const LYAPUNOV_MESH_PERIODS: u64 = 400;
-/// Length of the record of a motion that does not repeat, and the steps it may take.
+/// Mesh periods after which a motion that does not nearly repeat counts as aperiodic.
+const MAX_TRANSIENT_MESH_PERIODS: u64 = 1500;
+/// Smallest number of mesh periods from which a motion can be called aperiodic.
+const MIN_TRANSIENT_MESH_PERIODS: u64 = 40;
+/// Relative change over its period below which Newton's method is started.
+const NEWTON_START_CHANGE: f64 = 1e-3;
+/// Relative change over a fraction of its period below which an orbit has that fraction as its period.
+const SAME_PERIOD_CHANGE: f64 = 1e-6;
+/// Mesh periods between two attempts.
+const MESH_PERIODS_BETWEEN_ATTEMPTS: u64 = 40;
+/// Length of the record of an aperiodic motion, and the limit of its steps.
 const LONG_RECORD_MESH_PERIODS: u64 = 2000;
 const LONG_RECORD_STEPS: u64 = 2_000_000;
-/// Steps of a mesh period beyond which the motion is first followed through a few periods in the hope that everything has died away
-/// then: the linear map takes as many deviations along as there are displacements and velocities.
+/// Steps per mesh period above which the motion is first integrated over a few mesh periods, in case the transient
+/// decays within them: the monodromy matrix needs one perturbation per displacement and velocity.
 const MANY_STEPS_PER_PERIOD: f64 = 2000.0;
-/// How many periods, and by how much the change has to fall from one to the next.
-const SOON_MESH_PERIODS: u64 = 6;
-const SOON_FALL: f64 = 0.03;
-/// A change that no longer falls is rounding below this; what it means for the answer is measured later.
-const SOON_ROUNDING: f64 = 1e-5;
-/// What is left of a deviation after a mesh period when everything dies away within it.
-const FADED: f64 = 0.01;
-/// Multiplier from which a motion's start is corrected once more with a finer tolerance: an error of the map moves
-/// the start of a motion that hardly decays by 1/(1 - multiplier) times as much.
+/// Number of these mesh periods, and the required reduction of the change from one to the next.
+const SETTLING_MESH_PERIODS: u64 = 6;
+const SETTLING_REDUCTION: f64 = 0.03;
+/// Change below which a lack of reduction is rounding; its effect on the result is measured by the error estimate.
+const SETTLING_ROUNDING: f64 = 1e-5;
+/// Remaining part of a perturbation after a mesh period below which the transient counts as decayed.
+const DECAYED: f64 = 0.01;
+/// Modulus of a multiplier above which the start of an orbit is refined with a finer tolerance: an error of the map is
+/// amplified by 1/(1 − modulus) in the start.
 const SLOW_DECAY: f64 = 0.95;
 
-/// A motion ready to be recorded.
-pub(super) struct Found<const D: usize> {
-    pub start: State<D>,
+/// A steady motion, ready to be recorded.
+pub(super) struct SteadyMotion<const D: usize> {
+    pub start: MotionState<D>,
     /// Mesh periods to record.
     pub record: u64,
-    /// The period in mesh periods and the linear map over it; None when the motion does not repeat.
+    /// Period in mesh periods and monodromy matrix over it; None for an aperiodic motion.
     pub orbit: Option<(u64, DMatrix<f64>)>,
     /// Largest modulus of the Floquet multipliers, per mesh period.
     pub floquet: Option<f64>,
-    /// All of them over the orbit, those against the mirror symmetry included, largest first.
+    /// All multipliers over the orbit, antisymmetric ones included, largest first.
     pub multipliers: Vec<Complex<f64>>,
     /// Largest Lyapunov exponent per mesh period.
     pub lyapunov: Option<f64>,
-    /// The halves do not keep their mirror symmetry: deviations against it grow.
+    /// Whether antisymmetric perturbations grow, so that the motion leaves the mirror symmetry.
     pub leaves_symmetry: bool,
     pub tolerance: f64,
-    pub numerics: Numerics,
+    pub counts: StepCounts,
 }
 
-/// What the search needs to know.
-pub(super) struct Search<'a, const D: usize> {
-    pub model: &'a Model<D>,
+/// Parameters of a search.
+pub(super) struct SteadyStateSearch<'a, const D: usize> {
+    pub model: &'a DynamicModel<D>,
     pub mean_stiffness_n_per_m: [f64; 2],
-    pub limits: Limits<'a>,
-    /// A motion that does not repeat is an error.
+    pub limits: IntegrationLimits<'a>,
+    /// Whether an aperiodic motion is an error.
     pub must_repeat: bool,
-    /// The motion that is reached from the start is wanted, even where another one keeps contact.
+    /// Whether the motion reached from the start is required, even if another one keeps contact.
     pub from_start: bool,
 }
 
-impl<const D: usize> Search<'_, D> {
-    /// The steady state reached from `start`, or the periodic one without loss of contact when it exists and is stable.
-    pub fn run(&self, start: State<D>) -> Result<Found<D>, DynamicsError> {
+impl<const D: usize> SteadyStateSearch<'_, D> {
+    /// The steady motion reached from `start`, or the periodic one without loss of contact if it exists and is stable.
+    ///
+    /// # Errors
+    /// [`DynamicsError`].
+    pub fn run(&self, start: MotionState<D>) -> Result<SteadyMotion<D>, DynamicsError> {
         let mut budget = Budget::new::<D>(&self.limits);
-        self.carried(&start)?;
-        let start = self.woken(start);
-        let mut numerics = Numerics::default();
+        self.check_static_deflection(&start)?;
+        let start = self.perturb_from_rest(start);
+        let mut counts = StepCounts::default();
         if steps_per_period(self.model) > MANY_STEPS_PER_PERIOD
-            && let Some(found) = self.soon(start, &mut budget, &mut numerics)?
+            && let Some(found) = self.settle_by_integration(start, &mut budget, &mut counts)?
         {
             return Ok(found);
         }
-        // Also says whether there is a steady state at all.
-        let keeps_contact = if self.model.follows_contact() {
-            self.about_static(start, &mut budget, &mut numerics)?
+        // Also checks that a steady state exists.
+        let keeps_contact = if self.model.uses_contact_force() {
+            self.orbit_near_static_deflection(start, &mut budget, &mut counts)?
         } else {
-            self.without_separation(start, &mut budget, &mut numerics)?
+            self.orbit_in_contact(start, &mut budget, &mut counts)?
         };
         if let Some(found) = keeps_contact.filter(|_| !self.from_start) {
             return Ok(found);
         }
-        self.with_separation(start, &mut budget, numerics)
+        self.motion_by_integration(start, &mut budget, counts)
     }
 
-    /// Fails where the load would press the pair further than any motion may go.
-    fn carried(&self, start: &State<D>) -> Result<(), DynamicsError> {
-        const FURTHEST_M: f64 = 1e3;
-        let furthest = largest(&(start.x, [0.0; D]));
-        if furthest > FURTHEST_M {
+    /// Fails where the static deflection exceeds the limit of any motion.
+    fn check_static_deflection(&self, start: &MotionState<D>) -> Result<(), DynamicsError> {
+        let furthest = largest_component(&(start.x, [0.0; D]));
+        if furthest > DIVERGENCE_LIMIT_M {
             return Err(DynamicsError::InvalidParameter {
                 name: "static deflection in m",
                 value: furthest,
@@ -106,405 +107,410 @@ impl<const D: usize> Search<'_, D> {
         Ok(())
     }
 
-    /// A pair without load rests at zero: there is no size of its motion to measure a step by, when a pulse comes. It sets out from a
-    /// millionth of the deflection that the pulse could give instead; where it sets out from is forgotten.
-    fn woken(&self, start: State<D>) -> State<D> {
-        const SLIGHTLY: f64 = 1e-6;
+    /// Perturbs a start at zero (a pair without load), at which the motion has no size for the step control, by 1e-6 of
+    /// the deflection that the largest impact force could cause.
+    fn perturb_from_rest(&self, start: MotionState<D>) -> MotionState<D> {
+        const RELATIVE_SIZE: f64 = 1e-6;
         if start.x.iter().chain(&start.v).any(|c| *c != 0.0) {
             return start;
         }
         let masses = self.model.masses_kg();
         let square = self.model.omega_ref * self.model.omega_ref;
-        let mut push: Deviation<D> = ([0.0; D], [0.0; D]);
-        for j in 0..Model::<D>::HALVES {
+        let mut perturbation: Perturbation<D> = ([0.0; D], [0.0; D]);
+        for j in 0..DynamicModel::<D>::HALVES {
             let u = j * PER_HALF + U;
-            push.0[u] = SLIGHTLY * self.model.largest_push_n(j) / (masses[u] * square);
+            perturbation.0[u] = RELATIVE_SIZE * self.model.max_excitation_force_n(j) / (masses[u] * square);
         }
-        moved(self.model, start, &push)
+        displaced(self.model, start, &perturbation)
     }
 
-    fn motion(&self, start: State<D>, budget: &Budget) -> Motion<'_, D> {
-        let Limits { tolerance, .. } = self.limits;
+    fn motion(&self, start: MotionState<D>, budget: &Budget) -> Motion<'_, D> {
+        let IntegrationLimits { tolerance, .. } = self.limits;
         Motion::new(self.model, start, Integrator::Taylor, tolerance, budget.steps(0))
     }
 
-    /// The period map under what is left of the budget.
-    fn shooting<'s>(&'s self, model: &'s Model<D>, budget: &Budget) -> Result<Shooting<'s, D>, DynamicsError> {
+    /// Shooting method within the remaining work.
+    fn shooting<'s>(&'s self, model: &'s DynamicModel<D>, budget: &Budget) -> Result<Shooting<'s, D>, DynamicsError> {
         Shooting::new(model, self.mean_stiffness_n_per_m, budget.limits(&self.limits, 2 * model.active().count()))
     }
 
-    /// Fails when the mean load has a part along a motion that nothing holds.
-    fn balanced(&self, shooting: &Shooting<'_, D>, defect: &Deviation<D>) -> Result<(), DynamicsError> {
-        let unbalanced_n = shooting.unbalanced_n(defect, 1);
-        let load = (0..Model::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.largest_push_n(j)));
-        // Rounding and truncation leave a little; a real imbalance is far above. What is not loaded cannot be unbalanced.
+    /// Fails when the mean load has a component along a rigid-body mode.
+    fn check_load_balance(&self, shooting: &Shooting<'_, D>, defect: &Perturbation<D>) -> Result<(), DynamicsError> {
+        let unbalanced_n = shooting.unbalanced_force_n(defect, 1);
+        let load = (0..DynamicModel::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.max_excitation_force_n(j)));
+        // Rounding and truncation errors are far below this threshold, an imbalance far above.
         if load > 0.0 && unbalanced_n > 1e-6 * load {
             return Err(DynamicsError::Unbalanced { force_n: unbalanced_n });
         }
         Ok(())
     }
 
-    /// A motion of which nothing is left after a mesh period but what that period's excitation makes: found by following it, for a
-    /// few steps where the map would take very many. None when the transient does not die so fast.
-    fn soon(
+    /// Periodic motion of a pair whose transient decays within a mesh period, found by integration where the monodromy
+    /// matrix would need very many steps. None when the transient decays more slowly.
+    fn settle_by_integration(
         &self,
-        start: State<D>,
+        start: MotionState<D>,
         budget: &mut Budget,
-        numerics: &mut Numerics,
-    ) -> Result<Option<Found<D>>, DynamicsError> {
-        let free = FreeMotions::new(self.model)?;
+        counts: &mut StepCounts,
+    ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
+        let rigid_body = RigidBodyModes::new(self.model)?;
         let mut motion = self.motion(start, budget);
-        let mut section = Section::held(self.model)?;
+        let mut section = PoincareSection::without_rigid_body(self.model)?;
         section.push(motion.state);
         let (mut last, mut before) = (motion.state, f64::INFINITY);
         let mut settled = false;
-        for _ in 0..SOON_MESH_PERIODS {
+        for _ in 0..SETTLING_MESH_PERIODS {
             last = motion.state;
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
             section.push(motion.state);
             let change = section.change(1).unwrap_or(f64::INFINITY);
-            // Or as well as rounding lets it: a slow motion's velocity has few digits beside its displacement.
-            let floor = change <= SOON_ROUNDING && change > SOON_FALL * before;
+            // Or limited by rounding: the velocity of a slow motion has few digits beside its displacement.
+            let floor = change <= SETTLING_ROUNDING && change > SETTLING_REDUCTION * before;
             settled = floor || change <= 10.0 * self.limits.tolerance;
-            if settled || change > SOON_FALL * before {
+            if settled || change > SETTLING_REDUCTION * before {
                 break;
             }
             before = change;
         }
-        budget.spend(&motion.numerics, 0);
-        *numerics += motion.numerics;
-        let steps = motion.numerics.steps / (motion.state.period - start.period).max(1);
+        budget.spend(&motion.counts, 0);
+        *counts += motion.counts;
+        let steps = motion.counts.steps / (motion.state.period - start.period).max(1);
         if !settled || !budget.affords(steps, 1) {
             return Ok(None);
         }
-        let near = State { period: 0, ..last };
-        // Everything else might still be held by some motion that this start did not wake.
-        let mut fades = |model: &Model<D>, free: &FreeMotions<D>| {
+        let near = MotionState { period: 0, ..last };
+        // A mode that this start does not excite may decay more slowly.
+        let mut decays = |model: &DynamicModel<D>, rigid_body: &RigidBodyModes<D>| {
             let mut motion = self.motion(near, budget);
-            let left = faded(&mut motion, model, free, self.limits.watch)?;
-            budget.spend(&motion.numerics, 1);
-            *numerics += motion.numerics;
-            Ok::<_, DynamicsError>(left < FADED)
+            let left = perturbation_decay(&mut motion, model, rigid_body, self.limits.watch)?;
+            budget.spend(&motion.counts, 1);
+            *counts += motion.counts;
+            Ok::<_, DynamicsError>(left < DECAYED)
         };
-        if !fades(self.model, &free)? {
+        if !decays(self.model, &rigid_body)? {
             return Ok(None);
         }
         if D == PER_HALF {
-            let opposite = self.model.against_symmetry();
-            if !fades(&opposite, &FreeMotions::new(&opposite)?)? {
+            let antisymmetric = self.model.antisymmetric();
+            if !decays(&antisymmetric, &RigidBodyModes::new(&antisymmetric)?)? {
                 return Ok(None);
             }
         }
         let shooting = self.shooting(self.model, budget)?;
-        let defect = difference(&motion.state, &last);
-        self.balanced(&shooting, &defect)?;
+        let defect = state_difference(&motion.state, &last);
+        self.check_load_balance(&shooting, &defect)?;
         let n = 2 * self.model.active().count();
-        let nothing_left = DMatrix::zeros(n, n);
-        let Some(correction) = shooting.correction(&defect, &nothing_left, 1) else { return Ok(None) };
-        Ok(Some(Found {
-            start: moved(self.model, near, &correction),
+        let zero_monodromy = DMatrix::zeros(n, n);
+        let Some(correction) = shooting.correction(&defect, &zero_monodromy, 1) else { return Ok(None) };
+        Ok(Some(SteadyMotion {
+            start: displaced(self.model, near, &correction),
             record: 1,
-            orbit: Some((1, nothing_left)),
+            orbit: Some((1, zero_monodromy)),
             floquet: None,
             multipliers: Vec::new(),
             lyapunov: None,
             leaves_symmetry: false,
             tolerance: self.limits.tolerance,
-            numerics: *numerics,
+            counts: *counts,
         }))
     }
 
-    /// With contact held the equations are linear: one period from any start gives the periodic solution.
-    fn without_separation(
+    /// Periodic orbit with fixed contact: the equations are linear, so one period from any start gives it. None if it
+    /// loses contact or is unstable.
+    fn orbit_in_contact(
         &self,
-        start: State<D>,
+        start: MotionState<D>,
         budget: &mut Budget,
-        numerics: &mut Numerics,
-    ) -> Result<Option<Found<D>>, DynamicsError> {
-        let deviations = 2 * self.model.active().count();
-        let held = self.model.holding_contact();
+        counts: &mut StepCounts,
+    ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
+        let perturbations = 2 * self.model.active().count();
+        let fixed = self.model.with_fixed_contact();
         let mut first = start;
-        for j in 0..Model::<D>::HALVES {
+        for j in 0..DynamicModel::<D>::HALVES {
             first.contact[j] = if self.model.halves[j].load < 0.0 { -1 } else { 1 };
         }
         let shooting = self.shooting(self.model, budget)?;
-        let once = shooting.map(&held, first, 1)?;
-        budget.spend(&once.numerics, deviations);
-        *numerics += once.numerics;
-        let defect = difference(&once.end, &first);
-        self.balanced(&shooting, &defect)?;
-        let within = shooting.multipliers(&once.map);
+        let period_map = shooting.period_map(&fixed, first, 1)?;
+        budget.spend(&period_map.counts, perturbations);
+        *counts += period_map.counts;
+        let defect = state_difference(&period_map.end, &first);
+        self.check_load_balance(&shooting, &defect)?;
+        let within = shooting.multipliers(&period_map.monodromy);
         let modulus = within.first().map(|m| m.norm());
         let Some(modulus) = modulus.filter(|m| *m < 1.0) else { return Ok(None) };
-        let Some(correction) = shooting.correction(&defect, &once.map, 1) else { return Ok(None) };
-        let orbit_start = moved(self.model, first, &correction);
+        let Some(correction) = shooting.correction(&defect, &period_map.monodromy, 1) else { return Ok(None) };
+        let orbit_start = displaced(self.model, first, &correction);
         if orbit_start.contact != first.contact {
             return Ok(None);
         }
         let mut motion = self.motion(orbit_start, budget);
         motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
-        budget.spend(&motion.numerics, 0);
-        *numerics += motion.numerics;
+        budget.spend(&motion.counts, 0);
+        *counts += motion.counts;
         if motion.contact_changed {
             return Ok(None);
         }
-        let start = self.polished(&shooting, (orbit_start, 1), &once.map, modulus, budget, numerics)?;
-        let (against, multipliers) = self.with_those_against_symmetry(within, start, 1, budget)?;
-        Ok(Some(Found {
+        let start = self.refine_orbit(&shooting, (orbit_start, 1), &period_map.monodromy, modulus, budget, counts)?;
+        let (antisymmetric_modulus, multipliers) = self.with_antisymmetric_multipliers(within, start, 1, budget)?;
+        Ok(Some(SteadyMotion {
             start,
             multipliers,
             record: 1,
-            orbit: Some((1, once.map)),
-            floquet: Some(modulus.max(against)),
+            orbit: Some((1, period_map.monodromy)),
+            floquet: Some(modulus.max(antisymmetric_modulus)),
             lyapunov: None,
-            leaves_symmetry: against > 1.0,
+            leaves_symmetry: antisymmetric_modulus > 1.0,
             tolerance: self.limits.tolerance,
-            numerics: *numerics,
+            counts: *counts,
         }))
     }
 
-    /// Where the mesh force is that of the loaded contact: the period-1 motion about the static deflection, by Newton's method on the period map.
-    /// Its first step solves the equations linearised about a motion that sets out from the static deflection. The map is kept as long as the
-    /// steps converge (chord method), and taken anew at the motion found. None when that separates, is unstable or is not found.
-    fn about_static(
+    /// Period-1 orbit about the static deflection for a tabulated contact force, by Newton's method on the period map.
+    /// The monodromy matrix is kept as long as the steps converge (chord method) and computed anew at the orbit. None
+    /// if the orbit loses contact, is unstable or is not found.
+    fn orbit_near_static_deflection(
         &self,
-        start: State<D>,
+        start: MotionState<D>,
         budget: &mut Budget,
-        numerics: &mut Numerics,
-    ) -> Result<Option<Found<D>>, DynamicsError> {
-        const ROUNDS: usize = 12;
-        /// A map is kept while each step leaves less than this part of the defect.
-        const CONVERGES: f64 = 0.2;
-        let deviations = 2 * self.model.active().count();
+        counts: &mut StepCounts,
+    ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
+        const MAX_ITERATIONS: usize = 12;
+        /// Reduction of the defect per step with which a monodromy matrix is kept.
+        const CHORD_REDUCTION: f64 = 0.2;
+        let perturbations = 2 * self.model.active().count();
         let shooting = self.shooting(self.model, budget)?;
-        let mut at = State { period: 0, ..start };
-        let mut round = shooting.map(self.model, at, 1)?;
-        budget.spend(&round.numerics, deviations);
-        *numerics += round.numerics;
-        let mut defect = difference(&round.end, &at);
-        self.balanced(&shooting, &defect)?;
+        let mut at = MotionState { period: 0, ..start };
+        let mut period_map = shooting.period_map(self.model, at, 1)?;
+        budget.spend(&period_map.counts, perturbations);
+        *counts += period_map.counts;
+        let mut defect = state_difference(&period_map.end, &at);
+        self.check_load_balance(&shooting, &defect)?;
         let mut last = f64::INFINITY;
-        let mut fresh_map = true;
-        for _ in 0..ROUNDS {
-            let size = round.size.max(1e-9 * largest(&(at.x, [0.0; D])));
-            let change = largest(&defect) / size;
-            let closed = change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last);
-            if closed && fresh_map {
+        let mut monodromy_is_current = true;
+        for _ in 0..MAX_ITERATIONS {
+            let size = period_map.size.max(1e-9 * largest_component(&(at.x, [0.0; D])));
+            let change = largest_component(&defect) / size;
+            let converged = change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last);
+            if converged && monodromy_is_current {
                 break;
             }
-            if closed || (!fresh_map && change > CONVERGES * last) {
-                round = shooting.map(self.model, at, 1)?;
-                budget.spend(&round.numerics, deviations);
-                *numerics += round.numerics;
-                defect = difference(&round.end, &at);
-                fresh_map = true;
-                if closed {
+            if converged || (!monodromy_is_current && change > CHORD_REDUCTION * last) {
+                period_map = shooting.period_map(self.model, at, 1)?;
+                budget.spend(&period_map.counts, perturbations);
+                *counts += period_map.counts;
+                defect = state_difference(&period_map.end, &at);
+                monodromy_is_current = true;
+                if converged {
                     break;
                 }
             }
             last = change;
-            let Some(correction) = shooting.correction(&defect, &round.map, 1) else { return Ok(None) };
-            at = moved(self.model, at, &correction);
+            let Some(correction) = shooting.correction(&defect, &period_map.monodromy, 1) else { return Ok(None) };
+            at = displaced(self.model, at, &correction);
             let mut motion = self.motion(at, budget);
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
-            budget.spend(&motion.numerics, 0);
-            *numerics += motion.numerics;
-            defect = difference(&motion.state, &at);
-            fresh_map = false;
+            budget.spend(&motion.counts, 0);
+            *counts += motion.counts;
+            defect = state_difference(&motion.state, &at);
+            monodromy_is_current = false;
         }
-        let size = round.size.max(1e-9 * largest(&(at.x, [0.0; D])));
-        if !fresh_map || round.separated || largest(&defect) / size > 1e-9f64.max(10.0 * self.limits.tolerance) {
+        let size = period_map.size.max(1e-9 * largest_component(&(at.x, [0.0; D])));
+        if !monodromy_is_current
+            || period_map.separated
+            || largest_component(&defect) / size > 1e-9f64.max(10.0 * self.limits.tolerance)
+        {
             return Ok(None);
         }
-        self.stable_orbit(&shooting, at, 1, round.map, budget, numerics)
+        self.stable_orbit(&shooting, at, 1, period_map.monodromy, budget, counts)
     }
 
-    /// The orbit that closes from `at` after `n` mesh periods with its multipliers; None where a deviation grows.
+    /// The orbit that closes from `at` after `n` mesh periods, with its multipliers; None if it is unstable.
     fn stable_orbit(
         &self,
         shooting: &Shooting<'_, D>,
-        at: State<D>,
+        at: MotionState<D>,
         n: u64,
-        map: DMatrix<f64>,
+        monodromy: DMatrix<f64>,
         budget: &mut Budget,
-        numerics: &mut Numerics,
-    ) -> Result<Option<Found<D>>, DynamicsError> {
-        let within = shooting.multipliers(&map);
+        counts: &mut StepCounts,
+    ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
+        let within = shooting.multipliers(&monodromy);
         let modulus = within.first().map(|m| m.norm());
         let Some(modulus) = modulus.filter(|m| *m < 1.0) else { return Ok(None) };
-        let start = self.polished(shooting, (at, n), &map, modulus, budget, numerics)?;
-        let (against, multipliers) = self.with_those_against_symmetry(within, start, n, budget)?;
-        Ok(Some(Found {
+        let start = self.refine_orbit(shooting, (at, n), &monodromy, modulus, budget, counts)?;
+        let (antisymmetric_modulus, multipliers) = self.with_antisymmetric_multipliers(within, start, n, budget)?;
+        Ok(Some(SteadyMotion {
             multipliers,
             start,
             record: n,
-            orbit: Some((n, map)),
-            floquet: Some(modulus.max(against).powf(1.0 / n as f64)),
+            orbit: Some((n, monodromy)),
+            floquet: Some(modulus.max(antisymmetric_modulus).powf(1.0 / n as f64)),
             lyapunov: None,
-            leaves_symmetry: against > 1.0,
+            leaves_symmetry: antisymmetric_modulus > 1.0,
             tolerance: self.limits.tolerance,
-            numerics: *numerics,
+            counts: *counts,
         }))
     }
 
-    fn with_separation(
+    fn motion_by_integration(
         &self,
-        start: State<D>,
+        start: MotionState<D>,
         budget: &mut Budget,
-        mut numerics: Numerics,
-    ) -> Result<Found<D>, DynamicsError> {
+        mut counts: StepCounts,
+    ) -> Result<SteadyMotion<D>, DynamicsError> {
         let all = budget.steps(0);
-        let kept = all - all / 8 * 3;
+        let reserve = all - all / 8 * 3;
         let mut motion = self.motion(start, budget);
-        let mut section = Section::held(self.model)?;
+        let mut section = PoincareSection::without_rigid_body(self.model)?;
         section.push(motion.state);
-        let mut next_try = 8;
-        let mut followed = 0;
-        // Of the budget the motion may take a half, tries to close it three eighths; the rest is for what follows.
-        while followed < PATIENCE_MESH_PERIODS && motion.numerics.steps <= all / 2 {
-            followed += 1;
-            let fraction = 0.9 * followed as f64 / PATIENCE_MESH_PERIODS as f64;
+        let mut next_attempt = 8;
+        let mut periods_integrated = 0;
+        // Half of the work is for the integration, three eighths for attempts at an orbit, the rest for what follows.
+        while periods_integrated < MAX_TRANSIENT_MESH_PERIODS && motion.counts.steps <= all / 2 {
+            periods_integrated += 1;
+            let fraction = 0.9 * periods_integrated as f64 / MAX_TRANSIENT_MESH_PERIODS as f64;
             motion.advance_period(&mut Unobserved, self.limits.watch, fraction)?;
             self.limits.watch.checkpoint(fraction)?;
             section.push(motion.state);
-            if followed < next_try {
+            if periods_integrated < next_attempt {
                 continue;
             }
-            if let Some((n, _)) = section.repeats(NEAR_REPEAT) {
-                next_try = followed + BETWEEN_TRIES;
-                match self.closed(motion.state, n as u64, section.size(), budget) {
+            if let Some((n, _)) = section.repeats(NEWTON_START_CHANGE) {
+                next_attempt = periods_integrated + MESH_PERIODS_BETWEEN_ATTEMPTS;
+                match self.find_orbit(motion.state, n as u64, section.size(), budget) {
                     Ok(Some(mut found)) => {
-                        numerics += motion.numerics;
-                        found.numerics += numerics;
+                        counts += motion.counts;
+                        found.counts += counts;
                         return Ok(found);
                     }
                     Ok(None) => {}
-                    // It repeats too late for Newton's method to be afforded: a motion that does not repeat, as far as can be said.
-                    Err(DynamicsError::TooManySteps { .. }) => next_try = u64::MAX,
+                    // Newton's method exceeds the work limit at this period: the motion is treated as aperiodic.
+                    Err(DynamicsError::TooManySteps { .. }) => next_attempt = u64::MAX,
                     Err(other) => return Err(other),
                 }
-                if budget.steps(0) < kept {
-                    next_try = u64::MAX;
+                if budget.steps(0) < reserve {
+                    next_attempt = u64::MAX;
                 }
             }
         }
-        budget.spend(&motion.numerics, 0);
-        numerics += motion.numerics;
-        let steps = motion.numerics.steps / followed.max(1);
-        if followed < PATIENCE_MESH_PERIODS.min(LEAST_PATIENCE_MESH_PERIODS) {
-            return Err(exhausted(all, motion.time_s()));
+        budget.spend(&motion.counts, 0);
+        counts += motion.counts;
+        let steps = motion.counts.steps / periods_integrated.max(1);
+        if periods_integrated < MAX_TRANSIENT_MESH_PERIODS.min(MIN_TRANSIENT_MESH_PERIODS) {
+            return Err(budget_exhausted(all, motion.time_s()));
         }
         if self.must_repeat {
             let change = section.change(1).unwrap_or(f64::INFINITY);
-            return Err(DynamicsError::NotPeriodic { mesh_periods: followed, change });
+            return Err(DynamicsError::NotPeriodic { mesh_periods: periods_integrated, change });
         }
         let periods = LYAPUNOV_MESH_PERIODS.min(budget.steps(1) / 2 / steps.max(1));
         if periods == 0 {
-            return Err(exhausted(all, motion.time_s()));
+            return Err(budget_exhausted(all, motion.time_s()));
         }
-        let mut exponent_of = |model: &Model<D>| {
-            let mut across = self.motion(motion.state, budget);
-            let exponent = lyapunov(&mut across, model, periods, self.limits.watch)?;
-            budget.spend(&across.numerics, 1);
-            numerics += across.numerics;
+        let mut exponent_of = |model: &DynamicModel<D>| {
+            let mut continued = self.motion(motion.state, budget);
+            let exponent = lyapunov_exponent(&mut continued, model, periods, self.limits.watch)?;
+            budget.spend(&continued.counts, 1);
+            counts += continued.counts;
             Ok::<_, DynamicsError>(exponent)
         };
         let exponent = exponent_of(self.model)?;
-        let leaves_symmetry = D == PER_HALF && exponent_of(&self.model.against_symmetry())? > CHAOS_PER_MESH_PERIOD;
-        Ok(Found {
+        let leaves_symmetry = D == PER_HALF && exponent_of(&self.model.antisymmetric())? > CHAOS_PER_MESH_PERIOD;
+        Ok(SteadyMotion {
             start: motion.state,
-            record: LONG_RECORD_MESH_PERIODS.min(LONG_RECORD_STEPS / steps.max(1)).max(LEAST_PATIENCE_MESH_PERIODS),
+            record: LONG_RECORD_MESH_PERIODS.min(LONG_RECORD_STEPS / steps.max(1)).max(MIN_TRANSIENT_MESH_PERIODS),
             orbit: None,
             floquet: None,
             multipliers: Vec::new(),
             lyapunov: Some(exponent),
             leaves_symmetry,
             tolerance: self.limits.tolerance,
-            numerics,
+            counts,
         })
     }
 
-    /// The periodic motion near a state that nearly repeats after `n` mesh periods, with the shortest period it has; None when Newton's
-    /// method does not lead to a stable one.
-    fn closed(
+    /// Periodic orbit near a state that nearly repeats after `n` mesh periods, with its fundamental period; None if
+    /// Newton's method does not converge to a stable one.
+    fn find_orbit(
         &self,
-        near: State<D>,
+        near: MotionState<D>,
         n: u64,
         size: f64,
         budget: &mut Budget,
-    ) -> Result<Option<Found<D>>, DynamicsError> {
-        let Some(found) = self.newton(near, n, size, budget)? else { return Ok(None) };
-        let Some(shorter) = self.shorter_period(&found, n, size, budget)? else { return Ok(Some(found)) };
-        Ok(Some(self.newton(found.start, shorter, size, budget)?.unwrap_or(found)))
+    ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
+        let Some(found) = self.newton_orbit(near, n, size, budget)? else { return Ok(None) };
+        let Some(shorter) = self.fundamental_period(&found, n, size, budget)? else { return Ok(Some(found)) };
+        Ok(Some(self.newton_orbit(found.start, shorter, size, budget)?.unwrap_or(found)))
     }
 
-    /// The part of the `n` mesh periods of a motion after which it repeats already: what is left of a transient turns, and comes closer
-    /// to itself after some numbers of periods than after the motion's own.
-    fn shorter_period(
+    /// Divisor of the `n` mesh periods of an orbit after which it repeats already. A decaying oscillation can return
+    /// closest to itself after a multiple of the fundamental period.
+    fn fundamental_period(
         &self,
-        found: &Found<D>,
+        found: &SteadyMotion<D>,
         n: u64,
         size: f64,
         budget: &mut Budget,
     ) -> Result<Option<u64>, DynamicsError> {
-        let free = FreeMotions::new(self.model)?;
+        let rigid_body = RigidBodyModes::new(self.model)?;
         let mut motion = self.motion(found.start, budget);
         for period in 1..=n / 2 {
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.9)?;
-            let change = largest(&free.held(&difference(&motion.state, &found.start))) / size;
-            if n.is_multiple_of(period) && change < SAME_MOTION {
-                budget.spend(&motion.numerics, 0);
+            let change =
+                largest_component(&rigid_body.project_out(&state_difference(&motion.state, &found.start))) / size;
+            if n.is_multiple_of(period) && change < SAME_PERIOD_CHANGE {
+                budget.spend(&motion.counts, 0);
                 return Ok(Some(period));
             }
         }
-        budget.spend(&motion.numerics, 0);
+        budget.spend(&motion.counts, 0);
         Ok(None)
     }
 
-    /// Newton's method on the map over `n` mesh periods; None when it does not lead to a stable motion close by.
-    fn newton(
+    /// Newton's method on the period map over `n` mesh periods; None if it does not converge to a stable orbit nearby.
+    fn newton_orbit(
         &self,
-        near: State<D>,
+        near: MotionState<D>,
         n: u64,
         size: f64,
         budget: &mut Budget,
-    ) -> Result<Option<Found<D>>, DynamicsError> {
-        let deviations = 2 * self.model.active().count();
-        let free = FreeMotions::new(self.model)?;
-        let mut start = State { period: 0, ..near };
-        let mut numerics = Numerics::default();
+    ) -> Result<Option<SteadyMotion<D>>, DynamicsError> {
+        let perturbations = 2 * self.model.active().count();
+        let rigid_body = RigidBodyModes::new(self.model)?;
+        let mut start = MotionState { period: 0, ..near };
+        let mut counts = StepCounts::default();
         let mut last = f64::INFINITY;
         for _ in 0..10 {
             let shooting = self.shooting(self.model, budget)?;
-            let round = shooting.map(self.model, start, n)?;
-            budget.spend(&round.numerics, deviations);
-            numerics += round.numerics;
-            let defect = difference(&round.end, &start);
-            let change = largest(&defect) / size;
+            let period_map = shooting.period_map(self.model, start, n)?;
+            budget.spend(&period_map.counts, perturbations);
+            counts += period_map.counts;
+            let defect = state_difference(&period_map.end, &start);
+            let change = largest_component(&defect) / size;
             if change < 10.0 * self.limits.tolerance || (change < 1e-9 && change >= 0.3 * last) {
-                return self.stable_orbit(&shooting, start, n, round.map, budget, &mut numerics);
+                return self.stable_orbit(&shooting, start, n, period_map.monodromy, budget, &mut counts);
             }
             last = change;
-            let Some(correction) = shooting.correction(&defect, &round.map, n) else { return Ok(None) };
-            // A free motion may need any speed to close.
-            if largest(&free.held(&correction)) > 0.1 * size {
+            let Some(correction) = shooting.correction(&defect, &period_map.monodromy, n) else { return Ok(None) };
+            // The velocity along rigid-body modes is not limited.
+            if largest_component(&rigid_body.project_out(&correction)) > 0.1 * size {
                 return Ok(None);
             }
-            start = moved(self.model, start, &correction);
+            start = displaced(self.model, start, &correction);
         }
         Ok(None)
     }
 
-    /// The start of a motion that hardly decays, corrected by what it fails to close when it is followed more finely.
-    fn polished(
+    /// Start of a slowly decaying orbit, corrected by the defect of an integration with finer tolerance.
+    fn refine_orbit(
         &self,
         shooting: &Shooting<'_, D>,
-        (start, n): (State<D>, u64),
-        map: &DMatrix<f64>,
+        (start, n): (MotionState<D>, u64),
+        monodromy: &DMatrix<f64>,
         modulus: f64,
         budget: &mut Budget,
-        numerics: &mut Numerics,
-    ) -> Result<State<D>, DynamicsError> {
+        counts: &mut StepCounts,
+    ) -> Result<MotionState<D>, DynamicsError> {
         let fine = (1e-3 * self.limits.tolerance).max(1e-15);
         if modulus < SLOW_DECAY || fine >= self.limits.tolerance {
             return Ok(start);
@@ -513,30 +519,30 @@ impl<const D: usize> Search<'_, D> {
         for _ in 0..n {
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
         }
-        budget.spend(&motion.numerics, 0);
-        *numerics += motion.numerics;
-        let correction = shooting.correction(&difference(&motion.state, &start), map, n);
-        let better = correction.map(|by| moved(self.model, start, &by));
-        Ok(better.filter(|b| b.contact == start.contact).map_or(start, |b| State { period: start.period, ..b }))
+        budget.spend(&motion.counts, 0);
+        *counts += motion.counts;
+        let correction = shooting.correction(&state_difference(&motion.state, &start), monodromy, n);
+        let better = correction.map(|by| displaced(self.model, start, &by));
+        Ok(better.filter(|b| b.contact == start.contact).map_or(start, |b| MotionState { period: start.period, ..b }))
     }
 
-    /// Largest modulus of the Floquet multipliers of deviations against the mirror symmetry over `n` periods (0 with twelve
-    /// coordinates, whose own map has them all), and these among the multipliers `within` the symmetry.
-    fn with_those_against_symmetry(
+    /// Largest modulus of the multipliers of antisymmetric perturbations over `n` periods (0 with twelve coordinates,
+    /// whose monodromy matrix includes them), and all multipliers merged with those `within` the symmetry.
+    fn with_antisymmetric_multipliers(
         &self,
         mut within: Vec<Complex<f64>>,
-        start: State<D>,
+        start: MotionState<D>,
         n: u64,
         budget: &mut Budget,
     ) -> Result<(f64, Vec<Complex<f64>>), DynamicsError> {
         if D != PER_HALF {
             return Ok((0.0, within));
         }
-        let opposite = self.model.against_symmetry();
-        let shooting = self.shooting(&opposite, budget)?;
-        let round = shooting.map(self.model, start, n)?;
-        budget.spend(&round.numerics, 2 * opposite.active().count());
-        let against = shooting.multipliers(&round.map);
+        let antisymmetric = self.model.antisymmetric();
+        let shooting = self.shooting(&antisymmetric, budget)?;
+        let period_map = shooting.period_map(self.model, start, n)?;
+        budget.spend(&period_map.counts, 2 * antisymmetric.active().count());
+        let against = shooting.multipliers(&period_map.monodromy);
         let largest = against.first().map_or(f64::INFINITY, |m| m.norm());
         within.extend(against);
         within.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
@@ -544,13 +550,17 @@ impl<const D: usize> Search<'_, D> {
     }
 }
 
-/// A state with a deviation added, its contact found anew.
-pub(super) fn moved<const D: usize>(model: &Model<D>, mut state: State<D>, by: &Deviation<D>) -> State<D> {
+/// A state displaced by a perturbation, with its contact determined anew.
+pub(super) fn displaced<const D: usize>(
+    model: &DynamicModel<D>,
+    mut state: MotionState<D>,
+    by: &Perturbation<D>,
+) -> MotionState<D> {
     for c in 0..D {
         state.x[c] += by.0[c];
         state.v[c] += by.1[c];
     }
-    for j in 0..Model::<D>::HALVES {
+    for j in 0..DynamicModel::<D>::HALVES {
         state.contact[j] = model.contact_of(j, model.s(j, &state.x), state.phase);
     }
     state

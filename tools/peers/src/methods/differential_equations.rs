@@ -7,9 +7,9 @@ use differential_equations::ode::{ODE, OrdinaryNumericalMethod, solve_ode};
 use differential_equations::solout::Solout;
 use differential_equations::solution::Solution;
 
-use super::{Method, Run, Whose, ladder, straight_or_restarted};
-use crate::case::{Case, SourceState};
-use crate::equations::{Equations, Y};
+use super::{Method, Origin, RunResult, ladder, straight_or_restarted};
+use crate::case::{PhysicalState, ReferenceCase};
+use crate::equations::{ScaledEquations, Y};
 
 #[derive(Clone, Copy, PartialEq)]
 enum Pair {
@@ -21,17 +21,20 @@ enum Pair {
     Verner9,
 }
 
-struct Peer {
+struct DifferentialEquations {
     pair: Pair,
     restart: bool,
 }
 
 pub fn all() -> Vec<Box<dyn Method>> {
     let pairs = [Pair::Dop853, Pair::Dopri5, Pair::Verner6, Pair::Verner7, Pair::Verner8, Pair::Verner9];
-    pairs.into_iter().flat_map(|pair| [false, true].map(|restart| Box::new(Peer { pair, restart }) as _)).collect()
+    pairs
+        .into_iter()
+        .flat_map(|pair| [false, true].map(|restart| Box::new(DifferentialEquations { pair, restart }) as _))
+        .collect()
 }
 
-struct Rhs<'a>(&'a Equations);
+struct Rhs<'a>(&'a ScaledEquations);
 
 impl ODE<f64, Y> for Rhs<'_> {
     fn diff(&self, t: f64, y: &Y, dy: &mut Y) {
@@ -39,7 +42,7 @@ impl ODE<f64, Y> for Rhs<'_> {
     }
 }
 
-/// Keeps nothing: the last state is the solver's.
+/// No output: the last state is that of the solver.
 struct Nothing;
 
 impl Solout<f64, Y> for Nothing {
@@ -52,11 +55,11 @@ impl Solout<f64, Y> for Nothing {
 }
 
 fn follow<S>(
-    equations: &Equations,
-    start: &SourceState,
+    equations: &ScaledEquations,
+    start: &PhysicalState,
     ends: &[f64],
     make: impl Fn(f64) -> S,
-) -> Result<SourceState, String>
+) -> Result<PhysicalState, String>
 where
     S: OrdinaryNumericalMethod<f64, Y> + Interpolation<f64, Y>,
 {
@@ -66,14 +69,14 @@ where
         let mut solver = make(f64::min(h, end - from));
         solve_ode(&mut solver, &Rhs(equations), from, end, &y, &mut Nothing).map_err(|e| format!("{e:?}"))?;
         y = *solver.y();
-        // The step it would take next; the last one was cut short by the end.
+        // The next step of the solver; the last one was shortened by the end.
         h = solver.h().max(solver.t() - solver.t_prev());
         from = end;
     }
-    Ok(equations.source(&y))
+    Ok(equations.physical(&y))
 }
 
-impl Method for Peer {
+impl Method for DifferentialEquations {
     fn name(&self) -> String {
         let pair = match self.pair {
             Pair::Dop853 => "DOP853",
@@ -86,16 +89,16 @@ impl Method for Peer {
         straight_or_restarted(&format!("differential-equations {pair}"), self.restart)
     }
 
-    fn whose(&self) -> Whose {
-        Whose::Peer
+    fn origin(&self) -> Origin {
+        Origin::Peer
     }
 
     fn tolerances(&self) -> Vec<f64> {
         ladder(3, 12)
     }
 
-    fn run(&mut self, case: &Case, tolerance: f64, periods: u64) -> Result<Run, String> {
-        let equations = Equations::new(case);
+    fn run(&mut self, case: &ReferenceCase, tolerance: f64, periods: u64) -> Result<RunResult, String> {
+        let equations = ScaledEquations::new(case);
         let ends: Vec<f64> = if self.restart { equations.edges(periods).collect() } else { vec![periods as f64] };
         macro_rules! run {
             ($method:ident) => {
@@ -112,6 +115,6 @@ impl Method for Peer {
             Pair::Verner8 => run!(rkv877e),
             Pair::Verner9 => run!(rkv988e),
         };
-        state.map(Run::from)
+        state.map(RunResult::from)
     }
 }

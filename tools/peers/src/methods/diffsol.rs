@@ -2,25 +2,25 @@
 
 use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason, Vector};
 
-use super::{Method, Run, Whose, ladder, straight_or_restarted};
-use crate::case::{Case, SourceState};
-use crate::equations::{Equations, Y};
+use super::{Method, Origin, RunResult, ladder, straight_or_restarted};
+use crate::case::{PhysicalState, ReferenceCase};
+use crate::equations::{ScaledEquations, Y};
 
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum DiffsolMethod {
     Tsitouras,
     Bdf,
 }
 
-struct Peer {
-    kind: Kind,
+struct Diffsol {
+    kind: DiffsolMethod,
     restart: bool,
 }
 
 pub fn all() -> Vec<Box<dyn Method>> {
-    [Kind::Tsitouras, Kind::Bdf]
+    [DiffsolMethod::Tsitouras, DiffsolMethod::Bdf]
         .into_iter()
-        .flat_map(|kind| [false, true].map(|restart| Box::new(Peer { kind, restart }) as _))
+        .flat_map(|kind| [false, true].map(|restart| Box::new(Diffsol { kind, restart }) as _))
         .collect()
 }
 
@@ -28,8 +28,8 @@ fn array(slice: &[f64]) -> &Y {
     slice.try_into().expect("24 states")
 }
 
-/// Steps to each end in turn.
-fn follow<'a, E, S>(equations: &Equations, mut solver: S, ends: &[f64]) -> Result<SourceState, String>
+/// Integrates to each of `ends` in turn.
+fn follow<'a, E, S>(equations: &ScaledEquations, mut solver: S, ends: &[f64]) -> Result<PhysicalState, String>
 where
     E: OdeEquations<T = f64> + 'a,
     S: OdeSolverMethod<'a, E>,
@@ -38,31 +38,31 @@ where
         solver.set_stop_time(end).map_err(|e| e.to_string())?;
         while !matches!(solver.step().map_err(|e| e.to_string())?, OdeSolverStopReason::TstopReached) {}
     }
-    Ok(equations.source(&solver.state().y.clone_as_vec()))
+    Ok(equations.physical(&solver.state().y.clone_as_vec()))
 }
 
-impl Method for Peer {
+impl Method for Diffsol {
     fn name(&self) -> String {
         let kind = match self.kind {
-            Kind::Tsitouras => "TSIT45",
-            Kind::Bdf => "BDF",
+            DiffsolMethod::Tsitouras => "TSIT45",
+            DiffsolMethod::Bdf => "BDF",
         };
         straight_or_restarted(&format!("diffsol {kind}"), self.restart)
     }
 
-    fn whose(&self) -> Whose {
-        Whose::Peer
+    fn origin(&self) -> Origin {
+        Origin::Peer
     }
 
     fn tolerances(&self) -> Vec<f64> {
         match self.kind {
-            Kind::Tsitouras => ladder(3, 10),
-            Kind::Bdf => ladder(3, 9),
+            DiffsolMethod::Tsitouras => ladder(3, 10),
+            DiffsolMethod::Bdf => ladder(3, 9),
         }
     }
 
-    fn run(&mut self, case: &Case, tolerance: f64, periods: u64) -> Result<Run, String> {
-        let equations = Equations::new(case);
+    fn run(&mut self, case: &ReferenceCase, tolerance: f64, periods: u64) -> Result<RunResult, String> {
+        let equations = ScaledEquations::new(case);
         let ends: Vec<f64> = if self.restart { equations.edges(periods).collect() } else { vec![periods as f64] };
         let start = equations.scaled(&case.start);
         let problem = OdeBuilder::<NalgebraMat<f64>>::new()
@@ -76,9 +76,11 @@ impl Method for Peer {
             .build()
             .map_err(|e| e.to_string())?;
         let state = match self.kind {
-            Kind::Tsitouras => follow(&equations, problem.tsit45().map_err(|e| e.to_string())?, &ends),
-            Kind::Bdf => follow(&equations, problem.bdf::<NalgebraLU<f64>>().map_err(|e| e.to_string())?, &ends),
+            DiffsolMethod::Tsitouras => follow(&equations, problem.tsit45().map_err(|e| e.to_string())?, &ends),
+            DiffsolMethod::Bdf => {
+                follow(&equations, problem.bdf::<NalgebraLU<f64>>().map_err(|e| e.to_string())?, &ends)
+            }
         };
-        state.map(Run::from)
+        state.map(RunResult::from)
     }
 }

@@ -1,4 +1,4 @@
-//! Every way to follow the motion, behind one interface.
+//! All methods behind one interface.
 
 mod differential_equations;
 mod diffsol;
@@ -6,44 +6,44 @@ mod ode_solvers;
 mod own;
 mod python;
 
-use crate::case::{Case, SourceState};
+use crate::case::{PhysicalState, ReferenceCase};
 
-/// Whose method it is.
+/// Group of a method.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Whose {
+pub enum Origin {
     Own,
     Peer,
     Scipy,
 }
 
-/// Where a run got to.
-pub struct Run {
-    pub state: SourceState,
-    /// What it took, if it was done elsewhere.
+/// Result of a run.
+pub struct RunResult {
+    pub state: PhysicalState,
+    /// Time measured by the method itself, s, if it runs in another process.
     pub seconds: Option<f64>,
 }
 
-impl From<SourceState> for Run {
-    fn from(state: SourceState) -> Self {
+impl From<PhysicalState> for RunResult {
+    fn from(state: PhysicalState) -> Self {
         Self { state, seconds: None }
     }
 }
 
-/// One method with its settings but for the tolerance.
+/// One method with its settings except the tolerance.
 pub trait Method {
     fn name(&self) -> String;
-    fn whose(&self) -> Whose;
+    fn origin(&self) -> Origin;
     /// From coarse to fine.
     fn tolerances(&self) -> Vec<f64>;
-    /// Operating points followed in a run.
+    /// Operating points per run.
     fn points(&self) -> usize {
         1
     }
-    /// From the case's start through `periods`.
-    fn run(&mut self, case: &Case, tolerance: f64, periods: u64) -> Result<Run, String>;
+    /// Integrates from the case's start through `periods`.
+    fn run(&mut self, case: &ReferenceCase, tolerance: f64, periods: u64) -> Result<RunResult, String>;
 }
 
-/// Ours and everybody's. SciPy and heyoka through `python`, when there is one.
+/// All methods; those of SciPy and heyoka through `python`, if given.
 pub fn all(python: Option<&str>) -> Vec<Box<dyn Method>> {
     let mut out = own::all();
     out.extend(ode_solvers::all());
@@ -58,7 +58,7 @@ fn ladder(from: i32, to: i32) -> Vec<f64> {
     (2 * from..=2 * to).map(|half| 10f64.powf(-0.5 * f64::from(half))).collect()
 }
 
-/// What to say of a method that may be restarted at the edges of the impact.
+/// Name of a method that may be restarted at the edges of the impact.
 fn straight_or_restarted(name: &str, restart: bool) -> String {
     format!("{name}{}", if restart { ", restarted" } else { "" })
 }

@@ -1,14 +1,15 @@
 //! The crate `ode_solvers`: Dormand and Prince's 5(4), and their 8(5,3) with time as a state.
 //!
-//! `Dop853` (0.6.2) is wrong for equations that depend on time, as the test below shows: its table of nodes has 0 where the twelfth has to be 1.
-//! With time as a 25th state, whose derivative is 1, the nodes do not matter, so that is how it takes part.
+//! `Dop853` (0.6.2) is wrong for equations that depend on time, as the test below shows: its table of nodes has 0 where
+//! the twelfth has to be 1. With time as a 25th state of derivative 1 the nodes do not matter, so it is used in that
+//! way.
 
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Dopri5, SVector, System};
 
-use super::{Method, Run, Whose, ladder, straight_or_restarted};
-use crate::case::Case;
-use crate::equations::Equations;
+use super::{Method, Origin, RunResult, ladder, straight_or_restarted};
+use crate::case::ReferenceCase;
+use crate::equations::ScaledEquations;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Pair {
@@ -16,7 +17,7 @@ enum Pair {
     Dop853,
 }
 
-struct Peer {
+struct OdeSolvers {
     pair: Pair,
     restart: bool,
 }
@@ -24,11 +25,11 @@ struct Peer {
 pub fn all() -> Vec<Box<dyn Method>> {
     [Pair::Dopri5, Pair::Dop853]
         .into_iter()
-        .flat_map(|pair| [false, true].map(|restart| Box::new(Peer { pair, restart }) as _))
+        .flat_map(|pair| [false, true].map(|restart| Box::new(OdeSolvers { pair, restart }) as _))
         .collect()
 }
 
-struct Rhs<'a>(&'a Equations);
+struct Rhs<'a>(&'a ScaledEquations);
 
 impl System<f64, SVector<f64, 24>> for Rhs<'_> {
     fn system(&self, t: f64, y: &SVector<f64, 24>, dy: &mut SVector<f64, 24>) {
@@ -37,7 +38,7 @@ impl System<f64, SVector<f64, 24>> for Rhs<'_> {
 }
 
 /// The last state is time.
-struct WithTime<'a>(&'a Equations);
+struct WithTime<'a>(&'a ScaledEquations);
 
 impl System<f64, SVector<f64, 25>> for WithTime<'_> {
     fn system(&self, _: f64, y: &SVector<f64, 25>, dy: &mut SVector<f64, 25>) {
@@ -50,8 +51,8 @@ impl System<f64, SVector<f64, 25>> for WithTime<'_> {
     }
 }
 
-/// From end to end of `ends` with the defaults of a solver, but for the first step: the last one before the restart. Sparse output: each step
-/// once, none interpolated. (A macro: the solvers share no trait.)
+/// Integrates to each of `ends` with the defaults of a solver except for the first step, which is the last one before
+/// the restart. Sparse output: each step once, none interpolated. (A macro, because the solvers share no trait.)
 macro_rules! follow {
     ($solver:ident, $rhs:expr, $y:expr, $ends:expr, $tolerance:expr, [$beta:expr, $least:expr, $most:expr]) => {{
         let (mut y, mut from, mut h) = ($y, 0.0, 0.0);
@@ -78,7 +79,7 @@ macro_rules! follow {
             );
             solver.integrate().map_err(|e| e.to_string())?;
             y = *solver.y_out().last().ok_or("no output")?;
-            // The last step was cut short by the end.
+            // The last step was shortened by the end.
             h = solver.x_out().windows(2).rev().take(2).map(|t| t[1] - t[0]).fold(0.0, f64::max);
             from = end;
         }
@@ -86,7 +87,7 @@ macro_rules! follow {
     }};
 }
 
-impl Method for Peer {
+impl Method for OdeSolvers {
     fn name(&self) -> String {
         let name = match self.pair {
             Pair::Dopri5 => "ode_solvers Dopri5",
@@ -95,27 +96,27 @@ impl Method for Peer {
         straight_or_restarted(name, self.restart)
     }
 
-    fn whose(&self) -> Whose {
-        Whose::Peer
+    fn origin(&self) -> Origin {
+        Origin::Peer
     }
 
     fn tolerances(&self) -> Vec<f64> {
         ladder(3, 11)
     }
 
-    fn run(&mut self, case: &Case, tolerance: f64, periods: u64) -> Result<Run, String> {
-        let equations = Equations::new(case);
+    fn run(&mut self, case: &ReferenceCase, tolerance: f64, periods: u64) -> Result<RunResult, String> {
+        let equations = ScaledEquations::new(case);
         let ends: Vec<f64> = if self.restart { equations.edges(periods).collect() } else { vec![periods as f64] };
         let start = SVector::from(equations.scaled(&case.start));
         let state = match self.pair {
             Pair::Dopri5 => {
                 let y = follow!(Dopri5, Rhs(&equations), start, &ends, tolerance, [0.04, 0.2, 10.0]);
-                equations.source(y.as_slice())
+                equations.physical(y.as_slice())
             }
             Pair::Dop853 => {
                 let start = start.push(0.0);
                 let y = follow!(Dop853, WithTime(&equations), start, &ends, tolerance, [0.0, 0.333, 6.0]);
-                equations.source(y.as_slice())
+                equations.physical(y.as_slice())
             }
         };
         Ok(state.into())

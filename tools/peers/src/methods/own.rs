@@ -1,41 +1,41 @@
-//! This crate.
+//! The methods of herringbone.
 
 use herringbone_physics::dynamics::{Integrator, Parameters, advance, advance_many};
 use herringbone_physics::watch::Watch;
 
-use super::{Method, Run, Whose, ladder};
-use crate::case::Case;
+use super::{Method, Origin, RunResult, ladder};
+use crate::case::ReferenceCase;
 
-/// One motion.
-struct Alone {
+/// Integration of one motion.
+struct SingleMethod {
     integrator: Integrator,
-    /// Both halves solved although they are equal: the mesh damping of the right one is made greater by the last bit of the number, which
-    /// is enough for the product to see two different halves.
+    /// Integrates both halves although they are equal: the mesh damping of the right one is larger by one unit in the
+    /// last place, so that the pair is not symmetric.
     both_halves: bool,
 }
 
-/// Operating points side by side: the case, and the same at speeds higher by one, two … per cent.
-struct Lanes {
+/// Operating points in vector lanes: the case, and the same at speeds higher by one, two … per cent.
+struct LaneMethod {
     points: usize,
 }
 
 pub fn all() -> Vec<Box<dyn Method>> {
-    let mut out: Vec<Box<dyn Method>> = vec![Box::new(Lanes { points: 8 })];
+    let mut out: Vec<Box<dyn Method>> = vec![Box::new(LaneMethod { points: 8 })];
     for (integrator, both_halves) in
         [(Integrator::Taylor, false), (Integrator::Taylor, true), (Integrator::RungeKutta, false)]
     {
-        out.push(Box::new(Alone { integrator, both_halves }));
+        out.push(Box::new(SingleMethod { integrator, both_halves }));
     }
     out
 }
 
-impl Method for Lanes {
+impl Method for LaneMethod {
     fn name(&self) -> String {
         format!("herringbone Taylor, {} in lanes", self.points)
     }
 
-    fn whose(&self) -> Whose {
-        Whose::Own
+    fn origin(&self) -> Origin {
+        Origin::Own
     }
 
     fn tolerances(&self) -> Vec<f64> {
@@ -46,23 +46,23 @@ impl Method for Lanes {
         self.points
     }
 
-    fn run(&mut self, case: &Case, tolerance: f64, periods: u64) -> Result<Run, String> {
+    fn run(&mut self, case: &ReferenceCase, tolerance: f64, periods: u64) -> Result<RunResult, String> {
         let p = case.parameters();
         let faster = |i: usize| p.mesh_frequency_hz * (1.0 + 0.01 * i as f64);
         let points: Vec<Parameters> =
             (0..self.points).map(|i| Parameters { mesh_frequency_hz: faster(i), ..p.clone() }).collect();
         let starts = vec![case.start; self.points];
-        let mut reached =
+        let mut ends =
             advance_many(&points, &starts, periods, tolerance, &Watch::none()).map_err(|e| e.to_string())?.into_iter();
-        let first = reached.next().ok_or("no points")?.map_err(|e| e.to_string())?;
-        for other in reached {
+        let first = ends.next().ok_or("no points")?.map_err(|e| e.to_string())?;
+        for other in ends {
             other.map_err(|e| e.to_string())?;
         }
         Ok(first.state.into())
     }
 }
 
-impl Method for Alone {
+impl Method for SingleMethod {
     fn name(&self) -> String {
         let method = match self.integrator {
             Integrator::Taylor => "Taylor",
@@ -71,8 +71,8 @@ impl Method for Alone {
         format!("herringbone {method}{}", if self.both_halves { ", 12 coordinates" } else { "" })
     }
 
-    fn whose(&self) -> Whose {
-        Whose::Own
+    fn origin(&self) -> Origin {
+        Origin::Own
     }
 
     fn tolerances(&self) -> Vec<f64> {
@@ -82,13 +82,13 @@ impl Method for Alone {
         }
     }
 
-    fn run(&mut self, case: &Case, tolerance: f64, periods: u64) -> Result<Run, String> {
+    fn run(&mut self, case: &ReferenceCase, tolerance: f64, periods: u64) -> Result<RunResult, String> {
         let mut p = case.parameters();
         if self.both_halves {
             let damping = &mut p.halves[1].mesh_damping_n_s_per_m;
             *damping = damping.next_up();
         }
-        let reached = advance(&p, &case.start, periods, self.integrator, tolerance, &Watch::none());
-        reached.map(|r| r.state.into()).map_err(|e| e.to_string())
+        let ends = advance(&p, &case.start, periods, self.integrator, tolerance, &Watch::none());
+        ends.map(|r| r.state.into()).map_err(|e| e.to_string())
     }
 }

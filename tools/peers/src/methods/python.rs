@@ -1,13 +1,13 @@
-//! What is reached through Python, SciPy and heyoka: each in a process of its own (`scipy_peer.py`, `heyoka_peer.py`) that is asked for one run
-//! at a time and measures its time itself.
+//! Methods of SciPy and heyoka, each in a process of its own (`scipy_peer.py`, `heyoka_peer.py`) that does one run per
+//! request and measures its time itself.
 
 use std::cell::RefCell;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::rc::Rc;
 
-use super::{Method, Run, Whose, ladder, straight_or_restarted};
-use crate::case::{Case, REFERENCE};
+use super::{Method, Origin, RunResult, ladder, straight_or_restarted};
+use crate::case::{REFERENCE, ReferenceCase};
 
 struct Process {
     child: Child,
@@ -20,7 +20,7 @@ impl Process {
         let script = format!("{}/{script}", env!("CARGO_MANIFEST_DIR"));
         let mut child = Command::new(python)
             .args([&script, REFERENCE])
-            // One thread, as everybody has.
+            // One thread, as for all methods.
             .envs(["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"].map(|name| (name, "1")))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
@@ -81,13 +81,13 @@ pub fn all(python: &str) -> Vec<Box<dyn Method>> {
     out
 }
 
-/// Answer to "CASE METHOD TOLERANCE PERIODS RESTART".
-fn ask(process: &RefCell<Process>, question: &str) -> Result<Run, String> {
+/// Sends the request "CASE METHOD TOLERANCE PERIODS RESTART" and parses the reply.
+fn ask(process: &RefCell<Process>, question: &str) -> Result<RunResult, String> {
     let answer = process.borrow_mut().ask(question)?;
     let numbers: Result<Vec<f64>, _> = answer.split_whitespace().map(str::parse).collect();
     match numbers.as_deref() {
         Ok([seconds, state @ ..]) if state.len() == 24 => {
-            Ok(Run { seconds: Some(*seconds), state: state.try_into().expect("24 states") })
+            Ok(RunResult { seconds: Some(*seconds), state: state.try_into().expect("24 states") })
         }
         _ => Err(format!("no result: {}", answer.trim())),
     }
@@ -103,8 +103,8 @@ impl Method for Scipy {
         straight_or_restarted(&format!("SciPy {method}"), self.restart)
     }
 
-    fn whose(&self) -> Whose {
-        Whose::Scipy
+    fn origin(&self) -> Origin {
+        Origin::Scipy
     }
 
     fn tolerances(&self) -> Vec<f64> {
@@ -113,7 +113,7 @@ impl Method for Scipy {
         all.into_iter().step_by(2).collect()
     }
 
-    fn run(&mut self, case: &Case, tolerance: f64, periods: u64) -> Result<Run, String> {
+    fn run(&mut self, case: &ReferenceCase, tolerance: f64, periods: u64) -> Result<RunResult, String> {
         let question = format!("{} {} {tolerance:e} {periods} {}", case.name, self.method, u8::from(self.restart));
         ask(&self.process, &question)
     }
@@ -125,8 +125,8 @@ impl Method for Heyoka {
         if self.motions > 1 { format!("{name}, {} side by side", self.motions) } else { name.into() }
     }
 
-    fn whose(&self) -> Whose {
-        Whose::Peer
+    fn origin(&self) -> Origin {
+        Origin::Peer
     }
 
     fn tolerances(&self) -> Vec<f64> {
@@ -138,7 +138,7 @@ impl Method for Heyoka {
         self.motions
     }
 
-    fn run(&mut self, case: &Case, tolerance: f64, periods: u64) -> Result<Run, String> {
+    fn run(&mut self, case: &ReferenceCase, tolerance: f64, periods: u64) -> Result<RunResult, String> {
         ask(&self.process, &format!("{} {} {tolerance:e} {periods} 1", case.name, self.motions))
     }
 }

@@ -1,6 +1,6 @@
 //! Gear pairs, loads and modifications that the ladder is measured on, with their references.
 
-use herringbone_physics::contact::BodyHold;
+use herringbone_physics::compliance::BodyHold;
 use herringbone_physics::gear::{GearSpec, Pair, PairSpec, ReliefShape, TipRelief};
 use serde_json::Value;
 

@@ -11,15 +11,14 @@ mod growth;
 mod plot;
 mod rungs;
 mod tables;
-mod time;
 
 use std::path::PathBuf;
 
-/// Whatever went wrong.
-type Failure = Box<dyn std::error::Error + Send + Sync>;
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::Arguments;
 
 fn main() -> Result<(), Failure> {
-    let keep = std::env::args().nth(1).map(PathBuf::from);
+    let keep = Arguments::of_process().word(0).map(PathBuf::from);
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     one_thread.install(|| -> Result<(), Failure> {
         let cases = cases::cases();

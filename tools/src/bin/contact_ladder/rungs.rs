@@ -4,15 +4,16 @@ use std::collections::hash_map::{DefaultHasher, Entry, HashMap};
 use std::hash::{Hash, Hasher};
 use std::path::Path;
 
-use herringbone_physics::contact::iso6336::{Blank, MethodB, course};
-use herringbone_physics::contact::{Compliance, HalfCycle, Settings, harmonics, solve_half};
+use herringbone_physics::compliance::{Compliance, Settings};
+use herringbone_physics::contact::{HalfCycle, harmonics, solve_half};
 use herringbone_physics::fe::{FlankFlexibility, FlankInput, Resolution};
 use herringbone_physics::gear::Half;
+use herringbone_physics::iso6336::{Blank, MethodB, course};
 use herringbone_physics::watch::Watch;
 
-use crate::Failure;
 use crate::cases::{Case, Reference};
-use crate::time::{Stopwatch, median};
+use herringbone_tools::Failure;
+use herringbone_tools::stopwatch::{Stopwatch, median_time};
 
 /// A way to the stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,15 +86,16 @@ pub fn answers(cases: &[Case], keep: Option<&Path>) -> Result<Vec<Answer>, Failu
         answers.push(iso6336(number, case, reference)?);
         for (i, &(_, slices, positions, accuracy)) in ANALYTIC.iter().enumerate() {
             let settings = Settings { slices, positions, accuracy, ..settings(case) };
-            let (cycle, cold_s) = median(5, || solve(case, &settings, &Compliance::analytic(&case.pair, &settings)));
+            let (cycle, cold_s) =
+                median_time(5, || solve(case, &settings, &Compliance::analytic(&case.pair, &settings)));
             let compliance = Compliance::analytic(&case.pair, &settings);
-            let (_, stored_s) = median(5, || solve(case, &settings, &compliance));
+            let (_, stored_s) = median_time(5, || solve(case, &settings, &compliance));
             answers.push(compare(Rung::Analytic(i), number, [cold_s, stored_s], &cycle?, reference));
         }
         for resolution in ELEMENTS {
             let (flanks, solved_s) = solved(case, resolution, &mut elements, None)?;
             let settings = settings(case);
-            let (cycle, stored_s) = median(5, || {
+            let (cycle, stored_s) = median_time(5, || {
                 solve(case, &settings, &Compliance::finite_elements(&case.pair, &settings, [&flanks[0], &flanks[1]]))
             });
             answers.push(compare(
@@ -186,7 +188,7 @@ fn iso6336(number: usize, case: &Case, reference: &Reference) -> Result<Answer, 
     let pair = &case.pair;
     let reference_radius = 0.5 * f64::from(pair.pinion.teeth) * pair.transverse_module_m;
     let method = || MethodB::new(pair, &Blank::Solid, case.torque_nm / reference_radius);
-    let (method, time_s) = median(5, method);
+    let (method, time_s) = median_time(5, method);
     let mean = method?.mean_n_per_m(pair);
     let error: Vec<f64> = (0..POSITIONS)
         .map(|i| {

@@ -1,13 +1,12 @@
 //! Documents in, results out, through the service's HTTP interface.
 
-use crate::connection::Connection;
-use crate::service::Service;
+use herringbone_tools::Failure;
+use herringbone_tools::service::{Connection, Service};
 use serde_json::Value;
-use std::error::Error;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-pub type Outcome<T> = Result<T, Box<dyn Error>>;
+pub type Outcome<T> = Result<T, Failure>;
 
 /// The running service, and how much was asked of it.
 pub struct Bench {

@@ -1,26 +1,22 @@
 //! The drawing of a document's pair.
 
-use crate::DocumentError;
-use crate::document::{Hand, JobDocument};
+use crate::document::{Hand, JobDocument, RotationInput};
 use crate::drawing::{Drawing, DrawnGear, DrawnHalf, DrawnLine, DrawnSection, MarginResult, PathPoint, PlaneOfAction};
-use crate::study::prepare::prepare;
-use herringbone_physics::gear::{self, Half, Member, Pair, Rotation};
+use crate::study::CheckedJob;
+use herringbone_physics::gear::{self, Half, Member, Pair};
 use std::f64::consts::TAU;
 
 const MM: f64 = 1e3;
 
 impl Drawing {
-    /// The drawing of a document's pair.
-    ///
-    /// # Errors
-    /// Those of [`crate::study::check`], as far as they are about the gear.
-    pub fn of(document: &JobDocument) -> Result<Drawing, DocumentError> {
-        let pair = prepare(document)?.pair;
-        Ok(Drawing {
+    /// The drawing of a job's pair.
+    pub fn of(job: &CheckedJob) -> Drawing {
+        let (document, pair) = (job.document(), &job.prepared().pair);
+        Drawing {
             margins: pair.margins().into_iter().map(margin).collect(),
-            section: section(&pair, document),
-            plane_of_action: plane_of_action(&pair, document),
-        })
+            section: section(pair, document),
+            plane_of_action: plane_of_action(pair, document),
+        }
     }
 }
 
@@ -67,7 +63,7 @@ fn section(pair: &Pair, document: &JobDocument) -> DrawnSection {
 /// counter-clockwise, seen from the right; with the apex leading the inner ends are ahead in the sense of rotation.
 fn seen_from(document: &JobDocument) -> Half {
     let right_half_is_right_hand = document.design.pinion.left_half_hand == Hand::Left;
-    let apex_leads = document.operation.rotation == Rotation::ApexLeading;
+    let apex_leads = document.operation.rotation == RotationInput::ApexLeading;
     if right_half_is_right_hand == apex_leads { Half::Right } else { Half::Left }
 }
 
@@ -131,7 +127,7 @@ mod tests {
     fn drawn(change: impl Fn(&mut Value)) -> Drawing {
         let mut value: Value = serde_json::from_str(include_str!("../../../../../examples/table1.json")).unwrap();
         change(&mut value);
-        Drawing::of(&parse_value(&value).unwrap()).unwrap()
+        Drawing::of(&CheckedJob::new(parse_value(&value).unwrap()).unwrap())
     }
 
     fn near(value: f64, expected: f64) {

@@ -2,7 +2,8 @@
 //! driver in real time, and against the drive flanks.
 
 use super::{pair, spec};
-use crate::contact::{Compliance, LoadedContact, Settings, harmonics, solve_coast_halves, solve_pair_of_halves};
+use crate::compliance::{Compliance, Settings};
+use crate::contact::{LoadedContact, harmonics, solve_coast_halves, solve_pair_of_halves};
 use crate::gear::{FlankModification, GearSpec, Pair, PairSpec, ReliefShape, TipRelief};
 use crate::watch::Watch;
 use herringbone_oracle::check_worst;

@@ -1,7 +1,8 @@
 //! The analytic compliance against the finite elements of this crate, on gears other than the reference pair.
 
 use super::{pair, spec};
-use crate::contact::{Compliance, Settings, solve_half};
+use crate::compliance::{Compliance, Settings};
+use crate::contact::solve_half;
 use crate::fe::{FlankFlexibility, Resolution};
 use crate::gear::Half;
 use crate::watch::Watch;

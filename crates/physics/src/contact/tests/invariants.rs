@@ -3,11 +3,12 @@
 use std::f64::consts::PI;
 
 use super::{pair, spec};
+use crate::compliance::Stencil;
+use crate::compliance::{BodyHold, Compliance, Settings};
 use crate::contact::distribution::{Prescribed, distribute};
-use crate::contact::influence::Stencil;
 use crate::contact::lines::{CornerGaps, Reach, collect, reference_roll_m};
 use crate::contact::system::{Local, System, Workspace};
-use crate::contact::{BodyHold, Compliance, HalfContact, Settings, solve_half, solve_pair_of_halves};
+use crate::contact::{HalfContact, solve_half, solve_pair_of_halves};
 use crate::gear::{Half, ReliefShape, TipRelief};
 use crate::watch::Watch;
 use herringbone_oracle::Tolerance::Relative;

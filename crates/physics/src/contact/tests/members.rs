@@ -2,7 +2,8 @@
 //! code with the analytic compliance, and with what elasticity says.
 
 use super::{pair, spec};
-use crate::contact::{Compliance, HalfCycle, Settings, solve_half};
+use crate::compliance::{Compliance, Settings};
+use crate::contact::{HalfCycle, solve_half};
 use crate::fe::{FlankFlexibility, Resolution};
 use crate::gear::{GearSpec, Half, Material, Pair, PairSpec};
 use crate::watch::Watch;

@@ -1,8 +1,9 @@
 //! Published loads, pressures and stiffnesses of single pairs.
 
 use super::pair;
-use crate::contact::hertz::LineContact;
-use crate::contact::{BodyHold, Compliance, HalfContact, Settings, solve_pair_of_halves};
+use crate::compliance::LineContact;
+use crate::compliance::{BodyHold, Compliance, Settings};
+use crate::contact::{HalfContact, solve_pair_of_halves};
 use crate::gear::{GearSpec, Half, Material, Pair, PairSpec};
 use crate::watch::Watch;
 use herringbone_oracle::Tolerance::{Absolute, Relative};

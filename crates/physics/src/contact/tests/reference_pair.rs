@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use super::{pair, spec};
-use crate::contact::{BodyHold, Compliance, Settings, solve_half};
+use crate::compliance::{BodyHold, Compliance, Settings};
+use crate::contact::solve_half;
 use crate::fe::{FlankFlexibility, Resolution};
 use crate::gear::{Half, Pair, ReliefShape, Rotation, TipRelief};
 use crate::watch::Watch;

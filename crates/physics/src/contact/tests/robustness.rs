@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 
-use crate::contact::{BodyHold, Compliance, Settings, solve_half, solve_pair_of_halves};
+use crate::compliance::{BodyHold, Compliance, Settings};
+use crate::contact::{solve_half, solve_pair_of_halves};
 use crate::fe::{FlankFlexibility, Resolution};
 use crate::gear::{Half, Pair, ReliefShape, TipRelief};
 use crate::watch::Watch;

@@ -1,34 +1,35 @@
-//! What a natural mode is made of: energy shares, damping, and a name that follows from them.
+//! Energy shares, damping and names of the natural modes.
 
-use super::members::{SpringGroup, members};
-use super::{NaturalModes, Row, arcs, masses, mirrored};
+use super::springs::{SpringGroup, spring_elements};
+use super::{DisplacementVector, NaturalModes, arcs, masses, mirrored};
 use crate::dynamics::parameters::Parameters;
 
-/// A natural mode for people and tools.
+/// A natural mode with its energy shares and name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mode {
-    /// 0 for a motion that nothing holds.
+    /// Hz; 0 for a rigid-body mode.
     pub frequency_hz: f64,
-    /// What it is, by the rule of [`NaturalModes::describe`].
+    /// Name by the rule of [`NaturalModes::describe`].
     pub name: String,
-    /// Displacements in the source's order, rotations as arcs at the radii of the plane in use; the largest is 1.
+    /// Displacements in the order of [the module](crate::dynamics), rotations as arcs at the radii of the reference
+    /// plane; the largest is 1.
     pub shape: [f64; 12],
     /// φᵀ M φ of that shape, kg.
     pub modal_mass_kg: f64,
-    /// φᵀ C φ/(2 ω φᵀ M φ): the damping ratio as far as damping does not couple the modes, which is right for light
-    /// damping. None for a motion that nothing holds.
+    /// Damping ratio φᵀ C φ/(2 ω φᵀ M φ), without the coupling of modes by damping, which is valid for light damping.
+    /// None for a rigid-body mode.
     pub damping_ratio: Option<f64>,
-    /// Share of each group of springs in the strain energy; none for a motion that nothing holds.
+    /// Share of each group of springs in the strain energy; empty for a rigid-body mode.
     pub strain_energy: Vec<(SpringGroup, f64)>,
     /// Share of each kind of displacement in the kinetic energy, both halves together.
     pub kinetic_energy: [(&'static str, f64); 6],
 }
 
-const KINDS: [&str; 6] =
+const DISPLACEMENT_KINDS: [&str; 6] =
     ["pinion_lateral", "pinion_axial", "pinion_rotation", "gear_lateral", "gear_axial", "gear_rotation"];
 
-/// What the groups of springs are called in the name of a mode: those of one kind count together.
-const NAMED: [(&str, &[SpringGroup]); 7] = [
+/// Groups of springs by the name they give to a mode.
+const SPRING_KINDS: [(&str, &[SpringGroup]); 7] = [
     ("mesh", &[SpringGroup::MeshLeft, SpringGroup::MeshRight]),
     ("pinion lateral", &[SpringGroup::PinionLateral, SpringGroup::PinionHalvesLateral]),
     ("gear lateral", &[SpringGroup::GearLateral, SpringGroup::GearHalvesLateral]),
@@ -38,57 +39,58 @@ const NAMED: [(&str, &[SpringGroup]); 7] = [
     ("gear torsional", &[SpringGroup::GearHalvesTorsional]),
 ];
 
-/// Share of the strain energy from which one kind of spring names a mode alone.
-const RULES: f64 = 0.5;
-/// Share of the kinetic energy below which a free motion is not called after a direction.
-const NOTHING: f64 = 1e-6;
+/// Share of the strain energy from which one kind of springs alone names a mode.
+const DOMINANT_SHARE: f64 = 0.5;
+/// Share of the kinetic energy below which a direction is not part of the name of a rigid-body mode.
+const NEGLIGIBLE_SHARE: f64 = 1e-6;
 /// φᵀ M φ' (φ' the mirror image) from which a mode counts as symmetric, and below whose negative as antisymmetric.
-const MIRRORED: f64 = 0.99;
+const MIRROR_CORRELATION: f64 = 0.99;
 
 impl Mode {
-    /// Share of both meshes in the strain energy: how far the mesh excites it and feels it.
+    /// Share of both meshes in the strain energy.
     pub fn mesh_strain_energy(&self) -> f64 {
-        self.strain_energy_of(NAMED[0].1)
+        self.strain_energy_of(SPRING_KINDS[0].1)
     }
 
     fn strain_energy_of(&self, groups: &[SpringGroup]) -> f64 {
-        // A sum over nothing would be −0.
+        // The sum of an empty iterator would be −0.
         self.strain_energy.iter().filter(|(group, _)| groups.contains(group)).fold(0.0, |sum, (_, share)| sum + share)
     }
 }
 
 impl NaturalModes {
-    /// The modes with their energy shares, damping and names. The name is that of the springs with the largest share of the strain energy
-    /// (meshes; lateral, axial or torsional springs of pinion or gear, supports and shafts together) if that is at least half, else
-    /// those of the two largest; "meshes in phase" if the mode is its own mirror image between the halves, "meshes opposed" if it is the
-    /// opposite of it. Motions that nothing holds are called by what moves in them: rotation, axial screw (rotation and axial), axial, lateral.
+    /// The modes with their energy shares, damping and names. The name is that of the kind of springs with the largest
+    /// share of the strain energy (meshes; lateral, axial or torsional springs of pinion or gear, supports and
+    /// couplings together) if that is at least half, otherwise those of the two largest; "meshes in phase" if the mode
+    /// is its own mirror image, "meshes opposed" if it is the opposite of it. Rigid-body modes are named by their
+    /// kinetic energy: rotation, axial screw (rotation and axial), axial, lateral.
     pub fn describe(&self, p: &Parameters) -> Vec<Mode> {
         self.frequencies_hz.iter().zip(&self.shapes).map(|(f, shape)| describe(p, *f, shape)).collect()
     }
 }
 
-fn describe(p: &Parameters, frequency_hz: f64, shape: &Row) -> Mode {
+fn describe(p: &Parameters, frequency_hz: f64, shape: &DisplacementVector) -> Mode {
     let masses = masses(p);
-    let mut kinetic_energy = KINDS.map(|kind| (kind, 0.0));
+    let mut kinetic_energy = DISPLACEMENT_KINDS.map(|kind| (kind, 0.0));
     for c in 0..12 {
         // φᵀ M φ = 1.
         kinetic_energy[c % 6].1 += masses[c] * shape[c] * shape[c];
     }
     let mut strain: Vec<(SpringGroup, f64)> = Vec::new();
     let mut damping = 0.0;
-    for member in members(p) {
-        let deflection: f64 = (0..12).map(|c| member.row[c] * shape[c]).sum();
-        damping += member.spring.damping * deflection * deflection;
-        let energy = member.spring.stiffness * deflection * deflection;
-        match strain.iter_mut().find(|(group, _)| *group == member.group) {
+    for element in spring_elements(p) {
+        let deflection: f64 = (0..12).map(|c| element.row[c] * shape[c]).sum();
+        damping += element.spring.damping * deflection * deflection;
+        let energy = element.spring.stiffness * deflection * deflection;
+        match strain.iter_mut().find(|(group, _)| *group == element.group) {
             Some((_, sum)) => *sum += energy,
-            None => strain.push((member.group, energy)),
+            None => strain.push((element.group, energy)),
         }
     }
-    let held = frequency_hz > 0.0;
+    let elastic = frequency_hz > 0.0;
     let all: f64 = strain.iter().map(|(_, energy)| energy).sum();
     let strain_energy =
-        if held { strain.into_iter().map(|(group, energy)| (group, energy / all)).collect() } else { Vec::new() };
+        if elastic { strain.into_iter().map(|(group, energy)| (group, energy / all)).collect() } else { Vec::new() };
     let arcs = arcs(p, shape);
     let largest = arcs.iter().fold(0.0f64, |m, a| m.max(a.abs()));
     let mut mode = Mode {
@@ -96,32 +98,32 @@ fn describe(p: &Parameters, frequency_hz: f64, shape: &Row) -> Mode {
         name: String::new(),
         shape: arcs.map(|a| a / largest),
         modal_mass_kg: 1.0 / (largest * largest),
-        damping_ratio: held.then(|| damping / (2.0 * std::f64::consts::TAU * frequency_hz)),
+        damping_ratio: elastic.then(|| damping / (2.0 * std::f64::consts::TAU * frequency_hz)),
         strain_energy,
         kinetic_energy,
     };
-    mode.name = if held { held_name(&mode) } else { free_name(&mode) };
+    mode.name = if elastic { elastic_mode_name(&mode) } else { rigid_body_mode_name(&mode) };
     let image: f64 = (0..12).map(|c| masses[c] * shape[c] * mirrored(c) * shape[(c + 6) % 12]).sum();
-    if image >= MIRRORED {
-        mode.name.push_str(if held { ", meshes in phase" } else { ", halves alike" });
-    } else if image <= -MIRRORED {
-        mode.name.push_str(if held { ", meshes opposed" } else { ", halves opposed" });
+    if image >= MIRROR_CORRELATION {
+        mode.name.push_str(if elastic { ", meshes in phase" } else { ", halves alike" });
+    } else if image <= -MIRROR_CORRELATION {
+        mode.name.push_str(if elastic { ", meshes opposed" } else { ", halves opposed" });
     }
     mode
 }
 
-fn held_name(mode: &Mode) -> String {
-    let mut shares = NAMED.map(|(name, groups)| (name, mode.strain_energy_of(groups)));
+fn elastic_mode_name(mode: &Mode) -> String {
+    let mut shares = SPRING_KINDS.map(|(name, groups)| (name, mode.strain_energy_of(groups)));
     shares.sort_by(|a, b| b.1.total_cmp(&a.1));
     let [(first, share), (second, _), ..] = shares;
-    if share >= RULES { format!("{first} mode") } else { format!("{first} and {second} mode") }
+    if share >= DOMINANT_SHARE { format!("{first} mode") } else { format!("{first} and {second} mode") }
 }
 
-fn free_name(mode: &Mode) -> String {
+fn rigid_body_mode_name(mode: &Mode) -> String {
     let share = |part: &str| -> f64 {
         mode.kinetic_energy.iter().filter(|(kind, _)| kind.ends_with(part)).map(|(_, share)| share).sum()
     };
-    let moves = |part: &str| share(part) > NOTHING;
+    let moves = |part: &str| share(part) > NEGLIGIBLE_SHARE;
     let name = match (moves("rotation"), moves("axial"), moves("lateral")) {
         (true, false, false) => "rotation",
         (true, true, false) => "axial screw",
@@ -136,7 +138,7 @@ fn free_name(mode: &Mode) -> String {
 mod tests {
     use super::*;
     use crate::dynamics::tests::reference::parameters;
-    use crate::dynamics::{HalfParameters, Limits, Model, Shooting, Stiffness};
+    use crate::dynamics::{DynamicModel, HalfParameters, IntegrationLimits, Shooting, Stiffness};
     use crate::watch::Watch;
     use herringbone_oracle::Tolerance::Relative;
     use herringbone_oracle::{check, check_worst};
@@ -175,7 +177,7 @@ mod tests {
         assert_eq!(names[11], "mesh mode, meshes in phase");
     }
 
-    /// Rayleigh's quotient of every shape is its squared frequency, and the shapes are orthogonal over the masses.
+    /// The Rayleigh quotient of every shape is its squared frequency, and the shapes are orthogonal over the masses.
     #[test]
     fn modes_of_equal_frequency_are_still_modes() {
         let p = parameters("A");
@@ -186,10 +188,10 @@ mod tests {
             for (b, second) in natural.shapes.iter().enumerate() {
                 let product: f64 = (0..12).map(|c| masses[c] * first[c] * second[c]).sum();
                 errors.push(product - f64::from(u8::from(a == b)));
-                let strain: f64 = members(&p)
+                let strain: f64 = spring_elements(&p)
                     .iter()
                     .map(|m| {
-                        let deflection = |shape: &Row| (0..12).map(|c| m.row[c] * shape[c]).sum::<f64>();
+                        let deflection = |shape: &DisplacementVector| (0..12).map(|c| m.row[c] * shape[c]).sum::<f64>();
                         m.spring.stiffness * deflection(first) * deflection(second)
                     })
                     .sum();
@@ -201,7 +203,7 @@ mod tests {
         check_worst(TOPIC, "orthogonality over masses and springs, case A", errors, 1e-10);
     }
 
-    /// Whatever mixture the eigenvalue solver hands out, the basis of a space is the same.
+    /// The basis of a space does not depend on the mixture that the eigenvalue solver returns.
     #[test]
     fn a_space_has_one_basis() {
         let p = parameters("A");
@@ -217,7 +219,7 @@ mod tests {
         }
     }
 
-    /// One mesh on two rotations: the document's damping ratio of the mesh is that of the mode.
+    /// One mesh between two rotations: the damping ratio of the mode is that of the mesh damper.
     #[test]
     fn the_damping_ratio_of_one_mesh_is_its_own() {
         let mut p = parameters("A");
@@ -228,17 +230,18 @@ mod tests {
         let me = p.equivalent_mass_kg(0);
         let HalfParameters { mesh_stiffness, mesh_damping_n_s_per_m: c, .. } = &p.halves[0];
         let expected = c / (2.0 * (mesh_stiffness.mean_n_per_m() * me).sqrt());
-        let found = modes(&p).into_iter().find(|mode| mode.mesh_strain_energy() > 0.99).unwrap();
+        let mode = modes(&p).into_iter().find(|mode| mode.mesh_strain_energy() > 0.99).unwrap();
         check(
             TOPIC,
             "damping ratio of the mesh mode of a spur pair held fast",
-            found.damping_ratio.unwrap(),
+            mode.damping_ratio.unwrap(),
             expected,
             Relative(1e-6),
         );
     }
 
-    /// Lightly damped with constant stiffness: the multipliers of the linear motion are exp(−ζ ω T) of the modes.
+    /// Lightly damped with constant stiffness: the Floquet multipliers of the linear motion are exp(−ζ ω T) of the
+    /// modes.
     #[test]
     fn damping_ratios_are_those_of_the_motion() {
         let mut p = parameters("A");
@@ -253,14 +256,14 @@ mod tests {
         }
         p.couplings.pinion_axial.damping *= scale;
         p.couplings.gear_axial.damping *= scale;
-        let model = Model::<12>::new(&p).unwrap();
+        let model = DynamicModel::<12>::new(&p).unwrap();
         let watch = Watch::none();
-        let limits = Limits { tolerance: 1e-13, max_steps: u64::MAX, watch: &watch };
+        let limits = IntegrationLimits { tolerance: 1e-13, max_steps: u64::MAX, watch: &watch };
         let shooting = Shooting::new(&model, [9e8; 2], limits).unwrap();
         let mut start = model.state_from(&[0.0; 24]);
         start.contact = [1; 2];
-        let round = shooting.map(&model.holding_contact(), start, 1).unwrap();
-        let mut rates: Vec<f64> = shooting.multipliers(&round.map).iter().map(|m| -m.norm().ln()).collect();
+        let round = shooting.period_map(&model.with_fixed_contact(), start, 1).unwrap();
+        let mut rates: Vec<f64> = shooting.multipliers(&round.monodromy).iter().map(|m| -m.norm().ln()).collect();
         let mut expected: Vec<f64> = modes(&p)
             .iter()
             .filter_map(|m| m.damping_ratio.map(|z| z * std::f64::consts::TAU * m.frequency_hz * p.mesh_period_s()))

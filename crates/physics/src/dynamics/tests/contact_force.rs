@@ -1,4 +1,4 @@
-//! The mesh force of a loaded contact: its polynomials, motions under it by independent methods, lanes, deviations.
+//! Tabulated contact force: its polynomials, motions by independent methods, lanes, perturbations.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -10,7 +10,8 @@ use herringbone_oracle::check_worst;
 
 const TOPIC: &str = "Dynamics: contact force";
 
-/// F = k(φ) e²/(e + c), k = mean (1 + a cos 2πφ): soft at the beginning, then as stiff as k; touches at free cos(2πφ).
+/// F = k(φ) e²/(e + c), k = mean (1 + a cos 2πφ): stiffness from 0 to k with the displacement; first contact at free
+/// cos(2πφ).
 fn law(mean: f64, a: f64, c: f64, free: f64, highest_m: f64) -> FlankForce {
     let level_m: Vec<f64> = (0..=12).map(|i| highest_m * (f64::from(i) / 12.0).powf(1.5)).collect();
     let wave = |phase: f64| (1.0 + a * (TAU * phase).cos(), -a * TAU * (TAU * phase).sin());
@@ -98,7 +99,7 @@ fn the_displacement_under_a_load_carries_it() {
     check_worst(TOPIC, "force at the displacement under a load", errors, 1e-11);
 }
 
-/// The Taylor method stops at every level and knot; the Runge–Kutta method knows nothing of levels.
+/// The Taylor method locates every level and knot; the Runge–Kutta method does not locate levels.
 #[test]
 fn motions_with_contact_on_both_flanks_agree_with_another_method() {
     let mut errors = Vec::new();
@@ -138,32 +139,33 @@ fn lanes_change_nothing_under_contact_forces_and_beside_stiffnesses() {
     }
 }
 
-/// The map of deviations against differences of motions, over levels and loss of contact, the damper acting in the gap or not.
+/// The monodromy matrix against differences of motions, across levels and loss of contact, with and without the damper
+/// in the gap.
 #[test]
-fn deviations_are_differences_of_motions() {
+fn perturbations_are_differences_of_motions() {
     let mut errors = Vec::new();
     for (load_nm, in_gap) in [(400.0, true), (30.0, true), (30.0, false)] {
         let (mut p, start) = case(load_nm, 0.2e-6);
         p.damping_in_gap = in_gap;
-        let model = Model::<6>::new(&p).unwrap();
+        let model = DynamicModel::<6>::new(&p).unwrap();
         let from = model.state_from(&start);
-        let go = |state: State<6>| {
+        let go = |state: MotionState<6>| {
             let mut motion = Motion::new(&model, state, Integrator::Taylor, 1e-13, 1_000_000);
             motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
             motion.state
         };
-        let mut variation = Variation::new(&model, Variation::units(&model), 1e-12);
+        let mut variation = Variation::new(&model, Variation::unit_perturbations(&model), 1e-12);
         let mut motion = Motion::new(&model, from, Integrator::Taylor, 1e-13, 1_000_000);
         motion.advance_period(&mut variation, &Watch::none(), 0.0).unwrap();
         for (c, column) in variation.columns.iter().take(5).enumerate() {
-            let moved = |by: f64| {
+            let displaced = |by: f64| {
                 let mut state = from;
                 state.x[c] += by;
                 state.contact[0] = model.contact_of(0, model.s(0, &state.x), 0.0);
                 go(state)
             };
             let step = 2e-10;
-            let (up, down) = (moved(step), moved(-step));
+            let (up, down) = (displaced(step), displaced(-step));
             let size = column.0.iter().fold(0.0f64, |m, v| m.max(v.abs()));
             let worst = (0..5)
                 .map(|r| ((up.x[r] - down.x[r]) / (2.0 * step) - column.0[r]) / size)
@@ -171,11 +173,11 @@ fn deviations_are_differences_of_motions() {
             errors.push(worst);
         }
     }
-    check_worst(TOPIC, "deviations over a mesh period against differences", errors, 5e-4);
+    check_worst(TOPIC, "perturbations over a mesh period against differences", errors, 5e-4);
 }
 
 #[test]
-fn what_no_motion_could_follow_is_refused() {
+fn invalid_tables_are_refused() {
     let good = law(9e8, 0.2, 1e-6, 0.0, 40e-6);
     let refused = |change: &dyn Fn(&mut FlankForce)| {
         let mut bad = good.clone();

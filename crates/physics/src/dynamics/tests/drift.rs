@@ -25,22 +25,22 @@ fn undamped(half_backlash_m: f64, torque_nm: f64) -> Parameters {
     p
 }
 
-/// Energy in solver coordinates, without the free rotation: kinetic, springs, mesh, less the work of the torques. J.
-fn energy<const D: usize>(model: &Model<D>, p: &Parameters, state: &State<D>) -> f64 {
-    let x = model.source_displacements(&state.x);
-    let v = model.source_displacements(&state.v).map(|v| v * model.omega_ref);
+/// Energy in solver coordinates, without the rigid rotation: kinetic, springs, mesh, less the work of the torques. J.
+fn energy<const D: usize>(model: &DynamicModel<D>, p: &Parameters, state: &MotionState<D>) -> f64 {
+    let x = model.physical_displacements(&state.x);
+    let v = model.physical_displacements(&state.v).map(|v| v * model.omega_ref);
     super::physics::energy(p, &x, &v, 9e8)
 }
 
 /// Worst relative change of the energy over ten thousand mesh periods, and whether the contact changed.
 fn drift<const D: usize>(p: &Parameters, speeds: [f64; 2], tolerance: f64) -> (f64, bool) {
-    let model = Model::<D>::new(p).unwrap();
+    let model = DynamicModel::<D>::new(p).unwrap();
     let mut start = [0.0; 24];
     start[..12].copy_from_slice(&NaturalModes::new(p).unwrap().static_deflection(p));
     (start[14], start[20]) = (speeds[0], speeds[1]);
     let mut motion = Motion::new(&model, model.state_from(&start), Integrator::Taylor, tolerance, u64::MAX);
     let first = energy(&model, p, &motion.state);
-    // The work of the torque moves the energy's zero: what swings is what was put in.
+    // The work of the torque shifts the zero of the energy; the scale is the kinetic energy at the start.
     let swing = 0.5 * p.halves[0].pinion_inertia_kg_m2 * (speeds[0].powi(2) + speeds[1].powi(2));
     let mut worst = 0.0f64;
     for _ in 0..10_000 {
@@ -53,12 +53,12 @@ fn drift<const D: usize>(p: &Parameters, speeds: [f64; 2], tolerance: f64) -> (f
 /// Undamped pairs that vibrate freely, at the tolerance of a default accuracy of 1e-6 and at a fine one.
 #[test]
 fn energy_stays_over_ten_thousand_periods() {
-    // What `Integrate` takes for an accuracy of 1e-6, and 1e-12.
+    // Tolerances of `Integrate` at an accuracy of 1e-6, and 1e-12.
     for (name, tolerance, limit) in [("default tolerance", 5e-8, 1e-4), ("tolerance 1e-12", 1e-12, 1e-7)] {
         let of = |what: &str| format!("energy over 10 000 undamped periods, {what}, {name}");
         let (kept, changed) = drift::<12>(&undamped(0.0, 0.0), [0.2, 0.1], tolerance);
         assert!(!changed);
-        check_worst(LONG, &of("no load, no play"), [kept], limit);
+        check_worst(LONG, &of("no load, no backlash"), [kept], limit);
         let (kept, changed) = drift::<12>(&undamped(2e-5, 400.0), [0.002, 0.001], tolerance);
         assert!(!changed);
         check_worst(LONG, &of("loaded, contact kept"), [kept], limit);
@@ -68,13 +68,13 @@ fn energy_stays_over_ten_thousand_periods() {
     }
 }
 
-/// A million mesh periods of a steady motion neither hang nor drift: cases A and C end where they were.
+/// A million mesh periods of a steady motion end without drift, in cases A and C.
 #[test]
 #[ignore = "takes a minute"]
 fn a_million_periods() {
     for (name, repeats) in [("A", 1u64), ("C", 2)] {
         let p = parameters(name);
-        let model = Model::<6>::new(&p).unwrap();
+        let model = DynamicModel::<6>::new(&p).unwrap();
         let start = model.state_from(reference().cases[name].initial_state.as_slice().try_into().unwrap());
         let mut motion = Motion::new(&model, start, Integrator::Taylor, 1e-12, u64::MAX);
         let mut follow = |periods: u64| {

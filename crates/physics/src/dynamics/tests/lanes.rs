@@ -1,6 +1,4 @@
-//! Motions in lanes are the motions alone, to the last bit.
-
-use std::time::{Duration, Instant};
+//! Motions in lanes are bit-identical to the motions alone.
 
 use super::reference::{parameters, reference};
 use crate::dynamics::*;
@@ -31,7 +29,9 @@ fn points() -> (Vec<Parameters>, Vec<[f64; 24]>) {
         }
         if i % 5 == 4 {
             let harmonics = vec![Harmonic { amplitude: 900.0, phase_rad: 0.4 }];
-            p.halves.iter_mut().for_each(|h| h.impact = Some(Impact::Harmonics { harmonics: harmonics.clone() }));
+            p.halves
+                .iter_mut()
+                .for_each(|h| h.impact = Some(ImpactExcitation::Harmonics { harmonics: harmonics.clone() }));
         }
         all.push((p, start(name)));
     }
@@ -47,7 +47,7 @@ fn lanes_change_nothing() {
             let alone = advance(p, s, 7, Integrator::Taylor, tolerance, &Watch::none()).unwrap();
             let reached = reached.unwrap();
             assert_eq!(alone.state.map(f64::to_bits), reached.state.map(f64::to_bits));
-            assert_eq!(alone.numerics.steps, reached.numerics.steps);
+            assert_eq!(alone.counts.steps, reached.counts.steps);
         }
     }
 }
@@ -73,36 +73,4 @@ fn a_bad_point_fails_alone_and_a_watch_stops_all() {
     assert_eq!(failed, [3]);
     let canceled = advance_many(&points, &starts, 1_000_000, 5e-8, &Watch::new(&|_| {}, &|| true));
     assert_eq!(canceled.unwrap_err(), Canceled);
-}
-
-#[test]
-#[ignore = "prints the time per mesh period and point in lanes"]
-fn time_in_lanes() {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    for name in ["A", "B", "C"] {
-        let points: Vec<Parameters> = (0..32)
-            .map(|i| {
-                let mut p = parameters(name);
-                p.mesh_frequency_hz *= 1.0 + 1e-3 * f64::from(i);
-                p
-            })
-            .collect();
-        let starts = vec![start(name); points.len()];
-        for tolerance in [5e-8, 1e-12] {
-            let mut least = Duration::MAX;
-            let mut steps = 0;
-            for _ in 0..20 {
-                let at = Instant::now();
-                let many = pool.install(|| advance_many(&points, &starts, 100, tolerance, &Watch::none())).unwrap();
-                least = least.min(at.elapsed());
-                steps = many.iter().map(|r| r.as_ref().unwrap().numerics.steps).sum();
-            }
-            let each = 3200.0;
-            println!(
-                "{name} {tolerance:e}: {:.2} µs per period and point, {:.1} steps",
-                least.as_secs_f64() * 1e6 / each,
-                steps as f64 / each
-            );
-        }
-    }
 }

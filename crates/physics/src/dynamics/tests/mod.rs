@@ -1,7 +1,7 @@
-//! Tests of the equations and methods against independent answers.
+//! Tests of the equations and the integrators against independent results.
 
+mod allocations;
 mod contact_force;
-mod cost;
 mod drift;
 mod lanes;
 mod order;

@@ -7,37 +7,38 @@ use herringbone_oracle::Tolerance::Absolute;
 use herringbone_oracle::check;
 
 /// Case A without impact: smooth, contact kept.
-fn smooth() -> Model<6> {
+fn smooth() -> DynamicModel<6> {
     let mut p = parameters("A");
     p.halves.iter_mut().for_each(|h| h.impact = None);
-    Model::new(&p).unwrap()
+    DynamicModel::new(&p).unwrap()
 }
 
-fn start(model: &Model<6>) -> State<6> {
+fn start(model: &DynamicModel<6>) -> MotionState<6> {
     let modes = NaturalModes::new(&parameters("A")).unwrap();
     let mut at_rest = [0.0; 24];
     at_rest[..12].copy_from_slice(&modes.static_deflection(&parameters("A")));
     model.state_from(&at_rest)
 }
 
-/// Case C from the reference's start: contact is lost and closed, both edges of the impact are met.
-fn switching() -> (Model<6>, State<6>) {
-    let model = Model::new(&parameters("C")).unwrap();
+/// Case C from the reference's start: loss of contact, contact again, and both edges of the impact.
+fn switching() -> (DynamicModel<6>, MotionState<6>) {
+    let model = DynamicModel::new(&parameters("C")).unwrap();
     let state = model.state_from(reference().cases["C"].initial_state.as_slice().try_into().unwrap());
     (model, state)
 }
 
-fn end(mut motion: Motion<'_, 6>) -> (State<6>, bool) {
+fn end(mut motion: Motion<'_, 6>) -> (MotionState<6>, bool) {
     for _ in 0..3 {
         motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
     }
     (motion.state, motion.contact_changed)
 }
 
-/// Slope of log error over log step, by least squares over the numbers of steps per mesh period; and whether contact changed.
+/// Slope of log error over log step, by least squares over the numbers of steps per mesh period; and whether contact
+/// changed.
 fn order(
-    model: &Model<6>,
-    start: State<6>,
+    model: &DynamicModel<6>,
+    start: MotionState<6>,
     with: impl Fn(Motion<'_, 6>, f64) -> Motion<'_, 6>,
     steps: &[u32],
 ) -> (f64, bool) {
@@ -47,7 +48,7 @@ fn order(
         .iter()
         .map(|&per_period| {
             let h = model.period_tau / f64::from(per_period);
-            let d = difference(&end(with(motion(1.0), h)).0, &exact);
+            let d = state_difference(&end(with(motion(1.0), h)).0, &exact);
             [h.ln(), d.0.iter().chain(&d.1).fold(0.0f64, |m, c| m.max(c.abs())).ln()]
         })
         .collect();
@@ -68,7 +69,7 @@ fn runge_kutta_is_of_fourth_order() {
 
 #[test]
 fn taylor_has_the_order_it_says() {
-    // Displacements are carried to the power n of the step, velocities to n − 1: the method's order is n − 1.
+    // Displacements have the power n of the step, velocities n − 1: the order of the method is n − 1.
     let model = smooth();
     for (n, steps) in [(6, [40, 80]), (10, [30, 60]), (14, [24, 36])] {
         let (p, changed) = order(&model, start(&model), |m, h| m.with_fixed_taylor(n, h), &steps);
@@ -77,13 +78,13 @@ fn taylor_has_the_order_it_says() {
     }
 }
 
-/// Four dozen numbers of steps per mesh period from `first` to about `last`, in equal ratios: where changes of contact fall within a step is a
-/// matter of chance, which many step lengths even out.
+/// 48 numbers of steps per mesh period from `first` to about `last`, in equal ratios: the position of contact changes
+/// within a step is random, which many step lengths average.
 fn many(first: f64, last: f64) -> Vec<u32> {
     (0..48).map(|i| (first * (last / first).powf(f64::from(i) / 47.0)) as u32).collect()
 }
 
-/// Changes of contact are located and the series restarted there: they cost nothing of the order.
+/// Changes of contact are located and the series restarted there, without a loss of order.
 #[test]
 fn taylor_keeps_its_order_over_changes_of_contact() {
     let (model, start) = switching();
@@ -95,8 +96,8 @@ fn taylor_keeps_its_order_over_changes_of_contact() {
     }
 }
 
-/// Blind to changes of contact: the force has a kink within a step, so the local error there is of second order in the step, and with it the
-/// error of the whole.
+/// Changes of contact are not located: the force has a kink within a step, so the local error there, and with it the
+/// error of the whole, is of second order in the step.
 #[test]
 fn runge_kutta_loses_its_order_over_changes_of_contact() {
     let (model, start) = switching();
@@ -105,9 +106,9 @@ fn runge_kutta_loses_its_order_over_changes_of_contact() {
     check(TOPIC, "Runge–Kutta, over changes of contact", p, 2.0, Absolute(0.4));
 }
 
-/// What twenty periods of the reference cases take, six coordinates: steps, rejected steps, evaluations of the mesh forces. Lost efficiency fails
-/// here, and so does a gain that nobody noticed. `HERRINGBONE_SNAPSHOT=1 cargo test --no-default-features --lib counted -- --nocapture` prints the
-/// table as it is now.
+/// Work over twenty periods of the reference cases, six coordinates: steps, rejected steps, evaluations of the mesh
+/// forces. Any change of efficiency fails here. `HERRINGBONE_SNAPSHOT=1 cargo test -p herringbone-physics --lib counted
+/// -- --nocapture` prints the table as it is now.
 const COUNTED: [(&str, Integrator, f64, [u64; 3]); 12] = [
     ("A", Integrator::Taylor, 5e-8, [282, 0, 4706]),
     ("B", Integrator::Taylor, 5e-8, [253, 0, 4117]),
@@ -128,13 +129,13 @@ fn work_is_as_counted() {
     let print = std::env::var_os("HERRINGBONE_SNAPSHOT").is_some();
     let mut other = Vec::new();
     for (name, integrator, tolerance, expected) in COUNTED {
-        let model = Model::<6>::new(&parameters(name)).unwrap();
+        let model = DynamicModel::<6>::new(&parameters(name)).unwrap();
         let state = model.state_from(reference().cases[name].initial_state.as_slice().try_into().unwrap());
         let mut motion = Motion::new(&model, state, integrator, tolerance, u64::MAX);
         for _ in 0..20 {
             motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
         }
-        let Numerics { steps, rejected_steps, force_evaluations } = motion.numerics;
+        let StepCounts { steps, rejected_steps, force_evaluations } = motion.counts;
         let found = [steps, rejected_steps, force_evaluations];
         if print {
             println!("    ({name:?}, Integrator::{integrator:?}, {tolerance:e}, {found:?}),");

@@ -1,7 +1,8 @@
-//! The clearance oscillator: one degree of freedom of the same equations, against independent amplitudes and jumps.
+//! Clearance oscillator: one degree of freedom of the same equations, against independent amplitudes and jumps.
 //!
-//! x'' + 2ζ x' + (1 + ε cos Ωt) f(x) = F_m + F_a Ω² cos Ωt, f the backlash function with b = 1, ζ = 0.05, F_m = 0.1. Reference values from
-//! a classical Runge–Kutta integration with steps halved until five digits stood, carried along a sweep of Ω.
+//! x'' + 2ζ x' + (1 + ε cos Ωt) f(x) = F_m + F_a Ω² cos Ωt, f the backlash function with b = 1, ζ = 0.05, F_m = 0.1.
+//! Reference values from a classical Runge–Kutta integration with steps halved until five digits were constant,
+//! continued along a sweep of Ω.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +14,8 @@ use herringbone_oracle::check;
 const FORCED: &str = "Dynamics: clearance oscillator, forced";
 const PARAMETRIC: &str = "Dynamics: clearance oscillator, parametric";
 
-/// Everything but the rotation held fast by masses beyond all forces; R = 1 and I = 1, with the gear's inertia beyond all too, so m_e = 1.
+/// All coordinates but the rotation are fixed by very large masses; R = 1 and I = 1, with a very large inertia of the
+/// gear, so that m_e = 1.
 fn oscillator(omega: f64, epsilon: f64, amplitude: f64) -> Parameters {
     const FAST: f64 = 1e30;
     let half = HalfParameters {
@@ -33,7 +35,7 @@ fn oscillator(omega: f64, epsilon: f64, amplitude: f64) -> Parameters {
         },
         mesh_damping_n_s_per_m: 0.1,
         // F_s acts against the torque.
-        impact: Some(Impact::Harmonics {
+        impact: Some(ImpactExcitation::Harmonics {
             harmonics: vec![Harmonic { amplitude: -amplitude * omega * omega, phase_rad: 0.0 }],
         }),
         phase_shift_mesh_periods: 0.0,
@@ -51,8 +53,8 @@ fn oscillator(omega: f64, epsilon: f64, amplitude: f64) -> Parameters {
     }
 }
 
-/// Least and greatest u over one period, and the integrals of u and u² over it.
-struct Swing {
+/// Minimum and maximum of u over one period, and the integrals of u and u² over it.
+struct PeakToPeak {
     low: f64,
     high: f64,
     duration: f64,
@@ -60,8 +62,9 @@ struct Swing {
     second: f64,
 }
 
-impl Swing {
-    const NONE: Swing = Swing { low: f64::INFINITY, high: f64::NEG_INFINITY, duration: 0.0, first: 0.0, second: 0.0 };
+impl PeakToPeak {
+    const NONE: PeakToPeak =
+        PeakToPeak { low: f64::INFINITY, high: f64::NEG_INFINITY, duration: 0.0, first: 0.0, second: 0.0 };
 
     /// Peak to peak, mean, RMS about the mean.
     fn values(&self) -> [f64; 3] {
@@ -70,7 +73,7 @@ impl Swing {
     }
 }
 
-impl Observer<6> for Swing {
+impl Observer<6> for PeakToPeak {
     fn segment(&mut self, g: &Segment<'_, 6>) {
         for i in 0..=64 {
             let t = g.h * f64::from(i) / 64.0;
@@ -86,9 +89,10 @@ impl Observer<6> for Swing {
     }
 }
 
-/// Steady swing at `omega` from the displacement and velocity (per unit of time) `from`; leaves where it ends. Peak to peak, mean, RMS.
+/// Steady motion at `omega` from the displacement and velocity (per unit of time) `from`, which is set to its end.
+/// Returns peak to peak, mean, RMS about the mean.
 fn motion(omega: f64, epsilon: f64, amplitude: f64, from: &mut (f64, f64)) -> [f64; 3] {
-    let model = Model::<6>::new(&oscillator(omega, epsilon, amplitude)).unwrap();
+    let model = DynamicModel::<6>::new(&oscillator(omega, epsilon, amplitude)).unwrap();
     let mut state = model.state_from(&[0.0; 24]);
     (state.x[U], state.v[U]) = (from.0, from.1 / model.omega_ref);
     state.contact = [model.contact_of(0, from.0, 0.0); 2];
@@ -96,27 +100,27 @@ fn motion(omega: f64, epsilon: f64, amplitude: f64, from: &mut (f64, f64)) -> [f
     for _ in 0..200 {
         path.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
     }
-    let mut out = Swing::NONE;
+    let mut out = PeakToPeak::NONE;
     path.advance_period(&mut out, &Watch::none(), 0.0).unwrap();
     *from = (path.state.x[U], path.state.v[U] * model.omega_ref);
     out.values()
 }
 
-fn swing(omega: f64, epsilon: f64, amplitude: f64, from: &mut (f64, f64)) -> f64 {
+fn peak_to_peak(omega: f64, epsilon: f64, amplitude: f64, from: &mut (f64, f64)) -> f64 {
     motion(omega, epsilon, amplitude, from)[0]
 }
 
-/// Swings along Ω from `first` to `last` in steps of 1, all in thousandths.
+/// Peak-to-peak values along Ω from `first` to `last` in steps of 1, all in thousandths.
 fn sweep(first: i32, last: i32, epsilon: f64, amplitude: f64) -> Vec<(i32, f64)> {
     let mut from = (1.1, 0.0);
     let step = (last - first).signum();
     (0..=(last - first).abs())
         .map(|i| first + i * step)
-        .map(|omega| (omega, swing(f64::from(omega) / 1000.0, epsilon, amplitude, &mut from)))
+        .map(|omega| (omega, peak_to_peak(f64::from(omega) / 1000.0, epsilon, amplitude, &mut from)))
         .collect()
 }
 
-fn check_swings(topic: &str, way: &str, sweep: &[(i32, f64)], expected: &[(i32, f64)]) {
+fn check_peak_to_peak(topic: &str, way: &str, sweep: &[(i32, f64)], expected: &[(i32, f64)]) {
     for (omega, swing) in expected {
         let found = sweep.iter().find(|(o, _)| o == omega).unwrap().1;
         let quantity = format!("peak to peak at Ω = {}, Ω {way}", f64::from(*omega) / 1000.0);
@@ -130,14 +134,14 @@ fn check_jump(topic: &str, way: &str, sweep: &[(i32, f64)], expected: f64) {
     check(topic, &format!("jump, Ω {way}"), f64::from(a + b) / 2000.0, expected, Absolute(2.5e-3));
 }
 
-/// The first of two neighbours between which the swing changes by more than a quarter.
+/// The first of two neighbours between which the peak-to-peak value changes by more than a quarter.
 fn jump(sweep: &[(i32, f64)]) -> (i32, i32) {
     let at = sweep.windows(2).position(|w| (w[1].1 / w[0].1).ln().abs() > 0.25).unwrap();
     (sweep[at].0, sweep[at + 1].0)
 }
 
 #[test]
-fn forced_swings_are_met() {
+fn forced_amplitudes_are_met() {
     for (omega, p2p) in [
         (500, 0.013304),
         (700, 0.038072),
@@ -147,7 +151,7 @@ fn forced_swings_are_met() {
         (1100, 0.203195),
         (1200, 0.126282),
     ] {
-        let found = swing(f64::from(omega) / 1000.0, 0.0, 0.02, &mut (1.1, 0.0));
+        let found = peak_to_peak(f64::from(omega) / 1000.0, 0.0, 0.02, &mut (1.1, 0.0));
         check(FORCED, &format!("peak to peak at Ω = {}", f64::from(omega) / 1000.0), found, p2p, Relative(2e-4));
         // Where contact is kept the linear amplitude holds.
         if omega == 500 || omega == 1200 {
@@ -159,9 +163,9 @@ fn forced_swings_are_met() {
 }
 
 #[test]
-fn parametric_swings_are_met() {
+fn parametric_amplitudes_are_met() {
     for (omega, p2p) in [(500, 0.094955), (700, 0.079515), (1000, 0.260238), (1200, 0.084516)] {
-        let found = swing(f64::from(omega) / 1000.0, 0.2, 0.0, &mut (1.1, 0.0));
+        let found = peak_to_peak(f64::from(omega) / 1000.0, 0.2, 0.0, &mut (1.1, 0.0));
         check(PARAMETRIC, &format!("peak to peak at Ω = {}", f64::from(omega) / 1000.0), found, p2p, Relative(2e-4));
     }
 }
@@ -170,10 +174,10 @@ fn parametric_swings_are_met() {
 #[test]
 fn forced_jumps_are_bracketed() {
     let up = sweep(890, 932, 0.0, 0.02);
-    check_swings(FORCED, "rising", &up, &[(900, 0.154111)]);
+    check_peak_to_peak(FORCED, "rising", &up, &[(900, 0.154111)]);
     check_jump(FORCED, "rising", &up, 0.927);
     let down = sweep(960, 880, 0.0, 0.02);
-    check_swings(FORCED, "falling", &down, &[(950, 0.31424), (900, 0.347418)]);
+    check_peak_to_peak(FORCED, "falling", &down, &[(950, 0.31424), (900, 0.347418)]);
     check_jump(FORCED, "falling", &down, 0.887);
     let [_, mean, rms] = motion(0.95, 0.0, 0.02, &mut (1.1, 0.0));
     check(FORCED, "mean at Ω = 0.95", mean, 1.085945, Relative(2e-4));
@@ -184,9 +188,9 @@ fn forced_jumps_are_bracketed() {
 #[test]
 fn parametric_jumps_are_bracketed() {
     let up = sweep(840, 912, 0.2, 0.0);
-    check_swings(PARAMETRIC, "rising", &up, &[(850, 0.145013), (900, 0.204059)]);
+    check_peak_to_peak(PARAMETRIC, "rising", &up, &[(850, 0.145013), (900, 0.204059)]);
     check_jump(PARAMETRIC, "rising", &up, 0.907);
     let down = sweep(960, 828, 0.2, 0.0);
-    check_swings(PARAMETRIC, "falling", &down, &[(950, 0.305133), (900, 0.354166), (850, 0.405168)]);
+    check_peak_to_peak(PARAMETRIC, "falling", &down, &[(950, 0.305133), (900, 0.354166), (850, 0.405168)]);
     check_jump(PARAMETRIC, "falling", &down, 0.835);
 }

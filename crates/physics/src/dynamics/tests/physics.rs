@@ -53,8 +53,8 @@ fn natural_frequencies_with_couplings() {
         let tolerance = if e < 1.0 { Absolute(1e-4) } else { Relative(1e-4) };
         check(NATURAL, &format!("halves coupled, mode {}, Hz", i + 1), *f, e, tolerance);
     }
-    // The solver's own coordinates have the same frequencies: a free vibration of the twelve-coordinate model keeps its
-    // shape and has its mode's frequency.
+    // Solver coordinates have the same frequencies: a free vibration of the twelve-coordinate model keeps its shape and
+    // has the frequency of its mode.
     let modes = NaturalModes::new(&p).unwrap();
     let mut errors = Vec::new();
     p.halves.iter_mut().for_each(|h| h.pinion_torque_nm = 0.0);
@@ -62,13 +62,13 @@ fn natural_frequencies_with_couplings() {
     for (f, shape) in modes.frequencies_hz.iter().zip(&modes.shapes).skip(1) {
         let scale = 1e-6;
         p.mesh_frequency_hz = f / 4.0;
-        let model = Model::<12>::new(&p).unwrap();
+        let model = DynamicModel::<12>::new(&p).unwrap();
         let mut start = [0.0; 24];
         start[..12].copy_from_slice(&shape.map(|c| c * scale));
         let mut motion = Motion::new(&model, model.state_from(&start), Integrator::Taylor, 1e-13, u64::MAX);
         motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
-        // Four vibrations later everything is where it was.
-        let end = model.source_displacements(&motion.state.x);
+        // Four vibrations later the state is that of the start.
+        let end = model.physical_displacements(&motion.state.x);
         let largest = shape.iter().fold(0.0f64, |m, c| m.max(c.abs())) * scale;
         errors.extend((0..12).map(|c| (end[c] - start[c]) / largest));
     }
@@ -108,7 +108,7 @@ fn static_deflection_is_the_reference_start() {
     }
 }
 
-/// Constant stiffness, no impact, damped: the static deflection is where it stays.
+/// Constant stiffness, no impact, damped: the static deflection is an equilibrium.
 #[test]
 fn nothing_moves_without_excitation() {
     let mut p = parameters("C");
@@ -120,17 +120,17 @@ fn nothing_moves_without_excitation() {
     let q = NaturalModes::new(&p).unwrap().static_deflection(&p);
     let mut start = [0.0; 24];
     start[..12].copy_from_slice(&q);
-    let model = Model::<12>::new(&p).unwrap();
+    let model = DynamicModel::<12>::new(&p).unwrap();
     let mut motion = Motion::new(&model, model.state_from(&start), Integrator::Taylor, 1e-12, u64::MAX);
     for _ in 0..50 {
         motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
     }
-    let end = model.source_displacements(&motion.state.x);
+    let end = model.physical_displacements(&motion.state.x);
     let errors = (0..12).map(|c| (end[c] - q[c]) / q[2]);
     check_worst(BALANCES, "rest without excitation, 50 periods, of the pinion's rotation", errors, 1e-12);
 }
 
-/// Kinetic and potential energy of the source's twelve displacements, less the work of the torques.
+/// Kinetic and potential energy of the twelve displacements, less the work of the torques, J.
 pub fn energy(p: &Parameters, x: &[f64; 12], v: &[f64; 12], k_mesh: f64) -> f64 {
     let mut e = 0.0;
     let (sin, cos) = p.helix_angle_rad.sin_cos();
@@ -158,8 +158,8 @@ pub fn energy(p: &Parameters, x: &[f64; 12], v: &[f64; 12], k_mesh: f64) -> f64 
         + 0.5 * p.couplings.gear_axial.stiffness * (x[4] - x[10]).powi(2)
 }
 
-/// Undamped with constant stiffness, contacts opening and closing on both flanks: energy stays, far beyond the tolerance's reach if an
-/// event were missed.
+/// Undamped with constant stiffness and contact on both flanks: the energy is constant to a limit that a missed event
+/// would exceed by far.
 #[test]
 fn energy_is_kept() {
     let mut p = parameters("C");
@@ -174,15 +174,15 @@ fn energy_is_kept() {
     }
     p.couplings.pinion_axial.damping = 0.0;
     p.couplings.gear_axial.damping = 0.0;
-    let model = Model::<12>::new(&p).unwrap();
+    let model = DynamicModel::<12>::new(&p).unwrap();
     let mut start = [0.0; 24];
     start[..12].copy_from_slice(&reference().cases["C"].initial_state[..12]);
     start[14] = 0.6;
     start[20] = 0.3;
     let mut motion = Motion::new(&model, model.state_from(&start), Integrator::Taylor, 1e-14, u64::MAX);
     let of = |m: &Motion<'_, 12>| {
-        let v = model.source_displacements(&m.state.v).map(|v| v * model.omega_ref);
-        energy(&p, &model.source_displacements(&m.state.x), &v, 9e8)
+        let v = model.physical_displacements(&m.state.v).map(|v| v * model.omega_ref);
+        energy(&p, &model.physical_displacements(&m.state.x), &v, 9e8)
     };
     let first = of(&motion);
     let mut errors = Vec::new();
@@ -195,7 +195,7 @@ fn energy_is_kept() {
     assert!(motion.contact_changed);
 }
 
-/// Torque, backlash, impact and start scaled by the same factor: so is the motion.
+/// Torque, backlash, impact and start multiplied by a factor: the motion is multiplied by it.
 #[test]
 fn motion_scales_with_the_load() {
     let p = parameters("C");
@@ -204,12 +204,12 @@ fn motion_scales_with_the_load() {
     q.half_backlash_m *= factor;
     for h in &mut q.halves {
         h.pinion_torque_nm *= factor;
-        if let Some(Impact::HalfSine { force_n, .. }) = &mut h.impact {
+        if let Some(ImpactExcitation::HalfSine { force_n, .. }) = &mut h.impact {
             *force_n *= factor;
         }
     }
     let run = |p: &Parameters, scale: f64| {
-        let model = Model::<6>::new(p).unwrap();
+        let model = DynamicModel::<6>::new(p).unwrap();
         let start: [f64; 24] = reference().cases["C"].initial_state.as_slice().try_into().unwrap();
         let mut motion =
             Motion::new(&model, model.state_from(&start.map(|c| c * scale)), Integrator::Taylor, 1e-13, u64::MAX);
@@ -223,7 +223,7 @@ fn motion_scales_with_the_load() {
     check_worst(BALANCES, "threefold load, impact, backlash and start: threefold motion", errors, 1e-10);
 }
 
-/// The halves exchanged and the helix turned over: the same motion with the halves exchanged.
+/// The halves exchanged and the helix angle reversed: the same motion with the halves exchanged.
 #[test]
 fn exchanging_the_halves_exchanges_the_motion() {
     let mut p = parameters("C");
@@ -235,12 +235,12 @@ fn exchanging_the_halves_exchanges_the_motion() {
     let start: [f64; 24] = reference().cases["C"].initial_state.as_slice().try_into().unwrap();
     let swapped: [f64; 24] = std::array::from_fn(|i| start[i / 12 * 12 + (i + 6) % 12]);
     let run = |p: &Parameters, start: &[f64; 24]| {
-        let model = Model::<12>::new(p).unwrap();
+        let model = DynamicModel::<12>::new(p).unwrap();
         let mut motion = Motion::new(&model, model.state_from(start), Integrator::Taylor, 1e-13, u64::MAX);
         for _ in 0..10 {
             motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
         }
-        model.source_displacements(&motion.state.x)
+        model.physical_displacements(&motion.state.x)
     };
     let (a, b) = (run(&p, &start), run(&q, &swapped));
     let errors = (0..12).map(|c| (a[c] - b[(c + 6) % 12]) / a[2]);

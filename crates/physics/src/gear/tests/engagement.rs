@@ -77,7 +77,7 @@ fn a_short_path_without_overlap_is_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 500, ..ProptestConfig::default() })]
 
     /// Around the limit: accepted exactly where lines of contact exist at every phase.
     #[test]

@@ -170,7 +170,7 @@ fn check_pair(p: &Pair) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
 
     #[test]
     fn wild_designs_are_solved_or_refused(spec in any_spec()) {

@@ -1,0 +1,160 @@
+//! The job document: what goes in. Names and units are the public contract; every default is filled in, so that a
+//! document written out again says everything that was used.
+//!
+//! Each field is declared here, once: see [`crate::field`]. The doc comments' first paragraphs are the help texts of schema and form.
+
+mod analysis;
+mod design;
+mod model;
+mod sweep;
+
+pub use analysis::{AnalysisInput, IntegratorInput, MAX_SERIES_SAMPLES, MethodInput};
+pub use design::{
+    AssemblyInput, CoastInput, DEFAULT_BACKLASH_UM, DesignInput, EndReliefInput, FlankInput, GearInput, Hand,
+    MaterialInput, PressureAnglePlane, ReliefShapeInput, SupportsInput, TipReliefInput,
+};
+pub use model::{
+    ActsOn, BodyInput, CornerImpactInput, Elements, Fidelity, GivenImpactInput, GivenStiffness, HarmonicInput,
+    ImpactDuration, ImpactInput, Ltca, MeshForce, MeshStiffness, ModelInput, Plane, StiffnessLaw,
+};
+pub use sweep::{Axis, AxisPoints, Continuation, MAX_SWEEP_POINTS, Recorded, Spacing};
+
+use super::field::{Input, Slot};
+use super::json;
+use super::reader::{Place, Reading};
+use super::violation::{DocumentError, Violation};
+use herringbone_macros::{Input, Words};
+use serde::Serialize;
+use serde_json::Value;
+
+/// How much a job computes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Words)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Kind, rename_all = "snake_case"))]
+pub enum JobKind {
+    /// Geometry, loaded contact and impact.
+    #[words(label = "mesh (contact, impact)")]
+    Mesh,
+    /// One operating point up to its vibration response.
+    #[words(label = "response (one point)")]
+    Response,
+    /// A response over the values of one or two inputs.
+    #[words(label = "sweep (over inputs)")]
+    Sweep,
+}
+
+/// A job document with every default filled in and every value within its range.
+#[derive(Debug, Clone, PartialEq, Serialize, Input)]
+#[input(group = "job", rules = sweep::of_sweeps_only)]
+pub struct JobDocument {
+    /// What to compute: mesh, response or sweep.
+    #[input(default = JobKind::Response)]
+    pub kind: JobKind,
+    /// A name for people.
+    #[input(max_chars = 200)]
+    pub name: Option<String>,
+    /// A label to find jobs by.
+    #[input(max_chars = 100)]
+    pub label: Option<String>,
+    /// The gear pair.
+    #[input(required)]
+    pub design: DesignInput,
+    /// The operating point.
+    #[input(required)]
+    pub operation: OperationInput,
+    /// Choices of the physical model.
+    pub model: ModelInput,
+    /// Accuracy and method.
+    pub analysis: AnalysisInput,
+    /// sweep: one or two inputs to vary.
+    #[input(min_items = 1, max_items = 2, group = "sweep", when = "kind = sweep")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub axes: Vec<Axis>,
+    /// sweep: whether a point starts cold, or from the end of its neighbour below (up) or above (down) along the first axis; both: up,
+    /// then down, and where they differ. The steady motion is found from there; with method integrate, by analysis.mesh_periods.
+    #[input(default = Continuation::None, group = "sweep", when = "kind = sweep")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub continuation: Option<Continuation>,
+    /// sweep: what every row carries beside its numbers: poincare (mesh displacement and velocity at the starts of the last mesh
+    /// periods), spectrum (amplitudes at the mesh orders 1/4 to 20).
+    #[input(group = "sweep", when = "kind = sweep")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub record: Vec<Recorded>,
+}
+
+/// The operating point.
+#[derive(Debug, Clone, PartialEq, Serialize, Input)]
+#[input(group = "operation")]
+pub struct OperationInput {
+    /// Speed of the pinion.
+    #[input(unit = "r/min", min = 0.1, max = 200_000.0, symbol = "n_1")]
+    pub pinion_speed_rpm: f64,
+    /// Torque of the whole pinion (both halves); negative: the gear drives, on the coast flanks.
+    #[input(unit = "N m", min = -1e7, max = 1e7, symbol = "T_1")]
+    pub pinion_torque_nm: f64,
+    /// Which ends of the teeth enter the mesh first: the inner (apex_leading) or the outer ones.
+    #[input(default = RotationInput::ApexLeading)]
+    pub rotation: RotationInput,
+}
+
+/// Sense of rotation, by the ends of the teeth that enter the mesh first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
+pub enum RotationInput {
+    /// The inner ends, at the gap.
+    ApexLeading,
+    /// The outer ends.
+    ApexTrailing,
+}
+
+/// Parses the bytes of a job document (UTF-8, with or without a byte order mark); finds every violation in one pass.
+///
+/// # Errors
+/// [`DocumentError::Malformed`] when the bytes are not JSON in UTF-8 or repeat a member, [`DocumentError::Invalid`] with all violations otherwise.
+/// Whether the gear can exist is not checked here (see [`crate::study::Checked`]).
+pub fn parse(bytes: &[u8]) -> Result<JobDocument, DocumentError> {
+    let value = json::read(bytes).map_err(|json::NotJson { detail, line, column }| DocumentError::Malformed {
+        detail,
+        line,
+        column,
+    })?;
+    parse_value(&value)
+}
+
+/// As [`parse`], from JSON that is already read.
+pub fn parse_value(value: &Value) -> Result<JobDocument, DocumentError> {
+    let reading = Reading::read();
+    let document = read(&reading, value);
+    let violations = reading.violations();
+    if violations.is_empty() { Ok(document) } else { Err(DocumentError::Invalid(violations)) }
+}
+
+/// Reads the whole document (or, with [`Reading::describe`], declares all of its fields).
+pub(crate) fn read(reading: &Reading, value: &Value) -> JobDocument {
+    let root = reading.root(value);
+    let document = <JobDocument as Input>::read(&root, None);
+    root.finish();
+    document
+}
+
+impl JobDocument {
+    /// Rows of the sweep: every point once for each direction of continuation.
+    pub fn sweep_points(&self) -> usize {
+        let ways = if self.continuation == Some(Continuation::Both) { 2 } else { 1 };
+        ways * self.axes.iter().map(Axis::len).product::<usize>()
+    }
+
+    /// The field at a JSON pointer.
+    pub(crate) fn slot(&mut self, pointer: &str) -> Option<Slot<'_>> {
+        if pointer.is_empty() { Some(Slot::Other) } else { Input::slot(self, pointer) }
+    }
+
+    /// Checks the rules between fields, after numbers were put in by [`Self::slot`].
+    ///
+    /// # Errors
+    /// [`DocumentError::Invalid`] with `violations` (those of the numbers) and all that were found.
+    pub(crate) fn checked(mut self, mut violations: Vec<Violation>) -> Result<Self, DocumentError> {
+        let reading = Reading::read();
+        Input::check(&mut self, &Place::root(&reading));
+        violations.extend(reading.violations());
+        if violations.is_empty() { Ok(self) } else { Err(DocumentError::Invalid(violations)) }
+    }
+}

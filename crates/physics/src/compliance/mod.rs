@@ -1,0 +1,196 @@
+//! Compliance of both members of one helix half: tooth, gear body, local contact.
+//!
+//! Fidelity `analytic`, per member: the tooth (`tooth`) is a clamped plate of its true profile with free end
+//! faces (`plate`); the reactions of its root load a three-dimensional elastic ring with free end faces, held at rim or
+//! bore (`body`, `ring_influence`); short waves at the root come from a plane-strain annulus (`annulus`); the corners of the
+//! end faces give as elastic wedges do (`edge`). `bulk` puts these together over Legendre functions of the
+//! face; the contact itself is Hertzian (`hertz`). Fidelity `fe` takes the flexibilities of [`crate::fe`] instead, with the indentation
+//! of half-spaces (`half_space`).
+//!
+//! Either way a [`Compliance`] is a table of bulk flexibility (`influence`) and a law of local indentation (`local`).
+//!
+//! Everything is SI; coordinates are those of [`crate::gear`].
+
+mod annulus;
+mod body;
+mod bulk;
+mod edge;
+mod flank;
+mod half_space;
+mod hertz;
+mod influence;
+mod local;
+mod plate;
+mod ring_influence;
+mod settings;
+mod tooth;
+
+#[cfg(test)]
+pub(crate) mod fixtures;
+#[cfg(test)]
+mod tests;
+
+pub use flank::{BodyHold, hold_radius_m};
+pub use settings::Settings;
+
+#[cfg(test)]
+pub(crate) use hertz::LineContact;
+pub(crate) use influence::{Influence, LineWeights, STENCIL, Stencil};
+pub(crate) use local::{Indentation, LocalModel, line_contact};
+
+use self::flank::Flank;
+use self::influence::stencil;
+use crate::fe::{FlankFlexibility, FlankInput, Resolution, Side};
+use crate::gear::Pair;
+
+/// Corner contact is looked for this far beyond the path, in base pitches: gaps there are beyond any deflection that a
+/// tooth survives.
+pub(crate) const CORNER_REACH: f64 = 0.5;
+
+/// The compliance of both members of one half. It does not depend on load, modification or assembly: both halves share
+/// it, and every load of the same teeth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compliance {
+    pub(crate) influence: Influence,
+    pub(crate) local: LocalModel,
+    slices: usize,
+}
+
+/// Points of the table of centreline depths.
+const DEPTHS: usize = 33;
+/// Places of the path at which finite-element flexibilities are taken over.
+const PLACES: usize = 7;
+
+impl Compliance {
+    /// Fidelity `analytic`: beams, plates and rings, in milliseconds.
+    pub fn analytic(pair: &Pair, settings: &Settings) -> Compliance {
+        let stations = settings.station_count(pair);
+        let offsets = pair_offsets(pair, settings.corner_contact);
+        let (pinion, gear) = rayon::join(
+            || Flank::new(pair, 1.0, settings.body, stations, offsets),
+            || Flank::new(pair, -1.0, settings.body, stations, offsets),
+        );
+        // Places of both members are Chebyshev nodes of the same path, run through in opposite directions.
+        let places_m = pinion.places_m().to_vec();
+        let last = places_m.len() - 1;
+        let step = pair.spec.face_width_m / stations as f64;
+        let stations_m = (0..stations).map(|i| (i as f64 + 0.5) * step).collect();
+        let influence = Influence::new(places_m, stations_m, offsets, |offset, (i, a), (j, b)| {
+            pinion.bulk.entry(offset, (i, a), (j, b)) + gear.bulk.entry(offset, (i, last - a), (j, last - b))
+        });
+        let depths = (0..DEPTHS)
+            .map(|i| {
+                let x = pair.path_start_m + (pair.path_end_m - pair.path_start_m) * i as f64 / (DEPTHS - 1) as f64;
+                [pinion.at(x).depth_m, gear.at(pair.line_of_action_m - x).depth_m]
+            })
+            .collect();
+        Compliance { influence, local: LocalModel::CenterlineDepth(depths), slices: settings.slice_count(pair) }
+    }
+
+    /// Fidelity `uniform`: the contact lines as a uniform elastic foundation of so much force per length of line and approach, both along the
+    /// flank normal; nothing else gives. A model with exact solutions, for comparisons.
+    pub fn uniform(pair: &Pair, settings: &Settings, line_stiffness_n_per_m2: f64) -> Compliance {
+        let stations = 4;
+        let step = pair.spec.face_width_m / stations as f64;
+        let stations_m = (0..stations).map(|i| (i as f64 + 0.5) * step).collect();
+        let influence = Influence::new(vec![pair.pitch_point_m()], stations_m, 0, |_, _, _| 0.0);
+        let local = LocalModel::Foundation { line_stiffness_n_per_m2 };
+        Compliance { influence, local, slices: settings.slice_count(pair) }
+    }
+
+    /// What [`Compliance::finite_elements`] needs the flexibility of: pinion and gear.
+    pub fn finite_element_inputs(pair: &Pair, settings: &Settings, resolution: Resolution) -> [FlankInput; 2] {
+        let offsets = pair_offsets(pair, settings.corner_contact);
+        [(Side::Pinion, &pair.pinion), (Side::Gear, &pair.gear)].map(|(side, member)| {
+            let hold_m = hold_radius_m(member, settings.body, pair.spec.normal_module_m);
+            FlankInput::new(pair, side, hold_m, offsets, resolution)
+        })
+    }
+
+    /// Fidelity `fe`: from the finite elements of pinion and gear.
+    ///
+    /// A force on the line of contact goes to the hats of the load grid about it and the displacement there is read between
+    /// them; a hat stands for its centre of gravity.
+    pub fn finite_elements(pair: &Pair, settings: &Settings, flanks: [&FlankFlexibility; 2]) -> Compliance {
+        let places_m: Vec<f64> = (0..PLACES)
+            .map(|i| {
+                let angle = std::f64::consts::PI * (2 * i + 1) as f64 / (2 * PLACES) as f64;
+                let (low, high) = (pair.path_start_m, pair.path_end_m);
+                0.5 * (low + high) - 0.5 * (high - low) * angle.cos()
+            })
+            .collect();
+        let rolls = [places_m.clone(), places_m.iter().map(|x| pair.line_of_action_m - x).collect::<Vec<_>>()];
+        let members = [&pair.pinion, &pair.gear];
+        // Places of either member between the hats along its profile.
+        let profiles: [Vec<_>; 2] = std::array::from_fn(|side| {
+            let flank = flanks[side];
+            let centers = hat_centers(flank.profile_m());
+            let form = flank.rolls_m()[0];
+            let base = members[side].base_radius_m;
+            rolls[side].iter().map(|roll| stencil(&centers, (roll * roll - form * form) / (2.0 * base))).collect()
+        });
+        let common_m = pair.spec.face_width_m;
+        let stations_of = |side: usize| hat_centers(flanks[side].stations_m());
+        // The narrower member's stations are those of both; the other's flexibility is read between its own.
+        let bearing = usize::from(members[0].face_width_m > common_m && members[1].face_width_m <= common_m);
+        let stations_m = stations_of(bearing);
+        let across: [Option<Vec<Stencil>>; 2] = std::array::from_fn(|side| {
+            let margin_m = 0.5 * (members[side].face_width_m - common_m);
+            let own = stations_of(side);
+            (own != stations_m).then(|| stations_m.iter().map(|z| stencil(&own, z + margin_m)).collect())
+        });
+        let offsets = flanks[0].offsets().min(flanks[1].offsets());
+        let influence = Influence::new(places_m, stations_m, offsets, |offset, (i, a), (j, b)| {
+            (0..2)
+                .map(|side| {
+                    let nodes = flanks[side].nodes();
+                    let Some(bulk) = flanks[side].bulk(offset) else { return 0.0 };
+                    let (pa, pb) = (&profiles[side][a], &profiles[side][b]);
+                    let stations = flanks[side].stations_m().len();
+                    if let Some(across) = &across[side] {
+                        return between(bulk, (stations, nodes), [pa, pb], [&across[i], &across[j]]);
+                    }
+                    let mut sum = 0.0;
+                    for (k, wa) in pa.weights.iter().enumerate() {
+                        let row = &bulk[((pa.first + k) * stations + i) * nodes..];
+                        for (l, wb) in pb.weights.iter().enumerate() {
+                            sum += wa * wb * row[(pb.first + l) * stations + j];
+                        }
+                    }
+                    sum
+                })
+                .sum()
+        });
+        Compliance { influence, local: LocalModel::HalfSpace, slices: settings.slice_count(pair) }
+    }
+
+    /// Number of width slices that the contact lines are cut into.
+    pub fn slices(&self) -> usize {
+        self.slices
+    }
+}
+
+/// A table of finite elements between two places read between its nodes along the profile and along the face.
+fn between(bulk: &[f64], (stations, nodes): (usize, usize), profile: [&Stencil; 2], face: [&Stencil; 2]) -> f64 {
+    let places = |side: usize| {
+        let (along, across) = (profile[side], face[side]);
+        along.weights.iter().enumerate().flat_map(move |(k, w)| {
+            let row = (along.first + k) * stations + across.first;
+            across.weights.iter().enumerate().map(move |(l, v)| (row + l, w * v))
+        })
+    };
+    places(0).map(|(at, w)| w * places(1).map(|(load, v)| v * bulk[at * nodes + load]).sum::<f64>()).sum()
+}
+
+/// Centres of gravity of the hats on `nodes`.
+fn hat_centers(nodes: &[f64]) -> Vec<f64> {
+    let last = nodes.len() - 1;
+    (0..=last).map(|i| (nodes[i.saturating_sub(1)] + nodes[i] + nodes[(i + 1).min(last)]) / 3.0).collect()
+}
+
+/// Tooth pairs that can be in contact at once lie up to this many pitches apart: points lie within the path and, with corner
+/// contact, half a base pitch beyond either end.
+fn pair_offsets(pair: &Pair, corner_contact: bool) -> usize {
+    let reach = if corner_contact { 2.0 * CORNER_REACH } else { 0.0 };
+    (pair.total_contact_ratio() + reach + 1e-6).floor() as usize
+}

@@ -1,0 +1,108 @@
+//! The points of a running sweep: passed on by the threads of the pool, stored together with the progress.
+
+use crate::store::{LineEndRow, PointBatch, PointRow, PointsDigest, RowsSummary};
+use herringbone_job::not_finite;
+use herringbone_job::result::{NotFinite, SweepPoint};
+use herringbone_job::study::{KeptPoints, LineEnd, PointStore};
+use std::collections::HashSet;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The points from an earlier attempt, and those that are solved and not yet stored.
+pub(super) struct RunningPoints {
+    solver_version: &'static str,
+    state: Mutex<PointsState>,
+}
+
+#[derive(Default)]
+struct PointsState {
+    /// Points of an earlier attempt, until the solver takes them.
+    resumed: KeptPoints,
+    /// Positions of all points that are stored or will be with the next batch.
+    positions: HashSet<u64>,
+    unwritten: PointBatch,
+}
+
+impl RunningPoints {
+    /// Resumes from stored points. A row that cannot be read is solved again.
+    pub fn resume(stored: PointBatch, solver_version: &'static str) -> Self {
+        let mut resumed = KeptPoints::default();
+        for row in stored.rows {
+            if let Ok(point) = serde_json::from_str(&row.body) {
+                resumed.rows.insert(row.position as usize, point);
+            }
+        }
+        for LineEndRow { line, position, state } in stored.ends {
+            let line = line as usize;
+            resumed.ends.insert(line, LineEnd { line, position: position as usize, state });
+        }
+        let positions = resumed.rows.keys().map(|position| *position as u64).collect();
+        let state = PointsState { resumed, positions, unwritten: PointBatch::default() };
+        Self { solver_version, state: Mutex::new(state) }
+    }
+
+    /// Takes the points that were solved since the last call.
+    pub fn take_unwritten(&self) -> PointBatch {
+        let mut batch = std::mem::take(&mut self.lock().unwritten);
+        batch.solver_version = self.solver_version.to_owned();
+        batch
+    }
+
+    /// Returns a batch that could not be stored, for the next call of [`RunningPoints::take_unwritten`].
+    pub fn restore(&self, mut batch: PointBatch) {
+        let mut state = self.lock();
+        batch.append(std::mem::take(&mut state.unwritten));
+        state.unwritten = batch;
+    }
+
+    /// The batch of points of a finished sweep that are not yet stored, and the summary of all its rows.
+    ///
+    /// # Errors
+    /// A point cannot be written as JSON.
+    pub fn finish(&self, points: &[SweepPoint]) -> serde_json::Result<(PointBatch, RowsSummary)> {
+        let mut batch = self.take_unwritten();
+        let positions = std::mem::take(&mut self.lock().positions);
+        let mut digest = PointsDigest::default();
+        for (position, point) in (0u64..).zip(points) {
+            let body = to_json(point)?;
+            digest.add(&body);
+            if !positions.contains(&position) {
+                batch.rows.push(PointRow { position, body });
+            }
+        }
+        Ok((batch, RowsSummary { count: points.len() as u64, digest: digest.finish() }))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, PointsState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A point as JSON. A number that is not finite is reported as the error of the point.
+fn to_json(row: &SweepPoint) -> serde_json::Result<String> {
+    match not_finite(row).first() {
+        Some(NotFinite { pointer, reason }) if row.error.is_none() => {
+            serde_json::to_string(&SweepPoint { error: Some(format!("{pointer} is {reason}")), ..row.clone() })
+        }
+        _ => serde_json::to_string(row),
+    }
+}
+
+impl PointStore for RunningPoints {
+    fn load(&self) -> KeptPoints {
+        std::mem::take(&mut self.lock().resumed)
+    }
+
+    fn save(&self, position: usize, row: &SweepPoint, end: Option<&LineEnd>) {
+        // A row that cannot be written as JSON fails the job at its end.
+        let Ok(body) = to_json(row) else { return };
+        let mut state = self.lock();
+        state.positions.insert(position as u64);
+        state.unwritten.rows.push(PointRow { position: position as u64, body });
+        if let Some(LineEnd { line, position, state: end_state }) = end {
+            let end = LineEndRow { line: *line as u64, position: *position as u64, state: end_state.clone() };
+            // Only the last end of a line is stored.
+            state.unwritten.ends.retain(|earlier| earlier.line != end.line);
+            state.unwritten.ends.push(end);
+        }
+    }
+}
