@@ -1,7 +1,7 @@
 //! Error of the analytic compliance on short faces: mean mesh stiffness of one half against the product's own finite
-//! elements, over tooth numbers, helix angle and face width in normal modules. Prints the table of docs/validation/contact.md
-//! (short faces): `scripts/tool short_faces [coarse|medium|standard|fine [Z1[:X1]/Z2[:X2] …]]`; teeth and profile shift
-//! coefficient of pinion and gear.
+//! elements, over tooth numbers, helix angle and face width in normal modules. Prints the table of
+//! docs/validation/contact.md (short faces): `scripts/tool short_faces [coarse|medium|standard|fine [Z1[:X1]/Z2[:X2]
+//! …]]`; teeth and profile shift coefficient of pinion and gear.
 
 use herringbone_physics::compliance::{Compliance, Settings};
 use herringbone_physics::contact::{ContactError, HalfCycle, solve_half};
