@@ -354,8 +354,8 @@ fn is_solved(p: &Parameters, method: SolutionMethod, integrator: Integrator) -> 
 #[test]
 fn random_parameters_end() {
     const CASES: u32 = 40;
-    /// Smallest number of solved pairs by each method; on average three to four times as many are.
-    const MIN_SOLVED: u32 = 5;
+    /// Smallest numbers of solved pairs by the methods below; on average about 19, 14 and 5 are.
+    const MIN_SOLVED: [u32; 3] = [6, 4, 1];
     let integrate = SolutionMethod::Integrate { mesh_periods: 30, record_mesh_periods: 10 };
     let methods = [
         (SolutionMethod::Auto, Integrator::Taylor),
@@ -377,5 +377,5 @@ fn random_parameters_end() {
     for ((method, integrator), solved) in methods.into_iter().zip(&solved) {
         println!("{method:?} by {integrator:?}: {} of {CASES} pairs have a response", solved.get());
     }
-    assert!(solved.iter().all(|solved| solved.get() >= MIN_SOLVED), "{solved:?}");
+    assert!(solved.iter().zip(MIN_SOLVED).all(|(solved, least)| solved.get() >= least), "{solved:?}");
 }
