@@ -9,8 +9,8 @@ use crate::document::{
     StiffnessLaw,
 };
 use crate::result::Mesh;
+use crate::warning::Warning;
 use herringbone_physics::dynamics;
-use herringbone_physics::gear::Warning;
 use herringbone_physics::response::{Regime, Summary};
 
 /// Ratio of given inertias and masses to those of the geometry, or its inverse, above which there is a warning: a shaft,

@@ -6,9 +6,10 @@ use super::mesh::MeshStage;
 use super::prepare::Prepared;
 use crate::document::{ActsOn, CornerImpactInput, ImpactDuration, ImpactInput, JobDocument, MeshForce};
 use crate::result;
+use crate::warning::Warning;
 use herringbone_physics::dynamics;
-use herringbone_physics::gear::{Half, Warning};
-use herringbone_physics::impact::{self, Entry, Inertia};
+use herringbone_physics::gear::Half;
+use herringbone_physics::impact::{self, Inertia, MeshInConditions};
 
 /// Outcome of the impact stage: its block of the result, and the pulse of each half.
 pub struct ImpactStage {
@@ -107,7 +108,7 @@ fn calculated(
     let [pinion_kg_m2, gear_kg_m2] = prepared.inertia_kg_m2.map(|inertia| inertia / 2.0);
     let solve = |half: Half| {
         let state = &mesh.entry[half.index()];
-        let entry = Entry {
+        let entry = MeshInConditions {
             half,
             pinion_speed_rad_s: prepared.pinion_speed_rad_s,
             inertia: Inertia { pinion_kg_m2, gear_kg_m2 },
@@ -136,7 +137,7 @@ fn calculated(
             ),
         });
     }
-    let timing = |impact: &impact::Impact| {
+    let timing = |impact: &impact::MeshInImpact| {
         let duration_s = match corner.duration {
             ImpactDuration::EnergyBalance => impact.duration_s,
             ImpactDuration::CornerToStart => impact.lead_s,
@@ -144,7 +145,7 @@ fn calculated(
         let entry = -impact.overrun_m / prepared.pair.base_pitch_m;
         (duration_s, corner.start_mesh_periods.unwrap_or(entry))
     };
-    let pulse = |impact: &impact::Impact, shift: f64| {
+    let pulse = |impact: &impact::MeshInImpact, shift: f64| {
         let force = if buffered { impact.force_n } else { impact.zhou2008_force_n };
         let (duration_s, start) = timing(impact);
         // Shorter than this the pulse has no effect that could be computed.

@@ -22,7 +22,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Positions of the closed-form and given curves over one mesh period.
-const CURVE_POSITIONS: usize = 128;
+const CLOSED_FORM_POSITIONS: usize = 128;
 
 /// Outcome of the mesh stage for the later stages.
 #[derive(Debug, Clone)]
@@ -240,7 +240,7 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
     let loaded = if prepared.half_force_n == 0.0 { 0.0 } else { sign };
     let both = |of: &dyn Fn(&HalfCycle) -> f64| 0.5 * (of(left) + of(right));
     let most = |of: &dyn Fn(&HalfCycle) -> f64| of(left).max(of(right));
-    let transmission_error = contact::Extent::of(&contact.transmission_error_m);
+    let transmission_error = contact::CurveStatistics::of(&contact.transmission_error_m);
     let pairs = || left.pairs_in_contact.iter().chain(&right.pairs_in_contact).copied();
     let curve = |half: &HalfCycle, shift: &dyn Fn(usize) -> f64| MeshCurve {
         phase: left.phase.clone(),
@@ -385,10 +385,10 @@ fn foot_m(pair: &Pair, phase: f64) -> f64 {
 /// contact (uniform line load).
 fn closed_form(source: StiffnessSource, prepared: &Prepared, curve: impl Fn(f64) -> f64) -> MeshStage {
     let force_n = prepared.half_force_n;
-    let phase: Vec<f64> = (0..CURVE_POSITIONS).map(|i| i as f64 / CURVE_POSITIONS as f64).collect();
+    let phase: Vec<f64> = (0..CLOSED_FORM_POSITIONS).map(|i| i as f64 / CLOSED_FORM_POSITIONS as f64).collect();
     let stiffness: Vec<f64> = phase.iter().map(|&phase| curve(phase)).collect();
     let error: Vec<f64> = stiffness.iter().map(|k| force_n / k).collect();
-    let (k, e) = (contact::Extent::of(&stiffness), contact::Extent::of(&error));
+    let (k, e) = (contact::CurveStatistics::of(&stiffness), contact::CurveStatistics::of(&error));
     let axial = force_n * prepared.pair.base_helix_angle_rad.tan();
     let lines = prepared.pair.contact_lines(foot_m(&prepared.pair, MESH_IN_PHASE));
     let total: f64 = lines.iter().map(|line| line.width_m()).sum();

@@ -3,7 +3,8 @@
 
 use crate::document::{self as doc, JobDocument, JobKind};
 use crate::result::{SpringOrigin, SpringValue, SupportsResult};
-use herringbone_physics::gear::{BodyStiffness, Material, Pair, Warning};
+use crate::warning::Warning;
+use herringbone_physics::gear::{BodyStiffness, Material, Pair};
 
 /// Lateral support of a half over E a, E that of steel (bearings are steel whatever the gears are of) and a the centre distance.
 ///

@@ -599,7 +599,7 @@ fn a_sweep_that_was_stopped_goes_on_where_it_was() {
             assert!(difference.abs() < 1e-9, "{continuation}, {method}: {difference}");
             assert_eq!(&SweepPoint { dynamic_factor: whole.dynamic_factor, ..pieced.clone() }, whole, "{continuation}");
         }
-        let rest = |sweep| Sweep { points: Vec::new(), ..sweep };
+        let rest = |sweep| SweepResult { points: Vec::new(), ..sweep };
         assert!(rest(pieced) == rest(whole), "{continuation}, {method}: the rows are alike, but not the rest");
     }
 }
@@ -852,8 +852,8 @@ fn the_dynamic_factor_counts_the_impact() {
         let factor = response.dynamic_factor.expect("a torque");
         let force = response.tooth_force_n.left;
         println!("{rpm} r/min, {acts_on}: impact {:.0} N, factor {factor:.4}, {force:?}", impact.force_n);
-        assert!(factor >= 1.0 && force.max_n >= force.static_n * (1.0 - 1e-9) && force.min_n <= force.static_n);
-        let largest = [response.tooth_force_n.left, response.tooth_force_n.right].map(|f| f.max_n / f.static_n);
+        assert!(factor >= 1.0 && force.max >= force.static_n * (1.0 - 1e-9) && force.min <= force.static_n);
+        let largest = [response.tooth_force_n.left, response.tooth_force_n.right].map(|f| f.max / f.static_n);
         assert_eq!(factor, largest[0].max(largest[1]).max(1.0));
     }
 }

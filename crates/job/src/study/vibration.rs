@@ -4,9 +4,9 @@ use super::point::Wanted;
 use super::{Channel, SolveContext, SolveError, Stage, bounds, response_result};
 use crate::document::{IntegratorInput, JobDocument, MethodInput, Recorded};
 use crate::result::{NumericsResult, Poincare, ResponseResult};
+use crate::warning::Warning;
 use crate::{DocumentError, Violation};
 use herringbone_physics::dynamics::{self, DynamicsError, Parameters};
-use herringbone_physics::gear::Warning;
 use herringbone_physics::response::{self, Analysis, ChannelId, Regime};
 use herringbone_physics::watch::Watch;
 
