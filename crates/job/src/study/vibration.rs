@@ -1,6 +1,6 @@
 //! The response stage: the steady vibration of the pair and its statistics.
 
-use super::point::Wanted;
+use super::point::PointOptions;
 use super::{Channel, SolveContext, SolveError, Stage, bounds, response_result};
 use crate::document::{IntegratorInput, JobDocument, MethodInput, Recorded};
 use crate::result::{NumericsResult, Poincare, ResponseResult};
@@ -21,14 +21,14 @@ pub struct Vibration {
     pub bands: Option<Vec<f64>>,
 }
 
-/// Whether `asked` names the channel `name`: the velocities and accelerations of x may leave the x out (`a_left`).
-pub fn is_channel(asked: &str, name: &str) -> bool {
-    canonical(asked) == name
+/// Whether `input` names the channel `name`: the velocities and accelerations of x may leave the x out (`a_left`).
+pub fn is_channel(input: &str, name: &str) -> bool {
+    canonical(input) == name
 }
 
-fn canonical(asked: &str) -> String {
-    match asked {
-        "v_left" | "v_right" | "a_left" | "a_right" => format!("{}_x{}", &asked[..1], &asked[1..]),
+fn canonical(input: &str) -> String {
+    match input {
+        "v_left" | "v_right" | "a_left" | "a_right" => format!("{}_x{}", &input[..1], &input[1..]),
         other => other.to_owned(),
     }
 }
@@ -38,10 +38,10 @@ fn canonical(asked: &str) -> String {
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
 pub fn channels(document: &JobDocument) -> Result<Vec<ChannelId>, DocumentError> {
-    let Some(asked) = &document.analysis.channels else { return Ok(ChannelId::all()) };
-    let mut ids = Vec::with_capacity(asked.len());
+    let Some(input) = &document.analysis.channels else { return Ok(ChannelId::all()) };
+    let mut ids = Vec::with_capacity(input.len());
     let mut violations = Vec::new();
-    for (index, name) in asked.iter().enumerate() {
+    for (index, name) in input.iter().enumerate() {
         match ChannelId::parse(&canonical(name)) {
             Some(id) if !ids.contains(&id) => ids.push(id),
             Some(_) => {}
@@ -65,10 +65,10 @@ const POINCARE_POINTS: usize = 200;
 pub fn solve(
     document: &JobDocument,
     parameters: &Parameters,
-    wanted: &Wanted,
+    options: &PointOptions,
     context: &SolveContext,
 ) -> Result<Result<response::Response, DynamicsError>, DocumentError> {
-    let analysis = analysis(document, wanted)?;
+    let analysis = analysis(document, options)?;
     let progress = |fraction: f64| (context.progress)(Stage::Response, fraction);
     let watch = Watch::new(&progress, context.canceled);
     Ok(response::solve(parameters, &analysis, &watch))
@@ -81,7 +81,7 @@ pub fn solve(
 pub fn to_result(
     document: &JobDocument,
     parameters: &Parameters,
-    wanted: &Wanted,
+    options: &PointOptions,
     response: Result<response::Response, DynamicsError>,
     numerics: &mut NumericsResult,
 ) -> Result<Vibration, SolveError> {
@@ -92,14 +92,14 @@ pub fn to_result(
     numerics.force_evaluations = summary.counts.force_evaluations;
     numerics.degrees_of_freedom = summary.degrees_of_freedom;
     let mut block = response_result::summary(document, parameters, &response);
-    if wanted.whole {
+    if options.whole {
         block.poincare = response_result::poincare(&response, usize::MAX);
         block.spectrum = response_result::spectrum(&response, parameters.mesh_frequency_hz);
         block.natural_modes = response_result::natural_modes(parameters).map_err(failed)?;
     }
-    let poincare = wanted.records(Recorded::Poincare).then(|| response_result::poincare(&response, POINCARE_POINTS));
+    let poincare = options.records(Recorded::Poincare).then(|| response_result::poincare(&response, POINCARE_POINTS));
     let bands =
-        wanted.records(Recorded::Spectrum).then(|| response_result::bands(&response, parameters.mesh_frequency_hz));
+        options.records(Recorded::Spectrum).then(|| response_result::bands(&response, parameters.mesh_frequency_hz));
     // Moved, not copied: a long record is most of what a job holds.
     let channels = std::mem::take(&mut response.channels);
     let channel = |channel: response::Channel| Channel {
@@ -115,7 +115,7 @@ pub fn to_result(
         summary: block,
         poincare,
         bands: bands.flatten(),
-        series: if wanted.whole { channels.into_iter().map(channel).collect() } else { Vec::new() },
+        series: if options.whole { channels.into_iter().map(channel).collect() } else { Vec::new() },
         warnings: warnings(document, &response.summary),
         // From a motion that grows for ever there is nothing to go on.
         end_state: (response.summary.regime != Regime::Unstable).then(|| response.final_state.to_vec()),
@@ -130,35 +130,35 @@ fn word(value: &impl serde::Serialize) -> String {
     }
 }
 
-/// What is asked of the equations of motion.
+/// The analysis of the equations of motion that a document and its options ask for.
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
-pub fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, DocumentError> {
-    let asked = &document.analysis;
-    let state = wanted.start.or(asked.initial_state.as_deref());
+pub fn analysis(document: &JobDocument, options: &PointOptions) -> Result<Analysis, DocumentError> {
+    let input = &document.analysis;
+    let state = options.start.or(input.initial_state.as_deref());
     let mut channels = channels(document)?;
-    if wanted.records(Recorded::Spectrum) {
+    if options.records(Recorded::Spectrum) {
         channels.extend(ChannelId::parse(response_result::SPECTRUM_CHANNEL));
     }
     Ok(Analysis {
-        method: match asked.method {
+        method: match input.method {
             MethodInput::Integrate => response::SolutionMethod::Integrate {
-                mesh_periods: u64::from(asked.mesh_periods),
-                record_mesh_periods: u64::from(asked.record_mesh_periods),
+                mesh_periods: u64::from(input.mesh_periods),
+                record_mesh_periods: u64::from(input.record_mesh_periods),
             },
             MethodInput::Periodic => response::SolutionMethod::Periodic,
             MethodInput::Auto => response::SolutionMethod::Auto,
         },
-        integrator: match asked.integrator {
+        integrator: match input.integrator {
             IntegratorInput::Taylor => dynamics::Integrator::Taylor,
             IntegratorInput::RungeKutta4 => dynamics::Integrator::RungeKutta,
         },
-        accuracy: asked.accuracy,
-        samples_per_mesh_period: asked.samples_per_mesh_period as usize,
+        accuracy: input.accuracy,
+        samples_per_mesh_period: input.samples_per_mesh_period as usize,
         channels,
         initial_state: state.and_then(|state| <[f64; 24]>::try_from(state).ok()),
-        energy_balance: wanted.whole,
+        energy_balance: options.whole,
         ..Analysis::default()
     })
 }
