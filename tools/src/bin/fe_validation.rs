@@ -1,12 +1,12 @@
 //! Cost and error of the finite elements at every resolution, against the stored reference of a z 29/67 pair.
 //!
-//! `cargo run --release -p herringbone-tools --no-default-features --bin fe_validation [coarse] [medium] [standard] [fine]`;
-//! `RAYON_NUM_THREADS=1` for the time on one core.
+//! `scripts/tool fe_validation [coarse] [medium] [standard] [fine]`; `RAYON_NUM_THREADS=1` for the time on one core.
 
 use std::sync::Mutex;
 use std::time::Instant;
 
-use herringbone_physics::fe::{FlankFlexibility, FlankInput, Side};
+use herringbone_physics::fe::{FlankFlexibility, FlankInput};
+use herringbone_physics::gear::MemberId;
 use herringbone_physics::watch::Watch;
 use herringbone_tools::arguments::{Arguments, RESOLUTIONS};
 use herringbone_tools::{Failure, reference};
@@ -75,7 +75,7 @@ fn main() -> Result<(), Failure> {
         if !arguments.choose(name) {
             continue;
         }
-        for (member, side, hold) in [("pinion", Side::Pinion, 25e-3), ("gear", Side::Gear, 60e-3)] {
+        for (member, side, hold) in [("pinion", MemberId::Pinion, 25e-3), ("gear", MemberId::Gear, 60e-3)] {
             let input = FlankInput::new(&pair, side, hold, 4, resolution);
             let start = Instant::now();
             let last = Mutex::new((start, 0.0_f64));
@@ -100,14 +100,14 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-fn report(flank: &FlankFlexibility, reference: &Value, side: Side) {
+fn report(flank: &FlankFlexibility, reference: &Value, side: MemberId) {
     let n = flank.nodes();
     let value = |offset: usize, a: usize, b: usize| 1e6 * flank.total(offset, a, b).unwrap_or(f64::NAN);
     let half = |a: usize, b: usize| 1e6 * flank.half_space()[a * n + b];
     // The reference's next tooth lies on the side of the loaded flank: ahead of the pinion's, behind the gear's.
     let neighbour = |offset: usize, a: usize, b: usize| match side {
-        Side::Pinion => value(offset, a, b),
-        Side::Gear => value(offset, b, a),
+        MemberId::Pinion => value(offset, a, b),
+        MemberId::Gear => value(offset, b, a),
     };
     let face = &reference["face_uniform"];
     let stations = flank.stations_m().len();

@@ -4,31 +4,31 @@ use super::point::PointOptions;
 use super::{Channel, SolveContext, SolveError, Stage, bounds, response_result};
 use crate::document::{IntegratorInput, JobDocument, MethodInput, Recorded};
 use crate::result::{NumericsResult, Poincare, ResponseResult};
+use crate::warning::Warning;
 use crate::{DocumentError, Violation};
 use herringbone_physics::dynamics::{self, DynamicsError, Parameters};
-use herringbone_physics::gear::Warning;
 use herringbone_physics::response::{self, Analysis, ChannelId, Regime};
 use herringbone_physics::watch::Watch;
 
-/// What the response stage leaves.
+/// Outcome of the response stage.
 pub struct Vibration {
     pub summary: ResponseResult,
     pub series: Vec<Channel>,
     pub warnings: Vec<Warning>,
     pub end_state: Option<Vec<f64>>,
-    /// What the row of a sweep carries beside its numbers.
+    /// Records for the row of a sweep, where the document asks for them.
     pub poincare: Option<Poincare>,
     pub bands: Option<Vec<f64>>,
 }
 
-/// Whether `input` names the channel `name`: the velocities and accelerations of x may leave the x out (`a_left`).
-pub fn is_channel(input: &str, name: &str) -> bool {
-    canonical(input) == name
+/// True where `requested` names the channel `name`: velocities and accelerations of x may leave the x out (`a_left`).
+pub fn is_channel(requested: &str, name: &str) -> bool {
+    canonical(requested) == name
 }
 
-fn canonical(input: &str) -> String {
-    match input {
-        "v_left" | "v_right" | "a_left" | "a_right" => format!("{}_x{}", &input[..1], &input[1..]),
+fn canonical(requested: &str) -> String {
+    match requested {
+        "v_left" | "v_right" | "a_left" | "a_right" => format!("{}_x{}", &requested[..1], &requested[1..]),
         other => other.to_owned(),
     }
 }
@@ -38,10 +38,10 @@ fn canonical(input: &str) -> String {
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
 pub fn channels(document: &JobDocument) -> Result<Vec<ChannelId>, DocumentError> {
-    let Some(input) = &document.analysis.channels else { return Ok(ChannelId::all()) };
-    let mut ids = Vec::with_capacity(input.len());
+    let Some(requested) = &document.analysis.channels else { return Ok(ChannelId::all()) };
+    let mut ids = Vec::with_capacity(requested.len());
     let mut violations = Vec::new();
-    for (index, name) in input.iter().enumerate() {
+    for (index, name) in requested.iter().enumerate() {
         match ChannelId::parse(&canonical(name)) {
             Some(id) if !ids.contains(&id) => ids.push(id),
             Some(_) => {}
@@ -74,7 +74,7 @@ pub fn solve(
     Ok(response::solve(parameters, &analysis, &watch))
 }
 
-/// What the stage leaves of a response.
+/// Turns a response into the outcome of the stage.
 ///
 /// # Errors
 /// [`SolveError`].
@@ -130,32 +130,32 @@ fn word(value: &impl serde::Serialize) -> String {
     }
 }
 
-/// The analysis of the equations of motion that a document and its options ask for.
+/// The analysis that the document requests of the equations of motion.
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
 pub fn analysis(document: &JobDocument, options: &PointOptions) -> Result<Analysis, DocumentError> {
-    let input = &document.analysis;
-    let state = options.start.or(input.initial_state.as_deref());
+    let requested = &document.analysis;
+    let state = options.start.or(requested.initial_state.as_deref());
     let mut channels = channels(document)?;
     if options.records(Recorded::Spectrum) {
         channels.extend(ChannelId::parse(response_result::SPECTRUM_CHANNEL));
     }
     Ok(Analysis {
-        method: match input.method {
+        method: match requested.method {
             MethodInput::Integrate => response::SolutionMethod::Integrate {
-                mesh_periods: u64::from(input.mesh_periods),
-                record_mesh_periods: u64::from(input.record_mesh_periods),
+                mesh_periods: u64::from(requested.mesh_periods),
+                record_mesh_periods: u64::from(requested.record_mesh_periods),
             },
             MethodInput::Periodic => response::SolutionMethod::Periodic,
             MethodInput::Auto => response::SolutionMethod::Auto,
         },
-        integrator: match input.integrator {
+        integrator: match requested.integrator {
             IntegratorInput::Taylor => dynamics::Integrator::Taylor,
             IntegratorInput::RungeKutta4 => dynamics::Integrator::RungeKutta,
         },
-        accuracy: input.accuracy,
-        samples_per_mesh_period: input.samples_per_mesh_period as usize,
+        accuracy: requested.accuracy,
+        samples_per_mesh_period: requested.samples_per_mesh_period as usize,
         channels,
         initial_state: state.and_then(|state| <[f64; 24]>::try_from(state).ok()),
         energy_balance: options.whole,
@@ -163,7 +163,7 @@ pub fn analysis(document: &JobDocument, options: &PointOptions) -> Result<Analys
     })
 }
 
-/// Why the equations have no response.
+/// The error of a stage without a response.
 pub fn failed(error: DynamicsError) -> SolveError {
     let (code, sim_time_s) = match &error {
         DynamicsError::Canceled(canceled) => return (*canceled).into(),
@@ -183,7 +183,7 @@ pub fn failed(error: DynamicsError) -> SolveError {
 
 fn warnings(document: &JobDocument, summary: &response::Summary) -> Vec<Warning> {
     let mut warnings = bounds::of_motion(document, summary);
-    // An accuracy of numbers that mean nothing is nothing to be told.
+    // Numbers of an unstable motion mean nothing, and neither does their accuracy.
     if summary.error_estimate > document.analysis.accuracy && summary.regime != Regime::Unstable {
         let repeats = summary.period_mesh_periods.is_some();
         let reason =
