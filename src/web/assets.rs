@@ -17,7 +17,7 @@ struct Files;
 /// Module made by [`quantities`].
 const QUANTITIES: &str = "common/quantities.js";
 
-/// `/assets/{*file}`: revalidated by entity tag, so that a new version is seen at once.
+/// `/assets/{*file}`: revalidated by entity tag, so that a new version is used at once.
 pub async fn file(Path(name): Path<String>, headers: HeaderMap) -> Response {
     let Some((content, media_type)) = find(&name) else {
         return super::not_found().await;

@@ -1,5 +1,5 @@
-//! The web pages: server-rendered shells and the files they load. Stateless: all data comes from `/api/v1`, fetched by
-//! the pages' own scripts.
+//! The web pages: server-rendered templates and the files they load. Stateless: all data come from `/api/v1`, fetched
+//! by the pages' own scripts.
 //!
 //! Invariant: no page loads anything from another host, and none has an inline script or style, so that
 //! [`CONTENT_SECURITY_POLICY`] holds without exceptions for scripts.
@@ -18,16 +18,16 @@ use axum::http::{HeaderName, HeaderValue, header};
 use axum::routing::get;
 use axum::{Extension, Router};
 
-/// What the pages may load and do. Every page is sent with it.
+/// Content security policy of every page.
 ///
-/// `img-src data: blob:` is what plotly needs for heat maps (a canvas turned into an image) and for saving a plot as an
-/// image. Its style rules come as a linked stylesheet, so inline style elements stay forbidden (styles that its script sets
-/// on elements are no matter of the policy).
+/// `img-src data: blob:` serves plotly.js: heat maps (a canvas turned into an image) and plots saved as images. Its
+/// style rules come as a linked stylesheet, so inline style elements stay forbidden (the policy does not concern
+/// styles that a script sets on elements).
 pub const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; \
                                            base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
-/// The pages `/`, `/jobs`, `/jobs/{id}`, `/jobs/{id}/report`, `/compare` and the files under `/assets/`. `has_login` says whether the service has a token,
-/// so that people can log out.
+/// The pages `/`, `/jobs`, `/jobs/{id}`, `/jobs/{id}/report`, `/compare` and the files under `/assets/`. `has_login`:
+/// the service has a token, so that the pages offer to log out.
 pub fn routes(has_login: bool) -> Router {
     Router::new()
         .route("/", get(pages::design))

@@ -1,10 +1,11 @@
-//! Which script modules a page needs: read from the imports in the modules themselves, so that a page can name them all and the browser
-//! asks for them at once, instead of finding the next in each.
+//! The script modules that a page imports, directly or through others: a page names them all, so that the browser
+//! requests them at once instead of finding them one after the other.
 
 use super::assets;
 use std::collections::VecDeque;
 
-/// The addresses of a module of the assets and of everything that it imports without condition, each once, itself first.
+/// The addresses of a module of the assets and of everything that it imports without condition, each once, itself
+/// first.
 pub fn needed_by(module: &str) -> Vec<String> {
     let mut found = vec![module.to_owned()];
     let mut open = VecDeque::from(found.clone());
@@ -22,12 +23,12 @@ pub fn needed_by(module: &str) -> Vec<String> {
     found.into_iter().map(|name| format!("/assets/{name}")).collect()
 }
 
-/// What a module imports: the relative addresses in its static `import … from "…"`, `import "…"` and `export … from "…"`.
+/// Imports of a module: the relative addresses in its static `import … from "…"`, `import "…"` and `export … from "…"`.
 fn imports(text: &str) -> impl Iterator<Item = &str> {
     let statements = text.match_indices('"').filter_map(|(quote, _)| {
         let before = text[..quote].trim_end();
         let word = before.rsplit(|letter: char| !letter.is_ascii_alphabetic()).next()?;
-        // A static import begins a line; what a function imports later (`import("…")`) has a bracket.
+        // A static import begins a line; a dynamic one (`import("…")`) has a bracket.
         matches!(word, "from" | "import").then(|| text[quote + 1..].split('"').next())?
     });
     statements.filter(|address| address.starts_with('.'))

@@ -57,10 +57,10 @@ struct NotFoundPage {
 #[template(path = "login.html")]
 struct LoginPage<'a> {
     next: &'a str,
-    trouble: &'a str,
+    error: &'a str,
 }
 
-/// Whether people log in here, and so can log out.
+/// Whether the service has a login, so that the pages offer to log out.
 #[derive(Debug, Clone, Copy)]
 pub struct HasLogin(pub bool);
 
@@ -77,12 +77,12 @@ pub async fn jobs(Extension(HasLogin(has_login)): Site) -> Response {
     page(StatusCode::OK, &JobsPage { has_login })
 }
 
-/// `/jobs/{id}`: one job. Whether it exists is for the API to say, which the page asks.
+/// `/jobs/{id}`: one job. The page's script asks the API whether it exists.
 pub async fn job(Extension(HasLogin(has_login)): Site, Path(id): Path<String>) -> Response {
     page(StatusCode::OK, &JobPage { has_login, id, plotly_script: plotly::script_url() })
 }
 
-/// `/compare`: jobs side by side. Which ones stands in the query, which the page's script reads.
+/// `/compare`: jobs side by side. The page's script reads their ids from the query.
 pub async fn compare(Extension(HasLogin(has_login)): Site) -> Response {
     page(StatusCode::OK, &ComparePage { has_login, plotly_script: plotly::script_url() })
 }
@@ -92,14 +92,14 @@ pub async fn report(Extension(HasLogin(has_login)): Site, Path(id): Path<String>
     page(StatusCode::OK, &ReportPage { has_login, id, plotly_script: plotly::script_url() })
 }
 
-/// The page for addresses that lead nowhere (status 404); for the router's fallback.
+/// The page for unknown addresses (status 404); for the router's fallback.
 pub async fn not_found() -> Response {
     page(StatusCode::NOT_FOUND, &NotFoundPage { has_login: false })
 }
 
-/// The page that asks for the token. It works without scripts, and shows nothing of the service.
-pub fn login(status: StatusCode, next: &str, trouble: Option<&str>) -> Response {
-    page(status, &LoginPage { next, trouble: trouble.unwrap_or_default() })
+/// The page that asks for the token. It works without scripts and shows no data of the service.
+pub fn login(status: StatusCode, next: &str, error: Option<&str>) -> Response {
+    page(status, &LoginPage { next, error: error.unwrap_or_default() })
 }
 
 fn page(status: StatusCode, template: &impl Template) -> Response {

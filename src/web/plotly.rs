@@ -1,5 +1,5 @@
-//! Plotly.js and its style rules, cut out of the `plotly` crate at the first request: nothing is vendored in this
-//! repository and nothing is fetched from another host.
+//! Plotly.js and its style rules, taken from the HTML that the `plotly` crate carries, at the first request: the
+//! repository contains no copy, and nothing is fetched from another host (docs/DESIGN.md, "Libraries and own code").
 
 use axum::body::Bytes;
 use axum::http::{HeaderMap, header};
@@ -24,17 +24,17 @@ static PLOTLY: LazyLock<Plotly> = LazyLock::new(|| {
     Plotly { script: Bytes::copy_from_slice(script.as_bytes()), stylesheet, version }
 });
 
-/// Where the pages find the script: with its version, so that it can be cached for long.
+/// Address of the script: with its version, so that it can be cached for a year.
 pub fn script_url() -> String {
     format!("/assets/plotly.js?v={}", PLOTLY.version)
 }
 
-/// The script, compressed once: it is some megabytes, and compressing it takes longer than all else that a page needs.
+/// The script, compressed once: it has some megabytes, and compressing it takes longer than the rest of a page.
 static COMPRESSED: LazyLock<Option<Bytes>> =
     LazyLock::new(|| zstd::encode_all(&*PLOTLY.script, 12).ok().map(Bytes::from));
 
-/// `/assets/plotly.js`: compressed beforehand for browsers that read zstd (they say so on this machine and over TLS), and as any other
-/// file for the rest.
+/// `/assets/plotly.js`: compressed beforehand for browsers that accept zstd (they do over TLS and on localhost), as
+/// any other file for the rest.
 pub async fn script(request: HeaderMap) -> Response {
     let headers = [
         (header::CONTENT_TYPE, "text/javascript; charset=utf-8"),
@@ -53,7 +53,7 @@ pub async fn script(request: HeaderMap) -> Response {
 
 fn reads_zstd(request: &HeaderMap) -> bool {
     let named = request.get_all(header::ACCEPT_ENCODING).iter().filter_map(|value| value.to_str().ok());
-    // "zstd;q=0" refuses it; other weights are a matter of taste.
+    // "zstd;q=0" refuses it; other weights make no difference.
     named.flat_map(|value| value.split(',')).any(|coding| {
         let (name, weight) = coding.split_once(';').unwrap_or((coding, ""));
         let weight = weight.trim().strip_prefix("q=").map_or(Ok(1.0), str::parse::<f32>);
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn what_is_compressed_is_the_script() {
+    async fn the_compressed_body_is_the_script() {
         let answered = async |coding: &'static str| {
             let headers =
                 HeaderMap::from_iter([(header::ACCEPT_ENCODING, axum::http::HeaderValue::from_static(coding))]);

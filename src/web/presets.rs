@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 pub struct Preset {
     pub id: &'static str,
     pub title: &'static str,
-    /// What it shows, in a sentence.
+    /// Its subject, in a sentence.
     pub about: &'static str,
     document: &'static str,
 }
@@ -32,7 +32,7 @@ macro_rules! preset {
     };
 }
 
-/// All of them, in the order of the choice.
+/// All presets, in the order of the selection on the page.
 pub const GROUPS: &[PresetGroup] = &[
     PresetGroup {
         title: "One operating point",

@@ -1,4 +1,9 @@
-//! Pseudo-random numbers from a seed (SplitMix64; Steele, Lea, Flood 2014).
+//! Pseudo-random numbers from a seed (SplitMix64; Steele, Lea and Flood 2014, doi:10.1145/2660193.2660195).
+
+/// A number from the environment, or the default.
+pub fn setting(name: &str, default: u64) -> u64 {
+    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
+}
 
 pub struct Chance(u64);
 

@@ -1,17 +1,12 @@
 //! kill −9: nothing that was accepted is lost or done twice, whenever the process dies.
 
 use crate::audit::audit;
-use crate::chance::Chance;
+use crate::chance::{Chance, setting};
 use crate::documents;
 use crate::load::Load;
 use crate::program::{PATIENCE, Program};
 use serde_json::json;
 use std::time::{Duration, Instant};
-
-/// A number from the environment, or this one.
-fn setting(name: &str, otherwise: u64) -> u64 {
-    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(otherwise)
-}
 
 /// `FAULTS_SEED` and `FAULTS_KILLS` change the moments and their number.
 #[test]

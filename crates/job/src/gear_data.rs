@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 
 const MM: f64 = 1e3;
 
-/// Gear data of the pair of a job, ISO 21771-1 (symbols in brackets): of one helix half where widths and forces are meant; of a
-/// sweep those of its base document.
+/// Gear data of the pair of a job, ISO 21771-1 (symbols in brackets): of one helix half where widths and forces are
+/// meant; of a sweep those of its base document.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
 pub struct GearData {
@@ -54,8 +54,8 @@ pub struct GearData {
     pub pitch_line_velocity_m_s: f64,
     pub pinion: MemberData,
     pub gear: MemberData,
-    /// Points of the path of contact in its order: A, B, D, E; B and D only where one tooth pair alone is in contact between
-    /// them.
+    /// Points of the path of contact in its order: A, B, D, E; B and D only where one tooth pair alone is in contact
+    /// between them.
     pub path_points: Vec<PathPosition>,
     /// Lines of contact of the loaded flanks, in each half at the instant at which a tooth pair enters the mesh.
     pub contact_lines: Vec<HalfContactLine>,
@@ -213,8 +213,8 @@ fn path_points(pair: &Pair) -> Vec<PathPosition> {
         .collect()
 }
 
-/// Lines of contact of both halves when a pair enters. On the coast flanks (`Pair::coast`) contact runs backwards along the
-/// path of the mirrored pair: a pair enters where one of the mirrored pair leaves.
+/// Lines of contact of both halves when a pair enters. On the coast flanks (`Pair::coast`) contact runs backwards
+/// along the path of the mirrored pair: a pair enters where one of the mirrored pair leaves.
 fn contact_lines(pair: &Pair, is_coast: bool) -> Vec<HalfContactLine> {
     let inner_m = 0.5 * pair.spec.gap_width_m;
     let (loaded, position_m) =
@@ -287,8 +287,8 @@ mod tests {
         near(e.base_pitches, found.transverse_contact_ratio);
     }
 
-    /// Ends of the lines lie in the zone of contact, on lines inclined by the base helix angle, one base pitch apart; one line
-    /// has just begun at a corner of the zone: on drive flanks at A, on coast flanks at E.
+    /// Ends of the lines lie in the zone of contact, on lines inclined by the base helix angle, one base pitch apart;
+    /// one line has just begun at a corner of the zone: on drive flanks at A, on coast flanks at E.
     #[test]
     fn contact_lines_lie_in_the_zone_of_contact() {
         for (torque_nm, rotation) in

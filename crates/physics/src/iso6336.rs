@@ -1,7 +1,9 @@
 //! Mesh stiffness by ISO 6336-1, method B, and the course over the mesh period of Gu, Velex, Sainsot and Bruyère.
 //!
-//! Stiffness per width is in N/m² (1 N/(mm um) = 1e9 N/m²) and acts in the transverse plane along the base tangent, as the
-//! standard's mesh stiffness does; times the face width of one half it is the stiffness of that half.
+//! Stiffness per width is in N/m² (1 N/(mm um) = 1e9 N/m²) and acts in the transverse plane along the base tangent, as
+//! the standard's mesh stiffness does; times the face width of one half it is the stiffness of that half.
+
+#![warn(missing_docs, unreachable_pub)]
 
 use crate::gear::Pair;
 use serde::{Deserialize, Serialize};
@@ -30,11 +32,17 @@ pub enum Blank {
     /// Solid discs, C_R = 1.
     Solid,
     /// A web of width `web_over_face_width` (b_s/b) under a rim of thickness `rim_over_module` (s_R/m_n).
-    Web { web_over_face_width: f64, rim_over_module: f64 },
+    Web {
+        /// b_s/b.
+        web_over_face_width: f64,
+        /// s_R/m_n.
+        rim_over_module: f64,
+    },
 }
 
 impl Blank {
-    /// `C_R = 1 + ln(b_s/b) / (5 exp(s_R/(5 m_n)))`, with the limits of the standard: b_s/b from 0.2 to 1.2, s_R/m_n at least 1.
+    /// `C_R = 1 + ln(b_s/b) / (5 exp(s_R/(5 m_n)))`, with the limits of the standard: b_s/b from 0.2 to 1.2, s_R/m_n at
+    /// least 1.
     pub fn factor(&self) -> f64 {
         match *self {
             Blank::Solid => 1.0,
@@ -46,17 +54,33 @@ impl Blank {
     }
 }
 
-/// Why method B has no answer.
+/// Errors of method B.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Iso6336Error {
+    /// The formula for the tooth flexibility gives no positive value.
     #[error(
         "profile shifts {x1} and {x2} lie so far outside ISO 6336-1 that its tooth flexibility, {flexibility_mm_um_per_n} mm um/N, is not positive"
     )]
-    Flexibility { x1: f64, x2: f64, flexibility_mm_um_per_n: f64 },
+    Flexibility {
+        /// Profile shift coefficient of the pinion.
+        x1: f64,
+        /// Profile shift coefficient of the gear.
+        x2: f64,
+        /// q', mm µm/N.
+        flexibility_mm_um_per_n: f64,
+    },
+    /// The load is not positive.
     #[error("a load of {tangential_force_n} N has no stiffness: it must be positive and finite")]
-    Load { tangential_force_n: f64 },
+    Load {
+        /// Tangential force of one half, N.
+        tangential_force_n: f64,
+    },
+    /// The basic rack factor is not positive.
     #[error("rack depth and pressure angle give a factor C_B of {rack_factor}: not positive")]
-    Rack { rack_factor: f64 },
+    Rack {
+        /// Basic rack factor C_B.
+        rack_factor: f64,
+    },
 }
 
 /// Result of method B, with its factors.
@@ -70,13 +94,15 @@ pub struct MethodB {
     pub mesh_n_per_m2: f64,
     /// Mesh stiffness for face load, c_gamma_beta = 0.85 c_gamma_alpha, N/m².
     pub face_load_mesh_n_per_m2: f64,
+    /// Gear blank factor C_R.
     pub blank_factor: f64,
+    /// Basic rack factor C_B.
     pub rack_factor: f64,
     /// Young's modulus over that of steel; of two materials E = 2 E1 E2 / (E1 + E2).
     pub material_factor: f64,
     /// 1 from 100 N/mm upwards.
     pub low_load_factor: f64,
-    /// Where the design lies outside the range the standard gives for its formulas, in words.
+    /// Sentences on quantities outside the range that the standard states for its formulas.
     pub outside_range: Vec<String>,
 }
 
@@ -168,8 +194,9 @@ fn path_weight(v: f64) -> f64 {
     1.15 - 0.45 * v * v
 }
 
-/// Stiffness over its mean at mesh position `x0_m`: the lines of contact, each weighted over the path as in the analytical
-/// mesh stiffness of Gu and others. Summed over the lines rather than as the series, which overshoots at the steps of a spur gear.
+/// Stiffness over its mean at mesh position `x0_m`: the lines of contact, each weighted over the path as in the
+/// analytical mesh stiffness of Gu and others. Summed over the lines rather than as the series, which overshoots at the
+/// steps of a spur gear.
 pub fn course(pair: &Pair, x0_m: f64) -> f64 {
     let span = pair.path_end_m - pair.path_start_m;
     let weight = |x_m: f64| path_weight(2.0 * (x_m - pair.path_start_m) / span - 1.0);
@@ -194,8 +221,8 @@ mod tests {
     use herringbone_oracle::{check, check_worst};
     use std::f64::consts::PI;
 
-    /// ISO/TR 6336-30, annex A, example 1; the values of a commercial calculation of it, made with x1 = 0.145 (the standard
-    /// states 0.14522).
+    /// ISO/TR 6336-30, annex A, example 1; the values of a commercial calculation of it, made with x1 = 0.145 (the
+    /// standard states 0.14522).
     fn example() -> Pair {
         let rack = |teeth, x| GearSpec { dedendum: 1.4, fillet_radius: 0.39, ..gear(teeth, x) };
         let free = spec(8.0, 20.0, 15.8, 100.0, rack(17, 0.145), rack(103, 0.0));
@@ -306,7 +333,7 @@ mod tests {
             let (mut least, mut greatest, mut mean) = (f64::MAX, 0.0_f64, 0.0);
             for i in 0..n {
                 let tau = f64::from(i) / f64::from(n);
-                // At tau = 0 a pair starts: its mesh-in end stands at the start of the path.
+                // At tau = 0 a pair starts: its mesh-in end is at the start of the path.
                 let x0 = p.path_start_m - overlap * p.base_pitch_m + tau * p.base_pitch_m;
                 let k = course(&p, x0);
                 errors.push(k - series(transverse, overlap, tau));

@@ -1,10 +1,11 @@
 //! Errors and median times of all methods on all cases and tolerances, measured in rounds.
 
 use std::hint::black_box;
-use std::time::{Duration, Instant};
 
 use crate::case::ReferenceCase;
 use crate::methods::{Method, Origin};
+use herringbone_tools::statistics::median;
+use herringbone_tools::stopwatch::Stopwatch;
 
 /// Mesh periods of a run.
 pub const PERIODS: u64 = 20;
@@ -108,7 +109,7 @@ pub fn all(cases: &[ReferenceCase], methods: &mut [Box<dyn Method>], rounds: usi
         eprintln!("round {} of {rounds}", round + 1);
     }
     for rung in ladders.iter_mut().flat_map(|l| &mut l.rungs) {
-        rung.seconds = median(&mut rung.times) / PERIODS as f64;
+        rung.seconds = median(rung.times.drain(..)) / PERIODS as f64;
     }
     ladders
 }
@@ -137,37 +138,4 @@ fn turn(method: &mut dyn Method, case: &ReferenceCase, rung: &mut Rung) {
     let first = runs(1);
     let count = (SHORTEST_TURN_S / first.max(1e-6)).ceil();
     rung.times.push(if count > 1.0 { runs(count as usize) } else { first });
-}
-
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
-}
-
-/// Computing time of this thread: on Linux its processor time, which is independent of other programs; elsewhere the
-/// elapsed time.
-struct Stopwatch {
-    begin: Instant,
-    spent: Option<Duration>,
-}
-
-impl Stopwatch {
-    fn start() -> Self {
-        Self { spent: spent(), begin: Instant::now() }
-    }
-
-    fn seconds(&self) -> f64 {
-        let passed = self.begin.elapsed();
-        match (self.spent, spent()) {
-            (Some(before), Some(now)) => now.saturating_sub(before).as_secs_f64(),
-            _ => passed.as_secs_f64(),
-        }
-    }
-}
-
-/// Processor time of the thread; the kernel updates the count when the thread yields.
-fn spent() -> Option<Duration> {
-    std::thread::yield_now();
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    text.split_whitespace().next()?.parse().ok().map(Duration::from_nanos)
 }

@@ -1,21 +1,24 @@
-//! The source's pair with the contact in the equations over torque and speed, unrelieved and relieved: the RMS of the mesh acceleration as a map, and
-//! whether it is smooth.
+//! The source's pair with the contact in the equations over torque and speed, unrelieved and relieved: the RMS of the
+//! mesh acceleration as a map, and whether it is smooth.
 //!
-//! `cargo run --release -p herringbone-tools --no-default-features --bin contact_map [-- TORQUES SPEEDS]`
+//! `scripts/tool contact_map [TORQUES SPEEDS]`
 //!
-//! Prints a coarse table of each map and the largest departures from smoothness: of ln RMS at a point from the mean of its neighbours along the torque and the
-//! speed, and the regimes that occur. A jump of one point by itself would stand out.
+//! Prints a coarse table of each map and the largest departures from smoothness: of ln RMS at a point from the mean of
+//! its neighbours along the torque and the speed, and the regimes that occur. A jump of one point by itself would stand
+//! out.
 
 use herringbone_job::parse_value;
 use herringbone_job::result::SweepPoint;
 use herringbone_job::study::{self, CheckedJob, SolveContext};
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::Arguments;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let args: Vec<usize> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
-    let (torques, speeds) = (args.first().copied().unwrap_or(27), args.get(1).copied().unwrap_or(116));
+fn main() -> Result<(), Failure> {
+    let arguments = Arguments::of_process();
+    let (torques, speeds) = (arguments.number(0)?.unwrap_or(27), arguments.number(1)?.unwrap_or(116));
     for (name, relief_um) in [("unrelieved", 0.0), ("relieved, 15 um parabolic over 6 mm", 15.0)] {
         let mut value: Value = serde_json::from_str(include_str!("../../../examples/contact.json"))?;
         value["kind"] = json!("sweep");
@@ -79,8 +82,9 @@ fn report(name: &str, points: &[SweepPoint], torques: usize, speeds: usize, seco
     }
     let mut regimes: BTreeMap<String, usize> = BTreeMap::new();
     for p in &grid {
-        let word = |w: &Option<String>| w.clone().unwrap_or_default();
-        *regimes.entry(format!("{}, {}{}", word(&p.regime), word(&p.contact), word(&p.error))).or_default() += 1;
+        let regime = p.regime.map(|regime| regime.as_str()).unwrap_or_default();
+        let contact = p.contact.map(|contact| contact.as_str()).unwrap_or_default();
+        *regimes.entry(format!("{regime}, {contact}{}", p.error.as_deref().unwrap_or_default())).or_default() += 1;
     }
     println!("motions: {regimes:?}");
 }

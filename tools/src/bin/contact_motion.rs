@@ -1,14 +1,18 @@
-//! Motions with the contact in the equations against references: a file of cases, each a document (`input`) and what is expected.
+//! Motions with the contact in the equations against references: a file of cases, each a document (`input`) and what is
+//! expected.
 //!
-//! `cargo run --release -p herringbone-tools --no-default-features --bin contact_motion -- FILE`
+//! `scripts/tool contact_motion FILE`
 
 use herringbone_job::parse_value;
 use herringbone_job::study::{self, CheckedJob, SolveContext};
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::Arguments;
 use serde_json::Value;
 use std::time::Instant;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let path = std::env::args().nth(1).ok_or("the file of cases is missing")?;
+fn main() -> Result<(), Failure> {
+    let arguments = Arguments::of_process();
+    let path = arguments.word(0).ok_or("the file of cases is missing")?;
     let cases: Value = serde_json::from_slice(&std::fs::read(path)?)?;
     println!(
         "{:55} {:>9} {:>8} {:>8} {:>9} {:>9} {:>8} {:>9} {:>8}",
@@ -55,7 +59,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             (1.0 - response.fraction_in_contact) - expected["fraction_without_contact"].as_f64().unwrap_or(f64::NAN),
             of(mesh.transmission_error_mean_um, "/static/transmission_error_mean_um"),
             of(mesh.transmission_error_harmonics_um[0], "/static/transmission_error_harmonics_um/0"),
-            response.regime,
+            response.regime.as_str(),
             response.rms.mesh_circumferential_acceleration_m_s2.left,
             response.error_estimate,
             numerics.steps,

@@ -1,7 +1,8 @@
-//! Stress test of the loaded tooth contact: random feasible designs and loads far beyond the usual, every one of which has to give finite,
-//! non-negative, balanced forces and a stiffness curve whose steps shrink with the distance of the positions.
+//! Stress test of the loaded tooth contact: random feasible designs and loads far beyond the usual, every one of which
+//! has to give finite, non-negative, balanced forces and a stiffness curve whose steps shrink with the distance of the
+//! positions.
 //!
-//! `cargo run --release -p herringbone-tools --no-default-features --bin contact_stress [DESIGNS [fe|analytic [SEED]]]`
+//! `scripts/tool contact_stress [DESIGNS [fe|analytic [SEED]]]`
 
 use std::time::Instant;
 
@@ -12,28 +13,9 @@ use herringbone_physics::gear::{
     Assembly, EndRelief, FlankModification, GearSpec, Material, Pair, PairSpec, ReliefShape, Rotation, TipRelief,
 };
 use herringbone_physics::watch::Watch;
-
-/// Splitmix64: a fixed sequence, so that a failure can be repeated.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-    fn chance(&mut self, part: f64) -> bool {
-        self.unit() < part
-    }
-}
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::Arguments;
+use herringbone_tools::random::Random;
 
 fn design(r: &mut Random) -> (PairSpec, f64, f64, Settings) {
     let module = r.log(0.5e-3, 20e-3);
@@ -104,12 +86,12 @@ fn compliance(pair: &Pair, settings: &Settings, elements: bool) -> Result<Compli
     Ok(Compliance::finite_elements(pair, settings, [&pinion?, &gear?]))
 }
 
-fn main() {
-    let mut args = std::env::args().skip(1);
-    let wanted: usize = args.next().and_then(|a| a.parse().ok()).unwrap_or(300);
-    let elements = args.next().as_deref() == Some("fe");
-    let seed = args.next().and_then(|a| a.parse().ok()).unwrap_or(1);
-    let mut random = Random(seed);
+fn main() -> Result<(), Failure> {
+    let arguments = Arguments::of_process();
+    let wanted: usize = arguments.number(0)?.unwrap_or(300);
+    let elements = arguments.word(1) == Some("fe");
+    let seed = arguments.number(2)?.unwrap_or(1);
+    let mut random = Random::new(seed);
     let (mut tried, mut solved, mut failed, mut most_iterations, mut longest_ms) = (0, 0, 0, 0.0f64, 0.0f64);
     while solved + failed < wanted {
         tried += 1;
@@ -165,4 +147,5 @@ fn main() {
         "{} designs tried, {solved} solved, {failed} failed; at most {most_iterations:.1} iterations per position; longest {longest_ms:.0} ms",
         tried
     );
+    Ok(())
 }

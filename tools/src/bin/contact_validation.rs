@@ -1,20 +1,20 @@
 //! Compares the loaded tooth contact with the finite-element reference of a z 29/67 helical pair and prints the errors:
-//! `cargo run --release -p herringbone-tools --no-default-features --bin contact_validation [analytic|coarse|medium|standard|fine [SLICES [POSITIONS]]]`.
+//! `scripts/tool contact_validation [analytic|coarse|medium|standard|fine [SLICES [POSITIONS]]]`.
 
 use std::time::Instant;
 
 use herringbone_physics::compliance::{BodyHold, Compliance, Settings};
 use herringbone_physics::contact::solve_half;
-use herringbone_physics::fe::{FlankFlexibility, Resolution};
-use herringbone_physics::gear::{GearSpec, Half, Pair, PairSpec, ReliefShape, Rotation, TipRelief};
+use herringbone_physics::fe::FlankFlexibility;
+use herringbone_physics::gear::{Half, Pair, ReliefShape, Rotation, TipRelief};
 use herringbone_physics::watch::Watch;
+use herringbone_tools::arguments::{Arguments, resolution};
+use herringbone_tools::{Failure, reference};
 
 /// The reference pair in one of its variants, as this crate describes it.
 fn reference_pair(variant: &str) -> Pair {
-    let member = |teeth, bore_radius_m| GearSpec { bore_radius_m, ..GearSpec::plain(teeth) };
-    let angles = [20f64.to_radians(), 30f64.to_radians()];
-    let mut spec = PairSpec::plain(4e-3, angles, 45e-3, [member(29, 25e-3), member(67, 60e-3)]);
-    let pair = Pair::new(&spec).expect("the reference pair is feasible").0;
+    let mut spec = reference::spec();
+    let pair = reference::pair(&spec);
     match variant {
         "lead_zero_at_mesh_in_end" => spec.pinion.flanks[0].helix_slope_m = 8e-6,
         "lead_zero_at_mesh_out_end" => {
@@ -29,7 +29,7 @@ fn reference_pair(variant: &str) -> Pair {
         }
         _ => {}
     }
-    Pair::new(&spec).expect("the reference pair is feasible").0
+    reference::pair(&spec)
 }
 
 fn share_at(path: &[f64], share: &[f64], at: f64) -> f64 {
@@ -38,18 +38,16 @@ fn share_at(path: &[f64], share: &[f64], at: f64) -> f64 {
     share[i - 1] + t * (share[i] - share[i - 1])
 }
 
-fn main() {
+fn main() -> Result<(), Failure> {
+    let arguments = Arguments::of_process();
     let text = include_str!("../../../tests/data/fe_pair_29_67.json");
     let reference: serde_json::Value = serde_json::from_str(text).expect("the reference file is JSON");
-    let resolution = match std::env::args().nth(1).as_deref() {
+    let resolution = match arguments.word(0) {
         None | Some("analytic") => None,
-        Some("coarse") => Some(Resolution::Coarse),
-        Some("medium") => Some(Resolution::Medium),
-        Some("standard") => Some(Resolution::Standard),
-        Some("fine") => Some(Resolution::Fine),
-        Some(other) => panic!("{other} is no resolution"),
+        Some(word) => Some(resolution(word)?),
     };
-    let slices = std::env::args().nth(2).and_then(|a| a.parse().ok());
+    let slices = arguments.number(1)?;
+    let positions = arguments.number(2)?.or(Some(64));
     let mut kept: Vec<((String, bool), Vec<FlankFlexibility>)> = Vec::new();
     println!(
         "{:26} {:>4} | {:>6} {:>6} | {:>6} {:>6} | {:>6} {:>6} | {:>6} {:>6} | {:>6} | share errors at p 0.05 0.1 0.25 0.5 1 | ms",
@@ -60,7 +58,7 @@ fn main() {
         let number = |key: &str| case[key].as_f64().unwrap_or(f64::NAN);
         let pair = reference_pair(variant);
         let settings = Settings {
-            positions: std::env::args().nth(3).map_or(Some(64), |a| a.parse().ok()),
+            positions,
             slices,
             body: if variant == "nominal_rim_clamped" { BodyHold::Rim } else { BodyHold::Bore },
             corner_contact: variant == "nominal_ext",
@@ -118,4 +116,5 @@ fn main() {
             elapsed,
         );
     }
+    Ok(())
 }

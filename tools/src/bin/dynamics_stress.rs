@@ -2,16 +2,15 @@
 //! time, in finite numbers or in an error that names its reason; where the response states an accuracy, an independent
 //! integration of the reported motion must agree with it.
 //!
-//! `cargo run --release -p herringbone-tools --no-default-features --bin dynamics_stress -- [CASES [SEED [FIRST [usual|extreme|both [contact]]]]]`
+//! `scripts/tool dynamics_stress [CASES [SEED [FIRST [usual|extreme|both [contact]]]]]`
 //!
 //! Two populations take turns: `usual` pairs (what an engineer would build, at speeds that are run) and `extreme` ones
-//! (stiffness 1e3 … 1e13 N/m, damping ratios 0 … 2, backlash 0 … 1 mm, 1 … 100 000 r/min, mass and inertia ratios 1e-6 … 1e6,
-//! pulses 1e-6 … 1 mesh period long, torque of either sign or none). A case depends on seed and number alone: `1 SEED N`
-//! repeats it and prints its parameters. With `contact` the mesh forces are those of a loaded contact over approach and phase (soft at the
-//! beginning, with a free position that varies), without impacts.
+//! (stiffness 1e3 … 1e13 N/m, damping ratios 0 … 2, backlash 0 … 1 mm, 1 … 100 000 r/min, mass and inertia ratios 1e-6
+//! … 1e6, pulses 1e-6 … 1 mesh period long, torque of either sign or none). A case depends on seed and number alone: `1
+//! SEED N` repeats it and prints its parameters. With `contact` the mesh forces are those of a loaded contact over
+//! approach and phase (soft at the beginning, with a free position that varies), without impacts.
 
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
 
 use herringbone_physics::dynamics::{
     ContactForce, Couplings, DynamicsError, FlankForce, HalfParameters, Harmonic, ImpactActsOn, ImpactExcitation,
@@ -19,28 +18,10 @@ use herringbone_physics::dynamics::{
 };
 use herringbone_physics::response::{Analysis, Response, SolutionMethod, solve};
 use herringbone_physics::watch::Watch;
-
-/// Pseudo-random numbers of a fixed sequence (SplitMix64), so that a failure can be repeated.
-struct SplitMix64(u64);
-
-impl SplitMix64 {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-    fn chance(&mut self, part: f64) -> bool {
-        self.unit() < part
-    }
-}
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::Arguments;
+use herringbone_tools::random::Random;
+use herringbone_tools::stopwatch::Stopwatch;
 
 /// Ranges of the parameters of a population.
 struct Ranges {
@@ -95,8 +76,8 @@ struct StressCase {
     description: String,
 }
 
-fn case(r: &mut SplitMix64, of: &Ranges) -> StressCase {
-    let log = |r: &mut SplitMix64, range: (f64, f64)| r.log(range.0, range.1);
+fn case(r: &mut Random, of: &Ranges) -> StressCase {
+    let log = |r: &mut Random, range: (f64, f64)| r.log(range.0, range.1);
     let teeth = r.between(10.0, 100.0).floor();
     let rpm = log(r, of.pinion_rpm);
     let pinion_radius_m = r.log(0.01, 1.0);
@@ -139,7 +120,7 @@ fn case(r: &mut SplitMix64, of: &Ranges) -> StressCase {
         start_mesh_periods: r.unit(),
     });
     let stagger = if r.chance(0.4) { r.unit() } else { 0.0 };
-    let spring = |r: &mut SplitMix64, mass: f64| Spring::with_damping_ratio(log(r, of.support_n_per_m), zeta, mass);
+    let spring = |r: &mut Random, mass: f64| Spring::with_damping_ratio(log(r, of.support_n_per_m), zeta, mass);
     let m_e = equivalent_mass_kg(pinion_radius_m, pinion_inertia_kg_m2, gear_radius_m, gear_inertia_kg_m2);
     let half = HalfParameters {
         pinion_mass_kg,
@@ -157,7 +138,7 @@ fn case(r: &mut SplitMix64, of: &Ranges) -> StressCase {
         impact,
         phase_shift_mesh_periods: 0.0,
     };
-    let torsional = |r: &mut SplitMix64, inertia: f64, radius: f64| {
+    let torsional = |r: &mut Random, inertia: f64, radius: f64| {
         if r.chance(0.3) {
             Spring::with_damping_ratio(log(r, of.support_n_per_m) * radius * radius, zeta, inertia)
         } else {
@@ -198,9 +179,9 @@ fn case(r: &mut SplitMix64, of: &Ranges) -> StressCase {
     StressCase { parameters, description }
 }
 
-/// Puts contact forces in place of the stiffness: F = k(φ) e²/(e + c) beyond a free position that varies with the phase, on knots and levels as a contact
-/// analysis leaves them.
-fn with_contact(p: &mut Parameters, r: &mut SplitMix64, of: &Ranges) -> Result<(), DynamicsError> {
+/// Puts contact forces in place of the stiffness: F = k(φ) e²/(e + c) beyond a free position that varies with the
+/// phase, on knots and levels as a contact analysis leaves them.
+fn with_contact(p: &mut Parameters, r: &mut Random, of: &Ranges) -> Result<(), DynamicsError> {
     let knots: Vec<f64> = {
         let n = r.between(8.0, 160.0) as usize;
         (0..n).map(|i| (i as f64 + r.between(0.05, 0.95)) / n as f64).collect()
@@ -246,14 +227,8 @@ fn with_contact(p: &mut Parameters, r: &mut SplitMix64, of: &Ranges) -> Result<(
     Ok(())
 }
 
-/// Time this thread has had a processor, where the system tells (a machine with other work takes longer by the clock).
-fn processor_time_s() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    text.split(' ').next()?.parse::<f64>().ok().map(|ns| ns * 1e-9)
-}
-
-/// Processor time after which a solve is canceled and counted as one that does not end.
-const TIME_LIMIT: Duration = Duration::from_secs(60);
+/// Processor time after which a solve is canceled and counted as one that does not end, s.
+const TIME_LIMIT_S: f64 = 60.0;
 /// Requested accuracy.
 const ACCURACY: f64 = 1e-6;
 
@@ -284,8 +259,8 @@ fn not_finite(r: &Response) -> bool {
 }
 
 /// The reported motion integrated once more from where it ended, by Runge–Kutta (by Taylor series where rounding makes
-/// that too coarse): the largest difference of the RMS accelerations relative to the largest of them, beyond the integration's
-/// own error. None where there is nothing to compare or the integration cannot be afforded.
+/// that too coarse): the largest difference of the RMS accelerations relative to the largest of them, beyond the
+/// integration's own error. None where there is nothing to compare or the integration cannot be afforded.
 fn independent(p: &Parameters, r: &Response) -> Option<f64> {
     let periods = r.summary.period_mesh_periods?;
     let analysis = Analysis {
@@ -333,12 +308,12 @@ struct Table {
     most_steps: u64,
 }
 
-fn main() {
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    let number = |at: usize, default: u64| args.get(at).and_then(|a| a.parse().ok()).unwrap_or(default);
-    let (requested, seed, first) = (number(0, 200), number(1, 1), number(2, 0));
-    let only = args.get(3).map(String::as_str);
-    let contact = args.get(4).is_some_and(|a| a == "contact");
+fn main() -> Result<(), Failure> {
+    let arguments = Arguments::of_process();
+    let number = |place: usize, default: u64| arguments.number(place).map(|given| given.unwrap_or(default));
+    let (requested, seed, first) = (number(0, 200)?, number(1, 1)?, number(2, 0)?);
+    let only = arguments.word(3);
+    let contact = arguments.word(4) == Some("contact");
     let mut tables: [Table; 2] = Default::default();
     let mut slowest: Vec<(f64, String)> = Vec::new();
     for number in first..first + requested {
@@ -347,7 +322,7 @@ fn main() {
         if only.is_some_and(|name| name != "both" && name != ranges.name) {
             continue;
         }
-        let mut random = SplitMix64(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ number);
+        let mut random = Random::new(seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ number);
         let mut case = case(&mut random, ranges);
         if contact && let Err(error) = with_contact(&mut case.parameters, &mut random, ranges) {
             println!("case {number}: {error}");
@@ -356,16 +331,12 @@ fn main() {
         if requested == 1 {
             println!("{:#?}", case.parameters);
         }
-        let (begin, begin_s) = (Instant::now(), processor_time_s());
-        let spent_s = || match (processor_time_s(), begin_s) {
-            (Some(now), Some(then)) => now - then,
-            _ => begin.elapsed().as_secs_f64(),
-        };
-        let canceled = || spent_s() > TIME_LIMIT.as_secs_f64();
+        let stopwatch = Stopwatch::start();
+        let canceled = || stopwatch.seconds() > TIME_LIMIT_S;
         let watch = Watch::new(&|_| {}, &canceled);
         let analysis = Analysis { accuracy: ACCURACY, samples_per_mesh_period: 0, ..Analysis::default() };
         let result = solve(&case.parameters, &analysis, &watch);
-        let time_s = spent_s();
+        let time_s = stopwatch.seconds();
         let table = &mut tables[population];
         let name = outcome(&result);
         let entry = table.counts.entry(name.clone()).or_default();
@@ -429,4 +400,5 @@ fn main() {
     for (_, line) in slowest.iter().take(8) {
         println!("  {line}");
     }
+    Ok(())
 }

@@ -1,25 +1,16 @@
 //! Cost and error of the finite elements at every resolution, against the stored reference of a z 29/67 pair.
 //!
-//! `cargo run --release -p herringbone-tools --no-default-features --bin fe_validation [coarse] [medium] [standard] [fine]`;
-//! `RAYON_NUM_THREADS=1` for the time on one core.
+//! `scripts/tool fe_validation [coarse] [medium] [standard] [fine]`; `RAYON_NUM_THREADS=1` for the time on one core.
 
 use std::sync::Mutex;
 use std::time::Instant;
 
-use herringbone_physics::fe::{FlankFlexibility, FlankInput, Resolution, Side};
-use herringbone_physics::gear::{GearSpec, Pair, PairSpec};
+use herringbone_physics::fe::{FlankFlexibility, FlankInput};
+use herringbone_physics::gear::MemberId;
 use herringbone_physics::watch::Watch;
+use herringbone_tools::arguments::{Arguments, RESOLUTIONS};
+use herringbone_tools::{Failure, reference};
 use serde_json::Value;
-
-fn reference_pair() -> Pair {
-    let member = |teeth, bore_radius_m| GearSpec { bore_radius_m, ..GearSpec::plain(teeth) };
-    let angles = [20f64.to_radians(), 30f64.to_radians()];
-    let spec = PairSpec::plain(4e-3, angles, 45e-3, [member(29, 25e-3), member(67, 60e-3)]);
-    match Pair::new(&spec) {
-        Ok((pair, _)) => pair,
-        Err(reasons) => panic!("the reference pair cannot run: {reasons:?}"),
-    }
-}
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().map(|all| all.iter().filter_map(Value::as_f64).collect()).unwrap_or_default()
@@ -75,22 +66,16 @@ fn compare(label: &str, got: &dyn Fn(usize, usize) -> f64, expected: &[Vec<f64>]
     );
 }
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let pair = reference_pair();
+fn main() -> Result<(), Failure> {
+    let pair = reference::pair(&reference::spec());
     let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/fe_tooth_29_67.json"))?;
     let reference: Value = serde_json::from_str(&text)?;
-    let only: Vec<String> = std::env::args().skip(1).collect();
-    let all = [
-        ("coarse", Resolution::Coarse),
-        ("medium", Resolution::Medium),
-        ("standard", Resolution::Standard),
-        ("fine", Resolution::Fine),
-    ];
-    for (name, resolution) in all {
-        if !only.is_empty() && !only.iter().any(|o| o == name) {
+    let arguments = Arguments::of_process();
+    for (name, resolution) in RESOLUTIONS {
+        if !arguments.choose(name) {
             continue;
         }
-        for (member, side, hold) in [("pinion", Side::Pinion, 25e-3), ("gear", Side::Gear, 60e-3)] {
+        for (member, side, hold) in [("pinion", MemberId::Pinion, 25e-3), ("gear", MemberId::Gear, 60e-3)] {
             let input = FlankInput::new(&pair, side, hold, 4, resolution);
             let start = Instant::now();
             let last = Mutex::new((start, 0.0_f64));
@@ -115,14 +100,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn report(flank: &FlankFlexibility, reference: &Value, side: Side) {
+fn report(flank: &FlankFlexibility, reference: &Value, side: MemberId) {
     let n = flank.nodes();
     let value = |offset: usize, a: usize, b: usize| 1e6 * flank.total(offset, a, b).unwrap_or(f64::NAN);
     let half = |a: usize, b: usize| 1e6 * flank.half_space()[a * n + b];
     // The reference's next tooth lies on the side of the loaded flank: ahead of the pinion's, behind the gear's.
     let neighbour = |offset: usize, a: usize, b: usize| match side {
-        Side::Pinion => value(offset, a, b),
-        Side::Gear => value(offset, b, a),
+        MemberId::Pinion => value(offset, a, b),
+        MemberId::Gear => value(offset, b, a),
     };
     let face = &reference["face_uniform"];
     let stations = flank.stations_m().len();

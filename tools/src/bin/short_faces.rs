@@ -1,16 +1,15 @@
-//! Error of the analytic compliance on short faces: mean mesh stiffness of one half against the product's own finite elements, over tooth
-//! numbers, helix angle and face width in normal modules. Prints the table of docs/VALIDATION.md (short faces):
-//! `cargo run --release -p herringbone-tools --no-default-features --bin short_faces [coarse|medium|standard|fine [Z1[:X1]/Z2[:X2] …]]`;
-//! teeth and profile shift coefficient of pinion and gear.
+//! Error of the analytic compliance on short faces: mean mesh stiffness of one half against the product's own finite
+//! elements, over tooth numbers, helix angle and face width in normal modules. Prints the table of
+//! docs/validation/contact.md (short faces): `scripts/tool short_faces [coarse|medium|standard|fine [Z1[:X1]/Z2[:X2]
+//! …]]`; teeth and profile shift coefficient of pinion and gear.
 
 use herringbone_physics::compliance::{Compliance, Settings};
 use herringbone_physics::contact::{ContactError, HalfCycle, solve_half};
 use herringbone_physics::fe::{FlankFlexibility, Resolution};
 use herringbone_physics::gear::{GearSpec, Half, Pair, PairSpec};
 use herringbone_physics::watch::Watch;
-
-/// Whatever went wrong.
-type Failure = Box<dyn std::error::Error + Send + Sync>;
+use herringbone_tools::Failure;
+use herringbone_tools::arguments::{Arguments, resolution};
 
 const HELIX_DEG: [f64; 6] = [0.0, 10.0, 20.0, 30.0, 40.0, 45.0];
 /// Face width in normal modules.
@@ -22,16 +21,10 @@ const MODULE_M: f64 = 2e-3;
 const LOAD_PA: f64 = 20e6;
 
 fn main() -> Result<(), Failure> {
-    let mut arguments = std::env::args().skip(1);
-    let resolution = match arguments.next().as_deref() {
-        Some("coarse") => Resolution::Coarse,
-        None | Some("medium") => Resolution::Medium,
-        Some("standard") => Resolution::Standard,
-        Some("fine") => Resolution::Fine,
-        Some(other) => return Err(format!("{other} is no resolution").into()),
-    };
-    let given: Vec<String> = arguments.collect();
-    let names: Vec<&str> = if given.is_empty() { PAIRS.to_vec() } else { given.iter().map(String::as_str).collect() };
+    let arguments = Arguments::of_process();
+    let resolution = resolution(arguments.word(0).unwrap_or("medium"))?;
+    let given: Vec<&str> = arguments.from(1).collect();
+    let names = if given.is_empty() { PAIRS.to_vec() } else { given };
     println!("| z | β, ° | {} |", WIDTHS.map(|w| format!("b {w} m_n")).join(" | "));
     println!("|---|---|{}", "---|".repeat(WIDTHS.len()));
     for name in names {
@@ -58,7 +51,8 @@ fn pair(name: &str) -> Result<[(u32, f64); 2], Failure> {
     Ok([member(pinion)?, member(gear)?])
 }
 
-/// Mean tangent stiffness of the analytic compliance over that of finite elements, less one, in percent; none where the pair cannot run.
+/// Mean tangent stiffness of the analytic compliance over that of finite elements, less one, in percent; none where the
+/// pair cannot run.
 fn error(members: [(u32, f64); 2], helix_deg: f64, width: f64, resolution: Resolution) -> Result<Option<f64>, Failure> {
     let member = |(z, profile_shift): (u32, f64)| {
         let reference_m = 0.5 * f64::from(z) * MODULE_M / helix_deg.to_radians().cos();

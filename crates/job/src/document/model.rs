@@ -425,10 +425,10 @@ pub struct CornerImpactInput {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum ImpactDuration {
-    /// Half the period of the equivalent mass on the compliance of the impact.
-    EnergyBalance,
     /// From the first corner contact to the theoretical start of contact.
     CornerToStart,
+    /// Half the period of the equivalent mass on the compliance of the impact.
+    EnergyBalance,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -36,7 +36,7 @@ pub(crate) use herringbone_macros::{ResultFields, SweepColumns};
 pub(crate) use quantity::{Declaration, Optional, Place, ResultFields};
 pub(crate) use sweep_column::ToCell;
 
-use herringbone_physics::gear::Warning;
+use crate::warning::Warning;
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]

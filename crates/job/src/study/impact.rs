@@ -6,23 +6,24 @@ use super::mesh::MeshStage;
 use super::prepare::Prepared;
 use crate::document::{ActsOn, CornerImpactInput, ImpactDuration, ImpactInput, JobDocument, MeshForce};
 use crate::result;
+use crate::warning::Warning;
 use herringbone_physics::dynamics;
-use herringbone_physics::gear::{Half, Warning};
-use herringbone_physics::impact::{self, Entry, Inertia};
+use herringbone_physics::gear::Half;
+use herringbone_physics::impact::{self, Inertia, MeshInConditions};
 
-/// What the impact stage leaves: its block of the result, and the pulse of each half.
+/// Outcome of the impact stage: its block of the result, and the pulse of each half.
 pub struct ImpactStage {
     pub summary: Option<result::ImpactResult>,
     pub pulses: [Option<dynamics::ImpactExcitation>; 2],
 }
 
-/// Whether the impact of a document is put on the equations of motion, or only reported. The one place where that is decided.
+/// True where the impact of a document acts in the equations of motion; else it is only reported.
 pub fn applied(document: &JobDocument) -> bool {
     // A mesh force by stiffness alone knows nothing of early contact; the loaded contact's contains it.
     document.model.mesh_force == MeshForce::Stiffness && !matches!(document.model.impact, ImpactInput::None)
 }
 
-/// Runs the impact stage: an impact that is not applied leaves no pulses. Warns of pulses that their model does not cover.
+/// Runs the impact stage: an impact that is not applied has no pulses. Warns of pulses outside the range of their model.
 pub fn run(
     document: &JobDocument,
     prepared: &Prepared,
@@ -30,7 +31,7 @@ pub fn run(
     mesh: &MeshStage,
     warnings: &mut Vec<Warning>,
 ) -> ImpactStage {
-    let mut stage = found(document, prepared, plane, mesh, warnings);
+    let mut stage = calculate(document, prepared, plane, mesh, warnings);
     let applied = applied(document);
     if !applied {
         stage.pulses = [None, None];
@@ -46,8 +47,8 @@ pub fn run(
     stage
 }
 
-/// The impact, applied or not. Where no corner contact can be found there is none, and a warning says why.
-fn found(
+/// The impact, applied or not. Without a corner contact there is none, and a warning gives the reason.
+fn calculate(
     document: &JobDocument,
     prepared: &Prepared,
     plane: &MotionPlane,
@@ -107,7 +108,7 @@ fn calculated(
     let [pinion_kg_m2, gear_kg_m2] = prepared.inertia_kg_m2.map(|inertia| inertia / 2.0);
     let solve = |half: Half| {
         let state = &mesh.entry[half.index()];
-        let entry = Entry {
+        let entry = MeshInConditions {
             half,
             pinion_speed_rad_s: prepared.pinion_speed_rad_s,
             inertia: Inertia { pinion_kg_m2, gear_kg_m2 },
@@ -136,7 +137,7 @@ fn calculated(
             ),
         });
     }
-    let timing = |impact: &impact::Impact| {
+    let timing = |impact: &impact::MeshInImpact| {
         let duration_s = match corner.duration {
             ImpactDuration::EnergyBalance => impact.duration_s,
             ImpactDuration::CornerToStart => impact.lead_s,
@@ -144,7 +145,7 @@ fn calculated(
         let entry = -impact.overrun_m / prepared.pair.base_pitch_m;
         (duration_s, corner.start_mesh_periods.unwrap_or(entry))
     };
-    let pulse = |impact: &impact::Impact, shift: f64| {
+    let pulse = |impact: &impact::MeshInImpact, shift: f64| {
         let force = if buffered { impact.force_n } else { impact.zhou2008_force_n };
         let (duration_s, start) = timing(impact);
         // Shorter than this the pulse has no effect that could be computed.

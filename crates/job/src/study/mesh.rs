@@ -22,9 +22,9 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Positions of the closed-form and given curves over one mesh period.
-const CURVE_POSITIONS: usize = 128;
+const CLOSED_FORM_POSITIONS: usize = 128;
 
-/// What the mesh stage leaves to the later stages.
+/// Outcome of the mesh stage for the later stages.
 #[derive(Debug, Clone)]
 pub struct MeshStage {
     pub summary: Mesh,
@@ -119,7 +119,7 @@ pub struct MeshMemo {
     pub(super) compliances: ComplianceMemo,
 }
 
-/// Outcomes kept by the hash of what they depend on.
+/// Outcomes by the hash of their inputs.
 pub struct Memo<T>(Mutex<HashMap<String, Arc<T>>>);
 
 impl<T> Default for Memo<T> {
@@ -193,10 +193,10 @@ fn loaded_contact(
     let (contact, reused) = match stored {
         Some(contact) => (contact, vec![ReusedStage::Mesh]),
         None => {
-            let found = compliance::find(case, pair, context, &memo.compliances)?;
-            let contact = solve_contact(case, pair, &found, context)?;
+            let compliances = compliance::find(case, pair, context, &memo.compliances)?;
+            let contact = solve_contact(case, pair, &compliances, context)?;
             context.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&contact).unwrap_or_default());
-            (contact, if found.elements_reused { vec![ReusedStage::FiniteElements] } else { Vec::new() })
+            (contact, if compliances.elements_reused { vec![ReusedStage::FiniteElements] } else { Vec::new() })
         }
     };
     let contact = Arc::new(contact);
@@ -207,14 +207,15 @@ fn loaded_contact(
 fn solve_contact(
     case: &ContactCase,
     pair: &Pair,
-    found: &compliance::Found,
+    compliances: &compliance::Found,
     context: &SolveContext,
 ) -> Result<LoadedContact, SolveError> {
-    let progress = |fraction: f64| (context.progress)(Stage::Mesh, found.done + (1.0 - found.done) * fraction);
+    let progress =
+        |fraction: f64| (context.progress)(Stage::Mesh, compliances.done + (1.0 - compliances.done) * fraction);
     let watch = Watch::new(&progress, context.canceled);
     let (torque_nm, stagger) = (case.torque_nm, case.half_stagger);
     let solve = if torque_nm < 0.0 { contact::solve_coast_halves } else { contact::solve_pair_of_halves };
-    solve(pair, torque_nm.abs(), stagger, &found.compliance, &case.settings, watch).map_err(contact_failed)
+    solve(pair, torque_nm.abs(), stagger, &compliances.compliance, &case.settings, watch).map_err(contact_failed)
 }
 
 pub fn contact_failed(error: ContactError) -> SolveError {
@@ -239,7 +240,7 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
     let loaded = if prepared.half_force_n == 0.0 { 0.0 } else { sign };
     let both = |of: &dyn Fn(&HalfCycle) -> f64| 0.5 * (of(left) + of(right));
     let most = |of: &dyn Fn(&HalfCycle) -> f64| of(left).max(of(right));
-    let transmission_error = contact::Extent::of(&contact.transmission_error_m);
+    let transmission_error = contact::CurveStatistics::of(&contact.transmission_error_m);
     let pairs = || left.pairs_in_contact.iter().chain(&right.pairs_in_contact).copied();
     let curve = |half: &HalfCycle, shift: &dyn Fn(usize) -> f64| MeshCurve {
         phase: left.phase.clone(),
@@ -384,10 +385,10 @@ fn foot_m(pair: &Pair, phase: f64) -> f64 {
 /// contact (uniform line load).
 fn closed_form(source: StiffnessSource, prepared: &Prepared, curve: impl Fn(f64) -> f64) -> MeshStage {
     let force_n = prepared.half_force_n;
-    let phase: Vec<f64> = (0..CURVE_POSITIONS).map(|i| i as f64 / CURVE_POSITIONS as f64).collect();
+    let phase: Vec<f64> = (0..CLOSED_FORM_POSITIONS).map(|i| i as f64 / CLOSED_FORM_POSITIONS as f64).collect();
     let stiffness: Vec<f64> = phase.iter().map(|&phase| curve(phase)).collect();
     let error: Vec<f64> = stiffness.iter().map(|k| force_n / k).collect();
-    let (k, e) = (contact::Extent::of(&stiffness), contact::Extent::of(&error));
+    let (k, e) = (contact::CurveStatistics::of(&stiffness), contact::CurveStatistics::of(&error));
     let axial = force_n * prepared.pair.base_helix_angle_rad.tan();
     let lines = prepared.pair.contact_lines(foot_m(&prepared.pair, MESH_IN_PHASE));
     let total: f64 = lines.iter().map(|line| line.width_m()).sum();

@@ -10,6 +10,7 @@ mod check;
 mod compliance;
 mod demand;
 mod equations;
+mod gear_findings;
 mod hash;
 mod impact;
 mod mesh;
@@ -26,7 +27,7 @@ mod vibration;
 use crate::DocumentError;
 use crate::document::JobKind;
 use crate::result::{Geometry, JobResult, ReusedStage};
-use herringbone_physics::gear::Warning;
+use crate::warning::Warning;
 
 use herringbone_physics::watch::Canceled;
 use mesh::MeshMemo;

@@ -1,10 +1,11 @@
 //! From a document to physics in SI: the pair, its inertias, its operating point, and whether all of it can exist.
 
-use super::{bounds, supports};
+use super::{bounds, gear_findings, supports};
+use crate::DocumentError;
 use crate::document::{self as doc, JobDocument, PressureAnglePlane};
 use crate::result::{GearGeometry, Geometry, SupportsResult};
-use crate::{DocumentError, Violation};
-use herringbone_physics::gear::{self, Infeasibility, Pair, PairSpec, Warning};
+use crate::warning::Warning;
+use herringbone_physics::gear::{self, Pair, PairSpec};
 use herringbone_physics::{compliance, contact};
 
 /// Default bore as a fraction of the reference diameter, where none is given.
@@ -39,9 +40,9 @@ const LIGHT_LINE_LOAD_N_PER_M: f64 = 1e3;
 pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
     let mut warnings = Vec::new();
     let spec = pair_spec(document, &mut warnings);
-    let (pair, pair_warnings) =
-        Pair::new(&spec).map_err(|reasons| DocumentError::Invalid(reasons.into_iter().map(violation).collect()))?;
-    warnings.extend(pair_warnings);
+    let (pair, pair_warnings) = Pair::new(&spec)
+        .map_err(|reasons| DocumentError::Invalid(reasons.iter().map(gear_findings::violation).collect()))?;
+    warnings.extend(pair_warnings.iter().map(gear_findings::warning));
     warnings.extend(held_elsewhere(document, &pair));
     warnings.extend(short_face(document, &pair));
     let supports = supports::used(&document.design.supports, &pair);
@@ -180,17 +181,6 @@ fn flank(flank: &doc::FlankInput) -> gear::FlankModification {
             amount_m: flank.end_relief.amount_um * 1e-6,
             length_m: flank.end_relief.length_mm * 1e-3,
         },
-    }
-}
-
-fn violation(reason: Infeasibility) -> Violation {
-    Violation {
-        pointer: reason.pointer,
-        code: reason.code,
-        detail: reason.detail,
-        minimum: None,
-        maximum: None,
-        unit: Some(reason.unit),
     }
 }
 

@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Points that are integrated side by side: a multiple of the lanes, few enough to keep all threads busy.
-const SIDE_BY_SIDE: usize = 32;
+const POINTS_TOGETHER: usize = 32;
 
 /// Solves every point that is not in `kept`. Points without continuation are independent and run in parallel; with it, each line
 /// along the first axis is followed in order, the lines of the second axis in parallel, and upwards beside downwards.
@@ -68,7 +68,7 @@ pub fn run(
             Ok(rows)
         };
         // Points that are integrated go side by side; the others take very different times, so each is for the next free thread.
-        let together = if document.analysis.method == MethodInput::Integrate { SIDE_BY_SIDE } else { 1 };
+        let together = if document.analysis.method == MethodInput::Integrate { POINTS_TOGETHER } else { 1 };
         let rows: HashMap<_, _> = kept.rows.into_iter().filter(|(position, _)| *position < all).collect();
         count(rows.len());
         sweep.points = independent((lines, length), together, rows, solve)?;

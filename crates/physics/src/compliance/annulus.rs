@@ -1,8 +1,8 @@
 //! Plane-strain annulus loaded on its outer circle, held on its inner one: exact Fourier series.
 //!
-//! A tooth loads the root circle on the arc |θ| ≤ θ_f with a uniform tangential traction, a uniform radial traction, and
-//! a moment: a radial traction linear in θ plus the tangential force 1/r_f that cancels the net tangential force of that
-//! traction. Work-conjugate displacements make the flexibility symmetric. The harmonics are Michell's, from the
+//! A tooth loads the root circle on the arc |θ| ≤ θ_f with a uniform tangential traction, a uniform radial traction,
+//! and a moment: a radial traction linear in θ plus the tangential force 1/r_f that cancels the net tangential force of
+//! that traction. Work-conjugate displacements make the flexibility symmetric. The harmonics are Michell's, from the
 //! Kolosov–Muskhelishvili potentials φ = zⁿ⁺¹, z¹⁻ⁿ, ψ = zⁿ⁻¹, z⁻ⁿ⁻¹.
 //!
 //! With u_r = U e^{inθ}, u_θ = iV e^{inθ} every harmonic is a real symmetric 2×2 flexibility.
@@ -12,9 +12,9 @@ use crate::numerics::dense::solve_dense;
 /// Displacements that have fallen to this part of their value at the outer circle do not reach the inner one.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// Harmonic n ≥ 0 of a ring with unit outer radius and unit Young's modulus: displacement (U, V) of the outer circle per
-/// traction (t_r, t_θ/i) of the same harmonic. Inner radius `inner` in (0, 1), held.
-pub fn harmonic_flexibility(n: u32, inner: f64, nu: f64) -> [[f64; 2]; 2] {
+/// Harmonic n ≥ 0 of a ring with unit outer radius and unit Young's modulus: displacement (U, V) of the outer circle
+/// per traction (t_r, t_θ/i) of the same harmonic. Inner radius `inner` in (0, 1), held.
+pub(super) fn harmonic_flexibility(n: u32, inner: f64, nu: f64) -> [[f64; 2]; 2] {
     let mu = 0.5 / (1.0 + nu);
     let lame = 2.0 * mu * nu / (1.0 - 2.0 * nu);
     if n == 0 {
@@ -24,8 +24,8 @@ pub fn harmonic_flexibility(n: u32, inner: f64, nu: f64) -> [[f64; 2]; 2] {
         let hoop = (1.0 - q2) / (mu * 2.0 * q2);
         return [[radial, 0.0], [0.0, hoop]];
     }
-    // Basis: displacement and derivative of (U, V) at r, scaled to stay of order one: growing ones by r = 1, decaying ones
-    // by r = inner.
+    // Basis: displacement and derivative of (U, V) at r, scaled to stay of order one: growing ones by r = 1, decaying
+    // ones by r = inner.
     let kappa = 3.0 - 4.0 * nu;
     let m = n as f64;
     let basis = |r: f64| -> [[f64; 4]; 4] {
@@ -82,7 +82,7 @@ pub fn harmonic_flexibility(n: u32, inner: f64, nu: f64) -> [[f64; 2]; 2] {
 
 /// Fourier shapes of the arc loads for harmonic `n` and half arc `theta`: (uniform, linear), both tending to a unit
 /// resultant: sin(nθ)/(nθ) and 3 [sin(nθ)/n² - θ cos(nθ)/n] / θ³.
-pub fn arc_shapes(n: f64, theta: f64) -> (f64, f64) {
+pub(super) fn arc_shapes(n: f64, theta: f64) -> (f64, f64) {
     let x = n * theta;
     if x.abs() < 1e-3 {
         return (1.0 - x * x / 6.0, n * (1.0 - x * x / 10.0));
@@ -92,14 +92,14 @@ pub fn arc_shapes(n: f64, theta: f64) -> (f64, f64) {
 
 /// Flexibility between the arc loads of two teeth of a plane-strain annulus, times Young's modulus and face width.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ArcFlexibility {
+pub(super) struct ArcFlexibility {
     /// Rows and columns: tangential force, moment / r_f, radial force. Row: response at angle ψ, column: load at 0.
     pub matrix: [[f64; 3]; 3],
 }
 
 /// Sums harmonics `0..=terms`, each weighted by `weight(n)`, for an annulus of outer radius 1 and inner radius `inner`,
 /// loaded on arcs of half angle `theta`, `psi` apart.
-pub fn arc_flexibility(
+pub(super) fn arc_flexibility(
     inner: f64,
     theta: f64,
     psi: f64,

@@ -1,50 +1,62 @@
 //! All compliance of one member but the contact indentation, between slices of the face and places of the profile.
 //!
-//! A unit normal force at a place of the profile bends the tooth as a plate, and the reactions of the plate's root load the
-//! ring and the short-wave remainder of the root. Where these give unevenly along the face, the tooth resists as a rib: with
-//! the flexibility G of ring and remainder and the resistance K of the plate to displacements of its root, the reactions p
-//! become p - K (1 + G K)⁻¹ G p. Everything is put together over Legendre functions of the face and only
-//! then brought to the slices, where each place has its own way along the face between contact and middle surface.
+//! A unit normal force at a place of the profile bends the tooth as a plate, and the reactions of the plate's root load
+//! the ring and the short-wave remainder of the root. Where these yield unevenly along the face, the tooth resists as a
+//! rib: with the flexibility G of ring and remainder and the resistance K of the plate to displacements of its root,
+//! the reactions p become p - K (1 + G K)⁻¹ G p. Everything is put together over Legendre functions of the face and
+//! only then brought to the slices, where each place has its own way along the face between contact and middle surface.
 
-use super::body::WidthBasis;
 use super::edge::EndFaces;
 use super::plate::PlateModes;
+use super::ring::WidthBasis;
 use super::ring_influence::{KINDS, RingFlexibility};
-use super::tooth::{Place, RootRemainder};
+use super::tooth::{ProfilePoint, RootRemainder};
 use crate::numerics::dense::{add_product, cholesky, cholesky_solve, lu_solve};
 use crate::simd::vectorised;
 
 /// Places of the profile between which the compliance is interpolated (Chebyshev nodes, a polynomial through all).
-pub const NODES: usize = 4;
+pub(super) const NODES: usize = 4;
 
-/// Normal displacements per normal force of teeth and ring together, for every pair of slices and places of the profile.
+/// Normal displacements per normal force of teeth and ring together, for every pair of slices and places of the
+/// profile.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BulkCompliance {
+pub(super) struct BulkCompliance {
     slices: usize,
     /// By offset, places of response and load, slices of response and load.
     table: Vec<f64>,
 }
 
-/// What the compliance is made of.
-pub struct Parts<'a> {
+/// Parts of the compliance of a member.
+pub(super) struct BulkInput<'a> {
+    /// Functions over the face.
     pub basis: &'a WidthBasis,
+    /// Tooth as a plate over those functions, Young's modulus one.
     pub plate: &'a PlateModes,
+    /// Short waves at the root that the ring leaves out.
     pub root: &'a RootRemainder,
+    /// Ring below the tooth.
     pub ring: &'a RingFlexibility,
+    /// Corners of the end faces.
     pub ends: EndFaces,
-    pub places: &'a [Place; NODES],
+    /// Load points at the nodes of the path.
+    pub places: &'a [ProfilePoint; NODES],
     /// Compression of the tooth below each place, times Young's modulus.
     pub compression_m: [f64; NODES],
+    /// Young's modulus, Pa.
     pub youngs_pa: f64,
+    /// Radius of the root circle.
     pub root_radius_m: f64,
+    /// Helix angle at the root circle.
     pub root_helix_angle_rad: f64,
+    /// Slices of the bearing face width.
     pub slices: usize,
-    /// Where the bearing part of the face starts, and its width: what is cut into slices.
+    /// Start and width of the bearing part of the face, which is cut into slices.
     pub bearing_m: (f64, f64),
 }
 
 impl BulkCompliance {
-    pub fn new(parts: &Parts<'_>) -> BulkCompliance {
+    /// Puts the parts together.
+    pub(super) fn new(parts: &BulkInput<'_>) -> BulkCompliance {
         let count = parts.ring.offsets.len() * (NODES * parts.slices).pow(2);
         let mut bulk = BulkCompliance { slices: parts.slices, table: vec![0.0; count] };
         vectorised(
@@ -56,7 +68,7 @@ impl BulkCompliance {
     }
 
     #[inline(always)]
-    fn fill(&mut self, parts: &Parts<'_>) {
+    fn fill(&mut self, parts: &BulkInput<'_>) {
         let size = parts.basis.order + 1;
         let n = parts.slices;
         let shapes =
@@ -116,16 +128,16 @@ impl BulkCompliance {
         }
     }
 
-    /// Displacement at slice `i` and place `a` from a force at slice `j` and place `b`, both on one tooth (`offset` 0) or with the
-    /// first `offset` pairs earlier in the mesh than the second.
-    pub fn entry(&self, offset: usize, (i, a): (usize, usize), (j, b): (usize, usize)) -> f64 {
+    /// Displacement at slice `i` and place `a` from a force at slice `j` and place `b`, both on one tooth (`offset` 0)
+    /// or with the first `offset` pairs earlier in the mesh than the second.
+    pub(super) fn entry(&self, offset: usize, (i, a): (usize, usize), (j, b): (usize, usize)) -> f64 {
         self.table[(((offset * NODES + a) * NODES + b) * self.slices + i) * self.slices + j]
     }
 
-    /// Displacement at slice `i` from a force at slice `j`, both on one tooth (`offset` 0) or with the first `offset` pairs
-    /// earlier in the mesh than the second; `wa` and `wb` are the interpolation weights of their places.
+    /// Displacement at slice `i` from a force at slice `j`, both on one tooth (`offset` 0) or with the first `offset`
+    /// pairs earlier in the mesh than the second; `wa` and `wb` are the interpolation weights of their places.
     #[cfg(test)]
-    pub fn between(&self, offset: usize, i: usize, j: usize, wa: &[f64; NODES], wb: &[f64; NODES]) -> f64 {
+    pub(super) fn between(&self, offset: usize, i: usize, j: usize, wa: &[f64; NODES], wb: &[f64; NODES]) -> f64 {
         let mut sum = 0.0;
         for (a, wa) in wa.iter().enumerate() {
             for (b, wb) in wb.iter().enumerate() {
@@ -148,9 +160,9 @@ fn transposed(matrix: &[f64], columns: usize) -> Vec<f64> {
     out
 }
 
-impl Parts<'_> {
-    /// What force and moment coefficients at the root load: `normal` are the tangential, radial and axial components, the lateral
-    /// one and the one along the height of the force.
+impl BulkInput<'_> {
+    /// Displacements under force and moment coefficients at the root: `normal` are the tangential, radial and axial
+    /// components, the lateral one and the one along the height of the force.
     fn carried(&self, [tangential, radial, axial, lateral, sin]: [f64; 5], force: &[f64], moment: &[f64]) -> RootLoad {
         let size = self.basis.order + 1;
         let columns = force.len() / size;
@@ -275,7 +287,8 @@ impl Parts<'_> {
     }
 }
 
-/// Loads on ring (kind, degree) and root remainder (tangential, moment, radial; degree), row-major, one column per cause.
+/// Loads on ring (kind, degree) and root remainder (tangential, moment, radial; degree), row-major, one column per
+/// cause.
 struct RootLoad {
     ring: Vec<f64>,
     local: Vec<f64>,

@@ -1,22 +1,24 @@
-//! The end faces of a tooth: what the corner between flank and end face gives beyond half-space and plate.
+//! The end faces of a tooth: compliance of the edge between flank and end face beyond that of half-space and plate.
 //!
-//! A contact near an end face stands on a wedge. An elastic wedge has no length of its own, so that its displacement at the
-//! distance t from the edge under a point load at t' (both on one line across the edge), less that of the half-space, is
+//! A contact near an end face lies on a wedge. An elastic wedge has no length of its own, so that its displacement at
+//! the distance t from the edge under a point load at t' (both on one line across the edge), less that of the
+//! half-space, is
 //!
 //! ```text
 //! κ(φ) (1-ν²)/(πE) / (t + t')
 //! ```
 //!
-//! with a factor κ that depends on the dihedral angle φ and, for t/t' between 1/7 and 7, within 20 % on nothing else. The
-//! contact line of an involute helicoid is perpendicular to the edge, and φ = 90° ± β_b all along it. At the depth h of
-//! the middle surface the plate takes over, which knows the end face: as for the half-space, where the displacement
-//! at the depth h below a load is 1/ℓ instead of 1/t, ℓ = h 2(1-ν)/(3-2ν), what remains is 1/(t+t') - 1/(t+t'+ℓ).
+//! with a factor κ that depends on the dihedral angle φ and, for t/t' between 1/7 and 7, within 20 % on nothing else.
+//! The contact line of an involute helicoid is perpendicular to the edge, and φ = 90° ± β_b all along it. At the depth
+//! h of the middle surface the plate takes over, which includes the end face: as for the half-space, where the
+//! displacement at the depth h below a load is 1/ℓ instead of 1/t, ℓ = h 2(1-ν)/(3-2ν), what remains is 1/(t+t') -
+//! 1/(t+t'+ℓ).
 
 use std::f64::consts::PI;
 
-/// κ at dihedral angles in degrees, for ν = 0.3: waves cos(ky) along the edge on a section of 9-node finite elements, graded
-/// from 0.002/k to 14/k, less the same of the half-space, integrated over k; mean of t/t' = 1.3 and 1.6. The mesh
-/// reproduces the half-space within 3 %.
+/// κ at dihedral angles in degrees, for ν = 0.3, made by `scripts/wedge_kernel.py`: waves cos(ky) along the edge on a
+/// section of 9-node finite elements, graded from 0.002/k to 14/k, less the same of the half-space, integrated over k;
+/// mean of t/t' = 1.3 and 1.6. The mesh reproduces the half-space within 3 %.
 const WEDGE: [(f64, f64); 17] = [
     (45.0, 31.3),
     (50.0, 21.7),
@@ -39,7 +41,7 @@ const WEDGE: [(f64, f64); 17] = [
 
 /// Both end faces of a tooth.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EndFaces {
+pub(super) struct EndFaces {
     /// κ (1-ν²)/(πE) at the first and at the last slice.
     factors: [f64; 2],
     /// ℓ per depth.
@@ -60,9 +62,9 @@ fn wedge_factor(degrees: f64) -> f64 {
 }
 
 impl EndFaces {
-    /// Ends of the pinion's (`side` +1) or gear's teeth, which stand out by `margin_m` on both sides of the bearing part of
-    /// `width_m`, which is cut into `slices`.
-    pub fn new(
+    /// Ends of the pinion's (`side` +1) or gear's teeth, which extend by `margin_m` on both sides of the bearing part
+    /// of `width_m`, which is cut into `slices`.
+    pub(super) fn new(
         base_helix_angle_rad: f64,
         side: f64,
         (width_m, margin_m): (f64, f64),
@@ -81,7 +83,7 @@ impl EndFaces {
 
     /// Adds the mean displacement of every slice per force spread over every other, at places of the smaller depth
     /// `depth_m`, to a row-major matrix over the slices.
-    pub fn add(&self, matrix: &mut [f64], depth_m: f64) {
+    pub(super) fn add(&self, matrix: &mut [f64], depth_m: f64) {
         let reach = depth_m * self.reach;
         // Twice integrated 1/x: x ln x - x.
         let twice = |x: f64| if x > 0.0 { x * x.ln() - x } else { 0.0 };

@@ -1,24 +1,26 @@
 //! Line contact on half-spaces: the surface displacement under a narrow Hertzian band, along the band and outside it.
 //!
-//! Used with a bulk flexibility from which the half-space part has been taken: no depth has to be chosen. A segment of the
-//! contact line of length l, loaded by w per length with an elliptic pressure over the width 2b, presses its own middle in by
+//! Used with a bulk flexibility from which the half-space part has been taken: no depth has to be chosen. A segment of
+//! the contact line of length l, loaded by w per length with an elliptic pressure over the width 2b, presses its own
+//! middle in by
 //!
 //! ```text
 //! u = 2 (1-ν²)/(πE) w G(l / 2b),   G(r) = (4/π) ∫₀^{π/2} cos²θ asinh(r / sinθ) dθ   (→ ln 4r + 1/2 + 1/(16 r²) for r >> 1)
 //! ```
 //!
-//! and a point on the line at the distances η₁ < η₂ from its ends by (1-ν²)/(πE) w [G(η₂/b) - G(η₁/b)] (ln(η₂/η₁) where the band
-//! is narrow).
+//! and a point on the line at the distances η₁ < η₂ from its ends by (1-ν²)/(πE) w [G(η₂/b) - G(η₁/b)] (ln(η₂/η₁) where
+//! the band is narrow).
 
 use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 
 /// Ratio beyond which the asymptotic form is exact to 1e-5.
 const FAR: f64 = 4.0;
-/// Abscissae of the midpoint rule over θ: the integrand is smooth and periodic, so that the rule converges exponentially.
+/// Abscissae of the midpoint rule over θ: the integrand is smooth and periodic, so that the rule converges
+/// exponentially.
 const ABSCISSAE: usize = 24;
 
 /// G(r) and its derivative.
-pub fn own(r: f64) -> (f64, f64) {
+pub(super) fn own(r: f64) -> (f64, f64) {
     if r > FAR {
         let r2 = r * r;
         return ((4.0 * r).ln() + 0.5 + 1.0 / (16.0 * r2), 1.0 / r - 1.0 / (8.0 * r2 * r));
@@ -37,7 +39,7 @@ pub fn own(r: f64) -> (f64, f64) {
 }
 
 /// G(η₂/b) - G(η₁/b) of a segment `[from, to]` with the half width `b`, seen from `at` outside it.
-pub fn beside(at: f64, (from, to): (f64, f64), b: f64) -> f64 {
+pub(super) fn beside(at: f64, (from, to): (f64, f64), b: f64) -> f64 {
     let (near, far) = if at < from { (from - at, to - at) } else { (at - to, at - from) };
     if near > FAR * b { (far / near).ln() } else { own(far / b).0 - own(near / b).0 }
 }

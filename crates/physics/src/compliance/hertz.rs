@@ -1,9 +1,9 @@
 //! Local contact of two flanks on a line: exact plane-strain Hertz approach of one body referenced to a depth.
 //!
 //! δ(w) = 2(1-ν²)w/(πE) [asinh(h/b) - ν/(1-ν) h/(√(h²+b²)+h)], b the half width of the contact band, h the depth: the
-//! strain under a Hertzian pressure integrated from the surface to h (Weber's logarithm is its limit for h >> b). Each body
-//! has its own E, ν and h; the band is that of both, b² = 4 R w/(π E*) with 1/E* = (1-ν1²)/E1 + (1-ν2²)/E2 (Johnson, Contact
-//! Mechanics, 1985, section 4.2).
+//! strain under a Hertzian pressure integrated from the surface to h (Weber's logarithm is its limit for h >> b). Each
+//! body has its own E, ν and h; the band is that of both, b² = 4 R w/(π E*) with 1/E* = (1-ν1²)/E1 + (1-ν2²)/E2
+//! (Johnson, Contact Mechanics, 1985, section 4.2).
 
 use std::f64::consts::PI;
 
@@ -12,10 +12,10 @@ use crate::gear::Material;
 
 /// One point of contact: curvature and depths are fixed, the line load varies.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LineContact {
+pub(crate) struct LineContact {
     /// 2(1-ν²)/(πE), per Pa, mean of both bodies.
     factor: f64,
-    /// What each body has of it: 1 for equal materials.
+    /// Factor of each body over the mean: 1 for equal materials.
     parts: [f64; 2],
     /// ν/(1-ν) of each body.
     lateral: [f64; 2],
@@ -25,9 +25,9 @@ pub struct LineContact {
 }
 
 impl LineContact {
-    /// `materials` are those of both bodies, `radius_m` is the relative radius of curvature in the normal section, `depths_m`
-    /// the depths of both tooth centrelines.
-    pub fn new(materials: [&Material; 2], radius_m: f64, depths_m: [f64; 2]) -> LineContact {
+    /// `materials` are those of both bodies, `radius_m` is the relative radius of curvature in the normal section,
+    /// `depths_m` the depths of both tooth centrelines.
+    pub(crate) fn new(materials: [&Material; 2], radius_m: f64, depths_m: [f64; 2]) -> LineContact {
         let compliances = materials.map(Material::plane_strain_compliance_per_pa);
         let mean = 0.5 * (compliances[0] + compliances[1]);
         LineContact {
@@ -40,21 +40,21 @@ impl LineContact {
     }
 
     /// Half width of the contact band under the line load `w` (N/m).
-    pub fn half_width_m(&self, w: f64) -> f64 {
+    pub(crate) fn half_width_m(&self, w: f64) -> f64 {
         (self.band2_per_load * w).sqrt()
     }
 
     /// Largest pressure under the line load `w`.
-    pub fn pressure_pa(&self, w: f64) -> f64 {
+    pub(crate) fn pressure_pa(&self, w: f64) -> f64 {
         if w > 0.0 { 2.0 * w / (PI * self.half_width_m(w)) } else { 0.0 }
     }
 
-    /// Approach of both half-spaces in the middle of a segment of length `length_m`, by its own load, and its derivative with
-    /// respect to the line load, at `w > 0`.
+    /// Approach of both half-spaces in the middle of a segment of length `length_m`, by its own load, and its
+    /// derivative with respect to the line load, at `w > 0`.
     ///
-    /// The band is kept from growing wider than the segment is long (b² = b_H² / √(1 + (2 b_H / l)⁴)): beyond that a segment would see its
-    /// neighbours' load better than its own and the system would lose its definiteness.
-    pub fn half_space_approach(&self, w: f64, length_m: f64) -> (f64, f64) {
+    /// The band is kept from growing wider than the segment is long (b² = b_H² / √(1 + (2 b_H / l)⁴)): beyond that the
+    /// influence of the neighbours' load would exceed that of its own and the system would lose its definiteness.
+    pub(crate) fn half_space_approach(&self, w: f64, length_m: f64) -> (f64, f64) {
         let widest2 = 0.25 * length_m * length_m;
         let ratio = self.band2_per_load * w / widest2;
         let bound = 1.0 + ratio * ratio;
@@ -64,15 +64,15 @@ impl LineContact {
         (2.0 * self.factor * w * value, 2.0 * self.factor * (value - 0.5 * r * slope / bound))
     }
 
-    /// Approach of both half-spaces per force at a point of the line at `at_m`, by a segment elsewhere on the line whose band is that
-    /// of the line load `w`, but no wider than `widest_m`.
-    pub fn half_space_beside(&self, at_m: f64, segment_m: (f64, f64), w: f64, widest_m: f64) -> f64 {
+    /// Approach of both half-spaces per force at a point of the line at `at_m`, by a segment elsewhere on the line
+    /// whose band is that of the line load `w`, but no wider than `widest_m`.
+    pub(crate) fn half_space_beside(&self, at_m: f64, segment_m: (f64, f64), w: f64, widest_m: f64) -> f64 {
         let half_width = self.half_width_m(w).min(0.5 * widest_m);
         self.factor * half_space::beside(at_m, segment_m, half_width) / (segment_m.1 - segment_m.0)
     }
 
     /// Approach of both bodies and its derivative with respect to the line load, at `w > 0`.
-    pub fn approach(&self, w: f64) -> (f64, f64) {
+    pub(crate) fn approach(&self, w: f64) -> (f64, f64) {
         let b = self.half_width_m(w);
         let b2 = b * b;
         let (mut value, mut change) = (0.0, 0.0);
@@ -96,7 +96,7 @@ mod tests {
 
     const PLASTIC: Material = Material { youngs_modulus_pa: 2.8e9, poissons_ratio: 0.38, density_kg_m3: 1410.0 };
 
-    /// Band and pressure of Hertz for two materials, and what each body gives by itself under that band.
+    /// Band and pressure of Hertz for two materials, and the approach of each body under that band.
     #[test]
     fn two_materials_share_one_band() {
         let topic = "Contact: Hertzian approach of line contacts";

@@ -1,16 +1,17 @@
-//! Bulk flexibility of both members over the field of contact: what every fidelity hands to the load distribution.
+//! Bulk flexibility of both members over the field of contact: the common input of the load distribution from every
+//! fidelity.
 //!
-//! Forces and displacements stand along the flank normal at *places* of the path of contact (roll coordinate x) and
-//! *stations* along the face. The bulk part is smooth, so that few stations carry it and the contact lines may be cut as finely
-//! as their ends and modifications need: the cost of a position grows linearly with its points.
+//! Forces and displacements are along the flank normal, at *path nodes* (roll coordinate x) and
+//! *stations* along the face. The bulk part is smooth, so that few stations carry it and the contact lines may be cut
+//! as finely as their ends and modifications need: the cost of a position grows linearly with its points.
 
 use crate::numerics::interpolation::lagrange;
 use crate::simd::vectorised;
 
 /// Normal approach of both members per normal force. It depends on neither load, modification nor assembly.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Influence {
-    places_m: Vec<f64>,
+pub(crate) struct Influence {
+    path_nodes_m: Vec<f64>,
     stations_m: Vec<f64>,
     offsets: usize,
     /// Per offset, station of the response, place of the response: places times stations of the load.
@@ -19,17 +20,19 @@ pub struct Influence {
 
 /// Four neighbouring stations and their weights.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stencil {
+pub(crate) struct Stencil {
+    /// First station.
     pub first: usize,
+    /// Weights of the stations from the first on; they sum to one.
     pub weights: [f64; STENCIL],
 }
 
 /// Stations of a [`Stencil`].
-pub const STENCIL: usize = 4;
+pub(crate) const STENCIL: usize = 4;
 
 impl Stencil {
     /// Last of its stations.
-    pub fn last(&self) -> usize {
+    pub(crate) fn last(&self) -> usize {
         self.first + STENCIL - 1
     }
 }
@@ -39,24 +42,28 @@ const OVERHANG: f64 = 0.05;
 
 /// One line of contact at the stations `first..first + count`.
 #[derive(Debug, Clone, Default)]
-pub struct LineWeights {
+pub(crate) struct LineWeights {
+    /// Tooth pair: k + 1 entered before k.
     pub pair: i32,
+    /// First station.
     pub first: usize,
+    /// Number of stations.
     pub count: usize,
     /// Weights of the places, station by station for every place.
     weights: Vec<f64>,
 }
 
 impl Influence {
-    /// Tabulates `entry(offset, (response station, place), (load station, place))`: both on one tooth pair (offset 0), or the response
-    /// on the pair that entered `offset` pitches before the loaded one. Places and stations ascend; at least four stations.
-    pub fn new(
-        places_m: Vec<f64>,
+    /// Tabulates `entry(offset, (response station, place), (load station, place))`: both on one tooth pair (offset 0),
+    /// or the response on the pair that entered `offset` pitches before the loaded one. Places and stations ascend; at
+    /// least four stations.
+    pub(crate) fn new(
+        path_nodes_m: Vec<f64>,
         stations_m: Vec<f64>,
         offsets: usize,
         mut entry: impl FnMut(usize, (usize, usize), (usize, usize)) -> f64,
     ) -> Influence {
-        let (p, s) = (places_m.len(), stations_m.len());
+        let (p, s) = (path_nodes_m.len(), stations_m.len());
         let mut table = Vec::with_capacity((offsets + 1) * s * s * p * p);
         for offset in 0..=offsets {
             for i in 0..s {
@@ -67,36 +74,48 @@ impl Influence {
                 }
             }
         }
-        Influence { places_m, stations_m, offsets, table }
+        Influence { path_nodes_m, stations_m, offsets, table }
     }
 
     /// Weights of the stations about `entry_m`.
-    pub fn stencil(&self, entry_m: f64) -> Stencil {
+    pub(crate) fn stencil(&self, entry_m: f64) -> Stencil {
         stencil(&self.stations_m, entry_m)
     }
 
-    /// Sets `line` up for the pair `pair`, whose line of contact stands at the roll coordinate `base_m + slope z`, over the
+    /// Sets `line` up for the pair `pair`, whose line of contact is at the roll coordinate `base_m + slope z`, over the
     /// stations `first..=last`.
-    pub fn line(&self, line: &mut LineWeights, pair: i32, (base_m, slope): (f64, f64), (first, last): (usize, usize)) {
+    pub(crate) fn line(
+        &self,
+        line: &mut LineWeights,
+        pair: i32,
+        (base_m, slope): (f64, f64),
+        (first, last): (usize, usize),
+    ) {
         line.pair = pair;
         line.first = first;
         line.count = last + 1 - first;
-        let (low, high) = (self.places_m[0], self.places_m[self.places_m.len() - 1]);
+        let (low, high) = (self.path_nodes_m[0], self.path_nodes_m[self.path_nodes_m.len() - 1]);
         let overhang = OVERHANG * (high - low);
         line.weights.clear();
-        for a in 0..self.places_m.len() {
+        for a in 0..self.path_nodes_m.len() {
             line.weights.extend(self.stations_m[first..=last].iter().map(|z| {
                 let x = (base_m + slope * z).clamp(low - overhang, high + overhang);
-                lagrange(&self.places_m, a, x)
+                lagrange(&self.path_nodes_m, a, x)
             }));
         }
     }
 
     /// Flexibility between the stations of two lines, `response` that of the pair that entered earlier (or the same):
     /// written to `out`, `response.count` rows of `load.count`. `scratch` is reused memory.
-    pub fn between(&self, response: &LineWeights, load: &LineWeights, scratch: &mut Vec<f64>, out: &mut Vec<f64>) {
+    pub(crate) fn between(
+        &self,
+        response: &LineWeights,
+        load: &LineWeights,
+        scratch: &mut Vec<f64>,
+        out: &mut Vec<f64>,
+    ) {
         let offset = (response.pair - load.pair) as usize;
-        let p = self.places_m.len();
+        let p = self.path_nodes_m.len();
         let (rows, columns) = (response.count, load.count);
         out.clear();
         out.resize(rows * columns, 0.0);
@@ -120,7 +139,7 @@ impl Influence {
         scratch: &mut [f64],
         out: &mut [f64],
     ) {
-        let (p, s) = (self.places_m.len(), self.stations_m.len());
+        let (p, s) = (self.path_nodes_m.len(), self.stations_m.len());
         let (rows, columns) = (response.count, load.count);
         for i in 0..rows {
             scratch.fill(0.0);
@@ -143,7 +162,7 @@ impl Influence {
 }
 
 /// Weights of the four `nodes` about `at`: cubic; linear beyond the outermost nodes. At least four nodes, ascending.
-pub fn stencil(nodes: &[f64], at: f64) -> Stencil {
+pub(super) fn stencil(nodes: &[f64], at: f64) -> Stencil {
     let last = nodes.len() - 1;
     let mut weights = [0.0; STENCIL];
     if at <= nodes[0] {

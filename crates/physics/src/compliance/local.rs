@@ -3,11 +3,11 @@
 use super::hertz::LineContact;
 use crate::gear::Pair;
 
-/// How the local part of the compliance is told from the bulk.
+/// Separation of the local part of the compliance from the bulk.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum LocalModel {
-    /// Plane-strain indentation down to the centrelines of both teeth: the bulk is the displacement of the centrelines. Depths of
-    /// both members at equally spaced roll coordinates from the start to the end of the path.
+    /// Plane-strain indentation down to the centrelines of both teeth: the bulk is the displacement of the centrelines.
+    /// Depths of both members at equally spaced roll coordinates from the start to the end of the path.
     CenterlineDepth(Vec<[f64; 2]>),
     /// Surface displacement of two half-spaces: the bulk has the half-space part taken out.
     HalfSpace,
@@ -35,7 +35,7 @@ enum IndentationLaw {
 
 impl Indentation {
     /// Approach under the line load `w` (N/m), m, and its derivative.
-    pub fn approach(&self, w: f64) -> (f64, f64) {
+    pub(crate) fn approach(&self, w: f64) -> (f64, f64) {
         match self.law {
             IndentationLaw::PlaneStrain => self.line.approach(w),
             IndentationLaw::HalfSpace { length_m } => self.line.half_space_approach(w, length_m),
@@ -44,13 +44,14 @@ impl Indentation {
     }
 }
 
-/// Segments on a half-space are kept this many times as long as the band of a line under twice the mean load is wide: the neighbours' bands
-/// are held while the load varies, which makes the tangent stiffness of shorter ones too small (2 % at half this length).
+/// Segments on a half-space are kept this many times as long as the band of a line under twice the mean load is wide:
+/// the neighbours' bands are held while the load varies, which makes the tangent stiffness of shorter ones too small (2
+/// % at half this length).
 const LENGTH_PER_BAND: f64 = 2.0;
 
 impl LocalModel {
     /// Least axial width of a segment under the normal force `force_n` in all; 0 when there is none.
-    pub fn least_width_m(&self, pair: &Pair, force_n: f64) -> f64 {
+    pub(crate) fn least_width_m(&self, pair: &Pair, force_n: f64) -> f64 {
         match self {
             LocalModel::CenterlineDepth(_) | LocalModel::Foundation { .. } => 0.0,
             LocalModel::HalfSpace => {
@@ -62,7 +63,7 @@ impl LocalModel {
     }
 
     /// Indentation of a segment of length `length_m` at roll coordinate `x_m`, or at the end of the path beyond it.
-    pub fn indentation(&self, pair: &Pair, x_m: f64, length_m: f64) -> Indentation {
+    pub(crate) fn indentation(&self, pair: &Pair, x_m: f64, length_m: f64) -> Indentation {
         let (start, end) = (pair.path_start_m, pair.path_end_m);
         let x = x_m.clamp(start, end);
         let depths_m = match self {
@@ -83,7 +84,8 @@ impl LocalModel {
 /// Smallest radius of curvature, in normal modules: near the base circle the flank's vanishes.
 const SMALLEST_RADIUS: f64 = 1e-3;
 
-/// Contact of both flanks at roll coordinate `x_m`, with the depths to which the indentation of pinion and gear is counted.
+/// Contact of both flanks at roll coordinate `x_m`, with the depths to which the indentation of pinion and gear is
+/// counted.
 pub(crate) fn line_contact(pair: &Pair, x_m: f64, depths_m: [f64; 2]) -> LineContact {
     LineContact::new([&pair.pinion.material, &pair.gear.material], relative_radius_m(pair, x_m), depths_m)
 }

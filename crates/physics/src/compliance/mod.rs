@@ -2,25 +2,27 @@
 //!
 //! Fidelity `analytic`, per member: the tooth (`tooth`) is a clamped plate of its true profile with free end
 //! faces (`plate`); the reactions of its root load a three-dimensional elastic ring with free end faces, held at rim or
-//! bore (`body`, `ring_influence`); short waves at the root come from a plane-strain annulus (`annulus`); the corners of the
-//! end faces give as elastic wedges do (`edge`). `bulk` puts these together over Legendre functions of the
-//! face; the contact itself is Hertzian (`hertz`). Fidelity `fe` takes the flexibilities of [`crate::fe`] instead, with the indentation
-//! of half-spaces (`half_space`).
+//! bore (`ring`, `ring_influence`); short waves at the root come from a plane-strain annulus (`annulus`); the corners
+//! of the end faces yield like elastic wedges (`edge`). `bulk` puts these together over Legendre functions of the face;
+//! the contact itself is Hertzian (`hertz`). Fidelity `fe` takes the flexibilities of [`crate::fe`] instead, with the
+//! indentation of half-spaces (`half_space`).
 //!
 //! Either way a [`Compliance`] is a table of bulk flexibility (`influence`) and a law of local indentation (`local`).
 //!
 //! Everything is SI; coordinates are those of [`crate::gear`].
 
+#![warn(missing_docs, unreachable_pub)]
+
 mod annulus;
-mod body;
 mod bulk;
 mod edge;
-mod flank;
 mod half_space;
 mod hertz;
 mod influence;
 mod local;
+mod member;
 mod plate;
+mod ring;
 mod ring_influence;
 mod settings;
 mod tooth;
@@ -30,7 +32,7 @@ pub(crate) mod fixtures;
 #[cfg(test)]
 mod tests;
 
-pub use flank::{BodyHold, hold_radius_m};
+pub use member::{BodyHold, hold_radius_m};
 pub use settings::Settings;
 
 #[cfg(test)]
@@ -38,10 +40,10 @@ pub(crate) use hertz::LineContact;
 pub(crate) use influence::{Influence, LineWeights, STENCIL, Stencil};
 pub(crate) use local::{Indentation, LocalModel, line_contact};
 
-use self::flank::Flank;
 use self::influence::stencil;
-use crate::fe::{FlankFlexibility, FlankInput, Resolution, Side};
-use crate::gear::Pair;
+use self::member::MemberCompliance;
+use crate::fe::{FlankFlexibility, FlankInput, Resolution};
+use crate::gear::{MemberId, Pair};
 
 /// Corner contact is looked for this far beyond the path, in base pitches: gaps there are beyond any deflection that a
 /// tooth survives.
@@ -59,7 +61,7 @@ pub struct Compliance {
 /// Points of the table of centreline depths.
 const DEPTHS: usize = 33;
 /// Places of the path at which finite-element flexibilities are taken over.
-const PLACES: usize = 7;
+const PATH_NODES: usize = 7;
 
 impl Compliance {
     /// Fidelity `analytic`: beams, plates and rings, in milliseconds.
@@ -67,15 +69,15 @@ impl Compliance {
         let stations = settings.station_count(pair);
         let offsets = pair_offsets(pair, settings.corner_contact);
         let (pinion, gear) = rayon::join(
-            || Flank::new(pair, 1.0, settings.body, stations, offsets),
-            || Flank::new(pair, -1.0, settings.body, stations, offsets),
+            || MemberCompliance::new(pair, 1.0, settings.body, stations, offsets),
+            || MemberCompliance::new(pair, -1.0, settings.body, stations, offsets),
         );
         // Places of both members are Chebyshev nodes of the same path, run through in opposite directions.
-        let places_m = pinion.places_m().to_vec();
-        let last = places_m.len() - 1;
+        let path_nodes_m = pinion.path_nodes_m().to_vec();
+        let last = path_nodes_m.len() - 1;
         let step = pair.spec.face_width_m / stations as f64;
         let stations_m = (0..stations).map(|i| (i as f64 + 0.5) * step).collect();
-        let influence = Influence::new(places_m, stations_m, offsets, |offset, (i, a), (j, b)| {
+        let influence = Influence::new(path_nodes_m, stations_m, offsets, |offset, (i, a), (j, b)| {
             pinion.bulk.entry(offset, (i, a), (j, b)) + gear.bulk.entry(offset, (i, last - a), (j, last - b))
         });
         let depths = (0..DEPTHS)
@@ -87,8 +89,8 @@ impl Compliance {
         Compliance { influence, local: LocalModel::CenterlineDepth(depths), slices: settings.slice_count(pair) }
     }
 
-    /// Fidelity `uniform`: the contact lines as a uniform elastic foundation of so much force per length of line and approach, both along the
-    /// flank normal; nothing else gives. A model with exact solutions, for comparisons.
+    /// Fidelity `uniform`: the contact lines as a uniform elastic foundation of so much force per length of line and
+    /// approach, both along the flank normal; everything else is rigid. A model with exact solutions, for comparisons.
     pub fn uniform(pair: &Pair, settings: &Settings, line_stiffness_n_per_m2: f64) -> Compliance {
         let stations = 4;
         let step = pair.spec.face_width_m / stations as f64;
@@ -98,10 +100,10 @@ impl Compliance {
         Compliance { influence, local, slices: settings.slice_count(pair) }
     }
 
-    /// What [`Compliance::finite_elements`] needs the flexibility of: pinion and gear.
+    /// Inputs of the finite elements whose flexibilities [`Compliance::finite_elements`] takes: pinion and gear.
     pub fn finite_element_inputs(pair: &Pair, settings: &Settings, resolution: Resolution) -> [FlankInput; 2] {
         let offsets = pair_offsets(pair, settings.corner_contact);
-        [(Side::Pinion, &pair.pinion), (Side::Gear, &pair.gear)].map(|(side, member)| {
+        [(MemberId::Pinion, &pair.pinion), (MemberId::Gear, &pair.gear)].map(|(side, member)| {
             let hold_m = hold_radius_m(member, settings.body, pair.spec.normal_module_m);
             FlankInput::new(pair, side, hold_m, offsets, resolution)
         })
@@ -109,17 +111,17 @@ impl Compliance {
 
     /// Fidelity `fe`: from the finite elements of pinion and gear.
     ///
-    /// A force on the line of contact goes to the hats of the load grid about it and the displacement there is read between
-    /// them; a hat stands for its centre of gravity.
+    /// A force on the line of contact goes to the hats of the load grid about it and the displacement there is read
+    /// between them; a hat is represented by its centre of gravity.
     pub fn finite_elements(pair: &Pair, settings: &Settings, flanks: [&FlankFlexibility; 2]) -> Compliance {
-        let places_m: Vec<f64> = (0..PLACES)
+        let path_nodes_m: Vec<f64> = (0..PATH_NODES)
             .map(|i| {
-                let angle = std::f64::consts::PI * (2 * i + 1) as f64 / (2 * PLACES) as f64;
+                let angle = std::f64::consts::PI * (2 * i + 1) as f64 / (2 * PATH_NODES) as f64;
                 let (low, high) = (pair.path_start_m, pair.path_end_m);
                 0.5 * (low + high) - 0.5 * (high - low) * angle.cos()
             })
             .collect();
-        let rolls = [places_m.clone(), places_m.iter().map(|x| pair.line_of_action_m - x).collect::<Vec<_>>()];
+        let rolls = [path_nodes_m.clone(), path_nodes_m.iter().map(|x| pair.line_of_action_m - x).collect::<Vec<_>>()];
         let members = [&pair.pinion, &pair.gear];
         // Places of either member between the hats along its profile.
         let profiles: [Vec<_>; 2] = std::array::from_fn(|side| {
@@ -140,7 +142,7 @@ impl Compliance {
             (own != stations_m).then(|| stations_m.iter().map(|z| stencil(&own, z + margin_m)).collect())
         });
         let offsets = flanks[0].offsets().min(flanks[1].offsets());
-        let influence = Influence::new(places_m, stations_m, offsets, |offset, (i, a), (j, b)| {
+        let influence = Influence::new(path_nodes_m, stations_m, offsets, |offset, (i, a), (j, b)| {
             (0..2)
                 .map(|side| {
                     let nodes = flanks[side].nodes();
@@ -188,8 +190,8 @@ fn hat_centers(nodes: &[f64]) -> Vec<f64> {
     (0..=last).map(|i| (nodes[i.saturating_sub(1)] + nodes[i] + nodes[(i + 1).min(last)]) / 3.0).collect()
 }
 
-/// Tooth pairs that can be in contact at once lie up to this many pitches apart: points lie within the path and, with corner
-/// contact, half a base pitch beyond either end.
+/// Tooth pairs that can be in contact at once lie up to this many pitches apart: points lie within the path and, with
+/// corner contact, half a base pitch beyond either end.
 fn pair_offsets(pair: &Pair, corner_contact: bool) -> usize {
     let reach = if corner_contact { 2.0 * CORNER_REACH } else { 0.0 };
     (pair.total_contact_ratio() + reach + 1e-6).floor() as usize

@@ -1,14 +1,16 @@
 //! The tooth above its root as a plate of variable thickness with free end faces.
 //!
-//! Mindlin's plate (shear factor 5/6) in the middle surface of the tooth: deflection w and rotations θ_y (over the height)
-//! and θ_t (along the tooth trace), polynomials over the height, Legendre functions along the face. The root is clamped,
-//! top and end faces are free (natural boundary conditions), so that a load near an end face meets the softer free edge,
-//! and loads at different heights couple as the plate couples them. Even and odd functions of the face separate.
+//! Mindlin's plate (shear factor 5/6) in the middle surface of the tooth: deflection w and rotations θ_y (over the
+//! height) and θ_t (along the tooth trace), polynomials over the height, Legendre functions along the face. The root is
+//! clamped, top and end faces are free (natural boundary conditions), so that a load near an end face meets the softer
+//! free edge, and loads at different heights couple as the plate couples them. Even and odd functions of the face
+//! separate.
 //!
-//! What stands below the root gets the plate's reactions: normal force, moment about the trace, and the twisting moment,
-//! which goes into the normal force because the root turns with the slope of its own displacement along the trace.
+//! The body below the root is loaded by the plate's reactions: normal force, moment about the trace, and the twisting
+//! moment, which goes into the normal force because the root turns with the slope of its own displacement along the
+//! trace.
 
-use super::body::WidthBasis;
+use super::ring::WidthBasis;
 use crate::numerics::dense::{add_product, cholesky_inlined, forward_solve_columns};
 use crate::numerics::gauss::gauss_12;
 use crate::simd::vectorised;
@@ -17,8 +19,10 @@ use crate::simd::vectorised;
 const ORDER: usize = 5;
 
 /// Shape and material of the plate; Young's modulus is one.
-pub struct Plate<'a> {
+pub(super) struct Plate<'a> {
+    /// Height from the root circle to the tip.
     pub height_m: f64,
+    /// Poisson's ratio.
     pub nu: f64,
     /// Cosine of the angle between trace and axis.
     pub cos_trace: f64,
@@ -26,16 +30,17 @@ pub struct Plate<'a> {
     pub thickness: &'a dyn Fn(f64) -> f64,
 }
 
-/// The plate's answers to loads H_j(η) P_q(z), over the Legendre functions of the face.
+/// Displacements and reactions of the plate under loads H_j(η) P_q(z), over the Legendre functions of the face.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PlateModes {
+pub(super) struct PlateModes {
     height_m: f64,
     size: usize,
     /// Deflection coefficients per load coefficients, ((j, q), (j', q')), j from 1.
     deflection: Vec<f64>,
     /// Force and moment of the root per load coefficients, (q, (j, q')): what the clamped root adds to the load itself.
     root: [Vec<f64>; 2],
-    /// What the plate resists to displacements of its root: force and moment per displacement and rotation, ((0 or 1, q), same).
+    /// Stiffness of the plate against displacements of its root: force and moment per displacement and rotation, ((0 or
+    /// 1, q), same).
     pub resistance: Vec<f64>,
 }
 
@@ -69,7 +74,7 @@ fn slopes(eta: f64) -> [f64; ORDER + 1] {
 
 /// Integrals over the height of products of functions and slopes, weighted with bending and shear stiffness.
 #[derive(Clone, Copy, Default)]
-struct Sections {
+struct SectionIntegrals {
     bend_ss: f64,
     bend_nn: f64,
     bend_sn: f64,
@@ -82,8 +87,8 @@ struct Sections {
 const FUNCTIONS: usize = ORDER + 1;
 
 impl Plate<'_> {
-    fn sections(&self) -> [[Sections; FUNCTIONS]; FUNCTIONS] {
-        let mut out = [[Sections::default(); FUNCTIONS]; FUNCTIONS];
+    fn sections(&self) -> [[SectionIntegrals; FUNCTIONS]; FUNCTIONS] {
+        let mut out = [[SectionIntegrals::default(); FUNCTIONS]; FUNCTIONS];
         let shear = 5.0 / 6.0 / (2.0 * (1.0 + self.nu));
         for (x, w) in gauss_12() {
             // η = t² takes the square root out of the fillet at the root circle.
@@ -111,7 +116,7 @@ impl Plate<'_> {
     }
 
     /// Solves the plate over the functions of `basis`.
-    pub fn modes(&self, basis: &WidthBasis) -> PlateModes {
+    pub(super) fn modes(&self, basis: &WidthBasis) -> PlateModes {
         let sections = self.sections();
         let size = basis.order + 1;
         let mut modes = PlateModes {
@@ -127,10 +132,11 @@ impl Plate<'_> {
         modes
     }
 
-    /// Stiffness between field `f` of function `a`, degree `p`, and field `g` of function `b`, degree `q`; fields w, θ_y, θ_t.
+    /// Stiffness between field `f` of function `a`, degree `p`, and field `g` of function `b`, degree `q`; fields w,
+    /// θ_y, θ_t.
     fn stiffness(
         &self,
-        s: &[[Sections; FUNCTIONS]; FUNCTIONS],
+        s: &[[SectionIntegrals; FUNCTIONS]; FUNCTIONS],
         basis: &WidthBasis,
         (f, a, p): (usize, usize, usize),
         (g, b, q): (usize, usize, usize),
@@ -154,7 +160,7 @@ impl Plate<'_> {
 
     fn half(
         &self,
-        sections: &[[Sections; FUNCTIONS]; FUNCTIONS],
+        sections: &[[SectionIntegrals; FUNCTIONS]; FUNCTIONS],
         basis: &WidthBasis,
         parity: usize,
         out: &mut PlateModes,
@@ -239,7 +245,7 @@ impl PlateModes {
     }
 
     /// Deflection coefficients at `height_m` per load coefficients at `load_m`, times Young's modulus: `size` × `size`.
-    pub fn deflection(&self, height_m: f64, load_m: f64) -> Vec<f64> {
+    pub(super) fn deflection(&self, height_m: f64, load_m: f64) -> Vec<f64> {
         let (size, width) = (self.size, ORDER * self.size);
         let (at, load) = (self.shapes(height_m), self.shapes(load_m));
         let mut out = vec![0.0; size * size];
@@ -258,7 +264,7 @@ impl PlateModes {
     }
 
     /// Force (0) or moment (1) coefficients that reach the root per load coefficients at `load_m`: `size` × `size`.
-    pub fn root(&self, which: usize, load_m: f64) -> Vec<f64> {
+    pub(super) fn root(&self, which: usize, load_m: f64) -> Vec<f64> {
         let (size, width) = (self.size, ORDER * self.size);
         let load = self.shapes(load_m);
         let mut out = vec![0.0; size * size];

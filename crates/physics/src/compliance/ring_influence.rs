@@ -1,10 +1,10 @@
-//! Flexibility of a ring under the loads that its teeth hand to it: forces and moments distributed along the roots (Legendre
-//! functions of the face, following the helix), on one tooth and between teeth some pitches apart.
+//! Flexibility of a ring under the loads that its teeth hand to it: forces and moments distributed along the roots
+//! (Legendre functions of the face, following the helix), on one tooth and between teeth some pitches apart.
 
 use std::f64::consts::PI;
 
 use super::annulus::arc_shapes;
-use super::body::{Ring, RingSolver, WidthBasis};
+use super::ring::{Ring, RingSolver, WidthBasis};
 use crate::numerics::dense::{add_product, dot};
 use crate::numerics::gauss::gauss_legendre;
 use crate::simd::vectorised;
@@ -15,39 +15,45 @@ use crate::simd::vectorised;
 const RING_WAVES_PER_MODULE: (f64, f64) = (0.8, 1.8);
 
 /// Share of the ring model at a wave number (rad/m) across the tooth.
-pub fn ring_weight(wave_per_m: f64, normal_module_m: f64) -> f64 {
+pub(super) fn ring_weight(wave_per_m: f64, normal_module_m: f64) -> f64 {
     let (low, high) = RING_WAVES_PER_MODULE;
     let t = ((wave_per_m * normal_module_m - low) / (high - low)).clamp(0.0, 1.0);
     0.5 * (1.0 + (PI * t).cos())
 }
 
-/// Where the teeth stand on the ring.
+/// Arrangement of the teeth on the ring.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ToothLayout {
+pub(super) struct ToothLayout {
+    /// Number of teeth.
     pub teeth: u32,
+    /// Half angle of a tooth at the root circle.
     pub root_half_angle_rad: f64,
     /// Turn of the tooth per length of face, tanβ_b / r_b.
     pub twist_per_m: f64,
+    /// Helix angle at the root circle.
     pub root_helix_angle_rad: f64,
+    /// Normal module.
     pub normal_module_m: f64,
     /// +1 pinion, -1 gear: sign of the axial force and, reversed, of the angles along the direction of the force.
     pub side: f64,
 }
 
-/// Kinds of root load: tangential force, moment / r_f (radial traction linear across the tooth), radial force, axial force.
-pub const KINDS: usize = 4;
+/// Kinds of root load: tangential force, moment / r_f (radial traction linear across the tooth), radial force, axial
+/// force.
+pub(super) const KINDS: usize = 4;
 
 /// Displacements of root loads (conjugate to them) per root load: kinds times Legendre functions of the face.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RingFlexibility {
+pub(super) struct RingFlexibility {
     /// Functions of the face per kind.
     pub size: usize,
-    /// One square row-major matrix over (kind, degree) per pitch between the teeth. Row: the tooth that is ahead in the mesh.
+    /// One square row-major matrix over (kind, degree) per pitch between the teeth. Row: the tooth that is ahead in the
+    /// mesh.
     pub offsets: Vec<Vec<f64>>,
 }
 
-/// Flexibilities of all harmonics: the low ones and every so many of the high ones are computed, the others interpolated
-/// (cubic through four) in n times flexibility, which tends to the half-space's constant.
+/// Flexibilities of all harmonics: the low ones and every so many of the high ones are computed, the others
+/// interpolated (cubic through four) in n times flexibility, which tends to the half-space's constant.
 struct Harmonics {
     orders: Vec<f64>,
     computed: Vec<[Vec<f64>; 2]>,
@@ -128,10 +134,10 @@ impl Twist {
         Twist { points, angles, products }
     }
 
-    /// Fills `out`: for even and odd degrees p of the ring, rows over the sorted degrees q of the tooth; the integral with the
-    /// cosine where p + q is even, with the sine where it is odd.
+    /// Fills `out`: for even and odd degrees p of the ring, rows over the sorted degrees q of the tooth; the integral
+    /// with the cosine where p + q is even, with the sine where it is odd.
     #[inline(always)]
-    fn at(&self, n: f64, sorted: Sorted, waves: &mut [Vec<f64>; 2], out: &mut [Vec<f64>; 2]) {
+    fn at(&self, n: f64, sorted: ParityOrder, waves: &mut [Vec<f64>; 2], out: &mut [Vec<f64>; 2]) {
         for wave in waves.iter_mut() {
             wave.resize(self.points, 0.0);
         }
@@ -152,13 +158,14 @@ impl Twist {
     }
 }
 
-/// Degrees 0..size with the even ones first; matrices over them in four blocks (even and odd rows by even and odd columns).
+/// Degrees 0..size with the even ones first; matrices over them in four blocks (even and odd rows by even and odd
+/// columns).
 #[derive(Debug, Clone, Copy)]
-struct Sorted {
+struct ParityOrder {
     size: usize,
 }
 
-impl Sorted {
+impl ParityOrder {
     fn count(self, parity: usize) -> usize {
         (self.size + 1 - parity) / 2
     }
@@ -167,7 +174,7 @@ impl Sorted {
         degree / 2 + if degree % 2 == 1 { self.count(0) } else { 0 }
     }
 
-    /// Where the block of rows and columns of these parities stands.
+    /// Range of the block of rows and columns of these parities.
     fn block(self, rows: usize, columns: usize) -> std::ops::Range<usize> {
         let start = rows * self.count(0) * self.size + columns * self.count(rows) * self.count(0);
         start..start + self.count(rows) * self.count(columns)
@@ -176,13 +183,13 @@ impl Sorted {
 
 impl RingFlexibility {
     /// Flexibility over the functions of `basis`, for teeth up to `offsets` pitches apart.
-    pub fn new(ring: &Ring, basis: &WidthBasis, layout: &ToothLayout, offsets: usize) -> RingFlexibility {
+    pub(super) fn new(ring: &Ring, basis: &WidthBasis, layout: &ToothLayout, offsets: usize) -> RingFlexibility {
         let reach = ring.outer_radius_m * layout.root_helix_angle_rad.cos();
         let highest = (RING_WAVES_PER_MODULE.1 / layout.normal_module_m * reach).ceil().max(3.0) as u32;
         let solver = RingSolver::new(ring, basis);
         let mut harmonics = Harmonics::new(&solver, highest);
-        let mut sum = Sum::new(basis, Twist::new(basis, ring.face_width_m, layout.twist_per_m, highest));
-        let sorted = Sorted { size: basis.order + 1 };
+        let mut sum = HarmonicSum::new(basis, Twist::new(basis, ring.face_width_m, layout.twist_per_m, highest));
+        let sorted = ParityOrder { size: basis.order + 1 };
         let mut offsets = vec![vec![0.0; (KINDS * sorted.size).pow(2)]; offsets + 1];
         vectorised(
             #[inline(always)]
@@ -201,7 +208,7 @@ impl RingFlexibility {
 }
 
 /// From blocks by kind and parity to one matrix over (kind, degree).
-fn natural(blocks: &[f64], sorted: Sorted) -> Vec<f64> {
+fn natural(blocks: &[f64], sorted: ParityOrder) -> Vec<f64> {
     let size = sorted.size;
     let width = KINDS * size;
     let mut out = vec![0.0; width * width];
@@ -217,8 +224,8 @@ fn natural(blocks: &[f64], sorted: Sorted) -> Vec<f64> {
     out
 }
 
-/// Whether degree `q` of component `c` takes the sine of the twist in the first block of the ring (in the second block it is
-/// the reverse).
+/// 1 where degree `q` of component `c` takes the sine of the twist in the first block of the ring (in the second block
+/// it is the reverse).
 fn sine(c: usize, q: usize) -> i32 {
     ((usize::from(c == 2) + q) % 2) as i32
 }
@@ -235,10 +242,11 @@ fn real_part(d: i32, sin: f64, cos: f64) -> f64 {
 
 /// Adds up the harmonics in the functions of the teeth.
 ///
-/// A load of unit phase e^{inψ} is i^τ times a real column: tangential displacements and the moment carry one i, the sine of the
-/// twist carries -i. The product of two columns takes the cosine or the sine of the angle between the teeth.
-struct Sum {
-    sorted: Sorted,
+/// A load of unit phase e^{inψ} is i^τ times a real column: tangential displacements and the moment carry one i, the
+/// sine of the twist carries -i. The product of two columns takes the cosine or the sine of the angle between the
+/// teeth.
+struct HarmonicSum {
+    sorted: ParityOrder,
     twist: Twist,
     waves: [Vec<f64>; 2],
     twisted: [Vec<f64>; 2],
@@ -249,11 +257,11 @@ struct Sum {
     components: Vec<f64>,
 }
 
-impl Sum {
-    fn new(basis: &WidthBasis, twist: Twist) -> Sum {
-        let sorted = Sorted { size: basis.order + 1 };
+impl HarmonicSum {
+    fn new(basis: &WidthBasis, twist: Twist) -> HarmonicSum {
+        let sorted = ParityOrder { size: basis.order + 1 };
         let size = sorted.size;
-        Sum {
+        HarmonicSum {
             sorted,
             twist,
             waves: [Vec::new(), Vec::new()],

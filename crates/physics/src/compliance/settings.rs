@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::flank::BodyHold;
+use super::member::BodyHold;
 use crate::gear::Pair;
 
 /// Choices of the analysis.
@@ -10,13 +10,14 @@ use crate::gear::Pair;
 pub struct Settings {
     /// Positions over one mesh period, equally spaced from phase 0; `None`: where `accuracy` needs them.
     pub positions: Option<usize>,
-    /// Agreement of stiffness and transmission error between positions, as a part of their means, that chosen positions have to reach.
+    /// Agreement of stiffness and transmission error between positions, as a part of their means, that chosen positions
+    /// have to reach.
     pub accuracy: f64,
     /// Slices of the contact lines over the face width of a half; `None`: as many as the width and the overlap need.
     pub slices: Option<usize>,
-    /// Where the gear bodies are held.
+    /// Surface on which the gear bodies are held.
     pub body: BodyHold,
-    /// Whether tip corners may touch outside the theoretical path of contact.
+    /// True where tip corners may touch outside the theoretical path of contact.
     pub corner_contact: bool,
 }
 
@@ -28,16 +29,17 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Slices in use for `pair`: three and a half per normal module of face width and sixteen per unit of overlap, 28 to 140. The contact lines'
-    /// ends are cut exactly and corner contacts finer, so that more change the mean stiffness by less than 0.1 %.
+    /// Slices in use for `pair`: three and a half per normal module of face width and sixteen per unit of overlap, 28
+    /// to 140. The contact lines' ends are cut exactly and corner contacts finer, so that more change the mean
+    /// stiffness by less than 0.1 %.
     pub fn slice_count(&self, pair: &Pair) -> usize {
         let per_width = 3.5 * pair.spec.face_width_m / pair.spec.normal_module_m;
         let per_overlap = 16.0 * pair.overlap_ratio;
         self.slices.unwrap_or(per_width.max(per_overlap).ceil().clamp(28.0, 140.0) as usize).clamp(4, 256)
     }
 
-    /// Stations of the bulk flexibility over the face width: one and a half per normal module, 10 to 48; four for every wave of the analytic model's Legendre functions. Its decay along the face is one and a half
-    /// normal modules.
+    /// Stations of the bulk flexibility over the face width: one and a half per normal module, 10 to 48; four for every
+    /// wave of the analytic model's Legendre functions. Its decay along the face is one and a half normal modules.
     pub fn station_count(&self, pair: &Pair) -> usize {
         (1.5 * pair.spec.face_width_m / pair.spec.normal_module_m).ceil().clamp(10.0, 48.0) as usize
     }

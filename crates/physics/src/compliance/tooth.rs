@@ -1,28 +1,36 @@
-//! One tooth: its profile, where loads meet its middle surface, and what of its root the ring leaves to it.
+//! One tooth: its profile, the points at which loads meet its middle surface, and the short-wave compliance of its
+//! root.
 //!
-//! The normal section is what bends. The flank normal meets the middle surface of the tooth at the radius y_c, where it has
-//! the components cosβ_b cosα' (tangential), cosβ_b sinα' (radial) and sinβ_b (axial), cosα' = r_b / y_c. Its part in
-//! the tangent plane of the cylinder through y_c is exactly perpendicular to the tooth trace there, so that in the normal
-//! section sinα'_n = cosβ_b sinα': the part cosα'_n bends the tooth as a plate (`plate`), the part sinα'_n presses it
-//! along its height. The axial component moves the meeting point along the face by depth × sinβ_b: on the acute side of a
-//! helical tooth's end face beyond its end, on the obtuse side inwards.
+//! The normal section is what bends. The flank normal meets the middle surface of the tooth at the radius y_c, where it
+//! has the components cosβ_b cosα' (tangential), cosβ_b sinα' (radial) and sinβ_b (axial), cosα' = r_b / y_c. Its part
+//! in the tangent plane of the cylinder through y_c is exactly perpendicular to the tooth trace there, so that in the
+//! normal section sinα'_n = cosβ_b sinα': the part cosα'_n bends the tooth as a plate (`plate`), the part sinα'_n
+//! presses it along its height. The axial component moves the meeting point along the face by depth × sinβ_b: on the
+//! acute side of a helical tooth's end face beyond its end, on the obtuse side inwards.
 //!
 //! The displacement meant is that of the middle surface along the load line: the contact indentation above it is
 //! `hertz`'s.
 
 use super::annulus::arc_flexibility;
-use super::body::WidthBasis;
 use super::plate::{Plate, PlateModes};
+use super::ring::WidthBasis;
 use crate::numerics::gauss::gauss_12;
 
 /// Profile and position of one tooth form, in SI.
-pub struct ToothForm<'a> {
+pub(super) struct ToothProfile<'a> {
+    /// Base radius.
     pub base_radius_m: f64,
+    /// Radius of the root circle.
     pub root_radius_m: f64,
+    /// Radius of the tip circle.
     pub tip_radius_m: f64,
+    /// Half angle of the tooth at the base circle.
     pub base_half_angle_rad: f64,
+    /// Half angle of the tooth at the root circle.
     pub root_half_angle_rad: f64,
+    /// Base helix angle.
     pub base_helix_angle_rad: f64,
+    /// Normal module.
     pub normal_module_m: f64,
     /// Half angle of the tooth at a radius between root and tip.
     pub half_angle: &'a dyn Fn(f64) -> f64,
@@ -30,7 +38,7 @@ pub struct ToothForm<'a> {
 
 /// One tooth of a member.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tooth {
+pub(super) struct Tooth {
     base_radius_m: f64,
     root_radius_m: f64,
     base_half_angle_rad: f64,
@@ -39,13 +47,16 @@ pub struct Tooth {
 
 /// Unit normal force at one place of the profile, as the tooth takes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub(super) struct ProfilePoint {
     /// Components of the flank normal: tangential, radial (outwards), axial (with the sign of the member's side).
     pub tangential: f64,
+    /// Radial component, outwards.
     pub radial: f64,
+    /// Axial component, with the sign of the member's side.
     pub axial: f64,
     /// In the normal section: across the tooth and along its height.
     pub lateral: f64,
+    /// Component along the height of the tooth in the normal section.
     pub normal_sin: f64,
     /// Height of the meeting point with the middle surface above the root circle.
     pub lever_m: f64,
@@ -56,7 +67,8 @@ pub struct Place {
 }
 
 impl Tooth {
-    pub fn new(form: &ToothForm<'_>) -> Tooth {
+    /// The tooth of a profile.
+    pub(super) fn new(form: &ToothProfile<'_>) -> Tooth {
         Tooth {
             base_radius_m: form.base_radius_m,
             root_radius_m: form.root_radius_m,
@@ -66,10 +78,10 @@ impl Tooth {
     }
 
     /// The place at roll length `roll_m`; `side` is +1 or -1, the sign of the axial force in the body's coordinates.
-    pub fn at(&self, roll_m: f64, side: f64) -> Place {
+    pub(super) fn at(&self, roll_m: f64, side: f64) -> ProfilePoint {
         let (sin_b, cos_b) = self.base_helix;
         let at = self.crossing(roll_m);
-        Place {
+        ProfilePoint {
             tangential: cos_b * at.cos,
             radial: -cos_b * at.sin,
             axial: side * sin_b,
@@ -82,8 +94,8 @@ impl Tooth {
     }
 }
 
-/// Where the load line crosses the tooth centreline.
-struct Crossing {
+/// Intersection of the load line with the centreline of the tooth.
+struct LoadLineCrossing {
     sin: f64,
     cos: f64,
     /// sin of the load angle in the normal section.
@@ -95,7 +107,7 @@ struct Crossing {
 }
 
 impl Tooth {
-    fn crossing(&self, roll_m: f64) -> Crossing {
+    fn crossing(&self, roll_m: f64) -> LoadLineCrossing {
         let (_, cos_b) = self.base_helix;
         let r_b = self.base_radius_m;
         // Along the base tangent the centreline is `tangent` away; along the flank normal it is met `depth` away, after
@@ -104,7 +116,7 @@ impl Tooth {
         let depth_m = (tangent * cos_b).max(1e-3 * self.base_half_angle_rad * r_b);
         let roll = roll_m - depth_m * cos_b;
         let radius = r_b.hypot(roll);
-        Crossing {
+        LoadLineCrossing {
             sin: roll / radius,
             cos: r_b / radius,
             normal_sin: cos_b * roll / radius,
@@ -115,7 +127,7 @@ impl Tooth {
 }
 
 /// The tooth of `form` as a plate over the functions of `basis`; Young's modulus is one.
-pub fn plate(form: &ToothForm<'_>, nu: f64, basis: &WidthBasis) -> PlateModes {
+pub(super) fn plate(form: &ToothProfile<'_>, nu: f64, basis: &WidthBasis) -> PlateModes {
     let tan_base = form.base_helix_angle_rad.tan();
     let cos_at = |r: f64| 1.0 / (1.0 + (r * tan_base / form.base_radius_m).powi(2)).sqrt();
     let plate = Plate {
@@ -130,9 +142,9 @@ pub fn plate(form: &ToothForm<'_>, nu: f64, basis: &WidthBasis) -> PlateModes {
     plate.modes(basis)
 }
 
-/// Compression of the tooth from the root circle to `lever_m` above it per force along its height and per unit face width,
-/// times Young's modulus.
-pub fn compression(form: &ToothForm<'_>, nu: f64, lever_m: f64) -> f64 {
+/// Compression of the tooth from the root circle to `lever_m` above it per force along its height and per unit face
+/// width, times Young's modulus.
+pub(super) fn compression(form: &ToothProfile<'_>, nu: f64, lever_m: f64) -> f64 {
     let mut sum = 0.0;
     for (x, w) in gauss_12() {
         let t = 0.5 * (1.0 + x);
@@ -144,18 +156,19 @@ pub fn compression(form: &ToothForm<'_>, nu: f64, lever_m: f64) -> f64 {
 
 /// Part of the root's flexibility with short waves across the tooth: plane strain in the normal section, on the virtual
 /// annulus of that section (radius r_f / cos²β).
-pub struct RootRemainder {
+pub(super) struct RootRemainder {
     /// Over tangential force, moment / virtual radius and radial force, times Young's modulus and face width.
     pub matrix: [[f64; 3]; 3],
+    /// Radius of the virtual root circle in the normal section, r_f / cos²β.
     pub virtual_radius_m: f64,
-    /// Decay length of its answer along the face.
+    /// Decay length of its displacement along the face.
     pub decay_m: f64,
 }
 
 impl RootRemainder {
-    /// `weight(κ)` is the part of the body's flexibility at circumferential wave number κ (rad/m, across the tooth) that the
-    /// ring leaves to the tooth's own root.
-    pub fn new(form: &ToothForm<'_>, nu: f64, weight: &dyn Fn(f64) -> f64) -> RootRemainder {
+    /// `weight(κ)` is the part of the body's flexibility at circumferential wave number κ (rad/m, across the tooth)
+    /// that the ring leaves to the tooth's own root.
+    pub(super) fn new(form: &ToothProfile<'_>, nu: f64, weight: &dyn Fn(f64) -> f64) -> RootRemainder {
         let tan = form.root_radius_m * form.base_helix_angle_rad.tan() / form.base_radius_m;
         let cos = 1.0 / (1.0 + tan * tan).sqrt();
         let r = form.root_radius_m / (cos * cos);

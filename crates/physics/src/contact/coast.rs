@@ -8,13 +8,14 @@ use crate::gear::Pair;
 use crate::numerics::interpolation;
 use crate::watch::Watch;
 
-/// Solves both halves of `pair` on its coast flanks under a torque of the magnitude `torque_nm` that the gear drives the pinion with.
-/// `half_stagger` (part of a transverse pitch) advances the right half.
+/// Solves both halves of `pair` on its coast flanks under a torque of the magnitude `torque_nm` that the gear drives
+/// the pinion with. `half_stagger` (part of a transverse pitch) advances the right half.
 ///
-/// Everything is told over the phase of `pair` and in the order in which it happens: curves over the phase, a pair's load share from its first
-/// theoretical contact (at the pinion's tip) on. Forces and deflections are those of the flanks in contact, and positive. The axial shift is the real
-/// pinion's: positive where it closes the left half's drive flanks and opens its coast flanks. The `entry` of each half is that of the
-/// mirrored pair: of the real gears it is the exit.
+/// Everything is given over the phase of `pair` and in the order in which it happens: curves over the phase, a pair's
+/// load share from its first theoretical contact (at the pinion's tip) on. Forces and deflections are those of the
+/// flanks in contact, and positive. The axial shift is the real pinion's: positive where it closes the left half's
+/// drive flanks and opens its coast flanks. The `entry` of each half is that of the mirrored pair: of the real gears it
+/// is the exit.
 pub fn solve_coast_halves(
     pair: &Pair,
     torque_nm: f64,
@@ -23,7 +24,7 @@ pub fn solve_coast_halves(
     settings: &Settings,
     watch: Watch<'_>,
 ) -> Result<LoadedContact, ContactError> {
-    // What comes later in the real time came earlier in the mirrored.
+    // The mirrored time runs backwards.
     let from = pair.coast_phase(0.0);
     let mut contact = solve_from(from, &pair.coast(), torque_nm, -half_stagger, compliance, settings, watch)?;
     let stagger = half_stagger - half_stagger.floor();
@@ -45,8 +46,8 @@ fn backwards<T>(values: &mut [T]) {
 }
 
 impl HalfCycle {
-    /// Curves and path in the reverse order; the first position is at the phase `lead` of this half, and a pair's theoretical path of contact is
-    /// `pitches` base pitches long.
+    /// Curves and path in the reverse order; the first position is at the phase `lead` of this half, and a pair's
+    /// theoretical path of contact is `pitches` base pitches long.
     fn run_backwards(&mut self, lead: f64, pitches: f64) {
         let count = self.phase.len() as f64;
         self.phase = (0..self.phase.len()).map(|i| (i as f64 / count + lead).fract()).collect();

@@ -4,24 +4,27 @@ use serde::{Deserialize, Serialize};
 
 use super::error::ContactError;
 use super::half::HalfContact;
-use super::position::Loaded;
-use super::refine::Positions;
+use super::position::LoadedPosition;
+use super::refine::RefinedPositions;
 use crate::compliance::line_contact;
 use crate::gear::Pair;
 use crate::numerics::{PeriodicMonotoneCubic, interpolation};
 
 /// Mean, least and largest value over the mesh period (arithmetic mean over the positions).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Extent {
+pub struct CurveStatistics {
+    /// Arithmetic mean.
     pub mean: f64,
+    /// Least value.
     pub min: f64,
+    /// Largest value.
     pub max: f64,
 }
 
-impl Extent {
+impl CurveStatistics {
     /// Of a non-empty list.
-    pub fn of(values: &[f64]) -> Extent {
-        Extent {
+    pub fn of(values: &[f64]) -> CurveStatistics {
+        CurveStatistics {
             mean: values.iter().sum::<f64>() / values.len() as f64,
             min: values.iter().copied().fold(f64::INFINITY, f64::min),
             max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
@@ -45,7 +48,9 @@ pub struct FlankMap {
 pub struct EntryDeflection {
     /// Roll before the theoretical start of contact, ascending from 0.
     pub overrun_m: Vec<f64>,
+    /// Approach of the pairs in mesh along the transverse base tangent at every overrun.
     pub deflection_m: Vec<f64>,
+    /// Tangent stiffness of the pairs in mesh at every overrun.
     pub stiffness_n_per_m: Vec<f64>,
 }
 
@@ -55,18 +60,14 @@ impl EntryDeflection {
     pub fn deflection_before_entry_m(&self, overrun_m: f64) -> f64 {
         interpolation::linear(&self.overrun_m, &self.deflection_m, overrun_m)
     }
-
-    /// Tangent stiffness of the pairs in mesh at the same state.
-    pub fn stiffness_before_entry_n_per_m(&self, overrun_m: f64) -> f64 {
-        interpolation::linear(&self.overrun_m, &self.stiffness_n_per_m, overrun_m)
-    }
 }
 
 /// Loaded contact of one half over one mesh period. Forces and displacements along the transverse base tangent.
 ///
-/// Phase 0: a pair stands at its first theoretical contact at the mesh-in end; phase 1: the next one does.
+/// Phase 0: a pair is at its first theoretical contact at the mesh-in end; phase 1: the next one does.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HalfCycle {
+    /// Phase of every position, base pitches.
     pub phase: Vec<f64>,
     /// F_bt at every position: constant, except where the halves of a spur-like pair share by deflection.
     pub force_bt_n: Vec<f64>,
@@ -84,7 +85,7 @@ pub struct HalfCycle {
     pub load_share: Vec<f64>,
     /// Share of the entering pair 0.05 base pitches after its theoretical start of contact.
     pub load_share_at_mesh_in: f64,
-    /// How long one pair carries load, in base pitches.
+    /// Length of the path over which one pair carries load, in base pitches.
     pub loaded_contact_ratio: f64,
     /// Path (base pitches) at which a pair begins and ends to carry load.
     pub load_begins_and_ends: [f64; 2],
@@ -94,17 +95,22 @@ pub struct HalfCycle {
     pub max_line_load_interior_n_per_m: f64,
     /// Hertzian pressure at that kind of point, largest over the period.
     pub max_hertz_pressure_pa: f64,
+    /// Line load over the flank.
     pub flank_map: FlankMap,
+    /// Deflection before a pair enters.
     pub entry: EntryDeflection,
-    pub stiffness: Extent,
-    pub secant_stiffness: Extent,
-    pub transmission_error: Extent,
+    /// Statistics of `stiffness_n_per_m`.
+    pub stiffness: CurveStatistics,
+    /// Statistics of `secant_stiffness_n_per_m`.
+    pub secant_stiffness: CurveStatistics,
+    /// Statistics of `transmission_error_m`.
+    pub transmission_error: CurveStatistics,
     /// Amplitudes of the first harmonics of the transmission error per mesh period.
     pub transmission_error_harmonics_m: Vec<f64>,
     /// Positions solved.
     pub positions: usize,
-    /// Change of the curves' Fourier coefficients by the positions that confirmed the others, as a part of the means; `None` for given
-    /// positions.
+    /// Change of the curves' Fourier coefficients by the positions that confirmed the others, as a part of the means;
+    /// `None` for given positions.
     pub position_error: Option<f64>,
     /// Slices of the contact lines over the face width.
     pub slices: usize,
@@ -118,7 +124,8 @@ pub struct HalfCycle {
 pub const MESH_IN_PHASE: f64 = 0.05;
 /// Rows and columns of the flank map.
 const MAP_ROWS: usize = 24;
-/// Ends of the lines of contact that the interior line load leaves out, in normal modules along the line: edge effects reach that far.
+/// Ends of the lines of contact that the interior line load leaves out, in normal modules along the line: edge effects
+/// reach that far.
 const LINE_END_MODULES: f64 = 0.75;
 /// Positions at which fewer slices are tried.
 const SLICE_CHECKS: usize = 5;
@@ -127,32 +134,36 @@ const HARMONICS: usize = 8;
 /// Points of the entry table.
 const ENTRY_POINTS: usize = 7;
 /// Smallest share that counts as carrying load.
-const CARRIES: f64 = 1e-9;
+const LEAST_SHARE: f64 = 1e-9;
 
 /// Positions of the curves when the solved positions are chosen by accuracy, and of spur halves that share the torque.
-pub const CURVE_POSITIONS: usize = 64;
+pub(super) const CURVE_POSITIONS: usize = 64;
 
 /// Puts positions together to a [`HalfCycle`].
-pub struct CycleBuilder<'a> {
+pub(super) struct CycleBuilder<'a> {
     pair: &'a Pair,
     slices: usize,
     /// Phase, F_bt, state.
-    states: Vec<(f64, f64, Loaded)>,
+    states: Vec<(f64, f64, LoadedPosition)>,
     /// Phase of the first curve position when the curves are interpolated, and the error of that.
     resampled: Option<(f64, f64)>,
 }
 
 impl<'a> CycleBuilder<'a> {
     /// Curves over the solved positions themselves, equally spaced: phase, F_bt and state of each.
-    pub fn at_positions(pair: &'a Pair, slices: usize, states: Vec<(f64, f64, Loaded)>) -> CycleBuilder<'a> {
+    pub(super) fn at_positions(
+        pair: &'a Pair,
+        slices: usize,
+        states: Vec<(f64, f64, LoadedPosition)>,
+    ) -> CycleBuilder<'a> {
         CycleBuilder { pair, slices, states, resampled: None }
     }
 
     /// Curves over equally spaced positions from `from` between positions solved where they were needed.
-    pub fn refined(
+    pub(super) fn refined(
         pair: &'a Pair,
         slices: usize,
-        positions: Positions,
+        positions: RefinedPositions,
         force_bt_n: f64,
         from: f64,
     ) -> CycleBuilder<'a> {
@@ -162,13 +173,13 @@ impl<'a> CycleBuilder<'a> {
 
     /// Solves the special states (mesh-in share, begin and end of load, entry) and closes the period. `force_at` gives
     /// F_bt at a phase.
-    pub fn finish(
+    pub(super) fn finish(
         self,
         contact: &mut HalfContact<'_>,
         force_at: &dyn Fn(f64) -> f64,
     ) -> Result<HalfCycle, ContactError> {
         let states = &self.states;
-        let column = |f: &dyn Fn(&(f64, f64, Loaded)) -> f64| {
+        let column = |f: &dyn Fn(&(f64, f64, LoadedPosition)) -> f64| {
             let solved: Vec<f64> = states.iter().map(f).collect();
             match self.resampled {
                 None => solved,
@@ -194,9 +205,9 @@ impl<'a> CycleBuilder<'a> {
         Ok(HalfCycle {
             phase,
             force_bt_n: column(&|s| s.1),
-            stiffness: Extent::of(&stiffness),
-            secant_stiffness: Extent::of(&secant),
-            transmission_error: Extent::of(&error),
+            stiffness: CurveStatistics::of(&stiffness),
+            secant_stiffness: CurveStatistics::of(&secant),
+            transmission_error: CurveStatistics::of(&error),
             transmission_error_harmonics_m: harmonics(&error),
             stiffness_n_per_m: stiffness,
             secant_stiffness_n_per_m: secant,
@@ -239,8 +250,8 @@ impl<'a> CycleBuilder<'a> {
         share: &[f64],
     ) -> Result<[f64; 2], ContactError> {
         let step = 1.0 / 16.0;
-        let first = share.iter().position(|&s| s > CARRIES).unwrap_or(0);
-        let last = share.iter().rposition(|&s| s > CARRIES).unwrap_or(share.len() - 1);
+        let first = share.iter().position(|&s| s > LEAST_SHARE).unwrap_or(0);
+        let last = share.iter().rposition(|&s| s > LEAST_SHARE).unwrap_or(share.len() - 1);
         let below = if first > 0 { path[first - 1] } else { path[first] - step };
         let above = path.get(last + 1).copied().unwrap_or(path[last] + step);
         let mut out = [0.0; 2];
@@ -250,7 +261,7 @@ impl<'a> CycleBuilder<'a> {
                 let middle = 0.5 * (inside + outside);
                 let k = middle.floor();
                 let phase = middle - k;
-                if contact.at(phase, force_at(phase))?.share(k as i32) > CARRIES {
+                if contact.at(phase, force_at(phase))?.share(k as i32) > LEAST_SHARE {
                     inside = middle;
                 } else {
                     outside = middle;
@@ -293,7 +304,7 @@ impl<'a> CycleBuilder<'a> {
     /// Change of stiffness and transmission error with half as many slices, at a few of the positions.
     fn slice_error(&self, contact: &mut HalfContact<'_>) -> Result<f64, ContactError> {
         let step = (self.states.len() / SLICE_CHECKS).max(1);
-        contact.cut_into(self.slices / 2);
+        contact.set_slices(self.slices / 2);
         let mut sums = [[0.0; 2]; 2];
         for (phase, force, state) in self.states.iter().step_by(step) {
             let coarse = contact.at(*phase, *force)?;
@@ -305,7 +316,7 @@ impl<'a> CycleBuilder<'a> {
                 sum[1] += fine.abs();
             }
         }
-        contact.cut_into(self.slices);
+        contact.set_slices(self.slices);
         Ok(sums.map(|[change, whole]| change / whole.max(f64::MIN_POSITIVE)).into_iter().fold(0.0, f64::max))
     }
 
@@ -368,7 +379,7 @@ impl<'a> CycleBuilder<'a> {
 }
 
 /// Pairs with force.
-fn carrying(state: &Loaded) -> Vec<i32> {
+fn carrying(state: &LoadedPosition) -> Vec<i32> {
     let mut pairs: Vec<i32> =
         state.points.iter().zip(&state.forces_n).filter(|(_, f)| **f > 0.0).map(|(p, _)| p.pair).collect();
     pairs.dedup();

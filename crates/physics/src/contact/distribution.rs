@@ -4,54 +4,57 @@
 //! P B Pᵀ f + K f + h(f) + g - d 1 >= 0,   f >= 0,   f ∘ (P B Pᵀ f + K f + h(f) + g - d 1) = 0,   1ᵀ f = F
 //! ```
 //!
-//! (Conry and Seireg 1973 with a local term h.) B is the smooth flexibility of the bodies between the stations of the contact lines, P
-//! interpolates it to the points, K couples the points of one line locally. Newton on the nonlinear local approach within an
-//! active set, all changes of the set at once and warm-started; when that cycles, a primal active-set method that never leaves
-//! f >= 0.
+//! (Conry and Seireg 1973 with a local term h.) B is the smooth flexibility of the bodies between the stations of the
+//! contact lines, P interpolates it to the points, K couples the points of one line locally. Newton on the nonlinear
+//! local approach within an active set, all changes of the set at once and warm-started; when that cycles, a careful
+//! active-set method that never leaves f >= 0.
 
-use super::system::{LEAST_FORCE, Local, System, Workspace};
+use super::system::{ContactSystem, LEAST_FORCE, LocalApproach, Workspace};
 
 /// A converged distribution.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Distribution {
+pub(super) struct Distribution {
+    /// Normal force of every point, N.
     pub forces: Vec<f64>,
     /// Approach d of the bodies.
     pub approach: f64,
     /// dF/dd at the solution, with the contact set as it is.
     pub stiffness: f64,
+    /// Newton iterations.
     pub iterations: u32,
 }
 
-/// The iteration did not converge.
+/// Error of an iteration that did not converge.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stalled {
+pub(super) struct NotConverged {
+    /// Newton iterations.
     pub iterations: u32,
     /// Largest relative change of a force in the last iteration.
     pub change: f64,
 }
 
-const QUICK_ITERATIONS: u32 = 30;
-/// Change of a force, as a part of the whole, after which Newton's iteration ends: its convergence is quadratic, what is left is of the
-/// order of the change's square.
+const NEWTON_ITERATIONS: u32 = 30;
+/// Change of a force, as a part of the whole, after which Newton's iteration ends: its convergence is quadratic, what
+/// is left is of the order of the change's square.
 const TOLERANCE: f64 = 1e-6;
 
-/// What is prescribed of a distribution.
+/// Prescribed quantity of a distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Prescribed {
+pub(super) enum Prescribed {
     /// The sum of the forces.
     Force(f64),
-    /// The approach of the bodies, which has to be larger than the least gap; `expected_force` is the size of the forces to
-    /// begin with and to measure changes by.
+    /// The approach of the bodies, which has to be larger than the least gap; `expected_force` is the size of the
+    /// forces to begin with and to measure changes by.
     Approach { approach: f64, expected_force: f64 },
 }
 
 /// Distributes the force over the points. `start` holds forces of a neighbouring state, zeros and all.
-pub fn distribute<L: Local>(
-    system: &System<'_, L>,
+pub(super) fn distribute<L: LocalApproach>(
+    system: &ContactSystem<'_, L>,
     prescribed: Prescribed,
     start: &[f64],
     work: &mut Workspace,
-) -> Result<Distribution, Stalled> {
+) -> Result<Distribution, NotConverged> {
     let n = system.gaps.len();
     let total = match prescribed {
         Prescribed::Force(force) => force,
@@ -66,52 +69,52 @@ pub fn distribute<L: Local>(
     }
     work.entries.clear();
     work.entries.resize(n, 0);
-    let mut member = forces.iter().map(|&f| f > 0.0).collect::<Vec<_>>();
+    let mut active = forces.iter().map(|&f| f > 0.0).collect::<Vec<_>>();
     // Approach and gaps count from the least gap: gaps far above the deflections would drown them in rounding.
     let datum = system.gaps.iter().copied().fold(f64::INFINITY, f64::min);
     let above_datum = match prescribed {
         Prescribed::Force(_) => None,
         Prescribed::Approach { approach, .. } => Some(approach - datum),
     };
-    let limit = QUICK_ITERATIONS + 40 + 6 * n as u32;
+    let limit = NEWTON_ITERATIONS + 40 + 6 * n as u32;
     let mut change = f64::INFINITY;
     for iteration in 1..=limit {
-        let careful = iteration > QUICK_ITERATIONS;
-        let Some((approach, stiffness)) = system.newton((total, above_datum), datum, &forces, &member, work) else {
-            return Err(Stalled { iterations: iteration, change });
+        let primal = iteration > NEWTON_ITERATIONS;
+        let Some((approach, stiffness)) = system.newton((total, above_datum), datum, &forces, &active, work) else {
+            return Err(NotConverged { iterations: iteration, change });
         };
         let mut same = true;
         change = 0.0;
         let mut step = 1.0f64;
-        if careful {
+        if primal {
             for i in 0..n {
-                if member[i] && work.fresh[i] < 0.0 {
-                    step = step.min(forces[i] / (forces[i] - work.fresh[i]));
+                if active[i] && work.new_forces[i] < 0.0 {
+                    step = step.min(forces[i] / (forces[i] - work.new_forces[i]));
                 }
             }
         }
         for i in 0..n {
-            if !member[i] {
+            if !active[i] {
                 continue;
             }
-            let f = work.fresh[i];
+            let f = work.new_forces[i];
             let mut next = if step < 1.0 { forces[i] + step * (f - forces[i]) } else { f };
             if next <= 1e-14 * total && f <= 0.0 {
                 next = 0.0;
-                member[i] = false;
+                active[i] = false;
                 same = false;
             }
             change = change.max((next - forces[i]).abs() / total);
             forces[i] = next;
         }
-        if member.iter().all(|&m| !m) {
+        if active.iter().all(|&m| !m) {
             // Everything let go at once: begin again from the point with the least gap.
             let least = (0..n).min_by(|&a, &b| system.gaps[a].total_cmp(&system.gaps[b])).unwrap_or(0);
-            member[least] = true;
+            active[least] = true;
             forces[least] = total;
             continue;
         }
-        if step < 1.0 || (careful && change > TOLERANCE) {
+        if step < 1.0 || (primal && change > TOLERANCE) {
             continue;
         }
         // Points outside that would penetrate come in.
@@ -120,18 +123,18 @@ pub fn distribute<L: Local>(
         system.station_shifts(&forces, work);
         for (line, range) in system.lines.iter().enumerate() {
             for j in range.clone() {
-                if member[j] {
+                if active[j] {
                     continue;
                 }
                 let opening = system.deflection(line, j, &forces, work) + (system.gaps[j] - datum) - approach;
-                // What the least force that is told from none already takes up.
+                // Approach under the least force that counts as contact.
                 let least = system.local.approach(j, LEAST_FORCE * total / n as f64).0;
                 if opening < -slack.max(least) {
-                    if !careful {
-                        member[j] = true;
+                    if !primal {
+                        active[j] = true;
                         same = false;
-                        // The force that takes the penetration up locally: where to linearise, not a part of the balance.
-                        // One that has come in before and was let go again carries less than that.
+                        // The force that takes the penetration up locally: where to linearise, not a part of the
+                        // balance. One that has come in before and was let go again carries less than that.
                         let less = 0.1f64.powi(i32::from(work.entries[j]));
                         forces[j] = less * force_for(system.local, j, -opening, total / n as f64);
                         work.entries[j] = work.entries[j].saturating_add(1);
@@ -145,7 +148,7 @@ pub fn distribute<L: Local>(
         let deepest = work.entering.iter().fold(0.0f64, |deepest, e| deepest.min(e.0));
         for &(opening, j) in &work.entering {
             if opening <= 0.5 * deepest {
-                member[j] = true;
+                active[j] = true;
                 same = false;
             }
         }
@@ -154,11 +157,11 @@ pub fn distribute<L: Local>(
             return Ok(Distribution { forces, approach: approach + datum, stiffness, iterations: iteration });
         }
     }
-    Err(Stalled { iterations: limit, change })
+    Err(NotConverged { iterations: limit, change })
 }
 
 /// Force up to `most` under which point `i` approaches by `approach`, to a factor of two.
-fn force_for(local: &impl Local, i: usize, approach: f64, most: f64) -> f64 {
+fn force_for(local: &impl LocalApproach, i: usize, approach: f64, most: f64) -> f64 {
     let mut force = most;
     for _ in 0..30 {
         if local.approach(i, force).0 <= approach {
@@ -181,15 +184,15 @@ mod tests {
         per_force: f64,
     }
 
-    impl Local for Winkler {
+    impl LocalApproach for Winkler {
         fn approach(&self, _: usize, force: f64) -> (f64, f64) {
             (self.per_force * force, self.per_force)
         }
     }
 
     /// Uniform Winkler face, linear misalignment f_b over the width b, mean load w: K_Hβ = 1 + f_b c/(2w) while all of
-    /// the face carries, √(2 f_b c / w) beyond (closed form). The bulk carries nothing, or half of the foundation's compliance as a
-    /// diagonal bulk with a point at every station: both must give the closed form.
+    /// the face carries, √(2 f_b c / w) beyond (closed form). The bulk carries nothing, or half of the foundation's
+    /// compliance as a diagonal bulk with a point at every station: both must give the closed form.
     #[test]
     fn misaligned_winkler_face_matches_the_closed_form() {
         let (c, width, total) = (17.0, 100.0, 30000.0);
@@ -209,7 +212,7 @@ mod tests {
                 let lines = [0..n / 4, n / 4..n];
                 let coupling: Vec<Vec<f64>> =
                     if coupled { lines.iter().map(|l| vec![0.0; l.len() * l.len()]).collect() } else { Vec::new() };
-                let system = System {
+                let system = ContactSystem {
                     gaps: &gaps,
                     stencils: &stencils,
                     stations: n,

@@ -2,13 +2,14 @@
 
 /// Stiffness k(φ) = F/(δ(φ) − c) with the constant c for which its mean is `mean_n_per_m`, N/m.
 ///
-/// The equations of motion know no transmission-error excitation besides k(φ). With this curve their static displacement is
-/// the loaded transmission error `transmission_error_m` but for the constant c, a rigid rotation that excites nothing, and their
-/// natural frequencies are those of the tangent stiffness, whose mean is to be passed. (F/δ itself would count the closing of
-/// a crowning or of a misalignment, which is such a rotation too, as softness.)
+/// The equations of motion know no transmission-error excitation besides k(φ). With this curve their static
+/// displacement is the loaded transmission error `transmission_error_m` but for the constant c, a rigid rotation that
+/// excites nothing, and their natural frequencies are those of the tangent stiffness, whose mean is to be passed. (F/δ
+/// itself would count the closing of a crowning or of a misalignment, which is such a rotation too, as softness.)
 ///
-/// The mean grows monotonically from zero to infinity as c goes from −∞ to the least δ, so there is exactly one such c; it is
-/// found by bisection on the least displacement min δ − c. Empty when the curve is empty, the force is not positive, or the mean is not positive.
+/// The mean grows monotonically from zero to infinity as c goes from −∞ to the least δ, so there is exactly one such c;
+/// it is found by bisection on the least displacement min δ − c. Empty when the curve is empty, the force is not
+/// positive, or the mean is not positive.
 pub fn equivalent_stiffness(force_n: f64, transmission_error_m: &[f64], mean_n_per_m: f64) -> Vec<f64> {
     let least = transmission_error_m.iter().copied().fold(f64::INFINITY, f64::min);
     if !(least.is_finite() && force_n > 0.0 && mean_n_per_m > 0.0) {

@@ -1,9 +1,9 @@
 //! The force of one half's loaded contact as a function of approach and phase.
 //!
-//! F_bt(δ, φ) along the transverse base tangent: zero up to the free approach δ₀(φ), at which the first point of any tooth pair touches, then
-//! rising with every line of contact, every slice and every tip corner that comes in. Tabulated over η = δ − δ₀(φ) at levels common to all
-//! phases; between levels cubics with the tangent stiffness of the contact analysis as slopes (Fritsch and Carlson's limits keep them
-//! monotone), between phases periodic splines.
+//! F_bt(δ, φ) along the transverse base tangent: zero up to the free approach δ₀(φ), at which the first point of any
+//! tooth pair touches, then rising with every line of contact, every slice and every tip corner that comes in.
+//! Tabulated over η = δ − δ₀(φ) at levels common to all phases; between levels cubics with the tangent stiffness of the
+//! contact analysis as slopes (Fritsch and Carlson's limits keep them monotone), between phases periodic splines.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -32,8 +32,8 @@ pub struct ForceTable {
     pub stiffness_n_per_m: Vec<Vec<f64>>,
     /// The load for which the table was made.
     pub working_force_n: f64,
-    /// Largest difference between the table and contact analyses between its knots and levels, as a part of the mean force of the level,
-    /// at least of a fifth of the working load.
+    /// Largest difference between the table and contact analyses between its knots and levels, as a part of the mean
+    /// force of the level, at least of a fifth of the working load.
     pub error: f64,
 }
 
@@ -42,13 +42,13 @@ const LEVELS: [f64; 8] = [0.1, 0.3, 0.6, 1.0, 1.5, 2.4, 3.8, 6.0];
 /// Most levels, the one of no load apart.
 const MOST_LEVELS: usize = 20;
 /// Phases at which levels are tried.
-const TRIED: usize = 5;
+const TRIAL_PHASES: usize = 5;
 /// Equally spaced phases to begin with, and the most.
 const COARSE: usize = 24;
 const MOST_KNOTS: usize = 192;
 /// Smallest interval between knots.
 const FINEST: f64 = 1.0 / 1024.0;
-/// Agreement between knots and levels, as a part of the accuracy asked of the curves.
+/// Agreement between knots and levels, as a part of the accuracy required of the curves.
 const AGREEMENT: f64 = 0.2;
 /// Forces below this part of the working load need not be relatively accurate.
 const SMALL_FORCE: f64 = 0.2;
@@ -85,14 +85,14 @@ impl Sampler<'_> {
     /// Approach above the free one under the working load, mean over a few phases.
     fn working_approach_m(&self) -> Result<f64, ContactError> {
         let mut sum = 0.0;
-        for i in 0..TRIED {
+        for i in 0..TRIAL_PHASES {
             let mut contact = self.contact();
-            let phase = i as f64 / TRIED as f64;
+            let phase = i as f64 / TRIAL_PHASES as f64;
             let loaded = contact.at(phase, self.force_bt_n)?;
             let free = loaded.points.iter().map(|p| p.gap_m - 0.5 * p.gap_spread_m).fold(f64::INFINITY, f64::min);
             sum += loaded.approach_m - free;
         }
-        Ok(sum / TRIED as f64)
+        Ok(sum / TRIAL_PHASES as f64)
     }
 }
 
@@ -148,7 +148,7 @@ impl ForceTable {
                     knots.push((phase, curve));
                 }
                 knots.sort_by(|a, b| a.0.total_cmp(&b.0));
-                // The worst first, where not all have room; what is left is told as the error it had.
+                // The worst first, up to the limit; the largest error of the others is reported.
                 split.sort_by(|a, b| b.0.total_cmp(&a.0));
                 let room = MOST_KNOTS.saturating_sub(knots.len());
                 if let Some((distance, ..)) = split.get(room) {
@@ -165,13 +165,14 @@ impl ForceTable {
         Ok(ForceTable::of(&knots, &level_m, force_bt_n, error))
     }
 
-    /// The table of solved curves; the first sample of each stands halfway up the first level.
+    /// The table of solved curves; the first sample of each is halfway up the first level.
     fn of(knots: &[(f64, ForceCurve)], level_m: &[f64], working_force_n: f64, error: f64) -> ForceTable {
         let levels = level_m.len();
         let column = |of: &dyn Fn(&ForceCurve) -> f64| knots.iter().map(|(_, curve)| of(curve)).collect::<Vec<f64>>();
         let mut force_n: Vec<Vec<f64>> = (0..levels).map(|i| column(&|c| c.samples[i].0)).collect();
         let mut stiffness_n_per_m: Vec<Vec<f64>> = (0..levels).map(|i| column(&|c| c.samples[i].1)).collect();
-        // The first cubic goes through no force at no approach and the force halfway up the level, with the slope at its end.
+        // The first cubic goes through no force at no approach and the force halfway up the level, with the slope at
+        // its end.
         let first_m = level_m[1];
         for (j, (_, curve)) in knots.iter().enumerate() {
             let (half_n, (end_n, end_slope)) = (curve.samples[0].0, curve.samples[1]);
@@ -181,7 +182,8 @@ impl ForceTable {
         }
         for j in 0..knots.len() {
             for i in 1..levels {
-                // Fritsch and Carlson (SIAM J. Numer. Anal. 17 (1980) 238): monotone where both slopes are at most three times the rise.
+                // Fritsch and Carlson (SIAM J. Numer. Anal. 17 (1980) 238): monotone where both slopes are at most
+                // three times the rise.
                 let rise = (force_n[i][j] - force_n[i - 1][j]) / (level_m[i] - level_m[i - 1]);
                 for row in [i - 1, i] {
                     let slope = &mut stiffness_n_per_m[row][j];
@@ -238,7 +240,7 @@ impl<'a> Splines<'a> {
 /// Levels of approach from 0 on, between which cubics agree with the contact at a few phases.
 fn levels(sampler: &Sampler<'_>, tolerance: f64) -> Result<Vec<f64>, ContactError> {
     let working_m = sampler.working_approach_m()?;
-    let phases: Vec<f64> = (0..TRIED).map(|i| (i as f64 + 0.37) / TRIED as f64).collect();
+    let phases: Vec<f64> = (0..TRIAL_PHASES).map(|i| (i as f64 + 0.37) / TRIAL_PHASES as f64).collect();
     let mut level_m: Vec<f64> = std::iter::once(0.0).chain(LEVELS.map(|l| l * working_m)).collect();
     let mut open: Vec<usize> = (1..level_m.len() - 1).collect();
     while !open.is_empty() && level_m.len() <= MOST_LEVELS {
@@ -261,7 +263,7 @@ fn levels(sampler: &Sampler<'_>, tolerance: f64) -> Result<Vec<f64>, ContactErro
                 added.push((error, 0.5 * (low + high)));
             }
         }
-        // The worst first, where not all have room.
+        // The worst first, up to the limit.
         added.sort_by(|a, b| b.0.total_cmp(&a.0));
         added.truncate((MOST_LEVELS + 1).saturating_sub(level_m.len()));
         let fresh: Vec<f64> = added.iter().map(|a| a.1).collect();

@@ -1,7 +1,7 @@
-//! Loaded contact of one helix half, ready to be asked at any phase of the mesh period.
+//! Loaded contact of one helix half at any phase of the mesh period.
 
 use super::error::ContactError;
-use super::position::{ForceCurve, Loaded, Solver, Trouble};
+use super::position::{ForceCurve, LoadedPosition, PositionError, PositionSolver};
 use crate::compliance::{Compliance, Settings};
 use crate::gear::{Half, Pair};
 
@@ -9,7 +9,7 @@ use crate::gear::{Half, Pair};
 pub struct HalfContact<'a> {
     pair: &'a Pair,
     half: Half,
-    solver: Solver<'a>,
+    solver: PositionSolver<'a>,
 }
 
 /// Pair number below which nothing is left out.
@@ -18,25 +18,30 @@ const ALL_PAIRS: i32 = i32::MIN;
 impl<'a> HalfContact<'a> {
     /// The half `half` of `pair` with its compliance.
     pub fn new(pair: &'a Pair, half: Half, compliance: &'a Compliance, settings: &Settings) -> HalfContact<'a> {
-        HalfContact { pair, half, solver: Solver::new(pair, half, compliance, settings.corner_contact) }
+        HalfContact { pair, half, solver: PositionSolver::new(pair, half, compliance, settings.corner_contact) }
     }
 
-    /// The loaded state when pair 0 stands `phase` base pitches after its first theoretical contact.
-    pub fn at(&mut self, phase: f64, force_bt_n: f64) -> Result<Loaded, ContactError> {
+    /// The loaded state when pair 0 is `phase` base pitches after its first theoretical contact.
+    pub fn at(&mut self, phase: f64, force_bt_n: f64) -> Result<LoadedPosition, ContactError> {
         let half = self.half;
-        self.solver.solve(phase, ALL_PAIRS, force_bt_n).map_err(|trouble| failed(trouble, half, phase))
+        self.solver.solve(phase, ALL_PAIRS, force_bt_n).map_err(|error| to_contact_error(error, half, phase))
     }
 
     /// The same, starting from the state of a neighbouring position.
-    pub fn at_near(&mut self, phase: f64, force_bt_n: f64, near: Option<&Loaded>) -> Result<Loaded, ContactError> {
+    pub fn at_near(
+        &mut self,
+        phase: f64,
+        force_bt_n: f64,
+        near: Option<&LoadedPosition>,
+    ) -> Result<LoadedPosition, ContactError> {
         if let Some(state) = near {
             self.solver.start_from(state);
         }
         self.at(phase, force_bt_n)
     }
 
-    /// Force and stiffness at `approaches_m` above the free position (ascending, above 0) when pair 0 stands `phase` base pitches after its first theoretical
-    /// contact. The lines of contact are cut for the load `force_bt_n`.
+    /// Force and stiffness at `approaches_m` above the free position (ascending, above 0) when pair 0 is `phase` base
+    /// pitches after its first theoretical contact. The lines of contact are cut for the load `force_bt_n`.
     pub fn force_curve(
         &mut self,
         phase: f64,
@@ -44,26 +49,28 @@ impl<'a> HalfContact<'a> {
         approaches_m: &[f64],
     ) -> Result<ForceCurve, ContactError> {
         let half = self.half;
-        self.solver.force_curve(phase, force_bt_n, approaches_m).map_err(|trouble| failed(trouble, half, phase))
+        self.solver.force_curve(phase, force_bt_n, approaches_m).map_err(|error| to_contact_error(error, half, phase))
     }
 
     /// Cuts the contact lines into `slices` from here on.
-    pub fn cut_into(&mut self, slices: usize) {
-        self.solver.cut_into(slices);
+    pub fn set_slices(&mut self, slices: usize) {
+        self.solver.set_slices(slices);
     }
 
-    /// The state of the pairs already in mesh when the entering pair stands `overrun_m` of roll before its theoretical start
-    /// of contact and carries nothing.
-    pub fn before_entry(&mut self, overrun_m: f64, force_bt_n: f64) -> Result<Loaded, ContactError> {
+    /// The state of the pairs already in mesh when the entering pair is `overrun_m` of roll before its theoretical
+    /// start of contact and carries nothing.
+    pub fn before_entry(&mut self, overrun_m: f64, force_bt_n: f64) -> Result<LoadedPosition, ContactError> {
         let phase = -overrun_m / self.pair.base_pitch_m;
         let half = self.half;
-        self.solver.solve(phase, 1, force_bt_n).map_err(|trouble| failed(trouble, half, phase))
+        self.solver.solve(phase, 1, force_bt_n).map_err(|error| to_contact_error(error, half, phase))
     }
 }
 
-fn failed(trouble: Trouble, half: Half, phase: f64) -> ContactError {
-    match trouble {
-        Trouble::NoContact => ContactError::NoContact { half, phase },
-        Trouble::Stalled(s) => ContactError::NotConverged { half, phase, iterations: s.iterations, change: s.change },
+fn to_contact_error(error: PositionError, half: Half, phase: f64) -> ContactError {
+    match error {
+        PositionError::NoContact => ContactError::NoContact { half, phase },
+        PositionError::NotConverged(s) => {
+            ContactError::NotConverged { half, phase, iterations: s.iterations, change: s.change }
+        }
     }
 }

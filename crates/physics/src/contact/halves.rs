@@ -1,10 +1,10 @@
 //! Both halves of the herringbone pair.
 //!
-//! The pinion floats axially: statically the axial forces of its halves balance, F_bt,L tanβ_b = F_bt,R tanβ_b, so each half
-//! carries T/2 exactly, and different halves differ in deflection. The pinion then shifts by u, which closes the left mesh
-//! by u tanβ_b and opens the right one: δ_L = δ + u tanβ_b, δ_R = δ - u tanβ_b. u is positive in the direction in which
-//! the left half's z_p enters its mesh displacement with +sinβ_b. Without helix nothing balances: the halves then share
-//! the torque at equal deflection.
+//! The pinion floats axially: statically the axial forces of its halves balance, F_bt,L tanβ_b = F_bt,R tanβ_b, so each
+//! half carries T/2 exactly, and different halves differ in deflection. The pinion then shifts by u, which closes the
+//! left mesh by u tanβ_b and opens the right one: δ_L = δ + u tanβ_b, δ_R = δ - u tanβ_b. u is positive in the
+//! direction in which the left half's z_p enters its mesh displacement with +sinβ_b. Without helix nothing balances:
+//! the halves then share the torque at equal deflection.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,7 @@ pub struct LoadedContact {
     /// Left and right half. Curves of the right half are over the left half's positions: their `phase` is the right
     /// half's own, which `half_stagger` advances.
     pub halves: [HalfCycle; 2],
-    /// Whether both halves are the same (and were solved once).
+    /// True where both halves are the same (and were solved once).
     pub equal_halves: bool,
     /// Mean of both transmission errors at every position.
     pub transmission_error_m: Vec<f64>,
@@ -30,11 +30,12 @@ pub struct LoadedContact {
     pub axial_shift_m: Vec<f64>,
     /// Axial force of each half (magnitude; the halves push against each other), mean over the period.
     pub axial_force_n: [f64; 2],
+    /// Slices of the contact lines over the face width of a half.
     pub slices: usize,
 }
 
-/// Part of the force that the less loaded of two spur halves keeps at least, so that its stiffness stays defined when the other one could
-/// carry everything.
+/// Part of the force that the less loaded of two spur halves keeps at least, so that its stiffness stays defined when
+/// the other one could carry everything.
 const LEAST_PART: f64 = 1e-6;
 
 /// Helix angles below this leave no axial coupling.
@@ -52,11 +53,11 @@ pub fn solve_half(
     check(force_bt_n * pair.pinion.base_radius_m, settings)?;
     watch.checkpoint(0.0)?;
     let mut progress = |fraction: f64| watch.checkpoint(fraction).map_err(ContactError::from);
-    period(pair, half, compliance, 0.0, force_bt_n, settings, &mut progress)
+    solve_period(pair, half, compliance, 0.0, force_bt_n, settings, &mut progress)
 }
 
-/// Solves both halves of `pair` under the pinion's whole torque. `half_stagger` (part of a transverse pitch) advances the
-/// right half.
+/// Solves both halves of `pair` under the pinion's whole torque. `half_stagger` (part of a transverse pitch) advances
+/// the right half.
 pub fn solve_pair_of_halves(
     pair: &Pair,
     torque_nm: f64,
@@ -87,16 +88,16 @@ pub(super) fn solve_from(
     let tan = pair.base_helix_angle_rad.tan();
     let halves = if same_gaps && stagger == 0.0 {
         let mut progress = |fraction: f64| watch.checkpoint(fraction).map_err(ContactError::from);
-        let left = period(pair, Half::Left, compliance, from, force, settings, &mut progress)?;
+        let left = solve_period(pair, Half::Left, compliance, from, force, settings, &mut progress)?;
         [left.clone(), left]
     } else if pair.spec.helix_angle_rad.abs() > SPUR {
         let mut first = |fraction: f64| watch.checkpoint(0.5 * fraction).map_err(ContactError::from);
-        let left = period(pair, Half::Left, compliance, from, force, settings, &mut first)?;
+        let left = solve_period(pair, Half::Left, compliance, from, force, settings, &mut first)?;
         let mut second = |fraction: f64| watch.checkpoint(0.5 + 0.5 * fraction).map_err(ContactError::from);
-        let right = period(pair, Half::Right, compliance, right_from, force, settings, &mut second)?;
+        let right = solve_period(pair, Half::Right, compliance, right_from, force, settings, &mut second)?;
         [left, right]
     } else {
-        shared(pair, compliance, [from, right_from], 2.0 * force, settings, watch)?
+        share_torque(pair, compliance, [from, right_from], 2.0 * force, settings, watch)?
     };
     let [left, right] = &halves;
     let both = || left.transmission_error_m.iter().zip(&right.transmission_error_m);
@@ -121,7 +122,8 @@ fn check(torque_nm: f64, settings: &Settings) -> Result<(), ContactError> {
     Ok(())
 }
 
-/// Whether the initial gaps of both halves are the same everywhere (sampled on a grid finer than any modification needs).
+/// True where the initial gaps of both halves are the same everywhere (sampled on a grid finer than any modification
+/// needs).
 pub fn same_gaps(pair: &Pair) -> bool {
     const GRID: usize = 16;
     (0..=GRID).all(|i| {
@@ -134,7 +136,7 @@ pub fn same_gaps(pair: &Pair) -> bool {
         && pair.spec.gear.flanks[0] == pair.spec.gear.flanks[1]
 }
 
-fn period(
+fn solve_period(
     pair: &Pair,
     half: Half,
     compliance: &Compliance,
@@ -172,8 +174,9 @@ fn period(
     builder.finish(&mut contact, &|_| force)
 }
 
-/// Halves without axial coupling: equal deflection, found by Newton on the split of the force. The halves' curves start at the phases `from`.
-fn shared(
+/// Halves without axial coupling: equal deflection, found by Newton on the split of the force. The halves' curves start
+/// at the phases `from`.
+fn share_torque(
     pair: &Pair,
     compliance: &Compliance,
     from: [f64; 2],

@@ -6,15 +6,18 @@ use crate::gear::{Half, Pair};
 
 /// Part of one slice of one tooth pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct ContactPoint {
     /// Tooth pair: k + 1 entered before k.
     pub pair: i32,
+    /// Slice of the face width, counted from the mesh-out end.
     pub slice: usize,
     /// 0 before the path (gear tip corner), 1 on it, 2 after it (pinion tip corner).
     pub zone: u8,
-    /// Which part of the slice beyond the path, 0 on the path.
+    /// Index of the part of the slice beyond the path, 0 on the path.
     pub part: u8,
+    /// Roll coordinate of its middle.
     pub x_m: f64,
+    /// Axial distance of its middle from the mesh-out end.
     pub entry_m: f64,
     /// Axial length of the part.
     pub width_m: f64,
@@ -25,11 +28,11 @@ pub struct Point {
 }
 
 /// Most parts of a slice beyond the path.
-const CORNER_PARTS: f64 = 8.0;
+const MOST_PARTS_PER_SLICE: f64 = 8.0;
 
-/// Which pairs to look at and how far beyond the path.
+/// Range of the pairs that are considered, and of the contact beyond the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reach {
+pub(super) struct PairRange {
     /// Lowest pair to be considered.
     pub lowest_pair: i32,
     /// Corner contacts with a kinematic gap up to this are considered; zero: the path only.
@@ -38,20 +41,20 @@ pub struct Reach {
     pub least_part_m: f64,
 }
 
-/// Roll coordinate of pair 0 at entry 0 when pair 0 stands `phase` base pitches after its first theoretical contact.
-pub fn reference_roll_m(pair: &Pair, phase: f64) -> f64 {
+/// Roll coordinate of pair 0 at entry 0 when pair 0 is `phase` base pitches after its first theoretical contact.
+pub(super) fn reference_roll_m(pair: &Pair, phase: f64) -> f64 {
     pair.path_start_m + phase * pair.base_pitch_m - pair.spec.face_width_m * pair.base_helix_angle_rad.tan()
 }
 
 /// Collects the points of `half` into `out`.
-pub fn collect(
+pub(super) fn collect(
     pair: &Pair,
     corners: &CornerGaps,
     half: Half,
     phase: f64,
     slices: usize,
-    reach: &Reach,
-    out: &mut Vec<Point>,
+    reach: &PairRange,
+    out: &mut Vec<ContactPoint>,
 ) {
     out.clear();
     let b = pair.spec.face_width_m;
@@ -85,7 +88,7 @@ pub fn collect(
                 }
                 // The corner gap grows with the square of the overrun: a slice there is looked at in parts.
                 let parts = if zone != 1 && slope > 0.0 {
-                    (share * step / reach.least_part_m).clamp(1.0, CORNER_PARTS) as u8
+                    (share * step / reach.least_part_m).clamp(1.0, MOST_PARTS_PER_SLICE) as u8
                 } else {
                     1
                 };
@@ -114,7 +117,7 @@ pub fn collect(
                     let ends = gap_at(at(0.0)).zip(gap_at(at(1.0))).map_or([gap; 2], |(a, b)| [a.1, b.1]);
                     let mean = (ends[0] + 4.0 * gap + ends[1]) / 6.0;
                     let least = gap.min(ends[0]).min(ends[1]);
-                    out.push(Point {
+                    out.push(ContactPoint {
                         pair: k,
                         slice,
                         zone: zone as u8,
@@ -131,16 +134,19 @@ pub fn collect(
     }
 }
 
-/// Kinematic gaps of both corners over the overrun, tabulated once: their exact formulas take a good part of a position's time.
+/// Kinematic gaps of both corners over the overrun, tabulated once: their exact formulas take a good part of a
+/// position's time.
 #[derive(Debug, Clone, Default)]
-pub struct CornerGaps {
+pub(super) struct CornerGaps {
+    /// Corner of the gear's tip, before the path.
     pub mesh_in: CornerGap,
+    /// Corner of the pinion's tip, after the path.
     pub mesh_out: CornerGap,
 }
 
 /// Gap of one corner: linear interpolation of what multiplies the square of the overrun.
 #[derive(Debug, Clone, Default)]
-pub struct CornerGap {
+pub(super) struct CornerGap {
     step_m: f64,
     per_square: Vec<f64>,
 }
@@ -150,7 +156,7 @@ const CORNER_TABLE: usize = 128;
 
 impl CornerGaps {
     /// Tables up to [`CORNER_REACH`].
-    pub fn new(pair: &Pair) -> CornerGaps {
+    pub(super) fn new(pair: &Pair) -> CornerGaps {
         let step_m = CORNER_REACH * pair.base_pitch_m / CORNER_TABLE as f64;
         let table = |gap: fn(&Pair, f64) -> Option<f64>| {
             let at = |i: usize| gap(pair, i as f64 * step_m).map(|gap| gap / (i as f64 * step_m).powi(2));
@@ -166,7 +172,7 @@ impl CornerGaps {
 
 impl CornerGap {
     /// Gap at an overrun; `None` where the corner has no flank to meet.
-    pub fn at(&self, overrun_m: f64) -> Option<f64> {
+    pub(super) fn at(&self, overrun_m: f64) -> Option<f64> {
         let position = (overrun_m / self.step_m).max(0.0);
         let i = position as usize;
         let (low, high) = (*self.per_square.get(i)?, *self.per_square.get(i + 1)?);

@@ -1,11 +1,13 @@
 //! Loaded tooth contact of one helix half and of both: load distribution over all tooth pairs in mesh, mesh stiffness,
 //! transmission error and load shares over one mesh period, on a [`Compliance`](crate::compliance::Compliance).
 //!
-//! `lines` and `position` put the contact lines of one position together, `distribution` shares the force out by Newton steps of
-//! the `system`, `refine` chooses the positions, `cycle` and `halves` run over the mesh period.
+//! `lines` and `position` put the contact lines of one position together, `distribution` shares the force out by Newton
+//! steps of the `system`, `refine` chooses the positions, `cycle` and `halves` run over the mesh period.
 //!
 //! Everything is SI and along the transverse base tangent unless a name says otherwise; coordinates are those of
 //! [`crate::gear`].
+
+#![warn(missing_docs, unreachable_pub)]
 
 mod coast;
 mod cycle;
@@ -23,14 +25,14 @@ mod short_face;
 mod system;
 
 pub use coast::solve_coast_halves;
-pub use cycle::{EntryDeflection, Extent, FlankMap, HalfCycle, MESH_IN_PHASE, harmonics};
+pub use cycle::{CurveStatistics, EntryDeflection, FlankMap, HalfCycle, MESH_IN_PHASE, harmonics};
 pub use equivalent::equivalent_stiffness;
 pub use error::ContactError;
 pub use force_table::ForceTable;
 pub use half::HalfContact;
 pub use halves::{LoadedContact, same_gaps, solve_half, solve_pair_of_halves};
-pub use lines::Point;
-pub use position::Loaded;
+pub use lines::ContactPoint;
+pub use position::LoadedPosition;
 pub use short_face::{SHORT_FACE_NOTICE, stiffness_excess};
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Local contact of the points of one position: indentation, gradual closing of their gaps, coupling along a line.
 
-use super::lines::Point;
-use super::system::Local;
+use super::lines::ContactPoint;
+use super::system::LocalApproach;
 use crate::compliance::{Indentation, LocalModel};
 use crate::gear::Pair;
 
@@ -16,20 +16,21 @@ struct PointContact {
     indentation: Indentation,
     /// Line load per force.
     per_force: f64,
-    /// Difference of the normal gaps at the ends of the point's part of the line, and the force per approach at which it closes.
+    /// Difference of the normal gaps at the ends of the point's part of the line, and the force per approach at which
+    /// it closes.
     spread_m: f64,
     closing_n_per_m: f64,
 }
 
 impl PointContacts {
-    /// Sets up the contacts of `points` under the normal force `force_n` in all; `coupling` receives what couples the points of each of
-    /// `lines`, nothing for plane strain.
-    pub fn prepare(
+    /// Sets up the contacts of `points` under the normal force `force_n` in all; `coupling` receives what couples the
+    /// points of each of `lines`, nothing for plane strain.
+    pub(super) fn prepare(
         &mut self,
         pair: &Pair,
         model: &LocalModel,
         force_n: f64,
-        points: &[Point],
+        points: &[ContactPoint],
         lines: &[std::ops::Range<usize>],
         coupling: &mut Vec<Vec<f64>>,
     ) {
@@ -49,7 +50,8 @@ impl PointContacts {
         }
         coupling.clear();
         if *model == LocalModel::HalfSpace {
-            // Neighbours see a band of the mean load: its width matters only where segments are as short as it is wide.
+            // The band of the neighbours is that of the mean load: its width matters only where segments are as short
+            // as it is wide.
             coupling.extend(
                 lines
                     .iter()
@@ -59,8 +61,9 @@ impl PointContacts {
     }
 }
 
-/// Displacement of every point of a line per force on every other (zero on the diagonal, whose part depends on the load).
-fn half_space_coupling(contacts: &[PointContact], points: &[Point], cos: f64, mean: f64) -> Vec<f64> {
+/// Displacement of every point of a line per force on every other (zero on the diagonal, whose part depends on the
+/// load).
+fn half_space_coupling(contacts: &[PointContact], points: &[ContactPoint], cos: f64, mean: f64) -> Vec<f64> {
     let n = points.len();
     let mut matrix = vec![0.0; n * n];
     let middle = |i: usize| points[i].entry_m / cos;
@@ -70,7 +73,7 @@ fn half_space_coupling(contacts: &[PointContact], points: &[Point], cos: f64, me
     };
     for i in 0..n {
         for j in 0..i {
-            // Unequal segments see each other's middles at slightly different distances: the mean keeps the symmetry.
+            // The distances of unequal segments from each other's middles differ slightly: the mean keeps the symmetry.
             let shorter = points[i].width_m.min(points[j].width_m) / cos;
             let one = contacts[j].indentation.line.half_space_beside(middle(i), ends(j), mean, shorter);
             let other = contacts[i].indentation.line.half_space_beside(middle(j), ends(i), mean, shorter);
@@ -90,10 +93,11 @@ impl PointContact {
     }
 }
 
-impl Local for PointContacts {
-    /// Counted from where the nearer end of the part of the line touches. As long as it touches over a part of its width only, a linear gap a
-    /// over the width closes like a wedge pressed into an elastic layer: f = c p²/(2a), that is p = √(2 a f / c) up to f = c a / 2; what this is more than
-    /// f/c comes on top of the full contact. So no point comes into contact with a jump of its stiffness.
+impl LocalApproach for PointContacts {
+    /// Counted from where the nearer end of the part of the line touches. As long as it touches over a part of its
+    /// width only, a linear gap a over the width closes like a wedge pressed into an elastic layer: f = c p²/(2a), that
+    /// is p = √(2 a f / c) up to f = c a / 2; what this is more than f/c comes on top of the full contact. So no point
+    /// comes into contact with a jump of its stiffness.
     fn approach(&self, i: usize, force: f64) -> (f64, f64) {
         let contact = &self.contacts[i];
         let (value, slope) = contact.full(force);

@@ -2,27 +2,29 @@
 
 use std::ops::Range;
 
-use super::distribution::{Distribution, Prescribed, Stalled, distribute};
-use super::lines::{CornerGaps, Point, Reach, collect, reference_roll_m};
+use super::distribution::{Distribution, NotConverged, Prescribed, distribute};
+use super::lines::{ContactPoint, CornerGaps, PairRange, collect, reference_roll_m};
 use super::point_contacts::PointContacts;
-use super::system::{System, Workspace};
+use super::system::{ContactSystem, Workspace};
 use crate::compliance::{CORNER_REACH, Compliance, LineWeights, Stencil};
 use crate::gear::{Half, Pair};
 
 /// The loaded points of one position.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Loaded {
-    pub points: Vec<Point>,
+pub struct LoadedPosition {
+    /// Points of possible contact, line by line.
+    pub points: Vec<ContactPoint>,
     /// Normal forces.
     pub forces_n: Vec<f64>,
     /// Loaded transmission error, along the transverse base tangent.
     pub approach_m: f64,
     /// dF_bt/dδ.
     pub stiffness_n_per_m: f64,
+    /// Newton iterations.
     pub iterations: u32,
 }
 
-impl Loaded {
+impl LoadedPosition {
     /// Force of pair `k` as a part of all forces.
     pub fn share(&self, k: i32) -> f64 {
         let of_pair: f64 = self.points.iter().zip(&self.forces_n).filter(|(p, _)| p.pair == k).map(|(_, f)| f).sum();
@@ -39,24 +41,24 @@ pub struct ForceCurve {
     pub samples: Vec<(f64, f64)>,
 }
 
-/// Why a position could not be solved.
+/// Errors of one position.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Trouble {
+pub(super) enum PositionError {
     NoContact,
-    Stalled(Stalled),
+    NotConverged(NotConverged),
 }
 
 /// Solves positions one after the other, each from the one before.
-pub struct Solver<'a> {
+pub(super) struct PositionSolver<'a> {
     pair: &'a Pair,
     half: Half,
     compliance: &'a Compliance,
     slices: usize,
     corner_contact: bool,
     corners: CornerGaps,
-    points: Vec<Point>,
+    points: Vec<ContactPoint>,
     /// Place of a point and its force per face width at the position before, ascending.
-    previous: Vec<(Place, f64)>,
+    previous: Vec<(PointKey, f64)>,
     start: Vec<f64>,
     /// Points of every line.
     lines: Vec<Range<usize>>,
@@ -76,17 +78,23 @@ pub struct Solver<'a> {
 }
 
 /// Parts of a corner contact.
-const CORNER_PARTS: f64 = 12.0;
-/// Stiffness per face width by which the deflection is estimated that decides the width of a corner contact, as a part of Young's modulus: 14
-/// N/(mm µm) for steel (ISO 6336-1).
+const PARTS_PER_CORNER_WIDTH: f64 = 12.0;
+/// Stiffness per face width by which the deflection is estimated that decides the width of a corner contact, as a part
+/// of Young's modulus: 14 N/(mm µm) for steel (ISO 6336-1).
 const PAIR_STIFFNESS: f64 = 14e9 / 206e9;
 
 /// Pair, slice, zone and part of a point.
-type Place = (i32, usize, u8, u8);
+type PointKey = (i32, usize, u8, u8);
 
-impl<'a> Solver<'a> {
-    pub fn new(pair: &'a Pair, half: Half, compliance: &'a Compliance, corner_contact: bool) -> Solver<'a> {
-        Solver {
+impl<'a> PositionSolver<'a> {
+    /// A solver for one half.
+    pub(super) fn new(
+        pair: &'a Pair,
+        half: Half,
+        compliance: &'a Compliance,
+        corner_contact: bool,
+    ) -> PositionSolver<'a> {
+        PositionSolver {
             pair,
             half,
             compliance,
@@ -111,8 +119,8 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Axial width over which the mesh-in corner's gap grows to the deflection of a pair under the whole force. It depends on nothing else, so
-    /// that every position is cut alike whatever was solved before.
+    /// Axial width over which the mesh-in corner's gap grows to the deflection of a pair under the whole force. It
+    /// depends on nothing else, so that every position is cut alike whatever was solved before.
     fn corner_width_m(&mut self, force_bt_n: f64) -> f64 {
         if let Some((force, width_m)) = self.corner_width
             && force == force_bt_n
@@ -133,39 +141,44 @@ impl<'a> Solver<'a> {
     }
 
     /// Cuts the contact lines into `slices` from here on.
-    pub fn cut_into(&mut self, slices: usize) {
+    pub(super) fn set_slices(&mut self, slices: usize) {
         self.slices = slices.max(2);
         self.previous.clear();
     }
 
     /// Takes `state` as the neighbour to start from.
-    pub fn start_from(&mut self, state: &Loaded) {
-        remember(&mut self.previous, &state.points, &state.forces_n);
+    pub(super) fn start_from(&mut self, state: &LoadedPosition) {
+        store_forces(&mut self.previous, &state.points, &state.forces_n);
     }
 
     /// Distributes `force_bt_n` at `phase`. Pairs below `lowest_pair` stay out.
-    pub fn solve(&mut self, phase: f64, lowest_pair: i32, force_bt_n: f64) -> Result<Loaded, Trouble> {
+    pub(super) fn solve(
+        &mut self,
+        phase: f64,
+        lowest_pair: i32,
+        force_bt_n: f64,
+    ) -> Result<LoadedPosition, PositionError> {
         let cos = self.pair.base_helix_angle_rad.cos();
         let least_m = self.compliance.local.least_width_m(self.pair, force_bt_n / cos);
         let most = (self.pair.spec.face_width_m / least_m).clamp(4.0, 1e6) as usize;
-        let least_part_m = least_m.max(self.corner_width_m(force_bt_n) / CORNER_PARTS);
+        let least_part_m = least_m.max(self.corner_width_m(force_bt_n) / PARTS_PER_CORNER_WIDTH);
         for _ in 0..8 {
             let corner_gap_m = if self.corner_contact { self.corner_gap_m } else { 0.0 };
-            let reach = Reach { lowest_pair, corner_gap_m, least_part_m };
+            let reach = PairRange { lowest_pair, corner_gap_m, least_part_m };
             collect(self.pair, &self.corners, self.half, phase, self.slices.min(most), &reach, &mut self.points);
             if self.points.is_empty() {
-                return Err(Trouble::NoContact);
+                return Err(PositionError::NoContact);
             }
             self.assemble(phase, force_bt_n / cos);
             self.start_from_previous();
-            let solved = self.distribute(Prescribed::Force(force_bt_n / cos)).map_err(Trouble::Stalled)?;
+            let solved = self.distribute(Prescribed::Force(force_bt_n / cos)).map_err(PositionError::NotConverged)?;
             let approach_m = solved.approach / cos;
-            remember(&mut self.previous, &self.points, &solved.forces);
+            store_forces(&mut self.previous, &self.points, &solved.forces);
             if self.corner_contact && approach_m > self.corner_gap_m {
                 self.corner_gap_m = 1.25 * approach_m;
                 continue;
             }
-            return Ok(Loaded {
+            return Ok(LoadedPosition {
                 points: self.points.clone(),
                 forces_n: solved.forces,
                 approach_m,
@@ -173,25 +186,30 @@ impl<'a> Solver<'a> {
                 iterations: solved.iterations,
             });
         }
-        Err(Trouble::NoContact)
+        Err(PositionError::NoContact)
     }
 
     /// Forces at prescribed approaches: F_bt and dF_bt/dδ at `approaches_m` above the free position (the least
     /// gap of any point), which ascend from above 0. The lines are cut as finely as `force_bt_n`, the force at the
     /// usual approach, needs. Depends on nothing that was solved before.
-    pub fn force_curve(&mut self, phase: f64, force_bt_n: f64, approaches_m: &[f64]) -> Result<ForceCurve, Trouble> {
+    pub(super) fn force_curve(
+        &mut self,
+        phase: f64,
+        force_bt_n: f64,
+        approaches_m: &[f64],
+    ) -> Result<ForceCurve, PositionError> {
         let cos = self.pair.base_helix_angle_rad.cos();
         let least_m = self.compliance.local.least_width_m(self.pair, force_bt_n / cos);
         let most = (self.pair.spec.face_width_m / least_m).clamp(4.0, 1e6) as usize;
-        let least_part_m = least_m.max(self.corner_width_m(force_bt_n) / CORNER_PARTS);
+        let least_part_m = least_m.max(self.corner_width_m(force_bt_n) / PARTS_PER_CORNER_WIDTH);
         let highest_m = approaches_m.last().copied().unwrap_or(0.0);
         let mut corner_gap_m = if self.corner_contact { highest_m } else { 0.0 };
         let free_m = loop {
-            let reach = Reach { lowest_pair: i32::MIN, corner_gap_m, least_part_m };
+            let reach = PairRange { lowest_pair: i32::MIN, corner_gap_m, least_part_m };
             collect(self.pair, &self.corners, self.half, phase, self.slices.min(most), &reach, &mut self.points);
             let free_m = self.points.iter().map(|p| p.gap_m - 0.5 * p.gap_spread_m).fold(f64::INFINITY, f64::min);
             if !free_m.is_finite() {
-                return Err(Trouble::NoContact);
+                return Err(PositionError::NoContact);
             }
             if !self.corner_contact || free_m + highest_m <= corner_gap_m {
                 break free_m;
@@ -213,8 +231,9 @@ impl<'a> Solver<'a> {
                 break;
             }
             let approach = (free_m + approach_m) * cos;
-            let solved =
-                self.distribute(Prescribed::Approach { approach, expected_force }).map_err(Trouble::Stalled)?;
+            let solved = self
+                .distribute(Prescribed::Approach { approach, expected_force })
+                .map_err(PositionError::NotConverged)?;
             let force = solved.forces.iter().sum::<f64>();
             *sample = (force * cos, solved.stiffness * cos * cos);
             above = Some((approach_m, force, solved.stiffness * cos));
@@ -230,19 +249,19 @@ impl<'a> Solver<'a> {
         let mut before = self.previous.iter().peekable();
         let mut beside = 0.0;
         for p in &self.points {
-            let place = place(p);
-            while let Some((_, load)) = before.next_if(|(other, _)| *other < place) {
+            let key = point_key(p);
+            while let Some((_, load)) = before.next_if(|(other, _)| *other < key) {
                 beside = *load;
             }
-            let same = before.next_if(|(other, _)| *other == place).map(|(_, load)| *load);
+            let same = before.next_if(|(other, _)| *other == key).map(|(_, load)| *load);
             let expected = same.unwrap_or(if p.zone == 1 { beside } else { 0.0 });
             self.start.push(expected * p.width_m);
             beside = expected;
         }
     }
 
-    fn distribute(&mut self, prescribed: Prescribed) -> Result<Distribution, Stalled> {
-        let system = System {
+    fn distribute(&mut self, prescribed: Prescribed) -> Result<Distribution, NotConverged> {
+        let system = ContactSystem {
             gaps: &self.gaps,
             stencils: &self.stencils,
             stations: self.weights.iter().map(|w| w.count).sum(),
@@ -310,12 +329,12 @@ impl<'a> Solver<'a> {
     }
 }
 
-fn place(p: &Point) -> Place {
+fn point_key(p: &ContactPoint) -> PointKey {
     (p.pair, p.slice, p.zone, p.part)
 }
 
 /// Keeps the force of every point per face width: parts of slices change their width from one position to the next.
-fn remember(previous: &mut Vec<(Place, f64)>, points: &[Point], forces_n: &[f64]) {
+fn store_forces(previous: &mut Vec<(PointKey, f64)>, points: &[ContactPoint], forces_n: &[f64]) {
     previous.clear();
-    previous.extend(points.iter().zip(forces_n).map(|(p, f)| (place(p), f / p.width_m)));
+    previous.extend(points.iter().zip(forces_n).map(|(p, f)| (point_key(p), f / p.width_m)));
 }

@@ -1,8 +1,8 @@
-//! Where over the mesh period the contact is solved: coarse everywhere, fine where pairs enter and leave.
+//! Choice of the positions over the mesh period: coarse everywhere, fine where pairs enter and leave.
 
 use super::cycle::harmonics;
 use super::error::ContactError;
-use super::position::Loaded;
+use super::position::LoadedPosition;
 use crate::gear::Pair;
 use crate::numerics::PeriodicMonotoneCubic;
 
@@ -14,22 +14,22 @@ const MOST: usize = 256;
 const FINEST: f64 = 1.0 / 1024.0;
 
 /// Positions of one period and how well they carry its curves.
-pub struct Positions {
+pub(super) struct RefinedPositions {
     /// Phases ascending in [0, 1) and their states.
-    pub states: Vec<(f64, Loaded)>,
-    /// Largest change of a Fourier coefficient (mean and first harmonics of stiffness and transmission error, as parts of their
-    /// means) by the positions that confirmed the others.
+    pub states: Vec<(f64, LoadedPosition)>,
+    /// Largest change of a Fourier coefficient (mean and first harmonics of stiffness and transmission error, as parts
+    /// of their means) by the positions that confirmed the others.
     pub error: f64,
 }
 
-/// Solves positions until stiffness and transmission error halfway between neighbours agree with the interpolation of the
-/// others to `accuracy` of their means. `solve` gets a phase and the state nearest to it.
-pub fn refine(
+/// Solves positions until stiffness and transmission error halfway between neighbours agree with the interpolation of
+/// the others to `accuracy` of their means. `solve` gets a phase and the state nearest to it.
+pub(super) fn refine(
     pair: &Pair,
     accuracy: f64,
-    mut solve: impl FnMut(f64, Option<&Loaded>) -> Result<Loaded, ContactError>,
-) -> Result<Positions, ContactError> {
-    let mut states: Vec<(f64, Loaded)> = Vec::with_capacity(64);
+    mut solve: impl FnMut(f64, Option<&LoadedPosition>) -> Result<LoadedPosition, ContactError>,
+) -> Result<RefinedPositions, ContactError> {
+    let mut states: Vec<(f64, LoadedPosition)> = Vec::with_capacity(64);
     for phase in start_phases(pair, COARSE, 8.0 * FINEST) {
         let state = solve(phase, states.last().map(|s| &s.1))?;
         states.push((phase, state));
@@ -39,7 +39,7 @@ pub fn refine(
     // Phases whose states only confirmed the interpolation of the others.
     let mut confirming = Vec::new();
     while !pending.is_empty() && states.len() < MOST {
-        let curves = Curves::new(&states);
+        let curves = PositionCurves::new(&states);
         let mut next = Vec::new();
         let mut fresh = Vec::with_capacity(pending.len());
         for &(from, to) in &pending {
@@ -59,13 +59,13 @@ pub fn refine(
         pending = next;
     }
     let without: Vec<_> = states.iter().filter(|s| !confirming.contains(&s.0)).cloned().collect();
-    let error = Curves::new(&states).coefficient_change(&Curves::new(&without));
-    Ok(Positions { states, error })
+    let error = PositionCurves::new(&states).coefficient_change(&PositionCurves::new(&without));
+    Ok(RefinedPositions { states, error })
 }
 
-/// `count` equally spaced phases, and those at which a line of contact begins, ends, or reaches another edge of the field where they are further than `least` from
-/// the others.
-pub fn start_phases(pair: &Pair, count: usize, least: f64) -> Vec<f64> {
+/// `count` equally spaced phases, and those at which a line of contact begins, ends, or reaches another edge of the
+/// field where they are further than `least` from the others.
+pub(super) fn start_phases(pair: &Pair, count: usize, least: f64) -> Vec<f64> {
     let mut phases: Vec<f64> = (0..count).map(|i| i as f64 / count as f64).collect();
     for ratio in [pair.transverse_contact_ratio, pair.overlap_ratio, pair.total_contact_ratio()] {
         let phase = ratio.rem_euclid(1.0);
@@ -79,7 +79,7 @@ pub fn start_phases(pair: &Pair, count: usize, least: f64) -> Vec<f64> {
 }
 
 /// Stiffness and transmission error over the period.
-struct Curves {
+struct PositionCurves {
     stiffness: PeriodicMonotoneCubic,
     error: PeriodicMonotoneCubic,
     mean: [f64; 2],
@@ -88,14 +88,14 @@ struct Curves {
 /// Samples for the comparison of Fourier coefficients.
 const SAMPLES: usize = 128;
 
-impl Curves {
-    fn new(states: &[(f64, Loaded)]) -> Curves {
+impl PositionCurves {
+    fn new(states: &[(f64, LoadedPosition)]) -> PositionCurves {
         let phase: Vec<f64> = states.iter().map(|s| s.0).collect();
         let n = states.len() as f64;
-        let of = |f: fn(&Loaded) -> f64| states.iter().map(|s| f(&s.1)).collect::<Vec<_>>();
+        let of = |f: fn(&LoadedPosition) -> f64| states.iter().map(|s| f(&s.1)).collect::<Vec<_>>();
         let (k, e) = (of(|s| s.stiffness_n_per_m), of(|s| s.approach_m));
         let mean = [k.iter().sum::<f64>() / n, e.iter().map(|v| v.abs()).sum::<f64>() / n];
-        Curves {
+        PositionCurves {
             stiffness: PeriodicMonotoneCubic::new(phase.clone(), k),
             error: PeriodicMonotoneCubic::new(phase, e),
             mean,
@@ -103,14 +103,14 @@ impl Curves {
     }
 
     /// Distance of a state from the interpolation, as a part of the means.
-    fn error(&self, phase: f64, state: &Loaded) -> f64 {
+    fn error(&self, phase: f64, state: &LoadedPosition) -> f64 {
         let stiffness = (self.stiffness.at(phase) - state.stiffness_n_per_m).abs() / self.mean[0];
         let error = (self.error.at(phase) - state.approach_m).abs() / self.mean[1];
         stiffness.max(error)
     }
 
     /// Largest change of mean or harmonics against `other`, as a part of the mean.
-    fn coefficient_change(&self, other: &Curves) -> f64 {
+    fn coefficient_change(&self, other: &PositionCurves) -> f64 {
         let change = |a: &PeriodicMonotoneCubic, b: &PeriodicMonotoneCubic, mean: f64| {
             let (a, b) = (a.samples(0.0, SAMPLES), b.samples(0.0, SAMPLES));
             let difference: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a - b).collect();

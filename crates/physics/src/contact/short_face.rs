@@ -1,13 +1,14 @@
-//! How far the analytic compliance is off on short faces.
+//! Known error of the analytic compliance on short faces.
 //!
-//! On a face about as wide as the tooth is thick the transverse section of the tooth is a slanted parallelogram: a force normal to the
-//! flank also bends it across its own plane, along the trace, which the plate with square ends (`plate`) does not know. By beam theory the
-//! bending compliance is larger by the part sin²β (s_n/b)², s_n the thickness in the normal section, b the face width, which vanishes with β and
-//! with s_n/b.
+//! On a face about as wide as the tooth is thick the transverse section of the tooth is a slanted parallelogram: a
+//! force normal to the flank also bends it across its own plane, along the trace, which the plate with square ends does
+//! not contain. By beam theory the bending compliance is larger by the part sin²β (s_n/b)², s_n the thickness in the
+//! normal section, b the face width, which vanishes with β and with s_n/b.
 
 use crate::gear::Pair;
 
-/// Error of the mean mesh stiffness, as a part of it, from which it is worth a warning: the model error of ordinary faces.
+/// Error of the mean mesh stiffness, as a part of it, from which it is worth a warning: the model error of ordinary
+/// faces.
 pub const SHORT_FACE_NOTICE: f64 = 0.03;
 
 const HELIX_DEG: [f64; 6] = [0.0, 10.0, 20.0, 30.0, 40.0, 45.0];
@@ -16,9 +17,9 @@ const WIDTHS: [f64; 6] = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0];
 /// Teeth of a member.
 const TEETH: [f64; 2] = [10.0, 17.0];
 
-/// Mean tangent stiffness of a half over that of medium finite elements, less one, in per cent, by teeth, helix angle and face width: the
-/// example `short_faces` (docs/VALIDATION.md), the largest by amount of z 10/10 with and without profile shifts of 0.45, and of z 17/44, 25/25
-/// and 30/90.
+/// Mean tangent stiffness of a half over that of medium finite elements, less one, in per cent, by teeth, helix angle
+/// and face width: the program `short_faces` (`tools/src/bin/short_faces.rs`), the largest by amount of z 10/10 with
+/// and without profile shifts of 0.45, and of z 17/44, 25/25 and 30/90.
 const PERCENT: [[[f64; 6]; 6]; 2] = [
     [
         [-8.9, -2.2, -0.2, 0.8, 1.4, 1.8],
@@ -38,9 +39,9 @@ const PERCENT: [[[f64; 6]; 6]; 2] = [
     ],
 ];
 
-/// Mean mesh stiffness of the analytic compliance over that of finite elements, less one, interpolated in what was measured: by teeth of
-/// both members, helix angle and reciprocal face width (the error is nearly linear in it), below four normal modules; zero on wider
-/// faces.
+/// Mean mesh stiffness of the analytic compliance over that of finite elements, less one, interpolated in what was
+/// measured: by teeth of both members, helix angle and reciprocal face width (the error is nearly linear in it), below
+/// four normal modules; zero on wider faces.
 pub fn stiffness_excess(pair: &Pair) -> f64 {
     let width = pair.spec.face_width_m / pair.spec.normal_module_m;
     if width >= WIDTHS[WIDTHS.len() - 1] {
@@ -51,7 +52,7 @@ pub fn stiffness_excess(pair: &Pair) -> f64 {
     let mix = |low: f64, high: f64, t: f64| low + (high - low) * t;
     let over_width = |z: usize, b: usize| mix(PERCENT[z][b][w], PERCENT[z][b][w + 1], tw);
     let over_helix = |z: usize| mix(over_width(z, b), over_width(z, b + 1), tb);
-    // Each member gives about half of the deflection.
+    // Each member has about half of the deflection.
     let member = |teeth: u32| {
         let (z, tz) = bracket(&TEETH, f64::from(teeth));
         mix(over_helix(z), over_helix(z + 1), tz)
@@ -96,7 +97,8 @@ mod tests {
         mean(&Compliance::analytic(pair, &settings)) / mean(&elements) - 1.0
     }
 
-    /// Pairs that are not in the table, between its nodes too: what it says is what coarse elements find, within 3 % of the stiffness.
+    /// Pairs that are not in the table, between its nodes too: what it says is what coarse elements find, within 3 % of
+    /// the stiffness.
     #[test]
     fn the_stated_excess_is_what_elements_find() {
         for (teeth, helix_deg, modules) in

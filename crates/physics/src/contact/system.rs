@@ -1,7 +1,7 @@
-//! The linearised load distribution of one position: one Newton step on the points in contact.
+//! The linearised load distribution of one position: one Newton step on the active set.
 //!
-//! With D the derivative of K f + h(f) on the active points and W = Pᵀ D⁻¹ P, every Newton step solves (I + B W) a = B Pᵀ D⁻¹ c between the
-//! stations of the contact lines only: its cost grows linearly with the points.
+//! With D the derivative of K f + h(f) on the active points and W = Pᵀ D⁻¹ P, every Newton step solves (I + B W) a = B
+//! Pᵀ D⁻¹ c between the stations of the contact lines only: its cost grows linearly with the points.
 
 use std::ops::Range;
 
@@ -10,15 +10,16 @@ use crate::numerics::dense::{cholesky, cholesky_solve, dot, forward_solve, lu_so
 use crate::simd::vectorised;
 
 /// Approach of one point under its own force.
-pub trait Local {
+pub(super) trait LocalApproach {
     /// Local approach of point `i` under a positive force, and its derivative.
     fn approach(&self, i: usize, force: f64) -> (f64, f64);
 }
 
 /// The points and what couples them. All quantities along the flank normal.
-pub struct System<'a, L: Local> {
+pub(super) struct ContactSystem<'a, L: LocalApproach> {
+    /// Normal gap of every point before loading, m.
     pub gaps: &'a [f64],
-    /// Where every point stands among the stations of all lines.
+    /// Interpolation of every point between the stations of all lines.
     pub stencils: &'a [Stencil],
     /// Number of stations of all lines.
     pub stations: usize,
@@ -28,43 +29,45 @@ pub struct System<'a, L: Local> {
     pub lines: &'a [Range<usize>],
     /// Coupling of the points of a line beyond the bulk, row-major and line by line; empty when there is none.
     pub coupling: &'a [Vec<f64>],
+    /// Local approach of the points.
     pub local: &'a L,
 }
 
 /// Reused memory of the solver.
 #[derive(Debug, Clone, Default)]
-pub struct Workspace {
+pub(super) struct Workspace {
     slope: Vec<f64>,
     target: Vec<f64>,
-    pub fresh: Vec<f64>,
+    /// Forces after the step.
+    pub new_forces: Vec<f64>,
     weight: Vec<f64>,
     matrix: Vec<f64>,
     sides: Vec<f64>,
     block: Vec<f64>,
     columns: Vec<f64>,
-    active: Vec<usize>,
+    line_points: Vec<usize>,
     station_force: Vec<f64>,
     station_shift: Vec<f64>,
     unit: Vec<f64>,
-    /// How often a point has come in.
+    /// Number of times that a point has entered the active set.
     pub entries: Vec<u8>,
-    /// Opening and index of points that come in.
+    /// Opening and index of points that enter the active set.
     pub entering: Vec<(f64, usize)>,
 }
 
-/// Least force that is told from none, as a part of the mean force of the points.
-pub const LEAST_FORCE: f64 = 1e-9;
+/// Least force that counts as contact, as a part of the mean force of the points.
+pub(super) const LEAST_FORCE: f64 = 1e-9;
 /// Diagonals of W.
 const BAND: usize = 2 * STENCIL - 1;
-impl<L: Local> System<'_, L> {
-    /// One Newton step on the active points: their new forces into `work.fresh`; returns approach and stiffness. `total` is the sum of
-    /// the forces (their size, where the approach above the datum is `prescribed` instead).
-    pub fn newton(
+impl<L: LocalApproach> ContactSystem<'_, L> {
+    /// One Newton step on the active points: their new forces into `work.new_forces`; returns approach and stiffness.
+    /// `total` is the sum of the forces (their size, where the approach above the datum is `prescribed` instead).
+    pub(super) fn newton(
         &self,
         (total, prescribed): (f64, Option<f64>),
         datum: f64,
         forces: &[f64],
-        member: &[bool],
+        active: &[bool],
         work: &mut Workspace,
     ) -> Option<(f64, f64)> {
         let (n, r) = (self.gaps.len(), self.stations);
@@ -72,7 +75,7 @@ impl<L: Local> System<'_, L> {
         work.slope.resize(n, 1.0);
         work.target.resize(n, 0.0);
         for i in 0..n {
-            if member[i] {
+            if active[i] {
                 let at = forces[i].max(floor);
                 let (value, slope) = self.local.approach(i, at);
                 work.slope[i] = slope;
@@ -83,9 +86,9 @@ impl<L: Local> System<'_, L> {
         work.sides.clear();
         work.sides.resize(2 * r, 0.0);
         if self.coupling.is_empty() {
-            self.add_points(member, work);
+            self.add_points(active, work);
         } else {
-            self.add_lines(member, work)?;
+            self.add_lines(active, work)?;
         }
         let (unit, target) = work.sides.split_at_mut(r);
         for side in [unit, target] {
@@ -96,32 +99,32 @@ impl<L: Local> System<'_, L> {
         if !lu_solve(&mut work.matrix, &mut work.sides, r) {
             return None;
         }
-        work.fresh.clear();
-        work.fresh.resize(n, 0.0);
+        work.new_forces.clear();
+        work.new_forces.resize(n, 0.0);
         work.unit.clear();
         work.unit.resize(n, 0.0);
         let (stiffness, rest) = if self.coupling.is_empty() {
-            self.forces_of_points(member, work)
+            self.forces_of_points(active, work)
         } else {
-            self.forces_of_lines(member, work)
+            self.forces_of_lines(active, work)
         };
         let approach = prescribed.unwrap_or_else(|| (total - rest) / stiffness);
         if !approach.is_finite() {
             return None;
         }
-        for (f, u) in work.fresh.iter_mut().zip(&work.unit) {
+        for (f, u) in work.new_forces.iter_mut().zip(&work.unit) {
             *f += approach * u;
         }
         Some((approach, stiffness))
     }
 
     /// I + B W and the right-hand sides when D is diagonal: W is banded.
-    fn add_points(&self, member: &[bool], work: &mut Workspace) {
+    fn add_points(&self, active: &[bool], work: &mut Workspace) {
         let r = self.stations;
         work.weight.clear();
         work.weight.resize(BAND * r, 0.0);
         for (i, stencil) in self.stencils.iter().enumerate() {
-            if !member[i] {
+            if !active[i] {
                 continue;
             }
             let inverse = 1.0 / work.slope[i];
@@ -131,7 +134,7 @@ impl<L: Local> System<'_, L> {
                 work.sides[row] += scaled;
                 work.sides[r + row] += scaled * work.target[i];
                 for (b, wb) in stencil.weights.iter().enumerate() {
-                    // Diagonal by diagonal: W[row][column] stands at [row - column + 3][column].
+                    // Diagonal by diagonal: W[row][column] is at [row - column + 3][column].
                     work.weight[(STENCIL - 1 + a - b) * r + stencil.first + b] += scaled * wb;
                 }
             }
@@ -165,26 +168,26 @@ impl<L: Local> System<'_, L> {
         }
     }
 
-    fn forces_of_points(&self, member: &[bool], work: &mut Workspace) -> (f64, f64) {
+    fn forces_of_points(&self, active: &[bool], work: &mut Workspace) -> (f64, f64) {
         let r = self.stations;
         let (mut stiffness, mut rest) = (0.0, 0.0);
         for (i, stencil) in self.stencils.iter().enumerate() {
-            if !member[i] {
+            if !active[i] {
                 continue;
             }
             let unit = (1.0 - stencil.at(&work.sides[..r])) / work.slope[i];
-            let fresh = (work.target[i] - stencil.at(&work.sides[r..])) / work.slope[i];
+            let new_forces = (work.target[i] - stencil.at(&work.sides[r..])) / work.slope[i];
             work.unit[i] = unit;
-            work.fresh[i] = fresh;
+            work.new_forces[i] = new_forces;
             stiffness += unit;
-            rest += fresh;
+            rest += new_forces;
         }
         (stiffness, rest)
     }
 
-    /// The same when the points of a line are coupled: D is a full block per line, factored in `work.block`; `work.columns` keeps
-    /// L⁻¹ [1, c, P].
-    fn add_lines(&self, member: &[bool], work: &mut Workspace) -> Option<()> {
+    /// The same when the points of a line are coupled: D is a full block per line, factored in `work.block`;
+    /// `work.columns` keeps L⁻¹ [1, c, P].
+    fn add_lines(&self, active: &[bool], work: &mut Workspace) -> Option<()> {
         let r = self.stations;
         work.matrix.clear();
         work.matrix.resize(r * r, 0.0);
@@ -193,33 +196,33 @@ impl<L: Local> System<'_, L> {
         work.weight.clear();
         work.weight.resize(r * r, 0.0);
         for (line, range) in self.lines.iter().enumerate() {
-            work.active.clear();
-            work.active.extend(range.clone().filter(|&i| member[i]));
-            let m = work.active.len();
+            work.line_points.clear();
+            work.line_points.extend(range.clone().filter(|&i| active[i]));
+            let m = work.line_points.len();
             if m == 0 {
                 continue;
             }
             let coupling = &self.coupling[line];
             let size = range.len();
             let start = work.block.len();
-            for &i in &work.active {
+            for &i in &work.line_points {
                 let row = &coupling[(i - range.start) * size..(i - range.start + 1) * size];
                 let from = work.block.len();
-                work.block.extend(work.active.iter().map(|&j| row[j - range.start]));
-                let own = from + work.active.iter().position(|&j| j == i).unwrap_or(0);
+                work.block.extend(work.line_points.iter().map(|&j| row[j - range.start]));
+                let own = from + work.line_points.iter().position(|&j| j == i).unwrap_or(0);
                 work.block[own] += work.slope[i];
             }
             let block = &mut work.block[start..];
             if !cholesky(block, m) {
                 return None;
             }
-            let stations = self.span(&work.active);
+            let stations = self.span(&work.line_points);
             let width = stations.len();
             // Columns 1, c, P, one after the other.
             let first = work.columns.len();
             work.columns.resize(first + (2 + width) * m, 0.0);
             let columns = &mut work.columns[first..];
-            for (row, &i) in work.active.iter().enumerate() {
+            for (row, &i) in work.line_points.iter().enumerate() {
                 columns[row] = 1.0;
                 columns[m + row] = work.target[i];
                 for (k, w) in self.stencils[i].weights.iter().enumerate() {
@@ -258,32 +261,32 @@ impl<L: Local> System<'_, L> {
         Some(())
     }
 
-    fn forces_of_lines(&self, member: &[bool], work: &mut Workspace) -> (f64, f64) {
+    fn forces_of_lines(&self, active: &[bool], work: &mut Workspace) -> (f64, f64) {
         let r = self.stations;
         let (mut stiffness, mut rest) = (0.0, 0.0);
         let mut block_start = 0;
         for range in self.lines {
-            work.active.clear();
-            work.active.extend(range.clone().filter(|&i| member[i]));
-            let m = work.active.len();
+            work.line_points.clear();
+            work.line_points.extend(range.clone().filter(|&i| active[i]));
+            let m = work.line_points.len();
             if m == 0 {
                 continue;
             }
             let block = &work.block[block_start..block_start + m * m];
             block_start += m * m;
-            for (side, out) in [(0, &mut work.unit), (r, &mut work.fresh)] {
+            for (side, out) in [(0, &mut work.unit), (r, &mut work.new_forces)] {
                 work.columns.clear();
-                work.columns.extend(work.active.iter().map(|&i| {
+                work.columns.extend(work.line_points.iter().map(|&i| {
                     let whole = if side == 0 { 1.0 } else { work.target[i] };
                     whole - self.stencils[i].at(&work.sides[side..side + r])
                 }));
                 cholesky_solve(block, &mut work.columns, m);
-                for (&i, value) in work.active.iter().zip(&work.columns) {
+                for (&i, value) in work.line_points.iter().zip(&work.columns) {
                     out[i] = *value;
                 }
             }
-            stiffness += work.active.iter().map(|&i| work.unit[i]).sum::<f64>();
-            rest += work.active.iter().map(|&i| work.fresh[i]).sum::<f64>();
+            stiffness += work.line_points.iter().map(|&i| work.unit[i]).sum::<f64>();
+            rest += work.line_points.iter().map(|&i| work.new_forces[i]).sum::<f64>();
         }
         (stiffness, rest)
     }
@@ -296,7 +299,7 @@ impl<L: Local> System<'_, L> {
     }
 
     /// Bulk displacement of the stations under `forces`, into `work.station_shift`.
-    pub fn station_shifts(&self, forces: &[f64], work: &mut Workspace) {
+    pub(super) fn station_shifts(&self, forces: &[f64], work: &mut Workspace) {
         work.station_force.clear();
         work.station_force.resize(self.stations, 0.0);
         for (stencil, f) in self.stencils.iter().zip(forces) {
@@ -310,7 +313,7 @@ impl<L: Local> System<'_, L> {
     }
 
     /// Displacement of point `j` of `line` by the forces of all other points.
-    pub fn deflection(&self, line: usize, j: usize, forces: &[f64], work: &Workspace) -> f64 {
+    pub(super) fn deflection(&self, line: usize, j: usize, forces: &[f64], work: &Workspace) -> f64 {
         let mut sum = self.stencils[j].at(&work.station_shift);
         if let Some(coupling) = self.coupling.get(line) {
             let range = &self.lines[line];

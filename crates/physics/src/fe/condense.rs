@@ -1,4 +1,4 @@
-//! Elimination of the inside of one sector by fronts (multifrontal Cholesky; Duff & Reid 1983): what remains is the
+//! Plan of the inside of one sector by fronts (multifrontal Cholesky; Duff & Reid 1983): what remains is the
 //! stiffness of the cut faces, the forces the loads put on them, and the compliance of the loads with the faces held.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -26,15 +26,15 @@ pub(super) struct Condensed {
 }
 
 /// A matrix by columns, zero at first; pages that are never written cost nothing.
-struct Square {
+struct DenseMatrix {
     rows: usize,
     columns: usize,
     values: Vec<f64>,
 }
 
-impl Square {
-    fn zeros(rows: usize, columns: usize) -> Square {
-        Square { rows, columns, values: vec![0.0; rows * columns] }
+impl DenseMatrix {
+    fn zeros(rows: usize, columns: usize) -> DenseMatrix {
+        DenseMatrix { rows, columns, values: vec![0.0; rows * columns] }
     }
 
     fn column(&self, j: usize) -> &[f64] {
@@ -54,10 +54,10 @@ impl Square {
     }
 }
 
-/// What a front hands on: a matrix over points not yet eliminated.
-struct Part {
+/// Update matrix of a front: Schur complement over points not yet eliminated.
+struct UpdateMatrix {
     points: Vec<usize>,
-    stiffness: Square,
+    stiffness: DenseMatrix,
     /// Loads with forces on these points.
     loads: Vec<usize>,
     forces: Mat<f64>,
@@ -65,7 +65,7 @@ struct Part {
     compliance: Option<Mat<f64>>,
 }
 
-struct Plan<'a> {
+struct Elimination<'a> {
     operator: &'a Operator,
     loads: &'a Loads,
     /// Place of every point in the order of elimination.
@@ -76,7 +76,7 @@ struct Plan<'a> {
     progress: (f64, f64),
 }
 
-const NOWHERE: usize = usize::MAX;
+const UNASSIGNED: usize = usize::MAX;
 
 /// Eliminates all of `tree`; `kept` are the points that stay.
 pub(super) fn condense(
@@ -88,24 +88,24 @@ pub(super) fn condense(
     watch: Watch,
     progress: (f64, f64),
 ) -> Result<Condensed, FeError> {
-    let mut rank = vec![NOWHERE; operator.points()];
+    let mut rank = vec![UNASSIGNED; operator.points()];
     let mut next = 0;
     enumerate(tree, &mut rank, &mut next);
     for &point in kept {
         rank[point] = next;
         next += 1;
     }
-    let plan = Plan { operator, loads, rank, watch, done: Default::default(), progress };
+    let plan = Elimination { operator, loads, rank, watch, done: Default::default(), progress };
     let inside = plan.eliminate(tree)?;
-    // What couples the kept points directly, and what the inside left.
-    let mut index = vec![NOWHERE; operator.points()];
+    // Direct coupling of the kept points, and the Schur complement of the inside.
+    let mut index = vec![UNASSIGNED; operator.points()];
     for (i, &point) in kept.iter().enumerate() {
         index[point] = i;
     }
     let size = 3 * kept.len();
-    let mut front = Square::zeros(size, size);
+    let mut front = DenseMatrix::zeros(size, size);
     plan.assemble(kept, &index, &mut front);
-    extend(&mut front, &mut Square::zeros(0, 0), &inside, &index);
+    extend(&mut front, &mut DenseMatrix::zeros(0, 0), &inside, &index);
     let mut stiffness = front.as_ref().to_owned();
     mirror(&mut stiffness);
     let mut forces = Mat::<f64>::zeros(size, load_count);
@@ -132,7 +132,7 @@ fn enumerate(tree: &Dissection, rank: &mut [usize], next: &mut usize) {
 }
 
 /// Adds the lower triangle of `part` into the front: columns below `inner` go to `left`, the others to `right`.
-fn extend(left: &mut Square, right: &mut Square, part: &Part, index: &[usize]) {
+fn extend(left: &mut DenseMatrix, right: &mut DenseMatrix, part: &UpdateMatrix, index: &[usize]) {
     let inner = left.columns;
     // Ranks rise in both, so the triangle stays the lower one.
     for (j, &pj) in part.points.iter().enumerate() {
@@ -159,9 +159,9 @@ fn mirror(matrix: &mut Mat<f64>) {
     }
 }
 
-impl Plan<'_> {
-    fn eliminate(&self, tree: &Dissection) -> Result<Part, FeError> {
-        let parts: Vec<Part> = match tree.children.as_slice() {
+impl Elimination<'_> {
+    fn eliminate(&self, tree: &Dissection) -> Result<UpdateMatrix, FeError> {
+        let parts: Vec<UpdateMatrix> = match tree.children.as_slice() {
             [] => Vec::new(),
             [a, b] => {
                 let (a, b) = rayon::join(|| self.eliminate(a), || self.eliminate(b));
@@ -180,8 +180,8 @@ impl Plan<'_> {
         Ok(self.watch.checkpoint(self.progress.0 + (self.progress.1 - self.progress.0) * fraction)?)
     }
 
-    /// Lower triangle of the stiffness between `points` (ranks rising) and all that come later, where `index` knows them.
-    fn assemble(&self, points: &[usize], index: &[usize], front: &mut Square) {
+    /// Lower triangle of the stiffness between `points` (ranks rising) and all that come later, where `index` has them.
+    fn assemble(&self, points: &[usize], index: &[usize], front: &mut DenseMatrix) {
         for &point in points {
             let first = 3 * index[point];
             self.operator.for_each_neighbour(point, |other, block| {
@@ -200,16 +200,16 @@ impl Plan<'_> {
         }
     }
 
-    fn front(&self, own: &[usize], parts: Vec<Part>) -> Result<Part, FeError> {
+    fn front(&self, own: &[usize], parts: Vec<UpdateMatrix>) -> Result<UpdateMatrix, FeError> {
         // Points of the front: its own, then all later ones that they or the parts are coupled to.
-        let mut index = vec![NOWHERE; self.rank.len()];
+        let mut index = vec![UNASSIGNED; self.rank.len()];
         for (i, &point) in own.iter().enumerate() {
             index[point] = i;
         }
         let mut later: Vec<usize> = Vec::new();
         let mut note = |point: usize| {
-            if index[point] == NOWHERE {
-                index[point] = NOWHERE - 1;
+            if index[point] == UNASSIGNED {
+                index[point] = UNASSIGNED - 1;
                 later.push(point);
             }
         };
@@ -228,8 +228,8 @@ impl Plan<'_> {
             index[point] = own.len() + i;
         }
         let (inner, outer) = (3 * own.len(), 3 * later.len());
-        let mut front = Square::zeros(inner + outer, inner);
-        let mut remainder = Square::zeros(outer, outer);
+        let mut front = DenseMatrix::zeros(inner + outer, inner);
+        let mut remainder = DenseMatrix::zeros(outer, outer);
         self.assemble(own, &index, &mut front);
         for part in &parts {
             extend(&mut front, &mut remainder, part, &index);
@@ -298,7 +298,7 @@ impl Plan<'_> {
                 Par::Seq,
             );
         }
-        Ok(Part {
+        Ok(UpdateMatrix {
             points: later,
             stiffness: remainder,
             forces: forces.submatrix(inner, 0, outer, loads.len()).to_owned(),

@@ -9,15 +9,19 @@ use super::condense::{Condensed, factor_partly, solve_lower};
 use super::input::FeError;
 use crate::watch::Watch;
 
-/// The sector as its two cut faces see it: the first half of the unknowns is the face at the smaller angle.
-struct Faces<'a> {
+/// The sector condensed to its two cut faces: the first half of the unknowns is the face at the smaller angle.
+struct CutFaces<'a> {
     sector: &'a Condensed,
     size: usize,
 }
 
-impl Faces<'_> {
+impl CutFaces<'_> {
     /// Complex compliance of the loads at `phase`.
-    fn compliance(&self, phase: f64, checkpoint: &mut dyn FnMut() -> Result<(), FeError>) -> Result<Parts, FeError> {
+    fn compliance(
+        &self,
+        phase: f64,
+        checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
+    ) -> Result<PhaseCompliance, FeError> {
         let n = self.size;
         let s = &self.sector.stiffness;
         let (sin, cos) = phase.sin_cos();
@@ -35,7 +39,7 @@ impl Faces<'_> {
         solve_lower(h.as_ref(), y.as_mut(), checkpoint)?;
         let real = Mat::<f64>::from_fn(n, f.ncols(), |i, j| y[(i, j)].re);
         let imaginary = Mat::<f64>::from_fn(n, f.ncols(), |i, j| y[(i, j)].im);
-        // Each product takes long enough to be asked for anew whether it is still wanted.
+        // Each product takes long enough for a checkpoint of its own.
         checkpoint()?;
         let mut even = self.sector.compliance.clone();
         matmul(even.as_mut(), Accum::Add, real.transpose(), real.as_ref(), 1.0, Par::Seq);
@@ -51,20 +55,20 @@ impl Faces<'_> {
 }
 
 /// Even and odd part of the compliance at one phase.
-type Parts = (Mat<f64>, Mat<f64>);
+type PhaseCompliance = (Mat<f64>, Mat<f64>);
 
 /// Up to this many waves all are calculated.
 const ALL: usize = 24;
-/// Waves up to this number are always calculated: the blank answers each in its own way.
+/// Waves up to this number are always calculated: the blank responds to each differently.
 const DIRECT: usize = 5;
-/// Largest error at the next finer phases, as a part of the largest entry, at which interpolation stops refining. The result
-/// uses the finer phases too, which about squares the error (geometric convergence).
+/// Largest error at the next finer phases, as a part of the largest entry, at which interpolation stops refining. The
+/// result uses the finer phases too, which about squares the error (geometric convergence).
 const INTERPOLATION_ERROR: f64 = 5e-4;
 
 /// Displacement under load a of the sector m places ahead (growing angle) by load b, for m = 0..=offsets.
 ///
-/// Of many waves the high ones are interpolated in the logarithm of the phase (Chebyshev points, refined until the error is
-/// below [`INTERPOLATION_ERROR`]).
+/// Of many waves the high ones are interpolated in the logarithm of the phase (Chebyshev points, refined until the
+/// error is below [`INTERPOLATION_ERROR`]).
 pub(super) fn expand(
     sector: &Condensed,
     teeth: u32,
@@ -72,13 +76,13 @@ pub(super) fn expand(
     watch: Watch,
     progress: (f64, f64),
 ) -> Result<Vec<Mat<f64>>, FeError> {
-    let faces = Faces { sector, size: sector.stiffness.nrows() / 2 };
+    let faces = CutFaces { sector, size: sector.stiffness.nrows() / 2 };
     let loads = sector.forces.ncols();
     let highest = teeth as usize / 2;
     let direct = if highest <= ALL { highest } else { DIRECT };
     let step = 2.0 * std::f64::consts::PI / f64::from(teeth);
     let mut sums = vec![Mat::<f64>::zeros(loads, loads); offsets + 1];
-    let at = |phases: &[f64], done: f64| -> Result<Vec<Parts>, FeError> {
+    let at = |phases: &[f64], done: f64| -> Result<Vec<PhaseCompliance>, FeError> {
         let parts = phases.par_iter().map(|&phase| {
             faces.compliance(phase, &mut || Ok(watch.checkpoint(progress.0 + (progress.1 - progress.0) * done)?))
         });
@@ -151,7 +155,7 @@ pub(super) fn expand(
 }
 
 /// Adds `cos · even - sin · odd`.
-fn add(sum: &mut Mat<f64>, (even, odd): &Parts, cos: f64, sin: f64) {
+fn add(sum: &mut Mat<f64>, (even, odd): &PhaseCompliance, cos: f64, sin: f64) {
     for j in 0..sum.ncols() {
         let sources = even.col_as_slice(j).iter().zip(odd.col_as_slice(j));
         for (s, (e, o)) in sum.col_as_slice_mut(j).iter_mut().zip(sources) {

@@ -1,12 +1,14 @@
 //! Order of elimination: nested dissection (George 1973) on the logical grid of the section and along the face.
 
 use super::operator::Operator;
-use super::section::{Border, Section};
+use super::section::{Border, SectionMesh};
 
 /// A tree of sets of points: children are eliminated before their parent, and are not coupled to each other.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Dissection {
+    /// Points that are eliminated here: the separator of the children, or a leaf.
     pub own: Vec<usize>,
+    /// Sets on either side of the separator.
     pub children: Vec<Dissection>,
 }
 
@@ -14,7 +16,7 @@ pub(super) struct Dissection {
 const SMALLEST: usize = 48;
 
 #[derive(Clone, Copy)]
-struct Place {
+struct PointPosition {
     point: usize,
     column: i32,
     row: i32,
@@ -23,11 +25,11 @@ struct Place {
 
 impl Dissection {
     /// Orders all points inside the sector: those on the cut faces stay out.
-    pub fn new(section: &Section, operator: &Operator, cells: &[f64]) -> Dissection {
+    pub(super) fn new(section: &SectionMesh, operator: &Operator, cells: &[f64]) -> Dissection {
         let places = (0..operator.points())
             .filter_map(|point| {
                 let (node, function) = operator.place(point);
-                (section.borders[node] == Border::Inside).then(|| Place {
+                (section.borders[node] == Border::Inside).then(|| PointPosition {
                     point,
                     column: section.nodes[node].column,
                     row: section.nodes[node].row,
@@ -40,28 +42,28 @@ impl Dissection {
 }
 
 #[derive(Clone, Copy)]
-enum Cut {
+enum Separator {
     Row(i32),
     Column(i32),
     Plane(f64),
 }
 
-impl Cut {
+impl Separator {
     /// Before, on, or behind the cut.
-    fn side(self, place: &Place) -> std::cmp::Ordering {
+    fn side(self, place: &PointPosition) -> std::cmp::Ordering {
         use std::cmp::Ordering::{Equal, Greater, Less};
         match self {
-            Cut::Row(row) => place.row.cmp(&row),
-            Cut::Column(column) => place.column.cmp(&column),
-            Cut::Plane(z) if place.support.1 <= z => Less,
-            Cut::Plane(z) if place.support.0 >= z => Greater,
-            Cut::Plane(_) => Equal,
+            Separator::Row(row) => place.row.cmp(&row),
+            Separator::Column(column) => place.column.cmp(&column),
+            Separator::Plane(z) if place.support.1 <= z => Less,
+            Separator::Plane(z) if place.support.0 >= z => Greater,
+            Separator::Plane(_) => Equal,
         }
     }
 }
 
-fn divide(places: Vec<Place>, cells: &[f64]) -> Dissection {
-    let own = |places: Vec<Place>| Dissection {
+fn divide(places: Vec<PointPosition>, cells: &[f64]) -> Dissection {
+    let own = |places: Vec<PointPosition>| Dissection {
         own: places.into_iter().map(|place| place.point).collect(),
         children: Vec::new(),
     };
@@ -81,9 +83,9 @@ fn divide(places: Vec<Place>, cells: &[f64]) -> Dissection {
 }
 
 /// The cut with the smallest separator for the smaller part it leaves.
-fn best_cut(places: &[Place], cells: &[f64]) -> Option<Cut> {
-    let mut best: Option<(f64, Cut)> = None;
-    let mut consider = |cut: Cut, low: usize, on: usize, high: usize| {
+fn best_cut(places: &[PointPosition], cells: &[f64]) -> Option<Separator> {
+    let mut best: Option<(f64, Separator)> = None;
+    let mut consider = |cut: Separator, low: usize, on: usize, high: usize| {
         let smaller = low.min(high);
         if smaller * 8 < places.len() {
             return;
@@ -93,7 +95,9 @@ fn best_cut(places: &[Place], cells: &[f64]) -> Option<Cut> {
             best = Some((cost, cut));
         }
     };
-    let logical = |key: fn(&Place) -> i32, cut: fn(i32) -> Cut, consider: &mut dyn FnMut(Cut, usize, usize, usize)| {
+    let logical = |key: fn(&PointPosition) -> i32,
+                   cut: fn(i32) -> Separator,
+                   consider: &mut dyn FnMut(Separator, usize, usize, usize)| {
         let top = places.iter().map(key).max().unwrap_or(0);
         let mut counts = vec![0; top as usize + 1];
         for place in places {
@@ -108,12 +112,12 @@ fn best_cut(places: &[Place], cells: &[f64]) -> Option<Cut> {
             low += on;
         }
     };
-    logical(|place| place.row, Cut::Row, &mut consider);
-    logical(|place| place.column, Cut::Column, &mut consider);
+    logical(|place| place.row, Separator::Row, &mut consider);
+    logical(|place| place.column, Separator::Column, &mut consider);
     for &z in cells {
         let low = places.iter().filter(|place| place.support.1 <= z).count();
         let high = places.iter().filter(|place| place.support.0 >= z).count();
-        consider(Cut::Plane(z), low, places.len() - low - high, high);
+        consider(Separator::Plane(z), low, places.len() - low - high, high);
     }
     best.map(|(_, cut)| cut)
 }

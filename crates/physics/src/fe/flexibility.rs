@@ -3,20 +3,20 @@
 use super::cyclic::expand;
 use super::half_space::half_space;
 use super::input::{FeError, FlankInput};
-use super::loads::Grid;
-use super::operator::Body;
-use super::section::{Border, Section};
+use super::loads::LoadGrid;
+use super::operator::ElasticBody;
+use super::section::{Border, SectionMesh};
 use super::sector::Sector;
 use super::sizes::Sizes;
 use super::spline::{SplineSpace, graded_cells};
-use super::surface::Involute;
+use super::surface::InvoluteFlank;
 use crate::watch::Watch;
 
 /// Bulk influence between the points of one flank and those of the teeth ahead of it.
 ///
 /// Nodes are the hats of a load grid, bilinear in the arc length of the transverse involute and in the axial place;
-/// node `profile * stations + station`. Values are mean normal displacements under the hat of the response node (into the
-/// tooth) per unit normal force spread as the hat of the load node: Galerkin means, symmetric.
+/// node `profile * stations + station`. Values are mean normal displacements under the hat of the response node (into
+/// the tooth) per unit normal force spread as the hat of the load node: Galerkin means, symmetric.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlankFlexibility {
     pub(super) rolls_m: Vec<f64>,
@@ -43,14 +43,15 @@ impl FlankFlexibility {
     fn with_sizes(input: &FlankInput, sizes: &Sizes, watch: Watch) -> Result<FlankFlexibility, FeError> {
         watch.checkpoint(0.0)?;
         let key = input.key();
-        let involute = Involute::new(input.member())?;
+        let involute = InvoluteFlank::new(input.member())?;
         let m = key.normal_module_m;
         let (profile_cells, station_cells) = sizes.load_cells(involute.length_m / m, key.face_width_m / m);
-        let grid = Grid {
+        let grid = LoadGrid {
             profile_m: (0..=profile_cells).map(|i| involute.length_m * i as f64 / profile_cells as f64).collect(),
             stations_m: graded_cells(key.face_width_m, station_cells),
         };
-        let section = Section::new(input.member(), &involute, m, key.hold_radius_m, &grid.profile_m, &sizes.section)?;
+        let section =
+            SectionMesh::new(input.member(), &involute, m, key.hold_radius_m, &grid.profile_m, &sizes.section)?;
         let cell = key.face_width_m / station_cells as f64 / sizes.splines_per_cell as f64;
         let fine = subdivided(&grid.stations_m, sizes.splines_per_cell);
         let mut spaces = vec![SplineSpace::cubic(fine.clone())];
@@ -60,7 +61,7 @@ impl FlankFlexibility {
             spaces.push(SplineSpace::cubic(graded_cells(key.face_width_m, count)));
         }
         let levels = levels(&section, spaces.len(), cell, sizes.reach);
-        let body = Body {
+        let body = ElasticBody {
             section: &section,
             youngs_pa: key.youngs_modulus_pa,
             nu: key.poissons_ratio,
@@ -77,8 +78,8 @@ impl FlankFlexibility {
         for (b, h) in bulk[0].iter_mut().zip(&half_space) {
             *b -= h;
         }
-        if key.side == super::input::Side::Gear {
-            // The sector's angle grows towards the loaded flank, which on the gear looks back to the teeth behind.
+        if key.side == crate::gear::MemberId::Gear {
+            // The sector's angle grows towards the loaded flank, which on the gear is towards the teeth behind.
             for matrix in &mut bulk[1..] {
                 transpose(matrix, n);
             }
@@ -118,8 +119,9 @@ impl FlankFlexibility {
         self.rolls_m.len() * self.stations_m.len()
     }
 
-    /// Influence of a load on tooth 0 on the tooth that entered the mesh `offset` pitches earlier, without the half-space
-    /// part (offset 0): `[response * nodes + load]`. The way back is the transpose. `None` beyond the highest offset.
+    /// Influence of a load on tooth 0 on the tooth that entered the mesh `offset` pitches earlier, without the
+    /// half-space part (offset 0): `[response * nodes + load]`. The way back is the transpose. `None` beyond the
+    /// highest offset.
     pub fn bulk(&self, offset: usize) -> Option<&[f64]> {
         self.bulk.get(offset).map(Vec::as_slice)
     }
@@ -155,7 +157,7 @@ fn subdivided(borders: &[f64], parts: usize) -> Vec<f64> {
 }
 
 /// Space of every node's line: cells double while they stay below `reach` times the distance from the loaded flank.
-fn levels(section: &Section, spaces: usize, cell: f64, reach: f64) -> Vec<u8> {
+fn levels(section: &SectionMesh, spaces: usize, cell: f64, reach: f64) -> Vec<u8> {
     let flank: Vec<(f64, f64)> = section
         .flank
         .iter()

@@ -2,15 +2,16 @@
 //! helicoid.
 //!
 //! Distances on a helicoid depend on the two arc lengths and on the difference of the axial places alone, so the axial
-//! integrals are those of the hats' correlation, a cubic between breaks. Near pairs of points take `w = w0 + δ sinh(t)`,
-//! which takes the peak of 1/r away; the logarithm that is left in the arc length is met by squared abscissas.
+//! integrals are those of the hats' correlation, a cubic between breaks. Near pairs of points take `w = w0 + δ
+//! sinh(t)`, which takes the peak of 1/r away; the logarithm that is left in the arc length is met by squared
+//! abscissas.
 
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::loads::{Grid, hat_lengths};
-use super::surface::Involute;
+use super::loads::{LoadGrid, hat_lengths};
+use super::surface::InvoluteFlank;
 use crate::numerics::gauss::{gauss_legendre, on_interval};
 use crate::watch::{Canceled, Watch};
 
@@ -21,8 +22,8 @@ struct Strip {
     shift: f64,
     /// All pairs of cells that look like this.
     cells: Vec<(usize, usize)>,
-    /// Axial distance, correlations of the four pairs of hat halves times weight, sine and cosine of the twist: for points
-    /// that are not close.
+    /// Axial distance, correlations of the four pairs of hat halves times weight, sine and cosine of the twist: for
+    /// points that are not close.
     far: Vec<(f64, [f64; 4], f64, f64)>,
     near: bool,
 }
@@ -127,8 +128,8 @@ const NEAR_POINTS: usize = 16;
 
 /// Half-space compliance between all hats of `grid`, row-major; node index `profile * stations + station`.
 pub(super) fn half_space(
-    involute: &Involute,
-    grid: &Grid,
+    involute: &InvoluteFlank,
+    grid: &LoadGrid,
     twist_per_m: f64,
     (youngs_pa, nu): (f64, f64),
     watch: Watch,
@@ -263,13 +264,14 @@ mod tests {
     use crate::fe::spline::graded_cells;
     use herringbone_oracle::{Tolerance, check};
 
-    /// A flank so large that it is flat: uniform pressure on a rectangle, mean displacement in closed form (the mean inverse
-    /// distance of two points of a rectangle).
+    /// A flank so large that it is flat: uniform pressure on a rectangle, mean displacement in closed form (the mean
+    /// inverse distance of two points of a rectangle).
     #[test]
     fn uniform_pressure_on_a_rectangle() {
         let (length, width) = (8e-3_f64, 20e-3_f64);
-        let involute = Involute { base_radius_m: 1e3, base_half_angle_rad: 0.1, form_roll_m: 1e3, length_m: length };
-        let grid = Grid {
+        let involute =
+            InvoluteFlank { base_radius_m: 1e3, base_half_angle_rad: 0.1, form_roll_m: 1e3, length_m: length };
+        let grid = LoadGrid {
             profile_m: (0..=5).map(|i| length * f64::from(i) / 5.0).collect(),
             stations_m: graded_cells(width, 7),
         };

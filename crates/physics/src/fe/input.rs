@@ -1,22 +1,14 @@
-//! What the flexibility of a flank depends on, and what can go wrong.
+//! Input of the finite elements of a flank, and their errors.
 
 use serde::Serialize;
 
-use crate::gear::{Member, Pair};
+use crate::gear::{Member, MemberId, Pair};
 use crate::watch::Canceled;
 
 /// Version of meshes, elements and load grid: part of every key, raised whenever a value may change.
 pub const MESH_VERSION: u32 = 1;
 
-/// Which member of the pair.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Side {
-    Pinion,
-    Gear,
-}
-
-/// How fine the elements and the load grid are; `examples/fe_validation.rs` prints cost and error of each.
+/// Fineness of the elements and the load grid; `tools/src/bin/fe_validation.rs` prints cost and error of each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Resolution {
@@ -33,21 +25,37 @@ pub enum Resolution {
 /// Everything the flexibility of one flank depends on: hash this (lengths in m, angles in rad).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FlankKey {
+    /// [`MESH_VERSION`].
     pub mesh_version: u32,
+    /// Fineness of elements and load grid.
     pub resolution: Resolution,
-    pub side: Side,
+    /// Pinion or gear.
+    pub side: MemberId,
+    /// Number of teeth.
     pub teeth: u32,
+    /// Normal module.
     pub normal_module_m: f64,
+    /// Normal pressure angle.
     pub normal_pressure_angle_rad: f64,
+    /// Helix angle at the reference circle.
     pub helix_angle_rad: f64,
+    /// Profile shift coefficient.
     pub profile_shift: f64,
+    /// Dedendum coefficient of the rack.
     pub dedendum: f64,
+    /// Tip rounding coefficient of the rack.
     pub fillet_radius: f64,
+    /// Radius of the tip circle.
     pub tip_radius_m: f64,
+    /// Face width of one half.
     pub face_width_m: f64,
+    /// Radius of the held cylinder.
     pub hold_radius_m: f64,
+    /// Young's modulus.
     pub youngs_modulus_pa: f64,
+    /// Poisson's ratio.
     pub poissons_ratio: f64,
+    /// Teeth ahead whose displacement is part of the result.
     pub offsets: usize,
 }
 
@@ -61,11 +69,11 @@ pub struct FlankInput {
 
 impl FlankInput {
     /// The flank of one helix half of `side`, held at `hold_radius_m` (all displacements zero over the face width, end
-    /// faces free), with answers of the teeth up to `offsets` pitches ahead.
-    pub fn new(pair: &Pair, side: Side, hold_radius_m: f64, offsets: usize, resolution: Resolution) -> FlankInput {
+    /// faces free), with displacements of the teeth up to `offsets` pitches ahead.
+    pub fn new(pair: &Pair, side: MemberId, hold_radius_m: f64, offsets: usize, resolution: Resolution) -> FlankInput {
         let (member, spec) = match side {
-            Side::Pinion => (&pair.pinion, &pair.spec.pinion),
-            Side::Gear => (&pair.gear, &pair.spec.gear),
+            MemberId::Pinion => (&pair.pinion, &pair.spec.pinion),
+            MemberId::Gear => (&pair.gear, &pair.spec.gear),
         };
         let key = FlankKey {
             mesh_version: MESH_VERSION,
@@ -88,7 +96,7 @@ impl FlankInput {
         FlankInput { key, member: member.clone(), base_helix_angle_rad: pair.base_helix_angle_rad }
     }
 
-    /// What the result depends on.
+    /// All that the result depends on.
     pub fn key(&self) -> &FlankKey {
         &self.key
     }
@@ -102,30 +110,52 @@ impl FlankInput {
     pub(super) fn twist_per_m(&self) -> f64 {
         let turn = self.base_helix_angle_rad.tan() / self.member.base_radius_m;
         match self.key.side {
-            Side::Pinion => turn,
-            Side::Gear => -turn,
+            MemberId::Pinion => turn,
+            MemberId::Gear => -turn,
         }
     }
 }
 
-/// Why there is no flexibility.
+/// Errors of the finite elements.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FeError {
+    /// The calculation was canceled.
     #[error(transparent)]
     Canceled(#[from] Canceled),
     /// The held cylinder leaves no rim.
     #[error("the held radius {hold_radius_m} m leaves no rim below the root radius {root_radius_m} m")]
-    NoRim { hold_radius_m: f64, root_radius_m: f64 },
+    NoRim {
+        /// Radius of the held cylinder.
+        hold_radius_m: f64,
+        /// Radius of the root circle.
+        root_radius_m: f64,
+    },
     /// The flank or the tip land has no length.
     #[error("the tooth has no usable form: {what} is {value_m} m")]
-    Form { what: &'static str, value_m: f64 },
+    Form {
+        /// The quantity.
+        what: &'static str,
+        /// Its value.
+        value_m: f64,
+    },
     /// An element is turned inside out.
     #[error("element {element} of the tooth section is degenerate (Jacobian {jacobian:e} of its mean)")]
-    Mesh { element: usize, jacobian: f64 },
+    Mesh {
+        /// Index of the element.
+        element: usize,
+        /// Least over mean Jacobian determinant.
+        jacobian: f64,
+    },
     /// The stiffness matrix is not positive definite.
     #[error("the stiffness matrix is not positive definite ({place})")]
-    Singular { place: &'static str },
+    Singular {
+        /// The stage of the elimination.
+        place: &'static str,
+    },
     /// Stored bytes are not a flexibility of this version.
     #[error("the stored flexibility cannot be read: {reason}")]
-    Stored { reason: &'static str },
+    Stored {
+        /// The reason.
+        reason: &'static str,
+    },
 }

@@ -1,19 +1,22 @@
 //! Unit forces spread as hats over the loaded flank, and the same hats as weights of the displacement.
 
 use super::operator::Operator;
-use super::section::{Section, edge_shapes};
-use super::surface::Involute;
+use super::section::{SectionMesh, edge_shapes};
+use super::surface::InvoluteFlank;
 use crate::numerics::gauss::{gauss_legendre, on_interval};
 
 /// The load grid: hats bilinear in the arc length of the involute and in the axial place.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Grid {
+pub(super) struct LoadGrid {
+    /// Nodes along the profile: arc length from the form point.
     pub profile_m: Vec<f64>,
+    /// Nodes along the face.
     pub stations_m: Vec<f64>,
 }
 
-impl Grid {
-    pub fn len(&self) -> usize {
+impl LoadGrid {
+    /// Number of hats.
+    pub(super) fn len(&self) -> usize {
         self.profile_m.len() * self.stations_m.len()
     }
 }
@@ -34,8 +37,14 @@ pub(super) struct Loads {
 }
 
 impl Loads {
-    /// Unit normal forces into the tooth. `twist_per_m` as in [`super::operator::Body`].
-    pub fn new(section: &Section, involute: &Involute, grid: &Grid, operator: &Operator, twist_per_m: f64) -> Loads {
+    /// Unit normal forces into the tooth. `twist_per_m` as in [`super::operator::ElasticBody`].
+    pub(super) fn new(
+        section: &SectionMesh,
+        involute: &InvoluteFlank,
+        grid: &LoadGrid,
+        operator: &Operator,
+        twist_per_m: f64,
+    ) -> Loads {
         let lengths = hat_lengths(&grid.profile_m);
         let widths = hat_lengths(&grid.stations_m);
         let mut at_node = vec![Vec::new(); section.nodes.len()];
@@ -93,14 +102,20 @@ impl Loads {
         Loads { stations: grid.stations_m.len(), section: at_node, along }
     }
 
-    /// Whether the line of `node` is loaded.
-    pub fn touches(&self, node: usize) -> bool {
+    /// True where the line of `node` is loaded.
+    pub(super) fn touches(&self, node: usize) -> bool {
         !self.section[node].is_empty()
     }
 
-    /// Calls `add` with the index of every hat (`profile * stations + station`) that loads function `function` on `node`'s
-    /// line, and the force.
-    pub fn for_each(&self, operator: &Operator, node: usize, function: usize, mut add: impl FnMut(usize, [f64; 3])) {
+    /// Calls `add` with the index of every hat (`profile * stations + station`) that loads function `function` on
+    /// `node`'s line, and the force.
+    pub(super) fn for_each(
+        &self,
+        operator: &Operator,
+        node: usize,
+        function: usize,
+        mut add: impl FnMut(usize, [f64; 3]),
+    ) {
         for (hat, force) in &self.section[node] {
             for &(station, along) in &self.along[operator.level(node)][function] {
                 add(hat * self.stations + station, force.map(|f| f * along));

@@ -2,23 +2,26 @@
 //!
 //! The body is the section screwed along the axis, so in the frame that turns with the section nothing depends on the
 //! axial place. With `u = Σ N_k(x, y) f_i(z) q` the stiffness between (node k, function i) and (node l, function j) is
-//! `A00 ∫f g + A01 ∫f g' + A10 ∫f' g + A11 ∫f' g'` with 3 x 3 section integrals `A`: the derivative along the axis at a fixed
-//! place is `∂_ζ + τ (e_z × · − (x ∂_y − y ∂_x))` there. Displacements are radial, tangential, axial at every node, so
-//! that the cut faces of all sectors are alike.
+//! `A00 ∫f g + A01 ∫f g' + A10 ∫f' g + A11 ∫f' g'` with 3 x 3 section integrals `A`: the derivative along the axis at a
+//! fixed place is `∂_ζ + τ (e_z × · − (x ∂_y − y ∂_x))` there. Displacements are radial, tangential, axial at every
+//! node, so that the cut faces of all sectors are alike.
 
 use std::collections::BTreeMap;
 
-use super::section::{Border, Section, shapes};
-use super::spline::{Products, SplineSpace};
+use super::section::{Border, SectionMesh, shapes};
+use super::spline::{SplineProducts, SplineSpace};
 use crate::numerics::gauss::gauss_legendre;
 
 /// Section integrals between two nodes, `[A00, A01, A10, A11]`, row-major.
 type Coupling = [[f64; 9]; 4];
 
 /// Material, twist and mesh of one sector.
-pub(super) struct Body<'a> {
-    pub section: &'a Section,
+pub(super) struct ElasticBody<'a> {
+    /// Mesh of the transverse section.
+    pub section: &'a SectionMesh,
+    /// Young's modulus, Pa.
     pub youngs_pa: f64,
+    /// Poisson's ratio.
     pub nu: f64,
     /// Turn per length, positive towards growing angle.
     pub twist_per_m: f64,
@@ -32,13 +35,13 @@ pub(super) struct Operator {
     node: Vec<u32>,
     levels: Vec<u8>,
     spaces: Vec<SplineSpace>,
-    products: Vec<Products>,
+    products: Vec<SplineProducts>,
     couplings: Vec<Vec<(u32, Coupling)>>,
 }
 
 impl Operator {
     /// `levels` says which of `spaces` every node's line carries.
-    pub fn new(body: &Body, spaces: Vec<SplineSpace>, levels: Vec<u8>) -> Operator {
+    pub(super) fn new(body: &ElasticBody, spaces: Vec<SplineSpace>, levels: Vec<u8>) -> Operator {
         let section = body.section;
         let mut first = vec![0];
         let mut node = Vec::new();
@@ -50,7 +53,7 @@ impl Operator {
         let mut products = Vec::new();
         for a in &spaces {
             for b in &spaces {
-                products.push(Products::new(a, b));
+                products.push(SplineProducts::new(a, b));
             }
         }
         let couplings = couplings(body);
@@ -58,35 +61,38 @@ impl Operator {
     }
 
     /// Number of points.
-    pub fn points(&self) -> usize {
+    pub(super) fn points(&self) -> usize {
         self.node.len()
     }
 
     /// Node and function of a point.
-    pub fn place(&self, point: usize) -> (usize, usize) {
+    pub(super) fn place(&self, point: usize) -> (usize, usize) {
         let node = self.node[point] as usize;
         (node, point - self.first[node])
     }
 
     /// Points of a node's line.
-    pub fn line(&self, node: usize) -> std::ops::Range<usize> {
+    pub(super) fn line(&self, node: usize) -> std::ops::Range<usize> {
         self.first[node]..self.first[node + 1]
     }
 
-    pub fn space(&self, node: usize) -> &SplineSpace {
+    /// Functions along the face at a node.
+    pub(super) fn space(&self, node: usize) -> &SplineSpace {
         &self.spaces[usize::from(self.levels[node])]
     }
 
-    pub fn level(&self, node: usize) -> usize {
+    /// Index of those functions among [`Operator::spaces`].
+    pub(super) fn level(&self, node: usize) -> usize {
         usize::from(self.levels[node])
     }
 
-    pub fn spaces(&self) -> &[SplineSpace] {
+    /// Function spaces along the face, finest first.
+    pub(super) fn spaces(&self) -> &[SplineSpace] {
         &self.spaces
     }
 
     /// Calls `visit` with every point that `point` is coupled to (itself included) and gives access to the stiffness.
-    pub fn for_each_neighbour(&self, point: usize, mut visit: impl FnMut(usize, Block<'_>)) {
+    pub(super) fn for_each_neighbour(&self, point: usize, mut visit: impl FnMut(usize, NodeBlock<'_>)) {
         let (node, function) = self.place(point);
         let level = self.level(node);
         for (other, coupling) in &self.couplings[node] {
@@ -95,21 +101,21 @@ impl Operator {
             let (from, row) = table.row(function);
             let base = self.first[other] + from;
             for (offset, along) in row.iter().enumerate() {
-                visit(base + offset, Block { coupling, along });
+                visit(base + offset, NodeBlock { coupling, along });
             }
         }
     }
 }
 
 /// Stiffness between two points.
-pub(super) struct Block<'a> {
+pub(super) struct NodeBlock<'a> {
     coupling: &'a Coupling,
     along: &'a [f64; 4],
 }
 
-impl Block<'_> {
-    /// 3 x 3, row-major, rows of the point that was asked.
-    pub fn values(&self) -> [f64; 9] {
+impl NodeBlock<'_> {
+    /// 3 x 3, row-major, rows of the point that was given.
+    pub(super) fn values(&self) -> [f64; 9] {
         std::array::from_fn(|e| (0..4).map(|p| self.coupling[p][e] * self.along[p]).sum())
     }
 }
@@ -130,7 +136,7 @@ fn stress(strain: &[f64; 6], lambda: f64, shear: f64) -> [f64; 6] {
 /// Points per direction of the section rule.
 const RULE: usize = 3;
 
-fn couplings(body: &Body) -> Vec<Vec<(u32, Coupling)>> {
+fn couplings(body: &ElasticBody) -> Vec<Vec<(u32, Coupling)>> {
     let section = body.section;
     let (e, nu) = (body.youngs_pa, body.nu);
     let lambda = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));

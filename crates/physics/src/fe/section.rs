@@ -6,7 +6,7 @@
 //! others. So no element has a flat or reentrant corner, however the fillet runs into the root circle.
 
 use super::input::FeError;
-use super::surface::{Involute, land_points, row_radii_m, turning_radius_m};
+use super::surface::{InvoluteFlank, land_points, row_radii_m, turning_radius_m};
 use crate::gear::Member;
 
 /// Element sizes, in normal modules unless said otherwise.
@@ -33,13 +33,17 @@ pub(super) struct SectionSizes {
 /// A node: section coordinates with the tooth's centreline along y, and its place on the logical grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Node {
+    /// Across the tooth, positive towards the loaded flank.
     pub x_m: f64,
+    /// Along the centreline of the tooth, outwards.
     pub y_m: f64,
+    /// Column of the logical grid.
     pub column: i32,
+    /// Row of the logical grid, inwards.
     pub row: i32,
 }
 
-/// Which border a node lies on.
+/// Border that a node lies on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Border {
     Inside,
@@ -54,18 +58,24 @@ pub(super) enum Border {
 /// An edge of an element on the loaded flank: arc length from the form point at its ends, its three nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FlankEdge {
+    /// Arc length at the inner end.
     pub from_m: f64,
+    /// Arc length at the outer end.
     pub to_m: f64,
+    /// Nodes.
     pub nodes: [usize; 3],
 }
 
 /// The mesh of one section.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Section {
+pub(super) struct SectionMesh {
+    /// Nodes.
     pub nodes: Vec<Node>,
+    /// Border of every node.
     pub borders: Vec<Border>,
     /// Nodes in the order of the shape functions: `3 * (row 0..3 inwards) + (column 0..3)`.
     pub elements: Vec<[usize; 9]>,
+    /// Edges on the loaded flank.
     pub flank: Vec<FlankEdge>,
 }
 
@@ -76,17 +86,17 @@ impl SectionSizes {
     }
 }
 
-impl Section {
-    /// The mesh of `member` down to `hold_radius_m`, with rows at the profile nodes `profile_m` (arc lengths from 0 to the
-    /// flank's length).
-    pub fn new(
+impl SectionMesh {
+    /// The mesh of `member` down to `hold_radius_m`, with rows at the profile nodes `profile_m` (arc lengths from 0 to
+    /// the flank's length).
+    pub(super) fn new(
         member: &Member,
-        involute: &Involute,
+        involute: &InvoluteFlank,
         normal_module_m: f64,
         hold_radius_m: f64,
         profile_m: &[f64],
         sizes: &SectionSizes,
-    ) -> Result<Section, FeError> {
+    ) -> Result<SectionMesh, FeError> {
         let m = normal_module_m;
         let root = member.root_radius_m;
         if !(hold_radius_m > 0.0 && hold_radius_m <= root - 0.05 * m) {
@@ -101,7 +111,7 @@ impl Section {
             let rows = sizes.rows(profile_m.len() - 1);
             row_radii_m(member, involute, turn, m, profile_m, &rows, sizes.fillet_rows)
         };
-        let mut builder = Builder::new(member, sizes, radii.len() as i32 - 1);
+        let mut builder = SectionBuilder::new(member, sizes, radii.len() as i32 - 1);
         builder.tooth(&radii);
         builder.rim(turn, hold_radius_m, m);
         let section = builder.finish(profile_m);
@@ -169,7 +179,7 @@ pub(super) fn shapes(u: f64, v: f64) -> ([f64; 9], [f64; 9], [f64; 9]) {
     out
 }
 
-struct Builder<'a> {
+struct SectionBuilder<'a> {
     member: &'a Member,
     sizes: &'a SectionSizes,
     /// Places of the columns of nodes on the tooth, -1 to 1.
@@ -182,8 +192,8 @@ struct Builder<'a> {
     index: std::collections::HashMap<(i32, i32), usize>,
 }
 
-impl<'a> Builder<'a> {
-    fn new(member: &'a Member, sizes: &'a SectionSizes, turn_row: i32) -> Builder<'a> {
+impl<'a> SectionBuilder<'a> {
+    fn new(member: &'a Member, sizes: &'a SectionSizes, turn_row: i32) -> SectionBuilder<'a> {
         let mut across = vec![-1.0];
         let total: f64 = sizes.columns.iter().sum();
         let mut sum = 0.0;
@@ -193,7 +203,16 @@ impl<'a> Builder<'a> {
             across.push(-1.0 + 2.0 * sum / total);
         }
         let land = 2 * sizes.land_columns as i32;
-        Builder { member, sizes, across, turn_row, rim_rows: 0, land, nodes: Vec::new(), index: Default::default() }
+        SectionBuilder {
+            member,
+            sizes,
+            across,
+            turn_row,
+            rim_rows: 0,
+            land,
+            nodes: Vec::new(),
+            index: Default::default(),
+        }
     }
 
     fn add(&mut self, column: i32, row: i32, r: f64, angle: f64) {
@@ -250,7 +269,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn finish(self, profile_m: &[f64]) -> Section {
+    fn finish(self, profile_m: &[f64]) -> SectionMesh {
         let last_row = self.turn_row + self.rim_rows;
         let high = 2 * self.land + self.across.len() as i32 - 1;
         let borders = self
@@ -289,6 +308,6 @@ impl<'a> Builder<'a> {
                 row += 2;
             }
         }
-        Section { nodes: self.nodes, borders, elements, flank }
+        SectionMesh { nodes: self.nodes, borders, elements, flank }
     }
 }

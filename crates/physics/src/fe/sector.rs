@@ -3,11 +3,11 @@
 use super::condense::{Condensed, condense};
 use super::dissection::Dissection;
 use super::input::FeError;
-use super::loads::{Grid, Loads};
-use super::operator::{Body, Operator};
+use super::loads::{LoadGrid, Loads};
+use super::operator::{ElasticBody, Operator};
 use super::section::Border;
 use super::spline::SplineSpace;
-use super::surface::Involute;
+use super::surface::InvoluteFlank;
 use crate::watch::Watch;
 
 /// A sector before its inside is eliminated.
@@ -22,13 +22,13 @@ pub(super) struct Sector {
 
 impl Sector {
     /// `levels` says which of `spaces` the line of every node carries; `cells` are the finest borders along the face.
-    pub fn new(
-        body: &Body,
+    pub(super) fn new(
+        body: &ElasticBody,
         spaces: Vec<SplineSpace>,
         levels: Vec<u8>,
         cells: &[f64],
-        involute: &Involute,
-        grid: &Grid,
+        involute: &InvoluteFlank,
+        grid: &LoadGrid,
     ) -> Sector {
         let section = body.section;
         let operator = Operator::new(body, spaces, levels);
@@ -46,8 +46,8 @@ impl Sector {
         Sector { operator, loads, load_count: grid.len(), tree, kept }
     }
 
-    /// The sector as its cut faces see it.
-    pub fn condense(&self, watch: Watch, progress: (f64, f64)) -> Result<Condensed, FeError> {
+    /// The sector condensed to its cut faces.
+    pub(super) fn condense(&self, watch: Watch, progress: (f64, f64)) -> Result<Condensed, FeError> {
         condense(&self.operator, &self.loads, self.load_count, &self.tree, &self.kept, watch, progress)
     }
 }

@@ -14,11 +14,13 @@ pub(super) struct Sizes {
     pub splines_per_cell: usize,
     /// Cells along the face may be this many times as long as the distance from the loaded flank.
     pub reach: f64,
+    /// Elements of the section.
     pub section: SectionSizes,
 }
 
 impl Sizes {
-    pub fn new(resolution: Resolution) -> Sizes {
+    /// Sizes at a resolution.
+    pub(super) fn new(resolution: Resolution) -> Sizes {
         match resolution {
             Resolution::Coarse => Sizes {
                 profile_cell: 0.4,
@@ -77,7 +79,7 @@ impl Sizes {
     }
 
     /// Load cells on a flank of `length` and `width`, both in normal modules.
-    pub fn load_cells(&self, length: f64, width: f64) -> (usize, usize) {
+    pub(super) fn load_cells(&self, length: f64, width: f64) -> (usize, usize) {
         let cells = |size: f64, cell: f64, range: (usize, usize)| {
             ((size / cell).round().clamp(range.0 as f64, range.1 as f64)) as usize
         };

@@ -30,13 +30,13 @@ pub(super) struct SplineSpace {
 
 impl SplineSpace {
     /// Twice continuously differentiable cubics on the cells between `borders` (at least two, rising).
-    pub fn cubic(borders: Vec<f64>) -> SplineSpace {
+    pub(super) fn cubic(borders: Vec<f64>) -> SplineSpace {
         SplineSpace::of_order(ORDER, borders)
     }
 
     /// The constant alone: what makes a body endless (plane strain) when the face's length is one.
     #[cfg(test)]
-    pub fn constant(width: f64) -> SplineSpace {
+    pub(super) fn constant(width: f64) -> SplineSpace {
         SplineSpace::of_order(1, vec![0.0, width])
     }
 
@@ -47,17 +47,18 @@ impl SplineSpace {
         SplineSpace { order, borders, knots }
     }
 
-    pub fn len(&self) -> usize {
+    /// Number of functions.
+    pub(super) fn len(&self) -> usize {
         self.knots.len() - self.order
     }
 
-    /// Where function `i` differs from zero.
-    pub fn support(&self, i: usize) -> (f64, f64) {
+    /// Interval in which function `i` differs from zero.
+    pub(super) fn support(&self, i: usize) -> (f64, f64) {
         (self.knots[i], self.knots[i + self.order])
     }
 
     /// Index of the first function that differs from zero at `z`, and values and slopes of all that do.
-    pub fn at(&self, z: f64) -> (usize, [f64; ORDER], [f64; ORDER]) {
+    pub(super) fn at(&self, z: f64) -> (usize, [f64; ORDER], [f64; ORDER]) {
         let k = self.order;
         let last = self.borders.len() - 2;
         let cell = self.borders.partition_point(|&b| b <= z).saturating_sub(1).min(last);
@@ -100,7 +101,7 @@ impl SplineSpace {
     }
 
     /// Integrals of every function against every piecewise linear hat between `stations`.
-    pub fn hat_integrals(&self, stations: &[f64]) -> Vec<Vec<(usize, f64)>> {
+    pub(super) fn hat_integrals(&self, stations: &[f64]) -> Vec<Vec<(usize, f64)>> {
         let mut table = vec![vec![0.0; stations.len()]; self.len()];
         let rule = gauss_legendre(4);
         for piece in self.borders_with(stations).windows(2) {
@@ -120,7 +121,7 @@ impl SplineSpace {
 
 /// Products of the functions of two spaces, integrated over the face.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Products {
+pub(super) struct SplineProducts {
     columns: usize,
     /// For every function of the first space the functions of the second that overlap it.
     ranges: Vec<(usize, usize)>,
@@ -128,8 +129,9 @@ pub(super) struct Products {
     values: Vec<[f64; 4]>,
 }
 
-impl Products {
-    pub fn new(first: &SplineSpace, second: &SplineSpace) -> Products {
+impl SplineProducts {
+    /// Integrals over the common cells of both spaces.
+    pub(super) fn new(first: &SplineSpace, second: &SplineSpace) -> SplineProducts {
         let columns = second.len();
         let mut values = vec![[0.0; 4]; first.len() * columns];
         let mut ranges = vec![(usize::MAX, 0); first.len()];
@@ -151,11 +153,11 @@ impl Products {
                 }
             }
         }
-        Products { columns, ranges, values }
+        SplineProducts { columns, ranges, values }
     }
 
     /// First function of the second space that overlaps function `i` of the first, and the products from there on.
-    pub fn row(&self, i: usize) -> (usize, &[[f64; 4]]) {
+    pub(super) fn row(&self, i: usize) -> (usize, &[[f64; 4]]) {
         let (from, to) = self.ranges[i];
         (from, &self.values[i * self.columns + from..i * self.columns + to])
     }
@@ -179,7 +181,7 @@ mod tests {
     #[test]
     fn products_of_different_spaces_integrate_polynomials_exactly() {
         let (fine, coarse) = (SplineSpace::cubic(graded_cells(2.0, 9)), SplineSpace::cubic(graded_cells(2.0, 4)));
-        let products = Products::new(&fine, &coarse);
+        let products = SplineProducts::new(&fine, &coarse);
         let mut sums = [0.0; 4];
         for i in 0..fine.len() {
             let (_, row) = products.row(i);

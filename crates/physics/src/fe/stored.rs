@@ -1,7 +1,7 @@
 //! A flexibility as bytes: little-endian, versioned, with a digest.
 //!
-//! `HFEF`, version, counts of profile nodes, stations and matrices (`u32` each), then `f64`: rolls, arc lengths, stations,
-//! half-space part, bulk matrices; SHA-256 of all that.
+//! `HFEF`, version, counts of profile nodes, stations and matrices (`u32` each), then `f64`: rolls, arc lengths,
+//! stations, half-space part, bulk matrices; SHA-256 of all that.
 
 use sha2::{Digest, Sha256};
 

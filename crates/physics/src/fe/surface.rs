@@ -5,22 +5,27 @@ use crate::gear::Member;
 
 /// The involute flank by arc length from the form point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Involute {
+pub(super) struct InvoluteFlank {
+    /// Base radius.
     pub base_radius_m: f64,
+    /// Half angle of the tooth at the base circle.
     pub base_half_angle_rad: f64,
+    /// Roll length at the form point.
     pub form_roll_m: f64,
+    /// Arc length from the form point to the tip.
     pub length_m: f64,
 }
 
-impl Involute {
-    pub fn new(member: &Member) -> Result<Involute, FeError> {
+impl InvoluteFlank {
+    /// The flank of a member.
+    pub(super) fn new(member: &Member) -> Result<InvoluteFlank, FeError> {
         let form_roll_m = member.root_form_roll_m();
         let tip_roll_m = member.tip_roll_m();
         let length_m = (tip_roll_m - form_roll_m) * (tip_roll_m + form_roll_m) / (2.0 * member.base_radius_m);
         if length_m.is_nan() || length_m <= 0.0 {
             return Err(FeError::Form { what: "the length of the usable flank", value_m: length_m });
         }
-        Ok(Involute {
+        Ok(InvoluteFlank {
             base_radius_m: member.base_radius_m,
             base_half_angle_rad: member.base_half_angle_rad,
             form_roll_m,
@@ -29,12 +34,12 @@ impl Involute {
     }
 
     /// Roll length at arc length `s`: s = (ρ² - ρ_form²)/(2 r_b).
-    pub fn roll_m(&self, s_m: f64) -> f64 {
+    pub(super) fn roll_m(&self, s_m: f64) -> f64 {
         (self.form_roll_m * self.form_roll_m + 2.0 * self.base_radius_m * s_m).sqrt()
     }
 
     /// Point (x, y) of the loaded flank and the unit normal into the tooth, in the section.
-    pub fn at(&self, s_m: f64) -> ([f64; 2], [f64; 2]) {
+    pub(super) fn at(&self, s_m: f64) -> ([f64; 2], [f64; 2]) {
         let roll = self.roll_m(s_m);
         let angle = roll / self.base_radius_m;
         // The flank's point lies at the end of the tangent of length roll; its normal is the tangent's direction.
@@ -83,7 +88,7 @@ pub(super) fn turning_radius_m(member: &Member, m: f64) -> f64 {
 /// Radii of the rows of nodes from the tip to the turning point.
 pub(super) fn row_radii_m(
     member: &Member,
-    involute: &Involute,
+    involute: &InvoluteFlank,
     turn: f64,
     m: f64,
     profile_m: &[f64],

@@ -1,4 +1,4 @@
-//! What the body of a gear gives between the middles of its two halves.
+//! Stiffness of the body of a gear between the middles of its two halves.
 
 use super::member::Member;
 use super::spec::Material;
@@ -16,15 +16,17 @@ pub struct BodyStiffness {
 }
 
 impl Member {
-    /// Stiffness of the body between two sections `length_m` apart: a hollow circular cylinder from the bore to the root circle, of the gear's
-    /// own material (the shaft in the bore, the teeth, and a groove in the gap are not counted).
+    /// Stiffness of the body between two sections `length_m` apart: a hollow circular cylinder from the bore to the
+    /// root circle, of the gear's own material (the shaft in the bore, the teeth, and a groove in the gap are not
+    /// counted).
     ///
     /// - Tension: `E A / L`; torsion: `G J / L` (Saint-Venant).
-    /// - Bending: a Timoshenko beam whose end sections do not turn, `1/(L³/(12 E I) + L/(κ G A))`, bending and shear in series. The equations of
-    ///   motion have no coordinate in which a half could rock, so the sections in the middles of the halves stay parallel and carry the
-    ///   moments that this takes. (Ends free to turn would not resist at all: a relative displacement would be a rigid rocking.)
-    /// - κ of the hollow circle: Cowper 1966, doi:10.1115/1.3625046, `6 (1+ν)(1+m²)² / ((7+6ν)(1+m²)² + (20+12ν) m²)`, m the bore over the root
-    ///   diameter.
+    /// - Bending: a Timoshenko beam whose end sections do not turn, `1/(L³/(12 E I) + L/(κ G A))`, bending and shear in
+    ///   series. The equations of motion have no coordinate in which a half could rock, so the sections in the middles
+    ///   of the halves stay parallel and carry the moments that this takes. (Ends free to turn would not resist at all:
+    ///   a relative displacement would be a rigid rocking.)
+    /// - κ of the hollow circle: Cowper 1966, doi:10.1115/1.3625046, `6 (1+ν)(1+m²)² / ((7+6ν)(1+m²)² + (20+12ν) m²)`,
+    ///   m the bore over the root diameter.
     pub fn body_stiffness(&self, material: &Material, length_m: f64) -> BodyStiffness {
         let (r, bore) = (self.root_radius_m, self.bore_radius_m);
         let (e, nu) = (material.youngs_modulus_pa, material.poissons_ratio);
@@ -74,8 +76,8 @@ mod tests {
         member
     }
 
-    /// Integrated numerically: the elongation, the twist and the deflection of slices in a row, the last from the moment and shear of a beam
-    /// with parallel ends.
+    /// Integrated numerically: the elongation, the twist and the deflection of slices in a row, the last from the
+    /// moment and shear of a beam with parallel ends.
     #[test]
     fn slices_in_a_row_give_the_same() {
         let member = bored(source().pinion, 0.025);

@@ -1,9 +1,9 @@
 //! Contact outside the path of contact: a corner of one member against the flank of the other.
 //!
-//! Exact kinematics in the transverse plane. A corner of one member (its tip edge; where undercut shortens the path, the edge
-//! its involute starts with) at polar angle `gamma` about its own centre, from the line of centres, meets the mate's circle
-//! of radius `r'` at polar angle `phi`. The separation, along the base tangent of the mate, is the mate's base radius times
-//! the angle by which its flank at `r'` still has to turn.
+//! Exact standing in the transverse plane. A corner of one member (its tip edge; where undercut shortens the path, the
+//! edge its involute starts with) at polar angle `gamma` about its own centre, from the line of centres, meets the
+//! mate's circle of radius `r'` at polar angle `phi`. The separation, along the base tangent of the mate, is the mate's
+//! base radius times the angle by which its flank at `r'` still has to turn.
 
 use super::involute::inv_at_radius;
 use super::member::Member;
@@ -36,8 +36,8 @@ pub(super) struct Corner<'a> {
     line_of_action_m: f64,
 }
 
-/// Where a corner stands against its mate.
-struct Standing {
+/// Position of a corner relative to its mate.
+struct CornerKinematics {
     gap_m: f64,
     flank_radius_m: f64,
     theta_rad: f64,
@@ -46,12 +46,12 @@ struct Standing {
 
 impl<'a> Corner<'a> {
     /// The gear's tip against the pinion.
-    pub fn mesh_in(pair: &'a Pair) -> Corner<'a> {
+    pub(super) fn mesh_in(pair: &'a Pair) -> Corner<'a> {
         Corner::new(pair, &pair.gear, pair.gear.tip_radius_m, &pair.pinion)
     }
 
     /// The pinion's tip against the gear.
-    pub fn mesh_out(pair: &'a Pair) -> Corner<'a> {
+    pub(super) fn mesh_out(pair: &'a Pair) -> Corner<'a> {
         Corner::new(pair, &pair.pinion, pair.pinion.tip_radius_m, &pair.gear)
     }
 
@@ -71,14 +71,15 @@ impl<'a> Corner<'a> {
         (self.corner.base_radius_m / self.radius_m).clamp(-1.0, 1.0).acos() - self.working_pressure_angle_rad
     }
 
-    /// Roll length of the mate at which the corner crosses the line of action; negative before the mate's base tangent point.
+    /// Roll length of the mate at which the corner crosses the line of action; negative before the mate's base tangent
+    /// point.
     fn start_roll_m(&self) -> f64 {
         self.line_of_action_m - self.corner.roll_length_m(self.radius_m)
     }
 
-    /// The corner's member turned by `turn_rad` from where the corner crosses the line of action, positive away from the line
-    /// of centres where the corner is a tip.
-    fn at(&self, turn_rad: f64) -> Standing {
+    /// The corner's member turned by `turn_rad` from where the corner crosses the line of action, positive away from
+    /// the line of centres where the corner is a tip.
+    fn at(&self, turn_rad: f64) -> CornerKinematics {
         let (a, r) = (self.center_distance_m, self.radius_m);
         let start = self.start_angle_rad();
         let gamma = start + turn_rad;
@@ -86,15 +87,15 @@ impl<'a> Corner<'a> {
         // sin² of the half angle keeps a - r cos(gamma) exact near the line of centres.
         let flank_radius = ((a - r).powi(2) + 4.0 * a * r * (0.5 * gamma).sin().powi(2)).sqrt();
         let base = self.mate.base_radius_m;
-        // Where the corner crosses the line of action before the base tangent point, the flank conjugate to its own is the
-        // other branch of the involute.
+        // Where the corner crosses the line of action before the base tangent point, the flank conjugate to its own is
+        // the other branch of the involute.
         let start_roll_m = self.start_roll_m();
         let start_inv = inv_at_radius(start_roll_m.hypot(base), base);
         let start_half_angle = self.mate.base_half_angle_rad - if start_roll_m < 0.0 { -start_inv } else { start_inv };
         let flank_ahead = start_half_angle - self.mate.half_angle_rad(flank_radius);
         let ratio = f64::from(self.corner.teeth) / f64::from(self.mate.teeth);
         let inclination = phi(gamma) + (base / flank_radius).clamp(-1.0, 1.0).acos();
-        Standing {
+        CornerKinematics {
             gap_m: base * (ratio * turn_rad - (phi(gamma) - phi(start)) + flank_ahead),
             flank_radius_m: flank_radius,
             theta_rad: inclination - self.working_pressure_angle_rad,
@@ -102,18 +103,19 @@ impl<'a> Corner<'a> {
         }
     }
 
-    /// The standing after `turn_rad`, if the corner then faces the usable flank of the mate. With `past_tip` the flank goes on
-    /// past its tip by the separation itself: two edges that pass each other at that distance hand over without a break.
-    fn on_flank(&self, turn_rad: f64, past_tip: bool) -> Option<Standing> {
+    /// The standing after `turn_rad`, if the corner then faces the usable flank of the mate. With `past_tip` the flank
+    /// goes on past its tip by the separation itself: two edges that pass each other at that distance hand over without
+    /// a break.
+    fn on_flank(&self, turn_rad: f64, past_tip: bool) -> Option<CornerKinematics> {
         // Beyond a right angle from the line of centres the corner has left the mate for good.
         if (self.start_angle_rad() + turn_rad).abs() > std::f64::consts::FRAC_PI_2 {
             return None;
         }
-        let standing = self.at(turn_rad);
+        let kinematics = self.at(turn_rad);
         let low = self.mate.root_form_radius_m * (1.0 - ROUNDING);
-        let beyond = if past_tip { standing.gap_m.max(0.0) } else { 0.0 };
+        let beyond = if past_tip { kinematics.gap_m.max(0.0) } else { 0.0 };
         let high = self.mate.tip_radius_m * (1.0 + ROUNDING) + beyond;
-        (low..=high).contains(&standing.flank_radius_m).then_some(standing)
+        (low..=high).contains(&kinematics.flank_radius_m).then_some(kinematics)
     }
 
     /// The edge at another radius of the same member.
@@ -121,15 +123,15 @@ impl<'a> Corner<'a> {
         Corner { radius_m, ..*self }
     }
 
-    /// Whether the corner's circle crosses the line of action before the mate's base tangent point, where the mate has no
-    /// conjugate flank.
-    pub fn passes_base_tangent(&self) -> bool {
+    /// True where the corner's circle crosses the line of action before the mate's base tangent point, where the mate
+    /// has no conjugate flank.
+    pub(super) fn passes_base_tangent(&self) -> bool {
         self.radius_m > self.line_of_action_m.hypot(self.corner.base_radius_m)
     }
 
-    /// Largest radius of the corner, between the pitch circle and its own, at which it cuts at most `depth_m` deep into the
-    /// mate's tooth.
-    pub fn radius_with_cut_m(&self, depth_m: f64) -> f64 {
+    /// Largest radius of the corner, between the pitch circle and its own, at which it cuts at most `depth_m` deep into
+    /// the mate's tooth.
+    pub(super) fn radius_with_cut_m(&self, depth_m: f64) -> f64 {
         let pitch_m = self.corner.base_radius_m / self.working_pressure_angle_rad.cos();
         let (mut low, mut high) = (pitch_m.min(self.radius_m), self.radius_m);
         for _ in 0..RADIUS_STEPS {
@@ -143,10 +145,10 @@ impl<'a> Corner<'a> {
         low
     }
 
-    /// Depth by which the corner would cut into the mate's tooth, as its cutter has left it, on the way from the line of action to
-    /// the line of centres (positive: it cuts). Only a fillet that rises above the conjugate path can be in its way; a corner that
-    /// passes the base tangent point meets what is left of the flank near the base circle.
-    pub fn fillet_cut_m(&self) -> f64 {
+    /// Depth by which the corner would cut into the mate's tooth, as its cutter has left it, on the way from the line
+    /// of action to the line of centres (positive: it cuts). Only a fillet that rises above the conjugate path can be
+    /// in its way; a corner that passes the base tangent point meets what is left of the flank near the base circle.
+    pub(super) fn fillet_cut_m(&self) -> f64 {
         let start = self.start_angle_rad();
         (1..=FILLET_SAMPLES)
             .map(|i| -self.at(-start * f64::from(i) / f64::from(FILLET_SAMPLES)).gap_m)
@@ -154,8 +156,9 @@ impl<'a> Corner<'a> {
     }
 }
 
-impl Standing {
-    /// What it is to the pair, when the gear stands `gear_turn_rad` outside its path; arms of pinion and gear.
+impl CornerKinematics {
+    /// The corner contact of the pair with the gear turned by `gear_turn_rad` from the end of its path; arms of pinion
+    /// and gear.
     fn contact(&self, gear_turn_rad: f64, [pinion_arm_m, gear_arm_m]: [f64; 2]) -> CornerContact {
         CornerContact {
             gap_m: self.gap_m,
@@ -178,9 +181,9 @@ const FILLET_SAMPLES: u32 = 96;
 const RADIUS_STEPS: u32 = 40;
 
 impl Pair {
-    /// Contact `overrun_m >= 0` of roll before the path of contact starts: the gear's tip corner against the pinion's flank;
-    /// where the path starts at the pinion's form circle instead, the first point of the pinion's involute against the gear's
-    /// flank until the gear's tip takes over. `None` where the corner has no flank to meet.
+    /// Contact `overrun_m >= 0` of roll before the path of contact starts: the gear's tip corner against the pinion's
+    /// flank; where the path starts at the pinion's form circle instead, the first point of the pinion's involute
+    /// against the gear's flank until the gear's tip takes over. `None` where the corner has no flank to meet.
     pub fn mesh_in_corner(&self, overrun_m: f64) -> Option<CornerContact> {
         let tip = Corner::mesh_in(self);
         let edge = Corner::new(self, &self.pinion, self.pinion.root_form_radius_m, &self.gear);
@@ -198,8 +201,8 @@ impl Pair {
         nearer(by_tip, by_edge)
     }
 
-    /// The same `overrun_m` after the end of the path: the pinion's tip corner against the gear's flank, or the first point of
-    /// the gear's involute against the pinion's.
+    /// The same `overrun_m` after the end of the path: the pinion's tip corner against the gear's flank, or the first
+    /// point of the gear's involute against the pinion's.
     pub fn mesh_out_corner(&self, overrun_m: f64) -> Option<CornerContact> {
         let tip = Corner::mesh_out(self);
         let edge = Corner::new(self, &self.gear, self.gear.root_form_radius_m, &self.pinion);
@@ -218,9 +221,9 @@ impl Pair {
     }
 
     /// Kinematic gap of a contact outside the path of contact, `overrun_m >= 0` before its start: the gear's tip corner
-    /// against the pinion flank, measured along the transverse base tangent of the pinion. The overrun is roll along the line
-    /// of action: the gear stands `overrun_m / r_b2` before the start of contact.
-    /// `None` where the corner has no flank to meet.
+    /// against the pinion flank, measured along the transverse base tangent of the pinion. The overrun is roll along
+    /// the line of action: the gear is `overrun_m / r_b2` before the start of contact. `None` where the corner has no
+    /// flank to meet.
     pub fn mesh_in_corner_gap_m(&self, overrun_m: f64) -> Option<f64> {
         self.mesh_in_corner(overrun_m).map(|corner| corner.gap_m)
     }

@@ -52,8 +52,8 @@ impl Pair {
         self.transverse_contact_ratio * self.spec.face_width_m / self.base_helix_angle_rad.cos()
     }
 
-    /// Least and greatest contact length over a mesh period, in closed form (the least as in AGMA 908; the greatest by the same
-    /// argument). Both equal the mean when a contact ratio is whole.
+    /// Least and greatest contact length over a mesh period, in closed form (the least as in AGMA 908; the greatest by
+    /// the same argument). Both equal the mean when a contact ratio is whole.
     pub fn contact_length_range_m(&self) -> [f64; 2] {
         let (ea, eb) = (self.transverse_contact_ratio, self.overlap_ratio);
         let unit = self.spec.face_width_m / self.base_helix_angle_rad.cos();

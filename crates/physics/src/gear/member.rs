@@ -7,15 +7,23 @@ use super::tooth::{Cutter, ToothForm};
 /// One member with its derived geometry (ISO 21771). Lengths in m, angles in rad.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Member {
+    /// Number of teeth z.
     pub teeth: u32,
+    /// Profile shift coefficient x.
     pub profile_shift: f64,
+    /// Radius of the reference circle.
     pub reference_radius_m: f64,
+    /// Radius of the base circle.
     pub base_radius_m: f64,
+    /// Radius of the tip circle.
     pub tip_radius_m: f64,
+    /// Radius of the root circle as generated.
     pub root_radius_m: f64,
-    /// Where fillet and involute join.
+    /// Root form radius, at which fillet and involute join.
     pub root_form_radius_m: f64,
+    /// Radius of the bore.
     pub bore_radius_m: f64,
+    /// Material.
     pub material: Material,
     /// Face width of one half of this member: the common one of the pair, or more.
     pub face_width_m: f64,
@@ -96,13 +104,13 @@ impl Member {
         self.form.join_roll_m()
     }
 
-    /// Whether the cutter has undercut the tooth.
+    /// True where the cutter has undercut the tooth.
     pub fn is_undercut(&self) -> bool {
         self.profile_shift < self.undercut_profile_shift
     }
 
-    /// Mass of the whole member, both halves: two discs of the face width from the bore to the reference circle. The hub in
-    /// the gap between the halves is not counted.
+    /// Mass of the whole member, both halves: two discs of the face width from the bore to the reference circle. The
+    /// hub in the gap between the halves is not counted.
     pub fn mass_kg(&self) -> f64 {
         let (r, bore) = (self.reference_radius_m, self.bore_radius_m);
         self.material.density_kg_m3 * 2.0 * self.face_width_m * std::f64::consts::PI * (r - bore) * (r + bore)

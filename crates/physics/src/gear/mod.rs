@@ -8,13 +8,17 @@
 //!   roll length is `x`, the gear's is `T1T2 - x`; `x` grows with time; the pinion turns by `x / r_b1`.
 //! - `y_m`: axial station within the half, 0 at the inner end (the side of the gap), `face_width_m` at the outer end.
 //! - `entry_m`: axial distance from the end where teeth leave the mesh: the mesh-in end is at `entry = b`. With
-//!   rotation `ApexLeading` teeth enter at the inner end (`entry = b - y`), with `ApexTrailing` at the outer (`entry = y`).
+//!   rotation `ApexLeading` teeth enter at the inner end (`entry = b - y`), with `ApexTrailing` at the outer (`entry =
+//!   y`).
 //! - Tooth pair `k` touches along `x = x0 + k p_bt + entry tan(beta_b)`: pair `k + 1` entered before pair `k`.
+
+#![warn(missing_docs, unreachable_pub)]
 
 mod body;
 mod coast;
 mod corner;
 mod feasibility;
+mod findings;
 mod involute;
 mod lines;
 mod margins;
@@ -28,13 +32,16 @@ mod values;
 
 pub use body::BodyStiffness;
 pub use corner::CornerContact;
+pub use findings::{
+    AssemblyField, CenterDistanceFit, Consequence, GearField, Infeasibility, InfeasibilityReason, MaterialField,
+    MemberId, SpecField, Warning, WarningReason,
+};
 pub use lines::ContactLine;
-pub use margins::Margin;
+pub use margins::{Margin, MarginKind};
 pub use member::Member;
 pub use pair::Pair;
 pub use spec::{
-    Assembly, EndRelief, FlankModification, GearSpec, Half, Infeasibility, Material, PairSpec, ReliefShape, Rotation,
-    TipRelief, Warning,
+    Assembly, EndRelief, FlankModification, GearSpec, Half, Material, PairSpec, ReliefShape, Rotation, TipRelief,
 };
 
 #[cfg(test)]

@@ -48,15 +48,17 @@ impl Pair {
     ///
     /// Assembly errors enter as follows.
     /// - Centre-distance error: no gap (an involute); it is in the geometry of the pair.
-    /// - In-plane misalignment `f` (gap over one face width `b`): a tilt of the pinion's shaft in the plane of action is
-    ///   one straight line through both halves. `f > 0`: left `f y/b`, right `f (1 - y/b)`; `f < 0`: left
-    ///   `|f| (1 - y/b)`, right `|f| y/b`. What the line has risen from one half to the other is a constant per half,
-    ///   which the floating pinion takes up axially.
+    /// - In-plane misalignment `f` (gap over one face width `b`): a tilt of the pinion's shaft in the plane of action
+    ///   is one straight line through both halves. `f > 0`: left `f y/b`, right `f (1 - y/b)`; `f < 0`: left `|f| (1 -
+    ///   y/b)`, right `|f| y/b`. What the line has risen from one half to the other is a constant per half, which the
+    ///   floating pinion takes up axially.
     /// - Out-of-plane misalignment: an offset `e` of the axis across the line of action leaves an involute pair in
-    ///   contact to first order. The second order is `e² / (2 T1T2)`, from the length of the crossed belt round the base
+    ///   contact to first order. The second order is `e² / (2 T1T2)`, from the length of the crossed belt round the
+    ///   base
     ///   circles; `e = f (y + gap/2) / b`, measured from the middle of the gap.
-    /// - Apex offset `dz`: the flanks of the two hands shift against each other by `dz tan(beta_b)` along the transverse base
-    ///   tangent: a gap on the left half for `dz > 0`, on the right for `dz < 0`. A pinion that floats axially takes it up.
+    /// - Apex offset `dz`: the flanks of the two hands shift against each other by `dz tan(beta_b)` along the
+    ///   transverse base tangent: a gap on the left half for `dz > 0`, on the right for `dz < 0`. A pinion that floats
+    ///   axially takes it up.
     pub fn initial_gap_m(&self, half: Half, x_m: f64, y_m: f64) -> f64 {
         let b = self.spec.face_width_m;
         let i = half.index();

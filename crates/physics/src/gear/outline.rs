@@ -1,4 +1,4 @@
-//! The pair as it is drawn: outlines of the teeth in the transverse section, and where they stand in mesh.
+//! The pair as it is drawn: outlines of the teeth in the transverse section and their positions in mesh.
 //!
 //! The section is drawn with the pitch point at the origin, the pinion's centre below it and the gear's above, and the
 //! pinion turning clockwise: points of contact run from the base tangent point T1 at the lower left to T2 at the upper
@@ -15,8 +15,9 @@ const INVOLUTE_POINTS: u32 = 16;
 const TIP_POINTS: u32 = 5;
 
 impl Member {
-    /// Outline of one tooth with half a space on either side, in coordinates of the body: origin on the axis, the tooth's
-    /// centreline along the first coordinate, counter-clockwise. Copies turned by multiples of `2 pi / z` make the gear.
+    /// Outline of one tooth with half a space on either side, in coordinates of the body: origin on the axis, the
+    /// tooth's centreline along the first coordinate, counter-clockwise. Copies turned by multiples of `2 pi / z` make
+    /// the gear.
     pub fn outline_m(&self) -> Vec<[f64; 2]> {
         let fraction = |i: u32, n: u32| f64::from(i) / f64::from(n);
         let (root, join, tip) = (self.root_radius_m, self.root_form_radius_m, self.tip_radius_m);
@@ -79,14 +80,14 @@ impl Pair {
         (single[0] >= self.path_start_m && single[0] <= single[1]).then_some(single)
     }
 
-    /// Mesh position `x0` at a phase of the mesh period; at phase 0 a pair stands at its first contact at the mesh-in end.
+    /// Mesh position `x0` at a phase of the mesh period; at phase 0 a pair is at its first contact at the mesh-in end.
     pub fn position_m(&self, phase: f64) -> f64 {
         let slant = self.spec.face_width_m * self.base_helix_angle_rad.tan();
         self.path_start_m - slant + phase * self.base_pitch_m
     }
 
-    /// Lines of contact over the whole face width, not cut to the path of contact, at mesh position `x0_m`: of every pair
-    /// that touches somewhere while the mesh goes on by up to `travel_m`.
+    /// Lines of contact over the whole face width, not cut to the path of contact, at mesh position `x0_m`: of every
+    /// pair that touches somewhere while the mesh goes on by up to `travel_m`.
     pub fn whole_lines(&self, x0_m: f64, travel_m: f64) -> Vec<ContactLine> {
         let b = self.spec.face_width_m;
         let slant = b * self.base_helix_angle_rad.tan();

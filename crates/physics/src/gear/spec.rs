@@ -1,4 +1,4 @@
-//! What a designer states about a pair, in SI. `Pair::new` turns it into geometry or says why it cannot.
+//! Specification of a double-helical pair in SI, the input of [`Pair::new`](super::Pair::new).
 
 use serde::{Deserialize, Serialize};
 
@@ -6,11 +6,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Half {
+    /// The left half.
     Left,
+    /// The right half.
     Right,
 }
 
 impl Half {
+    /// Left and right.
     pub const BOTH: [Half; 2] = [Half::Left, Half::Right];
 
     /// 0 for left, 1 for right: the order of every two-element array over halves.
@@ -22,7 +25,7 @@ impl Half {
     }
 }
 
-/// Which ends of the teeth enter the mesh first.
+/// Ends of the teeth that enter the mesh first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rotation {
@@ -45,8 +48,11 @@ impl Rotation {
 /// Linear-elastic, isotropic material.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Material {
+    /// Young's modulus E.
     pub youngs_modulus_pa: f64,
+    /// Poisson's ratio ν.
     pub poissons_ratio: f64,
+    /// Density.
     pub density_kg_m3: f64,
 }
 
@@ -74,15 +80,18 @@ pub enum ReliefShape {
 /// Material removed at the tip, along the transverse base tangent. Zero length: no relief.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TipRelief {
+    /// Largest amount removed.
     pub amount_m: f64,
     /// Roll length of the relief, from the tip along the path of contact.
     pub length_m: f64,
+    /// Course over the length.
     pub shape: ReliefShape,
 }
 
 /// Material removed at both ends of the face width (parabolic from its start), along the transverse base tangent.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct EndRelief {
+    /// Largest amount removed.
     pub amount_m: f64,
     /// Axial length of the relief at each end.
     pub length_m: f64,
@@ -91,11 +100,13 @@ pub struct EndRelief {
 /// Flank modifications of one member on one half: amounts removed in the transverse plane along the base tangent.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FlankModification {
+    /// Tip relief.
     pub tip_relief: TipRelief,
     /// Zero at mid-width, this value at both ends (parabola).
     pub lead_crowning_m: f64,
     /// Zero at the inner end, this value at the outer end (linear).
     pub helix_slope_m: f64,
+    /// End relief.
     pub end_relief: EndRelief,
 }
 
@@ -112,10 +123,15 @@ impl FlankModification {
 /// One member of the pair. Coefficients are multiples of the normal module.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GearSpec {
+    /// Number of teeth z.
     pub teeth: u32,
+    /// Profile shift coefficient x.
     pub profile_shift: f64,
+    /// Addendum coefficient h*_aP.
     pub addendum: f64,
+    /// Dedendum coefficient h*_fP of the generating rack.
     pub dedendum: f64,
+    /// Tip rounding coefficient ρ*_fP of the generating rack.
     pub fillet_radius: f64,
     /// Tip alteration coefficient k (ISO 21771; negative shortens the tooth).
     pub tip_alteration: f64,
@@ -123,8 +139,8 @@ pub struct GearSpec {
     pub bore_radius_m: f64,
     /// Material of this member; the pair's when `None`.
     pub material: Option<Material>,
-    /// Face width of one half of this member; the pair's when `None`. At least the pair's: what stands out on both sides
-    /// alike bears nothing.
+    /// Face width of one half of this member; the pair's when `None`. At least the pair's: the excess,
+    /// alike on both sides, carries no load.
     pub face_width_m: Option<f64>,
     /// Modifications of the left and the right half: of the flanks in contact while the pinion drives.
     pub flanks: [FlankModification; 2],
@@ -154,9 +170,13 @@ impl GearSpec {
 /// Assembly errors of the pair; `Pair::initial_gap_m` states the sign conventions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Assembly {
+    /// Working less nominal centre distance.
     pub center_distance_error_m: f64,
+    /// Axis misalignment in the plane of action, over the face width of a half.
     pub in_plane_misalignment_m: f64,
+    /// Axis misalignment perpendicular to the plane of action, over the face width of a half.
     pub out_of_plane_misalignment_m: f64,
+    /// Axial offset of the apex of the pinion against that of the gear.
     pub apex_offset_m: f64,
 }
 
@@ -173,9 +193,11 @@ impl Assembly {
 /// A double-helical pair as designed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PairSpec {
+    /// Normal module m_n.
     pub normal_module_m: f64,
     /// Pressure angle in the normal section.
     pub normal_pressure_angle_rad: f64,
+    /// Helix angle β at the reference circle.
     pub helix_angle_rad: f64,
     /// Face width of one half that both members have in common: where the teeth bear.
     pub face_width_m: f64,
@@ -185,9 +207,13 @@ pub struct PairSpec {
     pub center_distance_m: Option<f64>,
     /// Material of each member that names none of its own.
     pub material: Material,
+    /// Ends of the teeth that enter first.
     pub rotation: Rotation,
+    /// The pinion.
     pub pinion: GearSpec,
+    /// The gear.
     pub gear: GearSpec,
+    /// Assembly errors.
     pub assembly: Assembly,
 }
 
@@ -213,25 +239,4 @@ impl PairSpec {
             assembly: Assembly::NONE,
         }
     }
-}
-
-/// Why a design cannot be solved: the quantity, its value, its limit. `pointer` is the field of the job document.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Infeasibility {
-    /// Stable code: `tip-interference`, `pointed-tip`, `contact-ratio-below-one`, …
-    pub code: String,
-    pub pointer: String,
-    /// One sentence with value, limit and unit.
-    pub detail: String,
-    pub value: f64,
-    pub limit: f64,
-    pub unit: String,
-}
-
-/// What an engineer should know about a design that is solved all the same.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Warning {
-    pub code: String,
-    pub pointer: String,
-    pub detail: String,
 }

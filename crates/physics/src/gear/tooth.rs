@@ -5,23 +5,31 @@
 
 use super::involute::{inv_at_radius, roll_length_m};
 
-/// Cutter and blank of one member: all a tooth form follows from.
+/// Cutter and blank of one member, from which the tooth form follows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cutter {
+    /// Number of teeth.
     pub teeth: u32,
+    /// Normal module.
     pub normal_module_m: f64,
+    /// Normal pressure angle.
     pub normal_pressure_angle_rad: f64,
+    /// Transverse pressure angle.
     pub transverse_pressure_angle_rad: f64,
+    /// Helix angle at the reference circle.
     pub helix_angle_rad: f64,
+    /// Profile shift coefficient.
     pub profile_shift: f64,
+    /// Dedendum coefficient of the rack.
     pub dedendum: f64,
+    /// Tip rounding coefficient of the rack.
     pub fillet_radius: f64,
 }
 
 impl Cutter {
     /// Largest tip rounding (in normal modules) for which the rack still has a tip: the arc's centre on its centreline,
     /// and an arc that ends below the datum line.
-    pub fn fillet_radius_limit(&self) -> f64 {
+    pub(super) fn fillet_radius_limit(&self) -> f64 {
         let (sin, cos) = self.normal_pressure_angle_rad.sin_cos();
         let centreline =
             (std::f64::consts::FRAC_PI_4 - self.dedendum * self.normal_pressure_angle_rad.tan()) * cos / (1.0 - sin);
@@ -30,7 +38,7 @@ impl Cutter {
 
     /// Signed roll length at which the straight flank of the rack ends on the involute; negative: the tooth is undercut
     /// (ISO 21771, form diameter by a rack).
-    pub fn form_roll_m(&self) -> f64 {
+    pub(super) fn form_roll_m(&self) -> f64 {
         let sin_n = self.normal_pressure_angle_rad.sin();
         let sin_t = self.transverse_pressure_angle_rad.sin();
         let b = self.normal_module_m * (self.dedendum - self.profile_shift + self.fillet_radius * (sin_n - 1.0));
@@ -38,7 +46,7 @@ impl Cutter {
     }
 
     /// Least profile shift coefficient without undercut.
-    pub fn undercut_limit(&self) -> f64 {
+    pub(super) fn undercut_limit(&self) -> f64 {
         let sin_n = self.normal_pressure_angle_rad.sin();
         let sin_t = self.transverse_pressure_angle_rad.sin();
         self.dedendum
@@ -46,11 +54,13 @@ impl Cutter {
             - f64::from(self.teeth) * sin_t * sin_t / (2.0 * self.helix_angle_rad.cos())
     }
 
-    pub fn root_radius_m(&self) -> f64 {
+    /// Radius of the root circle.
+    pub(super) fn root_radius_m(&self) -> f64 {
         self.reference_radius_m() - self.normal_module_m * (self.dedendum - self.profile_shift)
     }
 
-    pub fn reference_radius_m(&self) -> f64 {
+    /// Radius of the reference circle.
+    pub(super) fn reference_radius_m(&self) -> f64 {
         0.5 * f64::from(self.teeth) * self.normal_module_m / self.helix_angle_rad.cos()
     }
 }
@@ -85,7 +95,7 @@ const END_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
 impl ToothForm {
     /// The tooth cut by `cutter`. The cutter's fillet radius must be within its limit and the root circle positive.
-    pub fn new(cutter: &Cutter) -> ToothForm {
+    pub(super) fn new(cutter: &Cutter) -> ToothForm {
         let m = cutter.normal_module_m;
         let (sin_n, cos_n) = cutter.normal_pressure_angle_rad.sin_cos();
         let tan_n = cutter.normal_pressure_angle_rad.tan();
@@ -113,14 +123,15 @@ impl ToothForm {
         form
     }
 
-    /// Where fillet and involute meet: the rack's form circle, or with undercut the point where the fillet cuts the
-    /// involute.
+    /// Radius at which fillet and involute meet: the rack's form circle, or with undercut the point where the fillet
+    /// cuts the involute.
     fn join(&self, form_roll_m: f64) -> f64 {
         let form_radius = form_roll_m.hypot(self.base_radius_m);
         if form_roll_m >= 0.0 {
             return form_radius;
         }
-        // The fillet starts on the mirrored branch of the involute (outside the tooth) and cuts into the flank further in.
+        // The fillet starts on the mirrored branch of the involute (outside the tooth) and cuts into the flank further
+        // in.
         let excess = |r: f64| self.fillet_half_angle_rad(r) - self.involute_half_angle_rad(r);
         let (mut cut, mut free) = (self.base_radius_m, form_radius);
         if excess(cut) >= 0.0 {
@@ -155,8 +166,8 @@ impl ToothForm {
         }
     }
 
-    /// Half angle on the fillet: its radius falls monotonically along the arc parameter; found by bracketed regula falsi
-    /// (Illinois).
+    /// Half angle on the fillet: its radius falls monotonically along the arc parameter; found by bracketed regula
+    /// falsi (Illinois).
     fn fillet_half_angle_rad(&self, r_m: f64) -> f64 {
         let (mut lo, mut hi) = (self.start_rad, END_RAD);
         let (mut f_lo, mut f_hi) = (self.fillet_point(lo).r_m - r_m, self.fillet_point(hi).r_m - r_m);
@@ -195,7 +206,7 @@ impl ToothForm {
     }
 
     /// Half angle of the tooth at a radius; below the root circle its value there, above the tip the involute goes on.
-    pub fn half_angle_rad(&self, r_m: f64) -> f64 {
+    pub(super) fn half_angle_rad(&self, r_m: f64) -> f64 {
         if r_m >= self.join_radius_m {
             self.involute_half_angle_rad(r_m)
         } else {
@@ -204,28 +215,32 @@ impl ToothForm {
     }
 
     /// Half angle of the tooth where the fillet ends on the root circle.
-    pub fn root_half_angle_rad(&self) -> f64 {
+    pub(super) fn root_half_angle_rad(&self) -> f64 {
         self.fillet_point(END_RAD).half_angle_rad
     }
 
-    pub fn join_radius_m(&self) -> f64 {
+    /// Radius at which fillet and involute join.
+    pub(super) fn join_radius_m(&self) -> f64 {
         self.join_radius_m
     }
 
-    pub fn root_radius_m(&self) -> f64 {
+    /// Radius of the root circle.
+    pub(super) fn root_radius_m(&self) -> f64 {
         self.root_radius_m
     }
 
-    pub fn base_radius_m(&self) -> f64 {
+    /// Radius of the base circle.
+    pub(super) fn base_radius_m(&self) -> f64 {
         self.base_radius_m
     }
 
-    pub fn base_half_angle_rad(&self) -> f64 {
+    /// Half angle of the tooth at the base circle.
+    pub(super) fn base_half_angle_rad(&self) -> f64 {
         self.base_half_angle_rad
     }
 
     /// Roll length at the join of fillet and involute.
-    pub fn join_roll_m(&self) -> f64 {
+    pub(super) fn join_roll_m(&self) -> f64 {
         roll_length_m(self.join_radius_m, self.base_radius_m)
     }
 }

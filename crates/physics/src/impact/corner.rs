@@ -20,17 +20,19 @@ pub struct FirstContact {
     pub corner: CornerContact,
 }
 
-/// Relief and misalignment open the entering end further than the load closes it: the pair enters on its path, without a
-/// shock by deflection.
+/// Relief and misalignment open the entering end further than the load closes it: the pair enters on its path, without
+/// a shock by deflection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoEarlyContact {
+    /// Gap of the modified and misaligned flanks at the entering end, less the base pitch error.
     pub flank_gap_m: f64,
+    /// Composite deflection of the pairs in mesh at the theoretical start.
     pub deflection_m: f64,
 }
 
-/// How the entering pair comes into contact.
+/// First contact of the entering pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Entrance {
+pub enum EntryContact {
     /// Before its path of contact, with a corner.
     Early(FirstContact),
     /// On its path of contact.
@@ -42,10 +44,10 @@ const SCAN_STEPS: u32 = 32;
 
 /// Solves `S(overrun) + flank gap = deflection(overrun)` for the first contact D.
 ///
-/// `S` is the exact corner separation (`Pair::mesh_in_corner`), the flank gap that of the gear's tip at the end of the face
-/// where teeth enter, and `deflection` the approach of the pairs already in mesh, in m along the transverse base tangent,
-/// when the entering pair stands `overrun` (m of roll) before its theoretical start. `base_pitch_error_m` > 0 brings
-/// the entering pair earlier.
+/// `S` is the exact corner separation (`Pair::mesh_in_corner`), the flank gap that of the gear's tip at the end of the
+/// face where teeth enter, and `deflection` the approach of the pairs already in mesh, in m along the transverse base
+/// tangent, when the entering pair is `overrun` (m of roll) before its theoretical start. `base_pitch_error_m` > 0
+/// brings the entering pair earlier.
 ///
 /// The separation grows from zero like the square of the overrun. The outermost crossing is sought from far outside
 /// inwards, as the teeth come, and refined by bracketed regula falsi (Illinois) to rounding.
@@ -54,7 +56,7 @@ pub fn first_contact(
     half: Half,
     base_pitch_error_m: f64,
     deflection: impl Fn(f64) -> f64,
-) -> Result<Entrance, ImpactError> {
+) -> Result<EntryContact, ImpactError> {
     let entering_y_m = match pair.spec.rotation {
         Rotation::ApexLeading => 0.0,
         Rotation::ApexTrailing => pair.spec.face_width_m,
@@ -77,7 +79,7 @@ pub fn first_contact(
     let start = position(0.0)?;
     if start.open_m() >= 0.0 {
         let none = NoEarlyContact { flank_gap_m: start.flank_gap_m, deflection_m: start.deflection_m };
-        return Ok(Entrance::OnPath(none));
+        return Ok(EntryContact::OnPath(none));
     }
     let far = farthest(pair, &start, &position)?;
     let mut outer = far;
@@ -90,11 +92,11 @@ pub fn first_contact(
         }
         outer = here;
     }
-    refine(inner, outer, &position).map(Entrance::Early)
+    refine(inner, outer, &position).map(EntryContact::Early)
 }
 
 impl FirstContact {
-    /// How far the flanks are still apart (negative: they overlap).
+    /// Distance of the flanks (negative: they overlap).
     fn open_m(&self) -> f64 {
         self.separation_m + self.flank_gap_m - self.deflection_m
     }

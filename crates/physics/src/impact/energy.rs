@@ -1,21 +1,25 @@
 //! Impact force from the energy balance of the instantaneous line of action.
 
-use super::corner::{Entrance, FirstContact, NoEarlyContact, first_contact};
-use super::pulse::HalfSine;
+use super::corner::{EntryContact, FirstContact, NoEarlyContact, first_contact};
 use crate::gear::{Half, Pair};
 
 /// Moments of inertia that take part in the impact of one half.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inertia {
+    /// Of the pinion.
     pub pinion_kg_m2: f64,
+    /// Of the gear.
     pub gear_kg_m2: f64,
 }
 
-/// What the loaded contact and the operating point say about the entering pair.
+/// State of the half at mesh-in: operating point, inertias and loaded contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Entry {
+pub struct MeshInConditions {
+    /// The helix half.
     pub half: Half,
+    /// Angular speed of the pinion, at least zero.
     pub pinion_speed_rad_s: f64,
+    /// Moments of inertia.
     pub inertia: Inertia,
     /// Stiffness of the whole mesh of the half, base plane, along the transverse base tangent.
     pub mesh_stiffness_n_per_m: f64,
@@ -27,20 +31,23 @@ pub struct Entry {
 
 /// The mesh-in impact of one half.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Impact {
+pub struct MeshInImpact {
     /// Force with the pairs already in mesh as a buffer, along the instantaneous line of action (within theta of the
     /// transverse base tangent).
     pub force_n: f64,
     /// The same without the buffer (Zhou and others 2008).
     pub zhou2008_force_n: f64,
-    /// What the buffer takes off, in percent of the unbuffered force.
+    /// Reduction by the buffer, in percent of the unbuffered force.
     pub reduction_percent: f64,
+    /// Velocity of approach along the instantaneous line of action.
     pub velocity_m_s: f64,
     /// Contact time: lossless half sine of the equivalent mass on both compliances.
     pub duration_s: f64,
     /// Time from the first contact D to the theoretical start A.
     pub lead_s: f64,
+    /// Inclination θ of the instantaneous line of action against the line of action.
     pub theta_rad: f64,
+    /// Equivalent mass along the instantaneous line of action.
     pub equivalent_mass_kg: f64,
     /// Stiffness of the entering pair, K L.
     pub single_pair_stiffness_n_per_m: f64,
@@ -56,42 +63,63 @@ pub struct Impact {
     pub none_because: Option<NoEarlyContact>,
 }
 
-/// Why an impact cannot be calculated.
+/// Errors of the mesh-in impact.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum ImpactError {
+    /// The entering corner has left the flank of its mate.
     #[error(
         "{overrun_m} m before the start of contact the entering corner has no flank to meet: the deflection is too large for the teeth"
     )]
-    NoFlank { overrun_m: f64 },
+    NoFlank {
+        /// Roll before the theoretical start of contact.
+        overrun_m: f64,
+    },
+    /// The given deflection is not a number.
     #[error("the deflection {overrun_m} m before the start of contact is not a number")]
-    Deflection { overrun_m: f64 },
+    Deflection {
+        /// Roll before the theoretical start of contact.
+        overrun_m: f64,
+    },
+    /// An input is outside its range.
     #[error("{what} = {value} must be {requirement}")]
-    Input { what: &'static str, value: f64, requirement: &'static str },
+    Input {
+        /// The quantity and its unit.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// The condition it does not meet.
+        requirement: &'static str,
+    },
 }
 
 /// The mesh-in impact of one half.
 ///
-/// First contact D from [`first_contact`]; then, with the arms `r'_1`, `r'_2` of the instantaneous line of action (for the
-/// gear's tip corner `r'_1 = r_b1`, `r'_2 = r'_b2`):
+/// First contact D from [`first_contact`]; then, with the arms `r'_1`, `r'_2` of the instantaneous line of action (for
+/// the gear's tip corner `r'_1 = r_b1`, `r'_2 = r'_b2`):
 /// - velocity `v_s = omega_1 r'_1 - omega_2 r'_2`, for the tip corner `omega_1 r_b1 (1 - r'_b2/r_b2)`;
 /// - equivalent mass `m_e = I_1 I_2 / (I_1 r'_2² + I_2 r'_1²)`;
 /// - compliances `q_s = 1/(K L)` of the entering pair and `q_r = 1/(K (1 - L))` of the pairs in mesh;
 /// - energy `m_e v_s²/2 = F² (q_s + q_r cos² theta)/2`, so `F = v_s sqrt(m_e/(q_s + q_r cos² theta))`. The formula as
-///   printed in the source paper, `v_s / sqrt(m_e (q_s + q_r cos² theta))`, is not a force; the energy balance it is taken from is
+///   printed in the source paper, `v_s / sqrt(m_e (q_s + q_r cos² theta))`, is not a force; the energy balance it is
+///   taken from is
 ///   this one. `q_r = 0` gives the unbuffered force of Zhou and others (2008).
 /// - duration `pi sqrt(m_e (q_s + q_r cos² theta))`.
 ///
-/// A share of zero is an entering pair that carries nothing: no force. A share of one leaves no pair to buffer; the balance
-/// then has no meaning and is refused.
-pub fn mesh_in(pair: &Pair, entry: &Entry, deflection: impl Fn(f64) -> f64) -> Result<Impact, ImpactError> {
+/// A share of zero is an entering pair that carries nothing: no force. A share of one leaves no pair to buffer; the
+/// balance then has no meaning and is refused.
+pub fn mesh_in(
+    pair: &Pair,
+    entry: &MeshInConditions,
+    deflection: impl Fn(f64) -> f64,
+) -> Result<MeshInImpact, ImpactError> {
     check(entry)?;
     Ok(match first_contact(pair, entry.half, entry.base_pitch_error_m, deflection)? {
-        Entrance::Early(contact) => from_contact(pair, entry, &contact),
-        Entrance::OnPath(reason) => Impact::none(pair, entry, reason),
+        EntryContact::Early(contact) => from_contact(pair, entry, &contact),
+        EntryContact::OnPath(reason) => MeshInImpact::none(pair, entry, reason),
     })
 }
 
-fn from_contact(pair: &Pair, entry: &Entry, contact: &FirstContact) -> Impact {
+fn from_contact(pair: &Pair, entry: &MeshInConditions, contact: &FirstContact) -> MeshInImpact {
     let (arm_1, arm_2) = (contact.corner.pinion_arm_m, contact.corner.gear_arm_m);
     let ratio = f64::from(pair.pinion.teeth) / f64::from(pair.gear.teeth);
     let velocity = entry.pinion_speed_rad_s * (arm_1 - ratio * arm_2);
@@ -103,7 +131,7 @@ fn from_contact(pair: &Pair, entry: &Entry, contact: &FirstContact) -> Impact {
     let zhou = velocity * (mass * single).sqrt();
     let force = zhou / (1.0 + buffer).sqrt();
     let duration = if single > 0.0 { std::f64::consts::PI * (mass * (1.0 + buffer) / single).sqrt() } else { 0.0 };
-    Impact {
+    MeshInImpact {
         force_n: force,
         zhou2008_force_n: zhou,
         reduction_percent: 100.0 * (1.0 - 1.0 / (1.0 + buffer).sqrt()),
@@ -121,7 +149,7 @@ fn from_contact(pair: &Pair, entry: &Entry, contact: &FirstContact) -> Impact {
     }
 }
 
-fn lead_s(pair: &Pair, entry: &Entry, overrun_m: f64) -> f64 {
+fn lead_s(pair: &Pair, entry: &MeshInConditions, overrun_m: f64) -> f64 {
     let roll_speed = entry.pinion_speed_rad_s * pair.pinion.base_radius_m;
     if roll_speed > 0.0 { overrun_m / roll_speed } else { 0.0 }
 }
@@ -131,10 +159,10 @@ fn equivalent_mass_kg(inertia: &Inertia, arm_1_m: f64, arm_2_m: f64) -> f64 {
     1.0 / (arm_1_m * arm_1_m / inertia.pinion_kg_m2 + arm_2_m * arm_2_m / inertia.gear_kg_m2)
 }
 
-impl Impact {
-    fn none(pair: &Pair, entry: &Entry, reason: NoEarlyContact) -> Impact {
+impl MeshInImpact {
+    fn none(pair: &Pair, entry: &MeshInConditions, reason: NoEarlyContact) -> MeshInImpact {
         let (r_1, r_2) = (pair.pinion.base_radius_m, pair.gear.base_radius_m);
-        Impact {
+        MeshInImpact {
             force_n: 0.0,
             zhou2008_force_n: 0.0,
             reduction_percent: 0.0,
@@ -151,14 +179,9 @@ impl Impact {
             none_because: Some(reason),
         }
     }
-
-    /// The impact as a pulse that starts at `start_s`; `None` without impact.
-    pub fn pulse(&self, start_s: f64) -> Option<HalfSine> {
-        HalfSine::new(self.force_n, self.duration_s, start_s)
-    }
 }
 
-fn check(entry: &Entry) -> Result<(), ImpactError> {
+fn check(entry: &MeshInConditions) -> Result<(), ImpactError> {
     let require = |what, value: f64, good: bool, requirement| {
         if good && value.is_finite() { Ok(()) } else { Err(ImpactError::Input { what, value, requirement }) }
     };

@@ -3,7 +3,7 @@
 use crate::simd::vectorised;
 
 /// Solves the n×n system by Gaussian elimination with partial pivoting; `a` is destroyed, `rhs` becomes the solution.
-pub fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {
+pub(crate) fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {
     for k in 0..n {
         let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs())).unwrap_or(k);
         if pivot != k {
@@ -29,9 +29,9 @@ pub fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {
     }
 }
 
-/// Solves A X = B for several right-hand sides, which follow one another in `sides`, by LU with partial pivoting; `a` is destroyed.
-/// `false` when a pivot vanishes.
-pub fn lu_solve(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
+/// Solves A X = B for several right-hand sides, which follow one another in `sides`, by LU with partial pivoting; `a`
+/// is destroyed. `false` when a pivot vanishes.
+pub(crate) fn lu_solve(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
     vectorised(
         #[inline(always)]
         || lu_solve_inlined(a, sides, n),
@@ -72,9 +72,9 @@ fn lu_solve_inlined(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
     true
 }
 
-/// Cholesky factor L (lower triangle, in place) of a symmetric positive definite n×n matrix given by its lower triangle.
-/// `false` when a pivot is not positive.
-pub fn cholesky(a: &mut [f64], n: usize) -> bool {
+/// Cholesky factor L (lower triangle, in place) of a symmetric positive definite n×n matrix given by its lower
+/// triangle. `false` when a pivot is not positive.
+pub(crate) fn cholesky(a: &mut [f64], n: usize) -> bool {
     vectorised(
         #[inline(always)]
         || cholesky_inlined(a, n),
@@ -83,7 +83,7 @@ pub fn cholesky(a: &mut [f64], n: usize) -> bool {
 
 /// [`cholesky`] to be inlined into something vectorised.
 #[inline(always)]
-pub fn cholesky_inlined(a: &mut [f64], n: usize) -> bool {
+pub(crate) fn cholesky_inlined(a: &mut [f64], n: usize) -> bool {
     for i in 0..n {
         let (above, row) = a.split_at_mut(i * n);
         for j in 0..i {
@@ -100,7 +100,7 @@ pub fn cholesky_inlined(a: &mut [f64], n: usize) -> bool {
 }
 
 /// Solves L Lᵀ x = b in place with the factor of [`cholesky`].
-pub fn cholesky_solve(l: &[f64], b: &mut [f64], n: usize) {
+pub(crate) fn cholesky_solve(l: &[f64], b: &mut [f64], n: usize) {
     forward_solve(l, b, n);
     for i in (0..n).rev() {
         b[i] /= l[i * n + i];
@@ -112,7 +112,7 @@ pub fn cholesky_solve(l: &[f64], b: &mut [f64], n: usize) {
 }
 
 /// Solves L x = b in place.
-pub fn forward_solve(l: &[f64], b: &mut [f64], n: usize) {
+pub(crate) fn forward_solve(l: &[f64], b: &mut [f64], n: usize) {
     for i in 0..n {
         b[i] = (b[i] - dot(&l[i * n..i * n + i], &b[..i])) / l[i * n + i];
     }
@@ -120,7 +120,7 @@ pub fn forward_solve(l: &[f64], b: &mut [f64], n: usize) {
 
 /// Solves L X = B in place, all columns of the row-major `b` at once.
 #[inline(always)]
-pub fn forward_solve_columns(l: &[f64], b: &mut [f64], n: usize) {
+pub(crate) fn forward_solve_columns(l: &[f64], b: &mut [f64], n: usize) {
     let columns = b.len() / n;
     for i in 0..n {
         let (done, rest) = b.split_at_mut(i * columns);
@@ -135,7 +135,7 @@ pub fn forward_solve_columns(l: &[f64], b: &mut [f64], n: usize) {
 
 /// `out += factor aᵀ b` for row-major matrices with `rows` rows.
 #[inline(always)]
-pub fn add_product(out: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows: usize) {
+pub(crate) fn add_product(out: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows: usize) {
     let (m, n) = (a.len() / rows, b.len() / rows);
     for (left, right) in a.chunks_exact(m).zip(b.chunks_exact(n)) {
         for (value, target) in left.iter().zip(out.chunks_exact_mut(n)) {
@@ -147,7 +147,7 @@ pub fn add_product(out: &mut [f64], factor: f64, a: &[f64], b: &[f64], rows: usi
 
 /// Scalar product, eight sums at a time so that it vectorises.
 #[inline(always)]
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut acc = [0.0; 8];
     let (ca, cb) = (a.chunks_exact(8), b.chunks_exact(8));
     let tail: f64 = ca.remainder().iter().zip(cb.remainder()).map(|(x, y)| x * y).sum();

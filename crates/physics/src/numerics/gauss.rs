@@ -3,10 +3,10 @@
 use std::f64::consts::PI;
 
 /// Two-point rule on [-1, 1]: abscissae and weights.
-pub const GAUSS_2: [(f64, f64); 2] = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
+pub(crate) const GAUSS_2: [(f64, f64); 2] = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
 
 /// Three-point rule on [-1, 1]: abscissae and weights.
-pub const GAUSS_3: [(f64, f64); 3] =
+pub(crate) const GAUSS_3: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
 /// Positive abscissae of the twelve-point rule on [-1, 1] and their weights (Abramowitz and Stegun, table 25.4).
@@ -20,19 +20,19 @@ const POSITIVE_12: [(f64, f64); 6] = [
 ];
 
 /// Twelve-point rule on [-1, 1], in pairs of opposite abscissae from the middle outwards.
-pub fn gauss_12() -> impl Iterator<Item = (f64, f64)> {
+pub(crate) fn gauss_12() -> impl Iterator<Item = (f64, f64)> {
     POSITIVE_12.into_iter().flat_map(|(x, w)| [(x, w), (-x, w)])
 }
 
 /// Abscissae and weights of the rule of `points` points on [-1, 1], abscissae descending; exact for polynomials up to
 /// degree 2 `points` - 1.
-pub fn gauss_legendre(points: usize) -> Vec<(f64, f64)> {
+pub(crate) fn gauss_legendre(points: usize) -> Vec<(f64, f64)> {
     let n = points.max(1);
     (0..n).map(|i| node(n, i, 100, 1e-15)).collect()
 }
 
 /// The rule of N points on [0, 1], abscissae ascending.
-pub fn gauss_legendre_unit<const N: usize>() -> [(f64, f64); N] {
+pub(crate) fn gauss_legendre_unit<const N: usize>() -> [(f64, f64); N] {
     std::array::from_fn(|i| {
         let (x, weight) = node(N, i, 10, 0.0);
         (0.5 * (1.0 - x), 0.5 * weight)
@@ -40,13 +40,13 @@ pub fn gauss_legendre_unit<const N: usize>() -> [(f64, f64); N] {
 }
 
 /// The rule `rule` of [-1, 1] on [a, b].
-pub fn on_interval(rule: &[(f64, f64)], a: f64, b: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+pub(crate) fn on_interval(rule: &[(f64, f64)], a: f64, b: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
     let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
     rule.iter().map(move |&(x, w)| (middle + half * x, half * w))
 }
 
-/// Root `i` of the Legendre polynomial P_n, counted from the largest, and its weight 2/((1 - x²) P_n'(x)²): Newton's method from
-/// Tricomi's estimate, until a step is below `tolerance` or `most_steps` are made.
+/// Root `i` of the Legendre polynomial P_n, counted from the largest, and its weight 2/((1 - x²) P_n'(x)²): Newton's
+/// method from Tricomi's estimate, until a step is below `tolerance` or `most_steps` are made.
 fn node(n: usize, i: usize, most_steps: usize, tolerance: f64) -> (f64, f64) {
     let mut x = (PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
     let mut slope = 1.0;

@@ -1,9 +1,9 @@
 //! A periodic curve through unequally spaced phases that keeps its jumps in slope where they are.
 
-/// Piecewise cubic through the samples, monotone between them (Fritsch and Butland's slopes): a jump in slope is felt in the two
-/// intervals beside it only, and nothing overshoots.
+/// Piecewise cubic through the samples, monotone between them (Fritsch and Butland's slopes): a jump in slope is felt
+/// in the two intervals beside it only, and nothing overshoots.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PeriodicMonotoneCubic {
+pub(crate) struct PeriodicMonotoneCubic {
     phase: Vec<f64>,
     value: Vec<f64>,
     slope: Vec<f64>,
@@ -11,7 +11,7 @@ pub struct PeriodicMonotoneCubic {
 
 impl PeriodicMonotoneCubic {
     /// Through `value` at `phase`, which ascends within one period [φ₀, φ₀ + 1); at least two samples.
-    pub fn new(phase: Vec<f64>, value: Vec<f64>) -> PeriodicMonotoneCubic {
+    pub(crate) fn new(phase: Vec<f64>, value: Vec<f64>) -> PeriodicMonotoneCubic {
         let n = phase.len();
         let width = |i: usize| if i + 1 < n { phase[i + 1] - phase[i] } else { phase[0] + 1.0 - phase[n - 1] };
         let rise = |i: usize| (value[(i + 1) % n] - value[i]) / width(i);
@@ -32,7 +32,7 @@ impl PeriodicMonotoneCubic {
     }
 
     /// Value at any phase.
-    pub fn at(&self, phase: f64) -> f64 {
+    pub(crate) fn at(&self, phase: f64) -> f64 {
         let n = self.phase.len();
         let phase = self.phase[0] + (phase - self.phase[0]).rem_euclid(1.0);
         let i = self.phase.partition_point(|&p| p <= phase).max(1) - 1;
@@ -46,15 +46,15 @@ impl PeriodicMonotoneCubic {
     }
 
     /// Values at `count` equally spaced phases from `from`.
-    pub fn samples(&self, from: f64, count: usize) -> Vec<f64> {
+    pub(crate) fn samples(&self, from: f64, count: usize) -> Vec<f64> {
         (0..count).map(|i| self.at(from + i as f64 / count as f64)).collect()
     }
 }
 
-/// Coefficients of the periodic monotone cubics through `values` at equal steps of one period: c0 + c1 u + c2 u² + c3 u³ with
-/// u = 0 … 1 from each value to the next. The slopes are Brodlie's harmonic means, within the limits of Fritsch and Carlson
-/// (SIAM J. Numer. Anal. 17 (1980) 238, doi:10.1137/0717021).
-pub fn monotone_cubics(values: &[f64]) -> Vec<[f64; 4]> {
+/// Coefficients of the periodic monotone cubics through `values` at equal steps of one period: c0 + c1 u + c2 u² + c3
+/// u³ with u = 0 … 1 from each value to the next. The slopes are Brodlie's harmonic means, within the limits of Fritsch
+/// and Carlson (SIAM J. Numer. Anal. 17 (1980) 238, doi:10.1137/0717021).
+pub(crate) fn monotone_cubics(values: &[f64]) -> Vec<[f64; 4]> {
     let n = values.len();
     let rise = |i: usize| values[(i + 1) % n] - values[i % n];
     let slope = |i: usize| {

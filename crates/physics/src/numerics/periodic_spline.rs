@@ -1,14 +1,15 @@
 //! Periodic cubic splines through unequally spaced phases.
 
-/// The knots of periodic cubic splines, with the factored system that gives their slopes (continuous second derivative; C. de Boor, A Practical
-/// Guide to Splines, chapter IV).
+/// The knots of periodic cubic splines, with the factored system that gives their slopes (continuous second derivative;
+/// C. de Boor, A Practical Guide to Splines, chapter IV).
 #[derive(Debug, Clone)]
 pub struct PeriodicSpline {
     /// Ascending within one period.
     phase: Vec<f64>,
     /// Width of every interval; the last one leads to the first knot of the next period.
     width: Vec<f64>,
-    /// Thomas factors of the system without its corners, and the solution that carries the corners (Sherman and Morrison).
+    /// Thomas factors of the system without its corners, and the solution that carries the corners (Sherman and
+    /// Morrison).
     pivot: Vec<f64>,
     corner: Vec<f64>,
     gamma: f64,
@@ -40,10 +41,12 @@ impl PeriodicSpline {
         knots
     }
 
+    /// Phases of the knots, ascending.
     pub fn phase(&self) -> &[f64] {
         &self.phase
     }
 
+    /// Widths of the intervals.
     pub fn width(&self) -> &[f64] {
         &self.width
     }

@@ -117,7 +117,7 @@ export const inputUrl = (id) => `${BASE}${at(id)}/input`;
 /** @param {string} id */
 export const resultUrl = (id) => `${BASE}${at(id)}/result`;
 /** @type {(id: string, channel: string) => string} */
-export const seriesUrl = (id, channel) => `${BASE}${at(id)}/series/${encodeURIComponent(channel)}`;
+const seriesUrl = (id, channel) => `${BASE}${at(id)}/series/${encodeURIComponent(channel)}`;
 export const submitUrl = () => `${window.location.origin}${BASE}/jobs`;
 
 /** @param {Job} job */

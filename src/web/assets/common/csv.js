@@ -1,6 +1,5 @@
-// Tables as text files, in the dialect that this browser remembers: with a decimal point (RFC 4180), or as spreadsheets
-// read it whose
-// language writes a decimal comma.
+// Tables as text files, in the dialect that this browser remembers: with a decimal point (RFC 4180), or as
+// spreadsheets read it whose language writes a decimal comma.
 
 const KEY = "herringbone.csv-decimal";
 const COMMA = "comma";

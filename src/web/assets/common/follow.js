@@ -3,10 +3,10 @@
 // followed while nobody looks.
 
 const POLL_MS = 2000;
-/** A stream that says nothing for so long is held back on its way. */
-const PATIENCE_MS = 4000;
-/** One that was refused is asked for again after so long. */
-const AGAIN_MS = 30_000;
+/** A stream without its first event for this long is taken to be blocked on the way. */
+const SILENCE_MS = 4000;
+/** Time until a refused stream is requested again. */
+const RETRY_MS = 30_000;
 
 /**
  * Calls `onReload` when everything is to be read (at first, after each gap, and again and again without a stream),
@@ -28,8 +28,8 @@ export function followJobs({ kind, label }, { onReload, onJob, onDeleted, onMode
   let source = null;
   let isPolling = false;
   let polls = 0;
-  /** @type {Record<"poll" | "patience" | "again", number | undefined>} */
-  const timers = { poll: undefined, patience: undefined, again: undefined };
+  /** @type {Record<"poll" | "silence" | "retry", number | undefined>} */
+  const timers = { poll: undefined, silence: undefined, retry: undefined };
 
   function close() {
     source?.close();
@@ -38,7 +38,7 @@ export function followJobs({ kind, label }, { onReload, onJob, onDeleted, onMode
     for (const timer of Object.values(timers)) clearTimeout(timer);
   }
 
-  /** Asks, and again a while after the answer has come. */
+  /** Reads everything, and again some time after each answer. */
   async function poll() {
     clearTimeout(timers.poll);
     onMode("polling");
@@ -61,9 +61,9 @@ export function followJobs({ kind, label }, { onReload, onJob, onDeleted, onMode
     }
     const stream = new EventSource(url);
     source = stream;
-    timers.patience = setTimeout(startPolling, PATIENCE_MS);
+    timers.silence = setTimeout(startPolling, SILENCE_MS);
     stream.addEventListener("reload", () => {
-      clearTimeout(timers.patience);
+      clearTimeout(timers.silence);
       clearTimeout(timers.poll);
       isPolling = false;
       onMode("live");
@@ -76,10 +76,10 @@ export function followJobs({ kind, label }, { onReload, onJob, onDeleted, onMode
       if (stream.readyState === EventSource.CLOSED) {
         close();
         startPolling();
-        timers.again = setTimeout(open, AGAIN_MS);
+        timers.retry = setTimeout(open, RETRY_MS);
       } else {
         // The browser connects again by itself.
-        clearTimeout(timers.patience);
+        clearTimeout(timers.silence);
         onMode("lost");
       }
     });

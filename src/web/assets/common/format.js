@@ -1,4 +1,4 @@
-// How numbers, names, units and times are written.
+// Numbers, names, units and times as text.
 
 /** Endings of field names and the units they stand for; longer endings first. */
 const UNITS = [
@@ -7,25 +7,27 @@ const UNITS = [
   ["_nm", "N·m"], ["_mm", "mm"], ["_um", "µm"], ["_us", "µs"], ["_ms", "ms"], ["_kg", "kg"], ["_n", "N"], ["_m", "m"],
 ];
 
+/** Units as they are shown, by those of the API. @type {Record<string, string>} */
 const SHOWN = { um: "µm", us: "µs", "%/um": "% per µm", "um/um": "µm/µm", "1/mesh period": "per mesh period", "N m/rad": "N·m/rad", deg: "°", "kg m2": "kg·m²", "N m": "N·m", "N/um": "N/µm", "m/s2": "m/s²", "m/s^2": "m/s²", "rad/s2": "rad/s²", "rad/s^2": "rad/s²", 1: "" };
 
-/** Unit of a field, from its name. */
+/** Unit of a field, from its name. @param {string} name */
 export function unitOf(name) {
   return UNITS.find(([ending]) => name.endsWith(ending))?.[1] ?? "";
 }
 
-/** A unit as the API writes it, for people. */
-export const shownUnit = (unit) => SHOWN[unit] ?? unit ?? "";
+/** A unit of the API as it is shown. @param {string | null | undefined} unit */
+export const shownUnit = (unit) => SHOWN[unit ?? ""] ?? unit ?? "";
 
-/** A field's name as words, without its unit. */
+/** A field's name as words, without its unit. @param {string} name */
 export function labelOf(name) {
   const ending = UNITS.find(([ending]) => name.endsWith(ending))?.[0] ?? "";
   return sentence(name.slice(0, name.length - ending.length).replaceAll("_", " ").replace("center", "centre"));
 }
 
+/** @param {string} text */
 export const sentence = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
-/** The last name of a pointer as words, with what it belongs to. */
+/** The last name of a JSON pointer as words, with the members around it, and its unit. @param {string} pointer */
 export function pointerLabel(pointer) {
   const parts = pointer.split("/").filter((part) => part && part !== "design" && part !== "operation" && part !== "model");
   const unit = unitOf(parts.at(-1) ?? "");
@@ -33,7 +35,11 @@ export function pointerLabel(pointer) {
   return { label: sentence(words.join(" ").toLowerCase()), unit };
 }
 
-/** A number with `digits` significant digits. */
+/**
+ * A number with `digits` significant digits; other values as they are.
+ * @param {unknown} value
+ * @param {number} [digits]
+ */
 export function number(value, digits = 5) {
   if (value === null || value === undefined) return "–";
   if (typeof value !== "number") return String(value);
@@ -50,20 +56,22 @@ export function number(value, digits = 5) {
   return grouped(decimals > 0 ? text.replace(/\.?0+$/, "") : text);
 }
 
+/** @param {number} exponent */
 function superscript(exponent) {
   return [...String(exponent)].map((sign) => (sign === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(sign)])).join("");
 }
 
-/** Thin spaces between thousands, from five digits on. */
+/** Thin spaces between thousands, from five digits on. @param {string} text */
 function grouped(text) {
   const [whole, fraction] = text.split(".");
   const spaced = whole.replace("-", "").length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, "\u202f") : whole;
   return (fraction === undefined ? spaced : `${spaced}.${fraction}`).replace("-", "−");
 }
 
+/** @param {number | null | undefined} fraction */
 export const percent = (fraction) => `${Math.round((fraction ?? 0) * 100)} %`;
 
-/** How long ago an instant was. */
+/** Time since an instant, as text. @param {string} timestamp */
 export function age(timestamp, now = Date.now()) {
   const seconds = Math.max(0, Math.round((now - Date.parse(timestamp)) / 1000));
   if (!Number.isFinite(seconds)) return "";
@@ -73,19 +81,14 @@ export function age(timestamp, now = Date.now()) {
   return `${Math.floor(seconds / 86_400)} d ago`;
 }
 
+/** Date and time as the browser writes them. @param {string} timestamp */
 export function instant(timestamp) {
   const date = new Date(timestamp);
   return Number.isNaN(date.getTime()) ? "" : date.toLocaleString();
 }
 
+/** Seconds between two instants; null where there is none. @param {string} from @param {string} to */
 export function seconds(from, to) {
   const span = (Date.parse(to) - Date.parse(from)) / 1000;
   return Number.isFinite(span) && span >= 0 ? span : null;
-}
-
-/** Rows [label, value, unit] of all plain numbers and words of an object, in its order. */
-export function rowsOf(object, { skip = [], digits = 5 } = {}) {
-  return Object.entries(object ?? {})
-    .filter(([name, value]) => !skip.includes(name) && ["number", "string", "boolean"].includes(typeof value))
-    .map(([name, value]) => [labelOf(name), typeof value === "boolean" ? (value ? "yes" : "no") : number(value, digits), unitOf(name)]);
 }

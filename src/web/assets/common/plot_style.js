@@ -43,7 +43,7 @@ export function parts(axis) {
   return comma > 0 && (UNITS.includes(unit) || unit.length <= 8) ? { label: axis.slice(0, comma), unit } : { label: axis, unit: "" };
 }
 
-export const titleOf = (axis) => {
+const titleOf = (axis) => {
   const { label, unit } = parts(axis);
   return [label, unit].filter(Boolean).join(", ");
 };

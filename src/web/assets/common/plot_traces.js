@@ -1,7 +1,6 @@
 // The traces of plots. `tone: "muted"` sets one back; `colour` (from 0) takes another colour than that of its place;
-// `aside` leaves it out of
-// the data's table and files; `paint(colour)` gives what of it has colours of its own, `colour("--name")` being one of
-// the stylesheet.
+// `aside` leaves it out of the data's table and files; `paint(colour)` gives what of it has colours of its own,
+// `colour("--name")` being one of the stylesheet.
 
 /** A curve. @type {(x: any[], y: any[], name?: string) => Trace} */
 export const line = (x, y, name = "") => ({ type: "scatter", mode: "lines", x, y, name, line: { width: 1.8 }, showlegend: Boolean(name) });

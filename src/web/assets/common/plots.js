@@ -1,8 +1,7 @@
 // Plots with Plotly: loaded on first use, drawn when scrolled near, coloured by the stylesheet.
 //
 // `draw(node, traces, axes)` draws into a box of class `plot`; traces come from `line`, `points`, `stems`, `bars`,
-// `heatMap`;
-// the members of `axes` are those of `PlotAxes` (src/web/types.d.ts).
+// `heatMap`; the members of `axes` are those of `PlotAxes` (src/web/types.d.ts).
 
 import { el } from "./dom.js";
 import { layoutOf, palette, styled } from "./plot_style.js";
@@ -63,9 +62,8 @@ function load() {
 }
 
 /**
- * Draws traces into a box, at once when it is near the window and otherwise when it comes near. Below the box stand the
- * plot's tools: its
- * data as a table and as files.
+ * Draws traces into a box, at once when it is near the window and otherwise when it comes near. Below the box stand
+ * the plot's tools: its data as a table and as files.
  * @param {HTMLElement} node
  * @param {Trace[]} traces
  * @param {PlotAxes} axes
@@ -95,18 +93,8 @@ export function onZoom(node, zoomed) {
   if (figure) figure.zoomed = zoomed;
 }
 
-/**
- * A figure with its box: `{ figure, plot }`. Its height is reserved from the start.
- * @param {{ id: string, title: string, height?: number }} options
- */
-export function figure({ id, title, height }) {
-  const plot = el("div", { class: "plot", id });
-  if (height) plot.style.height = `${height}px`;
-  return { figure: el("figure", {}, el("figcaption", {}, title), plot), plot };
-}
-
 /** Everything that waits to be scrolled near. */
-export async function drawAll() {
+async function drawAll() {
   for (const waiting of figures.values()) if (!waiting.drawn) await render(waiting);
 }
 

@@ -1,6 +1,5 @@
 // The compared jobs in the address, so that it can be kept and shared: `jobs=a,b,c`, and `reference=b` where that is
-// not
-// the first.
+// not the first.
 
 export const MOST = 5;
 

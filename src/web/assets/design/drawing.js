@@ -1,6 +1,5 @@
-// The pair to scale: the teeth in the transverse section with the path of contact. All geometry comes from the server;
-// here it
-// is turned, shifted and scaled.
+// The pair to scale: the teeth in the transverse section with the path of contact. All geometry comes from the
+// server; here it is turned, shifted and scaled.
 
 import { byId } from "../common/dom.js";
 import { number } from "../common/format.js";

@@ -63,7 +63,7 @@ export function showErrors(form, error, { summary }) {
 }
 
 /** Opens the sections around a field. @param {Field} field */
-export function unfold(field) {
+function unfold(field) {
   for (let place = field.box.closest("details"); place; place = place.parentElement?.closest("details") ?? null) place.open = true;
 }
 

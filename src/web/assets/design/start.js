@@ -9,9 +9,8 @@ import { draft, dropDraft, submitted } from "./draft.js";
 const SUBMITTED = "submitted";
 
 /**
- * Sets up the choice and the files. `fill(document)` fills the form, `read()` gives its document, `failed(error)` shows
- * an
- * error. The function returned fills the form at first.
+ * Sets up the choice and the files. `fill(document)` fills the form, `read()` gives its document, `failed(error)`
+ * shows an error. The function returned fills the form at first.
  * @param {{ fill: (document: JobInput) => void, read: () => JobInput, failed: (error: unknown) => void }} form
  */
 export function initStart({ fill, read, failed }) {

@@ -1,6 +1,5 @@
 // The form's section on sweeps: the choice of inputs by their names, a range or a list of values, a second axis, and
-// the
-// cost of the sweep. The fields of the document stay in the form; this fills them.
+// the cost of the sweep. The fields of the document stay in the form; this fills them.
 
 import { byAnyId, byId, el, show } from "../common/dom.js";
 import { number, pointerLabel } from "../common/format.js";

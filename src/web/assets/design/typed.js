@@ -1,6 +1,6 @@
 // Numbers as people type them: a decimal point or one decimal comma, spaces between thousands, a minus of any kind,
-// powers of ten, and
-// the field's unit behind. What could be read in two ways is refused; the job document itself has decimal points only.
+// powers of ten, and the field's unit behind. What could be read in two ways is refused; the job document itself has
+// decimal points only.
 
 const POINT = "write decimals with a decimal point";
 
@@ -40,11 +40,10 @@ function plain(text) {
 }
 
 /**
- * One number. Gives { value }; or { refused }, why it is not taken although it looks like a number; or nothing of both.
- * `comma` says
- * whether a comma in it is "clear"ly a decimal one, or "maybe" one between thousands.
+ * One number. Gives { value }; or { refused }, why it is not taken although it looks like a number; or nothing of
+ * both. `comma` says whether a comma in it is "clear"ly a decimal one, or "maybe" one between thousands.
  */
-export function readNumber(text, unit = "") {
+function readNumber(text, unit = "") {
   const typed = plain(text).replace(THIN, " ").trim();
   const angle = unit === "°" ? degrees(typed) : null;
   if (angle) return angle;
@@ -97,9 +96,8 @@ export function readField(text, unit) {
 
 /**
  * A list of numbers. Gives { values } (a text in it is what cannot be read at all), or { refused }. Semicolons, tabs
- * and lines separate;
- * without them commas with a space, or spaces. A comma without a space behind it is a decimal one when something else
- * separates.
+ * and lines separate; without them commas with a space, or spaces. A comma without a space behind it is a decimal one
+ * when something else separates.
  */
 export function readList(text, unit = "") {
   const typed = plain(text).replace(THIN, "\u202f").trim().replace(/^\[(.*)\]$/s, "$1").trim();

@@ -1,6 +1,5 @@
-// Plots of the mesh, from the result: stiffness, transmission error, load sharing, load on the flank. Each is { traces,
-// axes }, or null where the
-// result has nothing for it.
+// Plots of the mesh, from the result: stiffness, transmission error, load sharing, load on the flank. Each is {
+// traces, axes }, or null where the result has nothing for it.
 
 import { number } from "../common/format.js";
 import { bars, heatMap, line, points } from "../common/plot_traces.js";

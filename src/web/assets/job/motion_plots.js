@@ -13,7 +13,7 @@ const EXCITED = 0.01;
 const ORDERS = 20;
 
 /** Level of an acceleration, dB. @param {number} amplitude m/s² */
-export const levelOf = (amplitude) => 20 * Math.log10(Math.max(amplitude, 1e-300) / REFERENCE);
+const levelOf = (amplitude) => 20 * Math.log10(Math.max(amplitude, 1e-300) / REFERENCE);
 
 /**
  * Amplitudes of the left half's circumferential acceleration over mesh orders; `decibel` shows levels.

@@ -18,23 +18,24 @@ const notice = byId("notice");
 /** @type {Map<string, Row>} */
 const rows = new Map();
 /** Ids of deleted jobs: later messages about them are ignored. */
-const gone = new Set();
+const deletedIds = new Set();
 /** Jobs with an event since the list was requested. @type {Map<string, Job>} */
-let heard = new Map();
+let changed = new Map();
 const labels = new Set();
 let view = address.read();
 /** @type {string | null} */
 let nextCursor = null;
 let newer = new Set();
-/** The request under way, and whether its answer will be outdated. @type {AbortController | null} */
-let asking = null;
-let again = false;
+/** The request under way. @type {AbortController | null} */
+let request = null;
+/** Whether its answer will be outdated when it comes. */
+let isOutdated = false;
 /** Whether the rows are those of this view. */
 let isFilled = false;
 let stopFollowing = () => {};
 
 const shown = () => [...body.rows].flatMap((node) => rows.get(node.dataset.id ?? "") ?? []);
-const selection = new Selection({ rows: shown, changed: take, removed: remove, failed });
+const selection = new Selection({ rows: shown, changed: onJob, removed: remove, failed });
 
 /** @param {any[]} errors */
 function failed(errors) {
@@ -46,30 +47,30 @@ function failed(errors) {
 
 /** Reads this page of the list; one question at a time. */
 async function refresh() {
-  again = asking !== null;
-  if (again) return;
-  asking = new AbortController();
-  const { signal } = asking;
-  heard = new Map();
+  isOutdated = request !== null;
+  if (isOutdated) return;
+  request = new AbortController();
+  const { signal } = request;
+  changed = new Map();
   const { states, kind, label, cursor } = view;
   try {
     const page = await api.jobs({ limit: LIMIT, state: states.join(","), kind, label, cursor }, signal);
     if (signal.aborted) return;
     notify(notice, null);
     nextCursor = page.next_cursor ?? null;
-    fill(page.items.filter((job) => !gone.has(job.id)));
+    fill(page.items.filter((job) => !deletedIds.has(job.id)));
     isFilled = true;
     if (cursor === "") newer = new Set();
-    for (const job of heard.values()) take(job);
+    for (const job of changed.values()) onJob(job);
   } catch (error) {
     if (signal.aborted) return;
     // A cursor that came with a shared address may belong to other filters: the first page is what is left.
-    if (error instanceof api.Problem && error.problem.code === "invalid-cursor") return step({ ...view, cursor: "", trail: [] }, false);
+    if (error instanceof api.Problem && error.problem.code === "invalid-cursor") return navigate({ ...view, cursor: "", trail: [] }, false);
     notify(notice, error);
   }
-  asking = null;
-  settle();
-  if (again) await refresh();
+  request = null;
+  updatePage();
+  if (isOutdated) await refresh();
 }
 
 /**
@@ -81,14 +82,14 @@ function fill(jobs) {
   for (const id of [...rows.keys()].filter((id) => !wanted.has(id))) drop(id);
   let at = body.firstElementChild;
   for (const job of jobs) {
-    const row = known(job);
+    const row = rowOf(job);
     if (at && row.node === at) at = at.nextElementSibling;
     else body.insertBefore(row.node, at);
   }
 }
 
 /** The row of a job, updated. @param {Job} job */
-function known(job) {
+function rowOf(job) {
   const present = rows.get(job.id);
   if (present) {
     if (present.update(job)) announce(present.job);
@@ -97,7 +98,7 @@ function known(job) {
   }
   const row = new Row(job, {
     select: (picked, isRange) => selection.pick(picked, isRange),
-    filter: (label) => step({ ...view, label, cursor: "", trail: [] }, true),
+    filter: (label) => navigate({ ...view, label, cursor: "", trail: [] }, true),
     cancel: (asked) => selection.each([asked], (job) => selection.stop(job)),
     remove: (asked) => selection.remove([asked]),
   });
@@ -112,35 +113,35 @@ function drop(id) {
   const row = rows.get(id);
   if (!row) return;
   const next = /** @type {HTMLElement | null} */ (row.node.nextElementSibling ?? row.node.previousElementSibling);
-  const handOn = row.held;
+  const hadFocus = row.hasFocus;
   row.node.remove();
   rows.delete(id);
-  if (handOn) (rows.get(next?.dataset.id ?? "")?.link ?? byId("select-all")).focus();
+  if (hadFocus) (rows.get(next?.dataset.id ?? "")?.link ?? byId("select-all")).focus();
 }
 
 /** Takes up a job that has changed or is new. Ids sort by the time of submission. @param {Job} job */
-function take(job) {
-  if (gone.has(job.id)) return;
-  heard.set(job.id, job);
+function onJob(job) {
+  if (deletedIds.has(job.id)) return;
+  changed.set(job.id, job);
   selection.know(job);
-  // Its place is known when the list is: it is taken then.
+  // Its place is known once the list is: its row is added then.
   if (!isFilled) return;
   const row = rows.get(job.id);
   const fits = address.fits(job, view);
   if (row) {
-    known(job);
+    rowOf(job);
     row.node.classList.toggle("past", !fits);
-    if (!fits && !row.held && !row.box.checked) drop(job.id);
+    if (!fits && !row.hasFocus && !row.box.checked) drop(job.id);
   } else if (fits) {
     add(job);
   }
-  settle();
-  fitLength();
+  updatePage();
+  refillPage();
 }
 
-/** Reads the list again when what came and went leaves too much or too little of this page. */
-function fitLength() {
-  if (asking === null && (rows.size > 2 * LIMIT || (nextCursor !== null && rows.size < LIMIT / 2))) refresh();
+/** Reads the list again when additions and removals leave too many or too few rows on this page. */
+function refillPage() {
+  if (request === null && (rows.size > 2 * LIMIT || (nextCursor !== null && rows.size < LIMIT / 2))) refresh();
 }
 
 /** Adds the row of a new job. @param {Job} job */
@@ -156,26 +157,26 @@ function add(job) {
   // It belongs to a later page.
   if (nextCursor !== null && present.length > 0 && job.id < present[present.length - 1].job.id) return;
   const after = present.find((row) => row.job.id < job.id);
-  body.insertBefore(known(job).node, after?.node ?? null);
-  if (isFirst && job.id > (present[0]?.job.id ?? "")) say(`New job: ${nameOf(job)}`);
+  body.insertBefore(rowOf(job).node, after?.node ?? null);
+  if (isFirst && job.id > (present[0]?.job.id ?? "")) announceText(`New job: ${nameOf(job)}`);
 }
 
 /** Takes up that a job was deleted. @param {string} id */
 function remove(id) {
-  gone.add(id);
+  deletedIds.add(id);
   newer.delete(id);
   selection.forget(id);
   drop(id);
-  settle();
-  fitLength();
+  updatePage();
+  refillPage();
 }
 
 /** Brings the rest of the page in line with the rows. */
-function settle() {
+function updatePage() {
   const empty = isFilled && rows.size === 0;
   show(byId("empty"), empty);
   show(byId("jobs"), !empty);
-  if (empty) byId("empty").replaceChildren(...nothing());
+  if (empty) byId("empty").replaceChildren(...emptyTexts());
   if (isFilled) byId("jobs").setAttribute("aria-busy", "false");
   byId("older").disabled = nextCursor === null;
   byId("newer").disabled = view.cursor === "";
@@ -188,7 +189,7 @@ function settle() {
   selection.show();
 }
 
-function nothing() {
+function emptyTexts() {
   if (view.cursor !== "") return [el("strong", {}, "No older jobs."), " They may have been deleted meanwhile."];
   if (!address.isFiltered(view)) return [el("strong", {}, "No jobs yet."), " ", el("a", { href: "/" }, "Describe a gear pair"), " and submit it: it appears here, and its result stays until it is deleted."];
   const clear = el("button", { type: "button", class: "quiet" }, "Clear filters");
@@ -206,14 +207,14 @@ function announce(job) {
   ends.push(job);
   saying ??= setTimeout(() => {
     const [only] = ends;
-    say(ends.length === 1 ? `${nameOf(only)} ${only.state}` : `${ends.length} jobs ended`);
+    announceText(ends.length === 1 ? `${nameOf(only)} ${only.state}` : `${ends.length} jobs ended`);
     ends.length = 0;
     saying = null;
   }, 1000);
 }
 
 /** @param {string} text */
-function say(text) {
+function announceText(text) {
   byId("announcement").textContent = text;
 }
 
@@ -223,7 +224,7 @@ function follow() {
   stopFollowing();
   stopFollowing = followJobs(view, {
     onReload: refresh,
-    onJob: take,
+    onJob,
     onDeleted: remove,
     onMode: (mode) => {
       const node = byId("mode");
@@ -238,17 +239,17 @@ function follow() {
  * @param {ListView} next
  * @param {boolean} isStep
  */
-function step(next, isStep) {
+function navigate(next, isStep) {
   address.write(next, isStep);
-  turn(next);
+  showView(next);
 }
 
 /** @param {ListView} next */
-function turn(next) {
+function showView(next) {
   const other = next.kind !== view.kind || next.label !== view.label;
   view = next;
-  asking?.abort();
-  asking = null;
+  request?.abort();
+  request = null;
   isFilled = false;
   newer = new Set();
   address.fillForm(view);
@@ -261,16 +262,16 @@ const filters = byId("filters");
 let typing;
 filters.addEventListener("input", (event) => {
   clearTimeout(typing);
-  // Letter by letter is one step.
-  if (event.target === address.label) typing = setTimeout(() => step(address.readForm(), false), TYPING_MS);
+  // All letters typed without a pause are one step.
+  if (event.target === address.label) typing = setTimeout(() => navigate(address.readForm(), false), TYPING_MS);
 });
 filters.addEventListener("change", () => {
   clearTimeout(typing);
-  step(address.readForm(), true);
+  navigate(address.readForm(), true);
 });
 filters.addEventListener("reset", (event) => {
   event.preventDefault();
-  step({ states: [], kind: "", label: "", cursor: "", trail: [] }, true);
+  navigate({ states: [], kind: "", label: "", cursor: "", trail: [] }, true);
 });
 filters.addEventListener("submit", (event) => event.preventDefault());
 
@@ -285,16 +286,16 @@ address.label.addEventListener("focus", async () => {
 }, { once: true });
 
 byId("older").addEventListener("click", () => {
-  step({ ...view, cursor: nextCursor ?? "", trail: [...(view.trail ?? []), view.cursor] }, true);
+  navigate({ ...view, cursor: nextCursor ?? "", trail: [...(view.trail ?? []), view.cursor] }, true);
   top();
 });
 byId("newer").addEventListener("click", () => {
   const trail = view.trail ?? [];
-  step({ ...view, cursor: trail.at(-1) ?? "", trail: trail.slice(0, -1) }, true);
+  navigate({ ...view, cursor: trail.at(-1) ?? "", trail: trail.slice(0, -1) }, true);
   top();
 });
 byId("new-jobs").addEventListener("click", () => {
-  step({ ...view, cursor: "", trail: [] }, true);
+  navigate({ ...view, cursor: "", trail: [] }, true);
   top();
 });
 
@@ -302,7 +303,7 @@ function top() {
   byId("main").scrollIntoView({ block: "start" });
 }
 
-window.addEventListener("popstate", () => turn(address.read()));
+window.addEventListener("popstate", () => showView(address.read()));
 setInterval(() => {
   if (document.hidden) return;
   const now = Date.now();

@@ -99,7 +99,7 @@ export class Row {
   }
 
   /** Whether the focus is in this row, which then is not removed. */
-  get held() {
+  get hasFocus() {
     return this.node.contains(document.activeElement);
   }
 }

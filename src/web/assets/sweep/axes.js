@@ -10,7 +10,7 @@ import { gridOf } from "../common/grid.js";
  * @param {JobInput} document
  * @returns {Axis[]}
  */
-export function axesOf(document) {
+function axesOf(document) {
   return document.axes.map((/** @type {any} */ axis) => {
     const { label, unit } = pointerLabel(axis.pointer);
     const logarithmic = axis.spacing === "logarithmic";

@@ -116,7 +116,7 @@ function kindMap(sweep, { name, kinds }, rows, base, where) {
  * @param {SweepState} sweep
  * @param {SweepView} view
  */
-export function bestOf(sweep, view) {
+function bestOf(sweep, view) {
   const { grid } = view;
   const value = valueAt(sweep, view.quantity, view.halves);
   const from = view.branch * grid.lines * grid.length;

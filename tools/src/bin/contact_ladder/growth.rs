@@ -4,11 +4,11 @@ use herringbone_physics::compliance::{Compliance, Settings};
 use herringbone_physics::contact::HalfContact;
 use herringbone_physics::gear::Half;
 
-use crate::Failure;
 use crate::cases::Case;
 use crate::rungs::{force_bt_n, settings, solve};
 use crate::tables::seconds;
-use crate::time::median;
+use herringbone_tools::Failure;
+use herringbone_tools::stopwatch::median_time;
 
 /// Settings of one line of a table.
 type Line = (usize, Settings);
@@ -28,8 +28,8 @@ fn table(case: &Case, what: &str, lines: &[Line]) -> Result<(), Failure> {
     let mut places = Vec::new();
     let mut answers = Vec::new();
     for (count, settings) in lines {
-        let (compliance, compliance_s) = median(5, || Compliance::analytic(&case.pair, settings));
-        let (cycle, contact_s) = median(5, || solve(case, settings, &compliance));
+        let (compliance, compliance_s) = median_time(5, || Compliance::analytic(&case.pair, settings));
+        let (cycle, contact_s) = median_time(5, || solve(case, settings, &compliance));
         let points =
             HalfContact::new(&case.pair, Half::Left, &compliance, settings).at(0.5, force_bt_n(case))?.points.len();
         let positions = settings.positions.unwrap_or(1);

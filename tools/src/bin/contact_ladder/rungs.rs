@@ -11,9 +11,9 @@ use herringbone_physics::gear::Half;
 use herringbone_physics::iso6336::{Blank, MethodB, course};
 use herringbone_physics::watch::Watch;
 
-use crate::Failure;
 use crate::cases::{Case, Reference};
-use crate::time::{Stopwatch, median};
+use herringbone_tools::Failure;
+use herringbone_tools::stopwatch::{Stopwatch, median_time};
 
 /// A way to the stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,7 +58,8 @@ pub struct Answer {
     pub rung: Rung,
     /// Number of the case.
     pub case: usize,
-    /// Time of one half with nothing known, and with the compliance of the teeth (of finite elements: of both gears) already there.
+    /// Time of one half with nothing known, and with the compliance of the teeth (of finite elements: of both gears)
+    /// already there.
     pub cold_s: f64,
     pub stored_s: f64,
     /// Relative errors.
@@ -86,15 +87,16 @@ pub fn answers(cases: &[Case], keep: Option<&Path>) -> Result<Vec<Answer>, Failu
         answers.push(iso6336(number, case, reference)?);
         for (i, &(_, slices, positions, accuracy)) in ANALYTIC.iter().enumerate() {
             let settings = Settings { slices, positions, accuracy, ..settings(case) };
-            let (cycle, cold_s) = median(5, || solve(case, &settings, &Compliance::analytic(&case.pair, &settings)));
+            let (cycle, cold_s) =
+                median_time(5, || solve(case, &settings, &Compliance::analytic(&case.pair, &settings)));
             let compliance = Compliance::analytic(&case.pair, &settings);
-            let (_, stored_s) = median(5, || solve(case, &settings, &compliance));
+            let (_, stored_s) = median_time(5, || solve(case, &settings, &compliance));
             answers.push(compare(Rung::Analytic(i), number, [cold_s, stored_s], &cycle?, reference));
         }
         for resolution in ELEMENTS {
             let (flanks, solved_s) = solved(case, resolution, &mut elements, None)?;
             let settings = settings(case);
-            let (cycle, stored_s) = median(5, || {
+            let (cycle, stored_s) = median_time(5, || {
                 solve(case, &settings, &Compliance::finite_elements(&case.pair, &settings, [&flanks[0], &flanks[1]]))
             });
             answers.push(compare(
@@ -125,8 +127,9 @@ pub fn solve(
     solve_half(&case.pair, Half::Left, force_bt_n(case), compliance, settings, Watch::none())
 }
 
-/// Fine finite elements at 128 positions. The slices are the default ones: elements tell the half-space of a segment from its neighbours,
-/// which segments as short as the band of contact is wide do less well. The tangent is the difference quotient over 2 % of load.
+/// Fine finite elements at 128 positions. The slices are the default ones: elements tell the half-space of a segment
+/// from its neighbours, which segments as short as the band of contact is wide do less well. The tangent is the
+/// difference quotient over 2 % of load.
 fn reference(case: &Case, elements: &mut HashMap<String, Solved>, keep: Option<&Path>) -> Result<Reference, Failure> {
     let (flanks, _) = solved(case, Resolution::Fine, elements, keep)?;
     let settings = Settings { positions: Some(128), ..settings(case) };
@@ -187,7 +190,7 @@ fn iso6336(number: usize, case: &Case, reference: &Reference) -> Result<Answer, 
     let pair = &case.pair;
     let reference_radius = 0.5 * f64::from(pair.pinion.teeth) * pair.transverse_module_m;
     let method = || MethodB::new(pair, &Blank::Solid, case.torque_nm / reference_radius);
-    let (method, time_s) = median(5, method);
+    let (method, time_s) = median_time(5, method);
     let mean = method?.mean_n_per_m(pair);
     let error: Vec<f64> = (0..POSITIONS)
         .map(|i| {

@@ -2,6 +2,7 @@
 
 use herringbone_physics::compliance::BodyHold;
 use herringbone_physics::fe::Resolution;
+use herringbone_tools::statistics::{largest, median, root_mean_square};
 
 use crate::cases::Case;
 use crate::rungs::{Answer, Rung, all};
@@ -12,13 +13,15 @@ pub fn summary(answers: &[Answer]) {
     println!("|---|---|---|---|---|---|---|");
     for rung in all() {
         let of: Vec<&Answer> = answers.iter().filter(|a| a.rung == rung).collect();
-        let time = |value: fn(&Answer) -> f64| seconds(middle(of.iter().map(|a| value(a)).collect()));
+        let time = |value: fn(&Answer) -> f64| seconds(median(of.iter().map(|a| value(a))));
         let percent = |value: fn(&Answer) -> f64| {
-            let [square, worst] = spread(of.iter().map(|a| value(a)));
-            format!("{} / {}", percent(square, false), percent(worst, true))
+            let errors = || of.iter().map(|a| value(a));
+            format!("{} / {}", percent(root_mean_square(errors()), false), percent(largest(errors()), true))
         };
-        let [square, worst] = spread(of.iter().map(|a| a.share));
-        let share = if worst.is_finite() { format!("{square:.3} / {worst:+.3}") } else { "–".into() };
+        let shares = || of.iter().map(|a| a.share);
+        let worst = largest(shares());
+        let share =
+            if worst.is_finite() { format!("{:.3} / {worst:+.3}", root_mean_square(shares())) } else { "–".into() };
         println!(
             "| {} | {} | {} | {} | {} | {} | {share} |",
             rung.name(),
@@ -85,19 +88,6 @@ fn hold(case: &Case) -> &'static str {
         BodyHold::Rim => "rim",
         BodyHold::Bore => "bore",
     }
-}
-
-/// Root mean square and the value of the largest amount.
-pub fn spread(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
-    let count = values.clone().count() as f64;
-    let square = (values.clone().map(|v| v * v).sum::<f64>() / count).sqrt();
-    [square, values.reduce(|worst, v| if v.abs() > worst.abs() { v } else { worst }).unwrap_or(f64::NAN)]
-}
-
-/// The middle one.
-pub fn middle(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }
 
 fn percent(value: f64, sign: bool) -> String {

@@ -1,10 +1,10 @@
 //! From `POST …/cancel` to the state `canceled`.
 
 use crate::documents;
-use crate::service::Service;
 use crate::times::Times;
+use herringbone_tools::Failure;
+use herringbone_tools::service::Service;
 use serde_json::Value;
-use std::error::Error;
 use std::time::{Duration, Instant};
 
 const RUNS: usize = 20;
@@ -12,7 +12,7 @@ const RUNS: usize = 20;
 /// Name, stage to be in, document.
 type Case = (&'static str, &'static str, fn() -> Value);
 
-pub fn measure() -> Result<(), Box<dyn Error>> {
+pub fn measure() -> Result<(), Failure> {
     let directory = tempfile::tempdir_in(".")?;
     let service = Service::start(&directory.path().join("cancel.db"), &[])?;
     let mut connection = service.connect()?;

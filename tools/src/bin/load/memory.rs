@@ -1,18 +1,18 @@
 //! What the process takes: idle, with many jobs, during a large sweep, with many connections.
 
-use crate::connection::Connection;
 use crate::requests::clients_at;
-use crate::service::Service;
 use crate::store::{MANY, fill};
 use crate::{documents, times::Times};
-use std::error::Error;
+use herringbone_tools::Failure;
+use herringbone_tools::service::Connection;
+use herringbone_tools::service::Service;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 const POINTS: u32 = 100_000;
 const CONNECTIONS: usize = 10_000;
 
-pub fn measure() -> Result<(), Box<dyn Error>> {
+pub fn measure() -> Result<(), Failure> {
     let directory = tempfile::tempdir_in(".")?;
     println!("| memory and large answers | |\n|---|---|");
     many_jobs(&directory.path().join("many.db"))?;
@@ -21,11 +21,11 @@ pub fn measure() -> Result<(), Box<dyn Error>> {
 }
 
 #[tokio::main]
-async fn filled(database: &Path) -> Result<Duration, Box<dyn Error>> {
+async fn filled(database: &Path) -> Result<Duration, Failure> {
     fill(database, MANY).await
 }
 
-fn many_jobs(database: &Path) -> Result<(), Box<dyn Error>> {
+fn many_jobs(database: &Path) -> Result<(), Failure> {
     let service = Service::start(&database.with_file_name("idle.db"), &[])?;
     println!("| resident, idle after the start | {:.0} MB |", service.memory_mb("VmRSS"));
     drop(service);
@@ -43,7 +43,7 @@ fn many_jobs(database: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn large_sweep(database: &Path) -> Result<(), Box<dyn Error>> {
+fn large_sweep(database: &Path) -> Result<(), Failure> {
     let service = Service::start(database, &[])?;
     let mut connection = service.connect()?;
     let began = Instant::now();
@@ -83,7 +83,7 @@ fn large_sweep(database: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn many_connections(database: &Path) -> Result<(), Box<dyn Error>> {
+fn many_connections(database: &Path) -> Result<(), Failure> {
     let files = rlimit::increase_nofile_limit(u64::MAX)?;
     let wanted = CONNECTIONS.min((files as usize).saturating_sub(200));
     let service = Service::start(database, &["--max-connections", "10100"])?;

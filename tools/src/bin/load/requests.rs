@@ -1,15 +1,15 @@
 //! Status polls and submissions in a second.
 
 use crate::documents;
-use crate::service::Service;
 use crate::times::Times;
-use std::error::Error;
+use herringbone_tools::Failure;
+use herringbone_tools::service::{Connection, Service};
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
 const EACH: Duration = Duration::from_secs(3);
 
-pub fn measure() -> Result<(), Box<dyn Error>> {
+pub fn measure() -> Result<(), Failure> {
     let directory = tempfile::tempdir_in(".")?;
     println!("| requests | clients | per second | median | 99 % within | longest |\n|---|---|---|---|---|---|");
     let service = Service::start(&directory.path().join("polls.db"), &[])?;
@@ -45,11 +45,11 @@ fn polls(address: SocketAddr, clients: usize, path: &str) -> std::io::Result<Tim
 pub fn clients_at(
     address: SocketAddr,
     clients: usize,
-    request: impl Fn(&mut crate::connection::Connection) -> std::io::Result<()> + Sync,
+    request: impl Fn(&mut Connection) -> std::io::Result<()> + Sync,
 ) -> std::io::Result<Times> {
     std::thread::scope(|scope| {
         let client = || -> std::io::Result<Times> {
-            let mut connection = crate::connection::Connection::to(address)?;
+            let mut connection = Connection::to(address)?;
             let mut times = Times::default();
             let end = Instant::now() + EACH;
             while Instant::now() < end {

@@ -3,10 +3,10 @@
 use crate::documents;
 use crate::times::Times;
 use herringbone::store::{JobFilter, JobId, JobState, NewJob, Store, StoreConfig, Submission, WorkClass};
+use herringbone_tools::Failure;
 use jiff::Timestamp;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqliteSynchronous};
 use sqlx::{ConnectOptions, Connection, SqliteConnection};
-use std::error::Error;
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ pub const MANY: u32 = 100_000;
 const CAPACITY: u32 = 1_000_000;
 
 #[tokio::main]
-pub async fn commits() -> Result<(), Box<dyn Error>> {
+pub async fn commits() -> Result<(), Failure> {
     println!("| submission at the store, one after the other | per second | median / longest |\n|---|---|---|");
     let directory = tempfile::tempdir_in(".")?;
     let database = directory.path().join("store.db");
@@ -85,7 +85,7 @@ async fn submit(store: &Store) {
 }
 
 /// Writes so many jobs that wait; in memory, where a commit costs no wait, and then as a file at the path.
-pub async fn fill(database: &Path, jobs: u32) -> Result<Duration, Box<dyn Error>> {
+pub async fn fill(database: &Path, jobs: u32) -> Result<Duration, Failure> {
     let fast = tempfile::tempdir_in("/dev/shm")?;
     let file = fast.path().join("fill.db");
     let store = Store::open(&StoreConfig::at(&file)).await?;
@@ -100,7 +100,7 @@ pub async fn fill(database: &Path, jobs: u32) -> Result<Duration, Box<dyn Error>
 }
 
 #[tokio::main]
-pub async fn many_jobs() -> Result<(), Box<dyn Error>> {
+pub async fn many_jobs() -> Result<(), Failure> {
     println!("| with so many jobs waiting (median / longest of 50) | 100 | 100 000 |\n|---|---|---|");
     let directory = tempfile::tempdir_in(".")?;
     let mut columns = Vec::new();
@@ -117,7 +117,7 @@ pub async fn many_jobs() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-async fn rows(store: &Store) -> Result<Vec<(&'static str, String)>, Box<dyn Error>> {
+async fn rows(store: &Store) -> Result<Vec<(&'static str, String)>, Failure> {
     let mut rows = Vec::new();
     let everything = JobFilter::default();
     let states = |states: &[JobState]| JobFilter { states: states.to_vec(), ..JobFilter::default() };
@@ -159,7 +159,7 @@ async fn rows(store: &Store) -> Result<Vec<(&'static str, String)>, Box<dyn Erro
 }
 
 /// An id with about fifty jobs older than it.
-async fn oldest(store: &Store, start: Option<JobId>) -> Result<Option<JobId>, Box<dyn Error>> {
+async fn oldest(store: &Store, start: Option<JobId>) -> Result<Option<JobId>, Failure> {
     let mut before = start;
     loop {
         let page = store.list(&JobFilter::default(), before, 200).await?;

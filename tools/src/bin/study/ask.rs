@@ -1,13 +1,12 @@
 //! Documents in, results out, through the service's HTTP interface.
 
-use crate::connection::Connection;
-use crate::service::Service;
+use herringbone_tools::Failure;
+use herringbone_tools::service::{Connection, Service};
 use serde_json::Value;
-use std::error::Error;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-pub type Outcome<T> = Result<T, Box<dyn Error>>;
+pub type Outcome<T> = Result<T, Failure>;
 
 /// The running service, and how much was asked of it.
 pub struct Bench {
@@ -25,8 +24,8 @@ pub struct Axis<'a> {
     pub values: &'a [f64],
 }
 
-/// A sweep's points, in the order of the axes (the first one fastest; those that were not solved have an `error`), and how long
-/// they took.
+/// A sweep's points, in the order of the axes (the first one fastest; those that were not solved have an `error`), and
+/// how long they took.
 pub struct Swept {
     pub points: Vec<Value>,
     pub seconds: f64,

@@ -6,8 +6,8 @@ use crate::contact::Answer;
 use crate::documents::{contact, table1, with, with_contact, without_corner_contact};
 use crate::mechanisms::{Curve, lowest};
 use crate::page::sig;
-use crate::svg::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
 use crate::ways::WAYS;
+use herringbone_tools::plot::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
 use serde_json::{Value, json};
 
 /// One way of changing the contact ratio with the contact in the equations.
@@ -134,7 +134,7 @@ fn conclusions(study: &mut Study, found: &[Curves]) -> Outcome<()> {
 }
 
 fn figure(study: &mut Study, found: &[Curves]) {
-    let mut sheet = Sheet::new(900.0, 400.0);
+    let mut sheet = Sheet::white(900.0, 400.0);
     let styles = [
         Style::line(GREEN),
         Style::line(ORANGE),

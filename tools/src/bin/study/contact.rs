@@ -5,8 +5,8 @@ use crate::ask::{Outcome, number};
 use crate::documents::{contact, load, on_one_body, table1, with_contact, without_corner_contact, without_impact};
 use crate::page::sig;
 use crate::source::PRINTED;
-use crate::svg::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
 use crate::table3::rms;
+use herringbone_tools::plot::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
 use serde_json::Value;
 
 /// What one document answers.
@@ -182,7 +182,7 @@ fn conclusions(study: &mut Study, ours: &[Models]) {
 }
 
 fn figure(study: &mut Study, ours: &[Models]) {
-    let mut sheet = Sheet::new(860.0, 400.0);
+    let mut sheet = Sheet::white(860.0, 400.0);
     let x = Scale::linear(2.6, 4.2);
     let level = Field { place: [60.0, 34.0, 350.0, 270.0], x, y: Scale::logarithmic(0.5, 200.0) };
     let factor = Field { place: [490.0, 34.0, 350.0, 270.0], x, y: Scale::linear(1.0, 2.0) };

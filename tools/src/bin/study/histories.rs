@@ -5,7 +5,7 @@ use crate::ask::{Outcome, number};
 use crate::documents::{load, on_one_body};
 use crate::page::sig;
 use crate::source::PRINTED;
-use crate::svg::{BLUE, Field, ORANGE, Scale, Sheet, Style};
+use herringbone_tools::plot::{BLUE, Field, ORANGE, Scale, Sheet, Style};
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -54,7 +54,8 @@ pub fn write(study: &mut Study) -> Outcome<()> {
     Ok(())
 }
 
-/// The steady motion of a document in displacement, velocity and acceleration, whose channels are in the opposite order.
+/// The steady motion of a document in displacement, velocity and acceleration, whose channels are in the opposite
+/// order.
 fn history(study: &mut Study, ratio: f64, document: &Value, channels: &[&str]) -> Outcome<History> {
     let (result, mut series) = study.bench.series(document, channels)?;
     if result["response"]["regime"] != "period-1" {
@@ -82,7 +83,7 @@ pub fn write_contact(study: &mut Study) -> Outcome<()> {
 }
 
 fn draw(study: &mut Study, name: &str, quantity: &str, histories: &[History]) -> Outcome<()> {
-    let mut sheet = Sheet::new(900.0, 690.0);
+    let mut sheet = Sheet::white(900.0, 690.0);
     let period_ms = 1e3 / number(&histories[0].result, "/geometry/mesh_frequency_hz")?;
     let all =
         |values: fn(&History) -> &[f64]| histories.iter().flat_map(move |history| values(history).iter().copied());

@@ -1,16 +1,14 @@
-//! What the source paper reports, beside what the service answers, and the design guide that it left as future work. Drives the
-//! release program over loopback, documents in, results out, and writes docs/STUDY.md with its figures; see `scripts/study`.
-//! With names of chapters as arguments, only these are run: their figures are written, their text printed.
+//! What the source paper reports, beside what the service answers, and the design guide that it left as future work.
+//! Drives the release program over loopback, documents in, results out, and writes docs/STUDY.md with its figures; see
+//! `scripts/study`. With names of chapters as arguments, only these are run: their figures are written, their text
+//! printed.
 
 mod ask;
 mod best;
-#[path = "../load/connection.rs"]
-mod connection;
 mod contact;
 mod documents;
 mod front;
 mod guide;
-mod heat;
 mod histories;
 mod loss;
 mod maps;
@@ -18,19 +16,16 @@ mod mechanisms;
 mod page;
 mod rules;
 mod sensitivity;
-#[path = "../load/service.rs"]
-#[allow(dead_code, reason = "shared with the load report, which reads other figures of the program")]
-mod service;
 mod source;
-mod svg;
 mod table2;
 mod table3;
 mod ways;
 
 use ask::{Bench, Outcome};
+use herringbone_tools::arguments::Arguments;
+use herringbone_tools::plot::Sheet;
 use page::Page;
 use std::time::Instant;
-use svg::Sheet;
 
 /// The service that is asked, the page that is written, the figures that are drawn.
 pub struct Study {
@@ -84,9 +79,9 @@ fn main() -> Outcome<()> {
         ("rules", rules::write),
         ("differences", front::differences),
     ];
-    let chosen: Vec<String> = std::env::args().skip(1).collect();
+    let arguments = Arguments::of_process();
     for (name, write) in chapters {
-        if !chosen.is_empty() && !chosen.iter().any(|chosen| chosen == name) {
+        if !arguments.choose(name) {
             continue;
         }
         let began = Instant::now();
@@ -94,7 +89,7 @@ fn main() -> Outcome<()> {
         eprintln!("{name}: {:.1} s", began.elapsed().as_secs_f64());
     }
     front::cost(&mut study, began.elapsed().as_secs_f64());
-    if !chosen.is_empty() {
+    if !arguments.is_empty() {
         // Also what does not hold any more, to be read beside its numbers.
         println!("{}\n{}", front::beginning(&study.verdicts), study.page.draft());
     }
@@ -103,7 +98,7 @@ fn main() -> Outcome<()> {
     for (name, figure) in &study.figures {
         std::fs::write(format!("docs/study/{name}.svg"), figure)?;
     }
-    if !chosen.is_empty() {
+    if !arguments.is_empty() {
         return Ok(());
     }
     std::fs::write("docs/STUDY.md", text)?;

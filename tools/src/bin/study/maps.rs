@@ -1,12 +1,12 @@
-//! Maps over contact ratio and one other input, through sweeps: RMS, dynamic factor, regime and contact, the best designs marked.
+//! Maps over contact ratio and one other input, through sweeps: RMS, dynamic factor, regime and contact, the best
+//! designs marked.
 
 use crate::Study;
 use crate::ask::{Axis, Outcome, Swept};
-use crate::heat;
 use crate::page::sig;
-use crate::svg::{Field, Scale, Sheet};
 use herringbone_job::document::Spacing;
 use herringbone_job::grid;
+use herringbone_tools::plot::{Field, Scale, Sheet, image};
 use serde_json::Value;
 use std::fmt::Write;
 
@@ -178,7 +178,7 @@ impl Solved {
 
     pub fn draw(&self, study: &mut Study) {
         let lines = self.present().len() as f64;
-        let mut sheet = Sheet::new(970.0, f64::max(430.0, 374.0 + 16.0 * lines));
+        let mut sheet = Sheet::white(970.0, f64::max(430.0, 374.0 + 16.0 * lines));
         let scale = |values: &[f64]| {
             let (from, to) = (values[0], values[values.len() - 1]);
             if self.map.upwards.logarithmic { Scale::logarithmic(from, to) } else { Scale::linear(from, to) }
@@ -220,25 +220,18 @@ impl Solved {
     }
 
     fn shades(&self, sheet: &mut Sheet, field: &Field, title: &str, table: &[Vec<f64>], scale: Scale) {
-        sheet.add(heat::image(&self.rows(|column, row| shade(scale.part(table[column][row]))), field.place));
+        sheet.add(image::image(&self.rows(|column, row| shade(scale.part(table[column][row]))), field.place));
         field.axes(sheet, title, "contact ratio", if field.place[0] < 100.0 { self.map.upwards.name } else { "" });
         let [left, top, width, height] = field.place;
-        let steps: Vec<_> = (0..=60).map(|step| heat::color(f64::from(step) / 60.0)).collect();
-        sheet.add(heat::image(&[steps], [left, top + height + 44.0, width, 9.0]));
-        let at = |part: f64| {
-            if scale.logarithmic {
-                scale.from * (scale.to / scale.from).powf(part)
-            } else {
-                scale.from + part * (scale.to - scale.from)
-            }
-        };
+        let steps: Vec<_> = (0..=60).map(|step| image::color(f64::from(step) / 60.0)).collect();
+        sheet.add(image::image(&[steps], [left, top + height + 44.0, width, 9.0]));
         for (part, anchor) in [(0.0, "start"), (0.5, "middle"), (1.0, "end")] {
-            sheet.text(left + part * width, top + height + 66.0, anchor, 11.0, &sig(at(part), 3));
+            sheet.text(left + part * width, top + height + 66.0, anchor, 11.0, &sig(scale.value(part), 3));
         }
     }
 
     fn states(&self, sheet: &mut Sheet, field: &Field) {
-        sheet.add(heat::image(&self.rows(|column, row| STATES[self.state(column, row)].1), field.place));
+        sheet.add(image::image(&self.rows(|column, row| STATES[self.state(column, row)].1), field.place));
         field.axes(sheet, "Contact and regime", "contact ratio", "");
         let [left, top, _, height] = field.place;
         for (line, state) in self.present().into_iter().enumerate() {
@@ -274,7 +267,7 @@ impl Solved {
 
 /// A part of the scale as a colour; grey where there is no number.
 fn shade(part: f64) -> [u8; 3] {
-    if part.is_nan() { [150, 150, 150] } else { heat::color(part) }
+    if part.is_nan() { [150, 150, 150] } else { image::color(part) }
 }
 
 /// Contact and regime of a point without a result.

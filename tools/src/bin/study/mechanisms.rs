@@ -6,9 +6,9 @@ use crate::documents::{table1, with, without_impact};
 use crate::front::Verdict;
 use crate::maps::spaced;
 use crate::page::sig;
-use crate::svg::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
 use crate::table3::rms;
 use crate::ways::WAYS;
+use herringbone_tools::plot::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
 use serde_json::{Value, json};
 
 pub type Curve = Vec<(f64, f64)>;
@@ -19,8 +19,8 @@ pub fn lowest(curve: &Curve) -> ((f64, f64), bool) {
     (curve[best], best > 0 && best + 1 < curve.len())
 }
 
-/// One way of changing the contact ratio: RMS of the circumferential acceleration with everything, without the impact, with a
-/// constant stiffness, and the largest change that a missing backlash makes.
+/// One way of changing the contact ratio: RMS of the circumferential acceleration with everything, without the impact,
+/// with a constant stiffness, and the largest change that a missing backlash makes.
 struct Switched {
     all: Curve,
     quiet: Curve,
@@ -167,7 +167,7 @@ fn conclusions(study: &mut Study, switched: &[Switched]) {
 }
 
 fn figure(study: &mut Study, switched: &[Switched]) {
-    let mut sheet = Sheet::new(900.0, 400.0);
+    let mut sheet = Sheet::white(900.0, 400.0);
     let styles = [Style::line(BLUE), Style::line(ORANGE).dashed(), Style::line(GREEN), Style::dots(BLACK).hollow()];
     for (index, (way, curves)) in WAYS.iter().zip(switched).enumerate() {
         let field = Field {

@@ -6,8 +6,8 @@ use crate::documents::{load, table1, with};
 use crate::front::Verdict;
 use crate::page::sig;
 use crate::source::PRINTED;
-use crate::svg::{BLACK, BLUE, Field, GREEN, ORANGE, Scale, Sheet, Style};
 use crate::ways::{WAYS, reach};
+use herringbone_tools::plot::{BLACK, BLUE, Field, GREEN, ORANGE, Scale, Sheet, Style};
 use serde_json::{Value, json};
 
 /// What Table 2 asks of one design.
@@ -288,7 +288,7 @@ fn factors(study: &mut Study, ours: &[Impact], ways: &[Vec<Option<Impact>>]) {
 }
 
 fn figure(study: &mut Study, ours: &[Impact], ways: &[Vec<Option<Impact>>]) {
-    let mut sheet = Sheet::new(860.0, 400.0);
+    let mut sheet = Sheet::white(860.0, 400.0);
     let x = Scale::linear(2.6, 4.2);
     let force = Field { place: [60.0, 34.0, 350.0, 270.0], x, y: Scale::linear(0.0, 10.0) };
     let share = Field { place: [490.0, 34.0, 350.0, 270.0], x, y: Scale::linear(0.0, 8.0) };
@@ -308,7 +308,7 @@ fn figure(study: &mut Study, ours: &[Impact], ways: &[Vec<Option<Impact>>]) {
         share.draw(&mut sheet, &points(|own| 100.0 * own.share), style);
     }
     let stars = |value: fn(&Impact) -> f64| ours.iter().map(|own| (own.ratio, value(own))).collect::<Vec<_>>();
-    let documents = Style::dots(crate::svg::PURPLE);
+    let documents = Style::dots(herringbone_tools::plot::PURPLE);
     force.draw(&mut sheet, &stars(|own| own.buffered_kn), documents);
     share.draw(&mut sheet, &stars(|own| 100.0 * own.share), documents);
     let names = ["printed", "by tooth height", "by face width", "by helix angle", "documents of the table"];

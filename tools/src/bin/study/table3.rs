@@ -7,7 +7,7 @@ use crate::front::Verdict;
 use crate::maps::spaced;
 use crate::page::sig;
 use crate::source::PRINTED;
-use crate::svg::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
+use herringbone_tools::plot::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
 use serde_json::{Value, json};
 
 const CIRCUMFERENTIAL: &str = "/response/rms/mesh_circumferential_acceleration_m_s2/left";
@@ -102,7 +102,7 @@ fn row(study: &mut Study, document: &Value) -> Outcome<Row> {
     let quiet = study.bench.result(&without_impact(document))?;
     let n = |pointer: &str| number(&result, pointer);
     let radius =
-        |gear: &str| Ok::<_, Box<dyn std::error::Error>>(n(&format!("/geometry/{gear}/base_diameter_mm"))? / 2e3);
+        |gear: &str| Ok::<_, herringbone_tools::Failure>(n(&format!("/geometry/{gear}/base_diameter_mm"))? / 2e3);
     let inertia = |gear: &str| n(&format!("/geometry/{gear}/inertia_kg_m2")).map(|whole| whole / 2.0);
     let mobility = radius("pinion")?.powi(2) / inertia("pinion")? + radius("gear")?.powi(2) / inertia("gear")?;
     let part = n("/impact/duration_us")? * 1e-6 * n("/geometry/mesh_frequency_hz")?;
@@ -115,7 +115,8 @@ fn row(study: &mut Study, document: &Value) -> Outcome<Row> {
     })
 }
 
-/// The circumferential RMS that the printed impact forces give, over the pulse's length, and where it is the printed one.
+/// The circumferential RMS that the printed impact forces give, over the pulse's length, and where it is the printed
+/// one.
 fn pulse_lengths(study: &mut Study) -> Outcome<Vec<Vec<(f64, f64)>>> {
     let microseconds = spaced(1.0, 10f64.powf(3.2), 45, true);
     let (mut curves, mut needed) = (Vec::new(), Vec::new());
@@ -155,7 +156,7 @@ fn pulse_lengths(study: &mut Study) -> Outcome<Vec<Vec<(f64, f64)>>> {
 }
 
 fn figure(study: &mut Study, ours: &[Row], lengths: &[Vec<(f64, f64)>]) {
-    let mut sheet = Sheet::new(860.0, 400.0);
+    let mut sheet = Sheet::white(860.0, 400.0);
     let level =
         Field { place: [60.0, 34.0, 350.0, 270.0], x: Scale::linear(2.6, 4.2), y: Scale::logarithmic(0.5, 200.0) };
     let pulse = Field {

@@ -3,7 +3,7 @@
 use crate::document::{Hand, JobDocument, RotationInput};
 use crate::drawing::{Drawing, DrawnGear, DrawnHalf, DrawnLine, DrawnSection, MarginResult, PathPoint, PlaneOfAction};
 use crate::study::CheckedJob;
-use herringbone_physics::gear::{self, Half, Member, Pair};
+use herringbone_physics::gear::{self, Half, MarginKind, Member, Pair};
 use std::f64::consts::TAU;
 
 const MM: f64 = 1e3;
@@ -21,8 +21,20 @@ impl Drawing {
 }
 
 fn margin(margin: gear::Margin) -> MarginResult {
-    let gear::Margin { code, member, value, limit, unit } = margin;
-    MarginResult { code: code.to_owned(), member: member.to_owned(), value, limit, unit: unit.to_owned() }
+    let (code, unit, factor) = match margin.kind {
+        MarginKind::TipThickness => ("tip-thickness", "m_n", 1.0),
+        MarginKind::TipClearance => ("tip-clearance", "m_n", 1.0),
+        MarginKind::ProfileShift => ("profile-shift", "1", 1.0),
+        // As a diameter.
+        MarginKind::ActiveProfileRadius => ("active-profile", "mm", 2.0 * MM),
+    };
+    MarginResult {
+        code: code.to_owned(),
+        member: margin.member.as_str().to_owned(),
+        value: factor * margin.value,
+        limit: factor * margin.limit,
+        unit: unit.to_owned(),
+    }
 }
 
 fn section(pair: &Pair, document: &JobDocument) -> DrawnSection {

@@ -1,5 +1,5 @@
-//! The coast flanks under load: the mirrored pair run backwards against the pair with its members exchanged, in which the gear is the
-//! driver in real time, and against the drive flanks.
+//! The coast flanks under load: the mirrored pair run backwards against the pair with its members exchanged, in which
+//! the gear is the driver in real time, and against the drive flanks.
 
 use super::{pair, spec};
 use crate::compliance::{Compliance, Settings};

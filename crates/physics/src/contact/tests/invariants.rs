@@ -1,4 +1,4 @@
-//! What must hold whatever the numbers are.
+//! Properties that hold for any numbers.
 
 use std::f64::consts::PI;
 
@@ -6,8 +6,8 @@ use super::{pair, spec};
 use crate::compliance::Stencil;
 use crate::compliance::{BodyHold, Compliance, Settings};
 use crate::contact::distribution::{Prescribed, distribute};
-use crate::contact::lines::{CornerGaps, Reach, collect, reference_roll_m};
-use crate::contact::system::{Local, System, Workspace};
+use crate::contact::lines::{CornerGaps, PairRange, collect, reference_roll_m};
+use crate::contact::system::{ContactSystem, LocalApproach, Workspace};
 use crate::contact::{HalfContact, solve_half, solve_pair_of_halves};
 use crate::gear::{Half, ReliefShape, TipRelief};
 use crate::watch::Watch;
@@ -137,7 +137,7 @@ fn contact_lines_follow_the_uniform_series() {
     for (teeth, helix, width) in [([29, 67], 30.0, 45e-3), ([40, 60], 12.0, 60e-3), ([17, 44], 24.43, 75e-3)] {
         let pair = pair(&spec(teeth, helix, width));
         let (ea, eb) = (pair.transverse_contact_ratio, pair.overlap_ratio);
-        let reach = Reach { lowest_pair: i32::MIN, corner_gap_m: 0.0, least_part_m: 0.0 };
+        let reach = PairRange { lowest_pair: i32::MIN, corner_gap_m: 0.0, least_part_m: 0.0 };
         let (mut points, mut errors) = (Vec::new(), Vec::new());
         for i in 0..16 {
             let phase = (f64::from(i) + 0.5) / 16.0;
@@ -157,13 +157,13 @@ fn contact_lines_follow_the_uniform_series() {
     }
 }
 
-/// A foundation of constant stiffness per width instead of tooth, body and Hertzian contact: the force is the integral of what the
-/// approach exceeds the gap by, c ∫ (δ - g)₊ dy over all lines. Unmodified flanks make that c δ times the length of the lines, whose course
-/// is the series above; relief on both tips unloads the ends of the path.
+/// A foundation of constant stiffness per width instead of tooth, body and Hertzian contact: the force is the integral
+/// of what the approach exceeds the gap by, c ∫ (δ - g)₊ dy over all lines. Unmodified flanks make that c δ times the
+/// length of the lines, whose course is the series above; relief on both tips unloads the ends of the path.
 #[test]
 fn a_constant_foundation_gives_the_length_of_the_lines_and_relief_unloads_it() {
     struct Foundation(Vec<f64>);
-    impl Local for Foundation {
+    impl LocalApproach for Foundation {
         fn approach(&self, i: usize, force: f64) -> (f64, f64) {
             (force / self.0[i], 1.0 / self.0[i])
         }
@@ -177,7 +177,7 @@ fn a_constant_foundation_gives_the_length_of_the_lines_and_relief_unloads_it() {
         spec.gear.flanks[0].tip_relief = relief;
         let pair = pair(&spec);
         let cos = pair.base_helix_angle_rad.cos();
-        let reach = Reach { lowest_pair: i32::MIN, corner_gap_m: 0.0, least_part_m: 0.0 };
+        let reach = PairRange { lowest_pair: i32::MIN, corner_gap_m: 0.0, least_part_m: 0.0 };
         let mut points = Vec::new();
         for i in 0..16 {
             let phase = (f64::from(i) + 0.5) / 16.0;
@@ -186,7 +186,7 @@ fn a_constant_foundation_gives_the_length_of_the_lines_and_relief_unloads_it() {
             let local = Foundation(points.iter().map(|p| STIFFNESS * p.width_m).collect());
             let stencils = vec![Stencil { first: 0, weights: [0.25; 4] }; points.len()];
             let lines: Vec<_> = std::iter::once(0..points.len()).collect();
-            let system = System {
+            let system = ContactSystem {
                 gaps: &gaps,
                 stencils: &stencils,
                 stations: 4,

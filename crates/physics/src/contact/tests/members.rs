@@ -1,5 +1,5 @@
-//! Members of different material and width: equal ones change nothing, unlike ones agree with the finite elements, which share no
-//! code with the analytic compliance, and with what elasticity says.
+//! Members of different material and width: equal ones change nothing, unlike ones agree with the finite elements,
+//! which share no code with the analytic compliance, and with what elasticity says.
 
 use super::{pair, spec};
 use crate::compliance::{Compliance, Settings};
@@ -43,7 +43,7 @@ fn own_values_equal_to_the_pairs_change_not_a_bit() {
     let named = with(|spec| {
         own(&mut spec.pinion);
         own(&mut spec.gear);
-        // What nobody takes.
+        // A material that neither member has.
         spec.material = PLASTIC;
     });
     let plain = with(|_| {});
@@ -61,13 +61,14 @@ fn materials_belong_to_their_members() {
     let (mixed, steel) = (key(&steel_and(PLASTIC)), key(&with(|_| {})));
     assert_eq!(mixed[0], steel[0]);
     assert_ne!(mixed[1], steel[1]);
-    // The softer, the softer; and one of two soft members gives less than two.
+    // The softer, the softer; and one soft member is stiffer than two.
     let mean = |pair: &Pair| analytic(pair, 800.0).stiffness.mean;
     let both = mean(&with(|spec| spec.material = PLASTIC));
     let pinion = mean(&with(|spec| spec.pinion.material = Some(PLASTIC)));
     let order = [mean(&with(|_| {})), mean(&steel_and(BRONZE)), mean(&steel_and(PLASTIC)), both];
     assert!(order.windows(2).all(|two| two[0] > two[1]) && pinion > both, "{order:?} {pinion}");
-    // Linear elasticity and Hertz alike know E only as load over E: both moduli and the load scaled, the same displacements.
+    // Linear elasticity and Hertz alike know E only as load over E: both moduli and the load scaled, the same
+    // displacements.
     let scaled = |factor: f64| {
         let by = |m: Material| Material { youngs_modulus_pa: m.youngs_modulus_pa * factor, ..m };
         let pair =
@@ -93,7 +94,7 @@ fn unlike_members_agree_with_the_finite_elements() {
     }
 }
 
-/// Ends that stand out support the loaded ones: stiffer, by less and less the further they stand out.
+/// Ends beyond the common width support the loaded ones: stiffer, by less and less the longer they are.
 #[test]
 fn a_wider_member_is_stiffer() {
     let mean = |extra_m: f64, solve: fn(&Pair, f64) -> HalfCycle| {

@@ -1,4 +1,4 @@
-//! Tests of the whole room on real pairs.
+//! Tests of the whole module on real pairs.
 
 mod coast;
 mod fidelities;

@@ -26,8 +26,8 @@ fn normal_force_n(pair: &Pair, force_n: f64) -> f64 {
     HalfContact::new(pair, Half::Left, &compliance, &settings).at(0.3, force_n).unwrap().forces_n.iter().sum()
 }
 
-/// RIKOR test 001 (FVA 30): forces of one helix under 8962.5 N m. Pressure angle and helix are inferred from them; the profile shift, not
-/// stated, does not enter the forces.
+/// RIKOR test 001 (FVA 30): forces of one helix under 8962.5 N m. Pressure angle and helix are inferred from them; the
+/// profile shift, not stated, does not enter the forces.
 #[test]
 fn rikor_001_forces() {
     let topic = "Contact: RIKOR 001, forces";
@@ -61,9 +61,9 @@ fn fzg_loads() {
     check(topic, "H501 at 100 N m, sum of the normal forces, N", normal, 3040.5, Absolute(0.05));
 }
 
-/// ROSS, spur pair z 62/62, m 2 mm, b 20 mm, bores 35 mm: stiffness at the start of contact by another law (potential energy method), which
-/// knows no load; here under 100 N/mm. The tolerance is the difference between the laws as it was found, for both ways of holding the
-/// bodies; see docs/VALIDATION.md.
+/// ROSS, spur pair z 62/62, m 2 mm, b 20 mm, bores 35 mm: stiffness at the start of contact by another law (potential
+/// energy method), which has no load; here under 100 N/mm. The tolerance is the difference between the laws as it was
+/// found, for both ways of holding the bodies; see docs/VALIDATION.md.
 #[test]
 fn ross_spur_pair_lies_between_rim_and_bore() {
     let topic = "Contact: ROSS spur pair, another law";

@@ -35,8 +35,8 @@ fn variant(name: &str) -> Pair {
     pair(&spec)
 }
 
-/// Bounds of the relative errors of stiffness and mean transmission error, of the first harmonic and the swing of the transmission error
-/// (with tip relief), and of the load shares (of a half-loaded face).
+/// Bounds of the relative errors of stiffness and mean transmission error, of the first harmonic and the swing of the
+/// transmission error (with tip relief), and of the load shares (of a half-loaded face).
 struct Bounds {
     mean: f64,
     harmonic: [f64; 2],
@@ -98,7 +98,8 @@ fn the_analytic_model_stays_within_its_stated_deviation() {
     compare("Contact: loaded pair 29/67 against finite elements", &bounds, &Compliance::analytic);
 }
 
-/// Coarse elements, so that the test is short; `examples/contact_validation.rs standard` prints the errors of the default ones.
+/// Coarse elements, so that the test is short; `examples/contact_validation.rs standard` prints the errors of the
+/// default ones.
 #[test]
 fn the_finite_elements_stay_within_their_stated_deviation() {
     let bounds = Bounds { mean: 0.012, harmonic: [0.05, 0.08], swing: [0.08, 0.1], share: [0.01, 0.02] };

@@ -1,13 +1,13 @@
-//! What holds for every gear.
+//! Properties that hold for every gear.
 
 use std::sync::Mutex;
 
 use crate::fe::condense::factor_partly;
-use crate::fe::{FeError, FlankFlexibility, FlankInput, Resolution, Side};
-use crate::gear::{Pair, fixtures};
+use crate::fe::{FeError, FlankFlexibility, FlankInput, Resolution};
+use crate::gear::{MemberId, Pair, fixtures};
 use crate::watch::{Canceled, Watch};
 
-fn small(teeth: u32, beta_deg: f64, side: Side, offsets: usize) -> FlankInput {
+fn small(teeth: u32, beta_deg: f64, side: MemberId, offsets: usize) -> FlankInput {
     let gear = fixtures::gear(teeth, 0.3);
     let (pair, _) = Pair::new(&fixtures::spec(3.0, 20.0, beta_deg, 24.0, gear, gear)).unwrap();
     let hold = pair.pinion.root_radius_m - 6e-3;
@@ -20,7 +20,7 @@ fn solved(input: &FlankInput) -> FlankFlexibility {
 
 #[test]
 fn influence_is_symmetric_and_positive() {
-    let flank = solved(&small(20, 20.0, Side::Pinion, 0));
+    let flank = solved(&small(20, 20.0, MemberId::Pinion, 0));
     let n = flank.nodes();
     let mut total = faer::Mat::<f64>::from_fn(n, n, |i, j| flank.total(0, i, j).unwrap());
     let largest = (0..n).map(|i| total[(i, i)]).fold(0.0, f64::max);
@@ -36,7 +36,7 @@ fn influence_is_symmetric_and_positive() {
 #[test]
 fn one_way_round_is_the_other_way_transposed() {
     let teeth = 12;
-    let flank = solved(&small(teeth, 15.0, Side::Pinion, teeth as usize - 1));
+    let flank = solved(&small(teeth, 15.0, MemberId::Pinion, teeth as usize - 1));
     let n = flank.nodes();
     for m in 1..teeth as usize {
         let (ahead, behind) = (flank.bulk(m).unwrap(), flank.bulk(teeth as usize - m).unwrap());
@@ -52,7 +52,7 @@ fn one_way_round_is_the_other_way_transposed() {
 /// The two members of a 1:1 pair are mirror images: same teeth, opposite hand, the gear's flank seen from behind.
 #[test]
 fn equal_members_are_equal() {
-    let (pinion, gear) = (solved(&small(16, 25.0, Side::Pinion, 1)), solved(&small(16, 25.0, Side::Gear, 1)));
+    let (pinion, gear) = (solved(&small(16, 25.0, MemberId::Pinion, 1)), solved(&small(16, 25.0, MemberId::Gear, 1)));
     let n = pinion.nodes();
     let stations = pinion.stations_m().len();
     let mirrored = |k: usize| k - k % stations + stations - 1 - k % stations;
@@ -70,7 +70,7 @@ fn equal_members_are_equal() {
 
 #[test]
 fn bytes_come_back_and_damage_is_noticed() {
-    let flank = solved(&small(18, 0.0, Side::Gear, 1));
+    let flank = solved(&small(18, 0.0, MemberId::Gear, 1));
     let bytes = flank.to_bytes();
     assert_eq!(FlankFlexibility::from_bytes(&bytes).as_ref(), Ok(&flank));
     for at in [0, 4, 8, 12, 16, 40, bytes.len() / 2, bytes.len() - 1] {
@@ -85,7 +85,7 @@ fn bytes_come_back_and_damage_is_noticed() {
 
 #[test]
 fn results_do_not_depend_on_the_threads() {
-    let input = small(30, 20.0, Side::Pinion, 2);
+    let input = small(30, 20.0, MemberId::Pinion, 2);
     let single = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let several = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
     assert_eq!(single.install(|| solved(&input)), several.install(|| solved(&input)));
@@ -95,7 +95,7 @@ fn results_do_not_depend_on_the_threads() {
 fn progress_is_reported_and_canceling_ends_the_work() {
     let seen = Mutex::new(Vec::new());
     let progress = |fraction: f64| seen.lock().unwrap().push(fraction);
-    let input = small(16, 10.0, Side::Pinion, 1);
+    let input = small(16, 10.0, MemberId::Pinion, 1);
     assert!(FlankFlexibility::new(&input, Watch::new(&progress, &|| false)).is_ok());
     let seen = seen.into_inner().unwrap();
     assert!(seen.len() > 20 && seen.iter().all(|f| (0.0..=1.0).contains(f)));
@@ -118,7 +118,7 @@ fn a_finer_mesh_changes_little() {
         let gear = fixtures::gear(20, 0.0);
         let (pair, _) = Pair::new(&fixtures::spec(3.0, 20.0, 20.0, 24.0, gear, gear)).unwrap();
         let hold = pair.pinion.root_radius_m - 9e-3;
-        let flank = solved(&FlankInput::new(&pair, Side::Pinion, hold, 1, resolution));
+        let flank = solved(&FlankInput::new(&pair, MemberId::Pinion, hold, 1, resolution));
         let n = flank.nodes();
         let stations = flank.stations_m();
         let last = stations.len() - 1;

@@ -1,4 +1,4 @@
-//! Tests of the whole room; `examples/fe_validation.rs` has the long ones.
+//! Tests of the whole module; `tools/src/bin/fe_validation.rs` has the long ones.
 
 mod invariants;
 mod plane_strain;

@@ -2,13 +2,13 @@
 
 use crate::fe::Resolution;
 use crate::fe::cyclic::expand;
-use crate::fe::loads::Grid;
-use crate::fe::operator::Body;
-use crate::fe::section::Section;
+use crate::fe::loads::LoadGrid;
+use crate::fe::operator::ElasticBody;
+use crate::fe::section::SectionMesh;
 use crate::fe::sector::Sector;
 use crate::fe::sizes::Sizes;
 use crate::fe::spline::SplineSpace;
-use crate::fe::surface::Involute;
+use crate::fe::surface::InvoluteFlank;
 use crate::gear::{Pair, fixtures};
 use crate::watch::Watch;
 use herringbone_oracle::{Tolerance, check};
@@ -19,15 +19,15 @@ fn neighbour(teeth: u32, rim: f64, load_radius: f64, response_radius: f64) -> f6
     let (pair, _) = Pair::new(&fixtures::spec(1.0, 20.0, 0.0, 10.0, gear, gear)).unwrap();
     let member = &pair.pinion;
     let sizes = Sizes::new(Resolution::Medium);
-    let involute = Involute::new(member).unwrap();
+    let involute = InvoluteFlank::new(member).unwrap();
     let width = 10e-3;
-    let grid = Grid {
+    let grid = LoadGrid {
         profile_m: (0..=10).map(|i| involute.length_m * f64::from(i) / 10.0).collect(),
         stations_m: vec![0.0, width],
     };
     let hold = member.root_radius_m / rim;
-    let section = Section::new(member, &involute, 1e-3, hold, &grid.profile_m, &sizes.section).unwrap();
-    let body = Body { section: &section, youngs_pa: 206e9, nu: 0.3, twist_per_m: 0.0 };
+    let section = SectionMesh::new(member, &involute, 1e-3, hold, &grid.profile_m, &sizes.section).unwrap();
+    let body = ElasticBody { section: &section, youngs_pa: 206e9, nu: 0.3, twist_per_m: 0.0 };
     let levels = vec![0; section.nodes.len()];
     let sector = Sector::new(&body, vec![SplineSpace::constant(width)], levels, &[0.0, width], &involute, &grid);
     let condensed = sector.condense(Watch::none(), (0.0, 0.0)).unwrap();
@@ -49,10 +49,10 @@ fn neighbour(teeth: u32, rim: f64, load_radius: f64, response_radius: f64) -> f6
     sum * body.youngs_pa * width
 }
 
-/// Independent six-node plane-strain elements of the whole gear, rim held at root radius / 1.4 or / 2, response of the next
-/// tooth one base pitch away at the tooth's centreline on the load line; where that program gave both answers (load on
-/// either tooth, equal by Maxwell) they differ by up to 1 %. `meshing`: the tooth on the side of the loaded flank answers
-/// further out, as in a real mesh; `crossed`: further in.
+/// Independent six-node plane-strain elements of the whole gear, rim held at root radius / 1.4 or / 2, response of the
+/// next tooth one base pitch away at the tooth's centreline on the load line; where that program gave both
+/// displacements (load on either tooth, equal by Maxwell) they differ by up to 1 %. `meshing`: the tooth on the side of
+/// the loaded flank is displaced further out, as in a real mesh; `crossed`: further in.
 #[test]
 fn neighbour_of_a_spur_tooth() {
     let topic = "Elements: plane strain, neighbouring teeth";

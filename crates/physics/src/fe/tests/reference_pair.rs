@@ -1,11 +1,11 @@
 //! Both members of the z 29/67 pair, held at their bores, against an independent finite-element program with 20-node
-//! hexahedra (tests/data/fe_tooth_29_67.json, whose stated uncertainty is 0.3 % inside, 1 to 1.5 % on borders, 0.5 % for
-//! the neighbours). The resolution is `Medium`: its own error at a loaded point is up to 2 %.
+//! hexahedra (tests/data/fe_tooth_29_67.json, whose stated uncertainty is 0.3 % inside, 1 to 1.5 % on borders, 0.5 %
+//! for the neighbours). The resolution is `Medium`: its own error at a loaded point is up to 2 %.
 
 use serde_json::Value;
 
-use crate::fe::{FlankFlexibility, FlankInput, Resolution, Side};
-use crate::gear::{Pair, fixtures};
+use crate::fe::{FlankFlexibility, FlankInput, Resolution};
+use crate::gear::{MemberId, Pair, fixtures};
 use crate::watch::Watch;
 use herringbone_oracle::check_worst;
 
@@ -28,7 +28,7 @@ fn face_means(stations: &[f64], profile: usize, value: impl Fn(usize, usize) -> 
     (0..profile).map(|a| (0..profile).map(|b| mean(a, b)).collect()).collect()
 }
 
-fn member(name: &str, side: Side, hold_radius_m: f64) {
+fn member(name: &str, side: MemberId, hold_radius_m: f64) {
     let reference: Value = serde_json::from_str(include_str!("../../../../../tests/data/fe_tooth_29_67.json")).unwrap();
     let reference = &reference[name];
     let (pinion, gear) = (fixtures::gear(29, 0.0), fixtures::gear(67, 0.0));
@@ -43,8 +43,8 @@ fn member(name: &str, side: Side, hold_radius_m: f64) {
     let total = |offset: usize, a: usize, b: usize| 1e6 * flank.total(offset, a, b).unwrap();
     // The reference's next tooth lies on the side of the loaded flank: ahead on the pinion, behind on the gear.
     let neighbour = |offset: usize, a: usize, b: usize| match side {
-        Side::Pinion => total(offset, a, b),
-        Side::Gear => total(offset, b, a),
+        MemberId::Pinion => total(offset, a, b),
+        MemberId::Gear => total(offset, b, a),
     };
     let points: Vec<[usize; 2]> = reference["points"]
         .as_array()
@@ -94,10 +94,10 @@ fn member(name: &str, side: Side, hold_radius_m: f64) {
 
 #[test]
 fn pinion() {
-    member("pinion", Side::Pinion, 25e-3);
+    member("pinion", MemberId::Pinion, 25e-3);
 }
 
 #[test]
 fn gear() {
-    member("gear", Side::Gear, 60e-3);
+    member("gear", MemberId::Gear, 60e-3);
 }

@@ -1,10 +1,10 @@
 //! Every feasible tooth can be meshed.
 
-use crate::fe::section::Section;
+use crate::fe::section::SectionMesh;
 use crate::fe::sizes::Sizes;
-use crate::fe::surface::Involute;
-use crate::fe::{FeError, FlankFlexibility, FlankInput, Resolution, Side};
-use crate::gear::{GearSpec, Pair, fixtures};
+use crate::fe::surface::InvoluteFlank;
+use crate::fe::{FeError, FlankFlexibility, FlankInput, Resolution};
+use crate::gear::{GearSpec, MemberId, Pair, fixtures};
 use crate::watch::Watch;
 
 #[test]
@@ -32,13 +32,13 @@ fn every_feasible_form_is_meshed() {
                         undercut += usize::from(pair.pinion.is_undercut());
                         let member = &pair.pinion;
                         let root = member.root_radius_m;
-                        let involute = Involute::new(member).unwrap();
+                        let involute = InvoluteFlank::new(member).unwrap();
                         for resolution in [Resolution::Coarse, Resolution::Fine] {
                             for hold in [root - 0.5e-3 * 4.0, 0.3 * root] {
                                 let profile: Vec<f64> =
                                     (0..=10).map(|i| involute.length_m * f64::from(i) / 10.0).collect();
                                 let sizes = Sizes::new(resolution).section;
-                                if let Err(error) = Section::new(member, &involute, 4e-3, hold, &profile, &sizes) {
+                                if let Err(error) = SectionMesh::new(member, &involute, 4e-3, hold, &profile, &sizes) {
                                     failed.push((teeth, shift, beta, alpha, addendum, fillet, resolution, error));
                                 }
                             }
@@ -59,9 +59,11 @@ fn extreme_gears_are_solved() {
         let spec = fixtures::spec(2.0, 20.0, beta, 2.0 * width, fixtures::gear(teeth, 0.4), fixtures::gear(60, 0.0));
         let (pair, _) = Pair::new(&spec).unwrap();
         let hold = pair.pinion.root_radius_m - rim * 2e-3;
-        let flank =
-            FlankFlexibility::new(&FlankInput::new(&pair, Side::Pinion, hold, 1, Resolution::Coarse), Watch::none())
-                .unwrap();
+        let flank = FlankFlexibility::new(
+            &FlankInput::new(&pair, MemberId::Pinion, hold, 1, Resolution::Coarse),
+            Watch::none(),
+        )
+        .unwrap();
         let n = flank.nodes();
         let bulk = flank.bulk(0).unwrap();
         assert!(bulk.iter().all(|v| v.is_finite()));
@@ -77,7 +79,7 @@ fn a_body_without_rim_is_refused() {
     let gear = fixtures::gear(20, 0.0);
     let (pair, _) = Pair::new(&fixtures::spec(3.0, 20.0, 20.0, 24.0, gear, gear)).unwrap();
     for hold in [0.0, -1.0, f64::NAN, pair.pinion.root_radius_m, 1.0] {
-        let input = FlankInput::new(&pair, Side::Pinion, hold, 0, Resolution::Coarse);
+        let input = FlankInput::new(&pair, MemberId::Pinion, hold, 0, Resolution::Coarse);
         assert!(matches!(FlankFlexibility::new(&input, Watch::none()), Err(FeError::NoRim { .. })), "{hold}");
     }
 }

@@ -1,7 +1,9 @@
 //! The coast flanks: the mirrored pair against the drawing, against rigid displacements and against itself.
 
 use crate::gear::fixtures::{close, gear, pair, source_pair, spec, worked_pair};
-use crate::gear::{Assembly, EndRelief, FlankModification, GearSpec, Half, Pair, PairSpec, Rotation};
+use crate::gear::{
+    Assembly, EndRelief, FlankModification, GearField, GearSpec, Half, MemberId, Pair, PairSpec, Rotation, SpecField,
+};
 
 fn pairs() -> Vec<Pair> {
     let shifted = spec(4.0, 20.0, 28.0, 30.0, gear(13, 0.4), gear(120, -0.2));
@@ -16,8 +18,9 @@ fn off(angle: f64, period: f64) -> f64 {
     (angle + 0.5 * period).rem_euclid(period) - 0.5 * period
 }
 
-/// The drawing knows the tooth's two flanks from its outline alone. Where the coast pair's line of action is drawn, mirrored on the
-/// line of centres, the other flank of the same tooth of the same pinion passes through its point of contact.
+/// The drawing has the tooth's two flanks from its outline alone. Where the coast pair's line of action is drawn,
+/// mirrored on the line of centres, the other flank of the same tooth of the same pinion passes through its point of
+/// contact.
 #[test]
 fn the_other_flank_of_the_drawn_tooth_stands_where_the_coast_phase_says() {
     for pair in pairs() {
@@ -90,8 +93,8 @@ fn misalignment_opens_both_flanks_as_the_rigid_tilt_does() {
         let drive = pair(&PairSpec { assembly, ..base });
         let coast = drive.coast();
         let (sin, cos) = drive.working_pressure_angle_rad.sin_cos();
-        // In the section as drawn, the gear above: along the drive flanks' line of action, across it (towards the gear), and along the coast
-        // flanks', at the left half's outer end against its inner end.
+        // In the section as drawn, the gear above: along the drive flanks' line of action, across it (towards the
+        // gear), and along the coast flanks', at the left half's outer end against its inner end.
         let along = [cos, sin];
         let across = [-sin, cos];
         let moved = [-f * along[0] - e * across[0], -f * along[1] - e * across[1]];
@@ -112,7 +115,7 @@ fn misalignment_opens_both_flanks_as_the_rigid_tilt_does() {
     assert_eq!(gap(&drive.coast(), Half::Left), 0.0);
 }
 
-/// A wider gear has its modifications over its own face: the common part, in the middle, sees the middle of them.
+/// A wider gear has its modifications over its own face: the common part, in the middle, has the middle of them.
 #[test]
 fn modifications_of_a_wider_member_run_over_its_own_face() {
     let crowned = FlankModification {
@@ -152,7 +155,8 @@ fn widths_that_do_not_fit_are_refused_with_their_field() {
             Ok(_) => assert!(fits, "{width_m}"),
             Err(reasons) => {
                 assert!(!fits, "{width_m} {reasons:?}");
-                assert!(reasons.iter().all(|reason| reason.pointer == "/design/gear/face_width_mm"), "{reasons:?}");
+                let field = SpecField::Member(MemberId::Gear, GearField::FaceWidth);
+                assert!(reasons.iter().all(|reason| reason.field == field), "{reasons:?}");
             }
         }
     }

@@ -127,8 +127,8 @@ fn no_flank_beyond_the_mates_tip() {
     assert_eq!(p.mesh_in_corner_gap_m(0.5 * p.gear.base_radius_m), None);
 }
 
-/// Where undercut shortens the path, contact before it starts with the edge of the pinion's involute: the gap starts at zero,
-/// grows without a step when the gear's tip takes over, and closes with the speed the arms give.
+/// Where undercut shortens the path, contact before it starts with the edge of the pinion's involute: the gap starts at
+/// zero, grows without a step when the gear's tip takes over, and closes with the speed the arms give.
 #[test]
 fn undercut_edge_takes_the_tips_place() {
     let mut s = undercut_pair();

@@ -1,7 +1,7 @@
 //! The drawing: outlines on the true flanks, teeth that touch where they should and overlap nowhere.
 
 use crate::gear::fixtures::{close, gear, pair, source_pair, spec, undercut_pair, worked_pair};
-use crate::gear::{Member, Pair, PairSpec};
+use crate::gear::{Margin, MarginKind, Member, MemberId, Pair, PairSpec};
 
 fn pairs() -> Vec<Pair> {
     let shifted = spec(4.0, 20.0, 28.0, 30.0, gear(13, 0.4), gear(120, -0.2));
@@ -99,7 +99,7 @@ fn no_point_of_one_gears_outline_lies_inside_the_other() {
         for i in 0..20 {
             let x = pair.path_start_m + pair.base_pitch_m * f64::from(i) / 20.0;
             let [pinion_rad, gear_rad] = pair.tooth_angles_rad(x);
-            // Negative play would show on the back flanks; these pairs have none.
+            // Negative backlash would show on the back flanks; these pairs have none.
             assert!(pair.geometric_backlash_m >= -1e-12);
             for k in -4..=4 {
                 for point in pair.pinion.outline_m() {
@@ -161,12 +161,13 @@ fn margins_are_of_both_members_and_hold_for_a_sound_pair() {
     let p = pair(&worked_pair());
     let margins = p.margins();
     assert_eq!(margins.len(), 8);
-    let of = |code: &str, member: &str| margins.iter().find(|m| m.code == code && m.member == member).unwrap().clone();
-    let thickness = of("tip-thickness", "pinion");
+    let of = |kind, member| *margins.iter().find(|m| m.kind == kind && m.member == member).unwrap();
+    let thickness = of(MarginKind::TipThickness, MemberId::Pinion);
     assert!(thickness.value > thickness.limit, "{thickness:?}");
-    close(of("tip-clearance", "gear").value, 0.25, 1e-9);
-    let active = of("active-profile", "gear");
+    close(of(MarginKind::TipClearance, MemberId::Gear).value, 0.25, 1e-9);
+    let active = of(MarginKind::ActiveProfileRadius, MemberId::Gear);
     assert!(active.value > active.limit, "{active:?}");
     let undercut = pair(&undercut_pair()).margins();
-    assert!(undercut.iter().any(|m| m.code == "profile-shift" && m.member == "pinion" && m.value < m.limit));
+    let of_shift = |m: &&Margin| m.kind == MarginKind::ProfileShift && m.member == MemberId::Pinion;
+    assert!(undercut.iter().find(of_shift).is_some_and(|m| m.value < m.limit));
 }

@@ -5,8 +5,8 @@ use crate::gear::{GearSpec, PairSpec};
 use herringbone_oracle::Tolerance::Absolute;
 use herringbone_oracle::check;
 
-/// ISO/TR 6336-30, annex A, example 1 (the standard states x1 = 0.14522; the reference contact ratio was calculated with
-/// x1 = 0.145, which moves the pinion's tip by 2 um).
+/// ISO/TR 6336-30, annex A, example 1 (the standard states x1 = 0.14522; the reference contact ratio was calculated
+/// with x1 = 0.145, which moves the pinion's tip by 2 um).
 #[test]
 fn iso_tr_6336_30_example_1() {
     let rack = |teeth, x| GearSpec { dedendum: 1.4, fillet_radius: 0.39, ..gear(teeth, x) };

@@ -7,8 +7,8 @@ use herringbone_oracle::{check, check_worst};
 
 const FORM: &str = "Geometry: tooth form";
 
-/// Half angle of the space at radius `r_m` left by the rack, from its profile alone: the rack rolls, and every point of the
-/// tooth circle is tested against it. The space reaches as far as the rack ever reached.
+/// Half angle of the space at radius `r_m` left by the rack, from its profile alone: the rack rolls, and every point of
+/// the tooth circle is tested against it. The space reaches as far as the rack ever reached.
 fn envelope_half_angle(spec: &PairSpec, side: &GearSpec, r_m: f64) -> f64 {
     let m = spec.normal_module_m;
     let cos_beta = spec.helix_angle_rad.cos();

@@ -1,4 +1,4 @@
-//! A coloured map as an image inside an SVG: a PNG with a palette, stored without compression, in base64.
+//! A coloured map as an image inside an SVG: a PNG, stored without compression, in base64.
 
 /// Viridis at ten steps (van der Walt and Smith), from least to most.
 const VIRIDIS: [[u8; 3]; 11] = [
@@ -101,4 +101,22 @@ fn base64(data: &[u8]) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// RFC 4648, section 10.
+    #[test]
+    fn base64_of_the_standards_examples() {
+        assert_eq!([&b""[..], b"f", b"fo", b"foo", b"foob"].map(base64), ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg=="]);
+    }
+
+    /// CRC-32's check value, and the trailer of every zlib stream of "abc" (RFC 1950's Adler-32).
+    #[test]
+    fn sums_of_known_data() {
+        assert_eq!(crc(b"123456789"), 0xcbf4_3926);
+        assert_eq!(stored(b"abc")[10..], 0x024d_0127_u32.to_be_bytes());
+    }
 }

@@ -1,22 +1,30 @@
-//! The release program beside this one, as a process.
+//! The release program beside this one, as a process on loopback.
 
-use crate::connection::Connection;
-use std::error::Error;
+mod connection;
+
+pub use connection::Connection;
+
+use crate::Failure;
 use std::io::{BufRead, BufReader};
 use std::net::SocketAddr;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
+/// A running service; it is killed when dropped.
+#[derive(Debug)]
 pub struct Service {
     process: Child,
+    /// Where it listens.
     pub address: SocketAddr,
 }
 
 impl Service {
-    pub fn start(database: &Path, options: &[&str]) -> Result<Self, Box<dyn Error>> {
-        // …/release/examples/load and …/release/herringbone
-        let here = std::env::current_exe()?;
-        let program = here.ancestors().nth(2).ok_or("no directory")?.join("herringbone");
+    /// Starts `herringbone serve` on a free port, with a database file and further options.
+    ///
+    /// # Errors
+    /// If the program does not stand beside this one, or does not say where it listens.
+    pub fn start(database: &Path, options: &[&str]) -> Result<Self, Failure> {
+        let program = std::env::current_exe()?.with_file_name("herringbone");
         let mut process = Command::new(program)
             .args(["serve", "--listen", "127.0.0.1:0", "--log", "error", "--database"])
             .arg(database)
@@ -29,6 +37,10 @@ impl Service {
         Ok(Self { process, address })
     }
 
+    /// A new connection.
+    ///
+    /// # Errors
+    /// If it cannot be opened.
     pub fn connect(&self) -> std::io::Result<Connection> {
         Connection::to(self.address)
     }

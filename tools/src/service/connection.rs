@@ -1,16 +1,22 @@
-//! One connection that is kept, with one request at a time.
+//! A persistent HTTP/1.1 connection with one request at a time.
 
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Error, ErrorKind, Read, Result, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;
 
+/// A persistent connection.
+#[derive(Debug)]
 pub struct Connection {
     stream: BufReader<TcpStream>,
     address: SocketAddr,
 }
 
 impl Connection {
+    /// Opens a connection; an answer that takes longer than a minute is an error.
+    ///
+    /// # Errors
+    /// If it cannot be opened.
     pub fn to(address: SocketAddr) -> Result<Self> {
         let stream = TcpStream::connect(address)?;
         stream.set_nodelay(true)?;
@@ -18,7 +24,10 @@ impl Connection {
         Ok(Self { stream: BufReader::with_capacity(1 << 16, stream), address })
     }
 
-    /// Status and body.
+    /// Sends a request; status and body of its answer.
+    ///
+    /// # Errors
+    /// If the connection or the answer breaks off.
     pub fn send(&mut self, method: &str, path: &str, accept: &str, body: &str) -> Result<(u16, Vec<u8>)> {
         let length = body.len();
         let request = format!(
@@ -56,18 +65,28 @@ impl Connection {
         }
     }
 
+    /// Sends a request; the JSON of its answer, whatever its status.
+    ///
+    /// # Errors
+    /// If the connection breaks off or the answer is not JSON.
     pub fn json(&mut self, method: &str, path: &str, body: &str) -> Result<Value> {
         let (_, body) = self.send(method, path, "application/json", body)?;
         serde_json::from_slice(&body).map_err(Error::other)
     }
 
-    /// Submits a job; its path.
+    /// Submits a job document; the path of the job.
+    ///
+    /// # Errors
+    /// The answer, where it is not a job.
     pub fn submit(&mut self, document: &Value) -> Result<String> {
         let job = self.json("POST", "/api/v1/jobs", &document.to_string())?;
         job["links"]["self"].as_str().map(str::to_owned).ok_or_else(|| Error::other(job.to_string()))
     }
 
-    /// Asks until the job is as wanted.
+    /// Reads a job again and again, with a pause between, until it meets a condition.
+    ///
+    /// # Errors
+    /// As [`Connection::json`].
     pub fn until(&mut self, path: &str, pause: Duration, enough: impl Fn(&Value) -> bool) -> Result<Value> {
         loop {
             let job = self.json("GET", path, "")?;

@@ -1,15 +1,16 @@
-//! One member as the contact sees it: its tooth, its ring, and where they are held.
+//! Compliance of one member: its tooth and its ring, held at rim or bore.
 
 use serde::{Deserialize, Serialize};
 
-use super::body::{Ring, WidthBasis};
-use super::bulk::{BulkCompliance, NODES, Parts};
+use super::bulk::{BulkCompliance, BulkInput, NODES};
 use super::edge::EndFaces;
+use super::ring::{Ring, WidthBasis};
 use super::ring_influence::{RingFlexibility, ToothLayout, ring_weight};
-use super::tooth::{Place, RootRemainder, Tooth, ToothForm, compression, plate};
+use super::tooth::{ProfilePoint, RootRemainder, Tooth, ToothProfile, compression, plate};
 use crate::gear::{Member, Pair};
 
-/// Where the gear bodies are held (all displacements zero on a cylinder over the face width, end faces free).
+/// Surface on which the gear bodies are held (all displacements zero on a cylinder over the face width, end faces
+/// free).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BodyHold {
@@ -45,18 +46,18 @@ fn width_order(width_modules: f64) -> usize {
 
 /// Compliance of one member.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Flank {
+pub(super) struct MemberCompliance {
     tooth: Tooth,
     /// All compliance of tooth and body between slices and places of the profile, contact indentation excepted.
     pub bulk: BulkCompliance,
     side: f64,
-    places_m: [f64; NODES],
+    path_nodes_m: [f64; NODES],
 }
 
-impl Flank {
+impl MemberCompliance {
     /// The pinion (`side` +1) or the gear (`side` -1) of `pair`, for `slices` of the common face width and teeth up to
     /// `offsets` pitches apart. Tooth and ring have the member's own width, with the common one in their middle.
-    pub fn new(pair: &Pair, side: f64, hold: BodyHold, slices: usize, offsets: usize) -> Flank {
+    pub(super) fn new(pair: &Pair, side: f64, hold: BodyHold, slices: usize, offsets: usize) -> MemberCompliance {
         let member = if side > 0.0 { &pair.pinion } else { &pair.gear };
         let rolls = if side > 0.0 {
             (pair.path_start_m, pair.path_end_m)
@@ -66,7 +67,7 @@ impl Flank {
         let module = pair.spec.normal_module_m;
         let material = &member.material;
         let twist = pair.base_helix_angle_rad.tan() / member.base_radius_m;
-        let form = ToothForm {
+        let form = ToothProfile {
             base_radius_m: member.base_radius_m,
             root_radius_m: member.root_radius_m,
             tip_radius_m: member.tip_radius_m,
@@ -95,15 +96,15 @@ impl Flank {
             side,
         };
         // Chebyshev nodes of the path.
-        let places_m: [f64; NODES] = std::array::from_fn(|i| {
+        let path_nodes_m: [f64; NODES] = std::array::from_fn(|i| {
             let angle = std::f64::consts::PI * (2 * i + 1) as f64 / (2 * NODES) as f64;
             0.5 * (rolls.0 + rolls.1) - 0.5 * (rolls.1 - rolls.0) * angle.cos()
         });
-        let places = places_m.map(|roll| tooth.at(roll, side));
+        let places = path_nodes_m.map(|roll| tooth.at(roll, side));
         let basis = WidthBasis::new(width_order(member.face_width_m / module), member.face_width_m);
-        // What the member is wider than the bearing part, at either end.
+        // Excess width of the member over the bearing part, at either end.
         let margin_m = 0.5 * (member.face_width_m - pair.spec.face_width_m);
-        let bulk = BulkCompliance::new(&Parts {
+        let bulk = BulkCompliance::new(&BulkInput {
             plate: &plate(&form, nu, &basis),
             root: &RootRemainder::new(&form, nu, &|wave| 1.0 - ring_weight(wave, module)),
             ring: &RingFlexibility::new(&ring, &basis, &layout, offsets),
@@ -117,25 +118,25 @@ impl Flank {
             slices,
             bearing_m: (margin_m, pair.spec.face_width_m),
         });
-        Flank { tooth, bulk, side, places_m }
+        MemberCompliance { tooth, bulk, side, path_nodes_m }
     }
 
     /// Rolls between which the flexibility is interpolated.
-    pub fn places_m(&self) -> &[f64] {
-        &self.places_m
+    pub(super) fn path_nodes_m(&self) -> &[f64] {
+        &self.path_nodes_m
     }
 
     /// Interpolation weights of the bulk compliance at roll length `roll_m`.
     #[cfg(test)]
-    pub fn weights(&self, roll_m: f64) -> [f64; NODES] {
-        let places = &self.places_m;
+    pub(super) fn weights(&self, roll_m: f64) -> [f64; NODES] {
+        let places = &self.path_nodes_m;
         std::array::from_fn(|a| {
             (0..NODES).filter(|&b| b != a).map(|b| (roll_m - places[b]) / (places[a] - places[b])).product()
         })
     }
 
     /// The tooth at roll length `roll_m` of this member.
-    pub fn at(&self, roll_m: f64) -> Place {
+    pub(super) fn at(&self, roll_m: f64) -> ProfilePoint {
         self.tooth.at(roll_m, self.side)
     }
 }

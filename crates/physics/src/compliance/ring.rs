@@ -2,11 +2,10 @@
 //!
 //! A ring from the holding radius (rim or bore, all displacements zero there) to the root circle. Around the
 //! circumference: Fourier harmonics; across the width: Legendre polynomials (free end faces are natural boundary
-//! conditions, so disc bending, coning, in-plane modes and torsion are all contained); along the radius: quadratic finite
-//! elements, eliminated from the inside out until only the root circle remains. With
-//! u_r = U e^{inθ}, u_θ = iV e^{inθ}, u_y = W e^{inθ} each harmonic is real and symmetric, and even and odd powers of the
-//! width separate (U, V even with W odd, and the reverse). A Galerkin flexibility is positive definite and never larger
-//! than the exact one.
+//! conditions, so disc bending, coning, in-plane modes and torsion are all contained); along the radius: quadratic
+//! finite elements, eliminated from the inside out until only the root circle remains. With u_r = U e^{inθ}, u_θ = iV
+//! e^{inθ}, u_y = W e^{inθ} each harmonic is real and symmetric, and even and odd powers of the width separate (U, V
+//! even with W odd, and the reverse). A Galerkin flexibility is positive definite and never larger than the exact one.
 
 use crate::numerics::dense::{add_product, cholesky_inlined, forward_solve_columns};
 use crate::numerics::gauss::{GAUSS_2, GAUSS_3};
@@ -14,13 +13,18 @@ use crate::simd::vectorised;
 
 /// The ring and its material.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ring {
+pub(super) struct Ring {
+    /// Radius of the loaded circle, the root circle.
     pub outer_radius_m: f64,
+    /// Radius of the held circle.
     pub inner_radius_m: f64,
+    /// Width of the ring.
     pub face_width_m: f64,
     /// Length of the outermost radial element; the others grow inwards.
     pub element_m: f64,
+    /// Young's modulus, Pa.
     pub youngs_pa: f64,
+    /// Poisson's ratio.
     pub nu: f64,
 }
 
@@ -29,7 +33,8 @@ const GROWTH: f64 = 1.5;
 
 /// Legendre functions over the face width, orthonormal on [0, b].
 #[derive(Debug, Clone, PartialEq)]
-pub struct WidthBasis {
+pub(super) struct WidthBasis {
+    /// Highest degree.
     pub order: usize,
     width_m: f64,
     /// ∫ P_p P_q' dy and ∫ P_p' P_q' dy.
@@ -39,7 +44,7 @@ pub struct WidthBasis {
 
 impl WidthBasis {
     /// Polynomials of degree 0..=`order` on a face of `width_m`.
-    pub fn new(order: usize, width_m: f64) -> WidthBasis {
+    pub(super) fn new(order: usize, width_m: f64) -> WidthBasis {
         let size = order + 1;
         let mut mixed = vec![0.0; size * size];
         let mut stiff = vec![0.0; size * size];
@@ -58,17 +63,17 @@ impl WidthBasis {
     }
 
     /// ∫ P_p P_q' dy.
-    pub fn mixed(&self, p: usize, q: usize) -> f64 {
+    pub(super) fn mixed(&self, p: usize, q: usize) -> f64 {
         self.mixed[p * (self.order + 1) + q]
     }
 
     /// ∫ P_p' P_q' dy.
-    pub fn stiff(&self, p: usize, q: usize) -> f64 {
+    pub(super) fn stiff(&self, p: usize, q: usize) -> f64 {
         self.stiff[p * (self.order + 1) + q]
     }
 
     /// Values of all polynomials at `y_m`; beyond the ends of the face those of the end.
-    pub fn values(&self, y_m: f64, out: &mut [f64]) {
+    pub(super) fn values(&self, y_m: f64, out: &mut [f64]) {
         let inside = (2.0 * y_m / self.width_m - 1.0).clamp(-1.0, 1.0);
         let (mut before, mut now) = (1.0, inside);
         for (p, value) in out.iter_mut().enumerate() {
@@ -81,9 +86,9 @@ impl WidthBasis {
         }
     }
 
-    /// Mean of every polynomial over `count` equal slices of a part of the face (its start and its width) moved by `shift_m`:
-    /// `count` rows of `order + 1`.
-    pub fn slice_means(&self, count: usize, (from_m, width_m): (f64, f64), shift_m: f64) -> Vec<f64> {
+    /// Mean of every polynomial over `count` equal slices of a part of the face (its start and its width) moved by
+    /// `shift_m`: `count` rows of `order + 1`.
+    pub(super) fn slice_means(&self, count: usize, (from_m, width_m): (f64, f64), shift_m: f64) -> Vec<f64> {
         let size = self.order + 1;
         let step = width_m / count as f64;
         let shift_m = from_m + shift_m;
@@ -106,7 +111,7 @@ impl WidthBasis {
 /// Flexibilities of the outer circle (displacement coefficients per load coefficients) come as two symmetric row-major
 /// blocks: U, V of even degree with W of odd degree, and the reverse.
 #[derive(Debug, Clone)]
-pub struct RingSolver {
+pub(super) struct RingSolver {
     /// (component 0 U, 1 V, 2 W; degree) of every row of a block.
     pub rows: [Vec<(usize, usize)>; 2],
     mesh: Vec<f64>,
@@ -134,7 +139,7 @@ fn radial_mesh(ring: &Ring) -> Vec<f64> {
 
 impl RingSolver {
     /// Prepares `ring` over the functions of `basis`.
-    pub fn new(ring: &Ring, basis: &WidthBasis) -> RingSolver {
+    pub(super) fn new(ring: &Ring, basis: &WidthBasis) -> RingSolver {
         let rows = [0, 1].map(|parity| {
             let degrees = |component: usize| {
                 ((parity + usize::from(component == 2)) % 2..=basis.order).step_by(2).map(move |q| (component, q))
@@ -148,7 +153,7 @@ impl RingSolver {
     }
 
     /// Flexibility of the outer circle at harmonic `n`.
-    pub fn flexibility(&self, n: f64) -> [Vec<f64>; 2] {
+    pub(super) fn flexibility(&self, n: f64) -> [Vec<f64>; 2] {
         let outer = self.mesh[self.mesh.len() - 1];
         // Elements that the harmonic does not reach stay out: the first one in use is held at its inner boundary.
         let first = (0..self.mesh.len() - 1).rev().find(|&e| (self.mesh[e] / outer).powf(n) < NEGLIGIBLE).unwrap_or(0);
@@ -212,15 +217,15 @@ fn condense_inlined(elements: &[[Vec<f64>; 3]], n: f64, size: usize, flexibility
     add_product(flexibility, 1.0, lower, lower, size);
 }
 
-/// Stiffness of one quadratic radial element (nodes: inner, middle, outer) per radian of the harmonic's circumference, by
-/// powers of n.
+/// Stiffness of one quadratic radial element (nodes: inner, middle, outer) per radian of the harmonic's circumference,
+/// by powers of n.
 fn element_stiffness(ring: &Ring, basis: &WidthBasis, rows: &[(usize, usize)], r0: f64, r1: f64) -> [Vec<f64>; 3] {
     let mu = 0.5 * ring.youngs_pa / (1.0 + ring.nu);
     let lame = 2.0 * mu * ring.nu / (1.0 - 2.0 * ring.nu);
     let stiff = lame + 2.0 * mu;
     // Radial integrals for every pair of nodes: products of N', N/r and N.
     #[derive(Clone, Copy, Default)]
-    struct Radial {
+    struct RadialIntegrals {
         dd: f64,
         ds: f64,
         sd: f64,
@@ -231,7 +236,7 @@ fn element_stiffness(ring: &Ring, basis: &WidthBasis, rows: &[(usize, usize)], r
         nd: f64,
         ns: f64,
     }
-    let mut radial = [[Radial::default(); 3]; 3];
+    let mut radial = [[RadialIntegrals::default(); 3]; 3];
     let half = 0.5 * (r1 - r0);
     // The reduced rule of the quadratic element keeps thin discs from locking.
     for (xi, w) in GAUSS_2 {
