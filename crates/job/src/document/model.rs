@@ -1,7 +1,7 @@
 //! Choices of the physical model: mesh stiffness and impact.
 //!
-//! [`MeshStiffness`] and [`ImpactInput`] are enums whose variants share one JSON object. Their members are declared in structs of all
-//! members, from which the variant that `source` names is taken.
+//! [`MeshStiffness`] and [`ImpactInput`] are enums whose variants share one JSON object. Their members are declared in
+//! structs of all members, from which the variant that `source` names is taken.
 
 use crate::field::{Field, Input, Slot, number_slot};
 use crate::path::split_first;

@@ -1,4 +1,5 @@
-//! Reasons and warnings of a gear pair as the service answers them: code, pointer to the field of the document, one sentence.
+//! Reasons and warnings of a gear pair as the service answers them: code, pointer to the field of the document, one
+//! sentence.
 
 use crate::Violation;
 use crate::warning::Warning;

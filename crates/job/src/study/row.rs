@@ -50,7 +50,8 @@ pub fn solve(
     }
 }
 
-/// Solves several points from their own starts, their motions side by side where they are integrated: as [`solve`] does each.
+/// Solves several points from their own starts, their motions side by side where they are integrated: as [`solve`] does
+/// each.
 ///
 /// # Errors
 /// [`SolveError::Canceled`].

@@ -15,8 +15,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Points that are integrated side by side: a multiple of the lanes, few enough to keep all threads busy.
 const POINTS_TOGETHER: usize = 32;
 
-/// Solves every point that is not in `stored`. Points without continuation are independent and run in parallel; with it, each line
-/// along the first axis is followed in order, the lines of the second axis in parallel, and upwards beside downwards.
+/// Solves every point that is not in `stored`. Points without continuation are independent and run in parallel; with
+/// it, each line along the first axis is followed in order, the lines of the second axis in parallel, and upwards
+/// beside downwards.
 ///
 /// # Errors
 /// [`SolveError::Canceled`]. A point that fails says so in its row.
@@ -67,7 +68,8 @@ pub fn run(
             count(points.len());
             Ok(rows)
         };
-        // Points that are integrated go side by side; the others take very different times, so each is for the next free thread.
+        // Points that are integrated go side by side; the others take very different times, so each is for the next
+        // free thread.
         let together = if document.analysis.method == MethodInput::Integrate { POINTS_TOGETHER } else { 1 };
         let rows: HashMap<_, _> = stored.rows.into_iter().filter(|(position, _)| *position < all).collect();
         count(rows.len());
@@ -114,9 +116,9 @@ pub fn run(
     Ok(sweep)
 }
 
-/// Solves all points without a row in parallel, but the very first before all others and the first of every line before the rest
-/// of it: whatever the points share (compliance, contact) is then there and not computed by several at once. The rest goes in
-/// groups of `together`.
+/// Solves all points without a row in parallel, but the very first before all others and the first of every line before
+/// the rest of it: whatever the points share (compliance, contact) is then there and not computed by several at once.
+/// The rest goes in groups of `together`.
 fn independent(
     (lines, length): (usize, usize),
     together: usize,
