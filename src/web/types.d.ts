@@ -1,5 +1,5 @@
-// Types of the pages' scripts: what the API answers (generated from openapi/openapi.json by scripts/check-pages), what is known of
-// plotly.js, and what the scripts pass to each other.
+// Types of the pages' scripts: what the API answers (generated from openapi/openapi.json by scripts/check-pages),
+// what is known of plotly.js, and what the scripts pass to each other.
 
 import type { components } from "../../target/page-types/openapi";
 
@@ -36,7 +36,10 @@ declare global {
   type Violation = Schemas["Violation"];
   type WarningEntry = Schemas["WarningEntry"];
 
-  /** A job document. Its parts are open: documents stored by earlier versions, and unfinished ones in the form, lack some. */
+  /**
+   * A job document. Its parts are open: documents stored by earlier versions, and unfinished ones in the form, lack
+   * some.
+   */
   type JobInput = any;
 
   /** Text or a node that is put into an element; nothing stands for no child. */

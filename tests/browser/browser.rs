@@ -74,7 +74,8 @@ fn capabilities(profile: &str) -> Capabilities {
         "--disable-component-update".to_owned(),
         "--disable-sync".to_owned(),
         "--window-size=1280,1000".to_owned(),
-        // One name resolves, to this machine, and no other: whatever wanted to leave this machine fails, and shows in the request log.
+        // One name resolves, to this machine, and no other: whatever wanted to leave this machine fails, and shows in
+        // the request log.
         format!("--host-resolver-rules=MAP {NAME} 127.0.0.1 , MAP * ~NOTFOUND , EXCLUDE 127.0.0.1"),
         // Containers and continuous integration run as root, where Chromium's sandbox does not start.
         "--no-sandbox".to_owned(),
@@ -212,7 +213,8 @@ impl Browser {
         assert!(errors.is_empty(), "the console has {} errors:\n{}", errors.len(), errors.join("\n"));
     }
 
-    /// What was requested from the server since this was last asked: paths with their queries. Whatever else was asked fails the flow.
+    /// What was requested from the server since this was last asked: paths with their queries. Whatever else was asked
+    /// fails the flow.
     pub async fn requests(&self) -> Vec<String> {
         let mut paths = Vec::new();
         for entry in self.driver.get_log("performance").await.unwrap() {

@@ -1,5 +1,5 @@
-//! The pages need this machine only. (No browser of these tests resolves any name but one, to this machine, and every flow fails when a
-//! request goes elsewhere; here all pages are opened, and the policy is tried.)
+//! The pages need this machine only. (No browser of these tests resolves any name but one, to this machine, and every
+//! flow fails when a request goes elsewhere; here all pages are opened, and the policy is tried.)
 
 use crate::browser::flow;
 use crate::pages;
@@ -19,7 +19,8 @@ async fn every_page_works_without_a_network() {
     .await;
 }
 
-/// Not even a script that got into a page could send anything away: another origin on this machine, which would answer, never gets a byte.
+/// Not even a script that got into a page could send anything away: another origin on this machine, which would answer,
+/// never gets a byte.
 #[tokio::test]
 async fn the_policy_keeps_scripts_from_other_origins() {
     flow(async |browser| {

@@ -1,4 +1,5 @@
-//! Pictures of every page for docs/screenshots, as people see them: `scripts/screenshots` makes them, against a server of the release build.
+//! Pictures of every page for docs/screenshots, as people see them: `scripts/screenshots` makes them, against a server
+//! of the release build.
 
 use crate::browser::{Browser, flow, flow_against};
 use crate::server::Server;

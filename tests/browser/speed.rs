@@ -1,5 +1,5 @@
-//! What makes pages quick, as far as it can be counted: nothing moves while a page fills, and the script for plots (the only large file)
-//! comes where a plot is. `scripts/page-speed` measures times.
+//! What makes pages quick, as far as it can be counted: nothing moves while a page fills, and the script for plots (the
+//! only large file) comes where a plot is. `scripts/page-speed` measures times.
 
 use crate::browser::{Browser, flow};
 use crate::pages;
@@ -81,8 +81,8 @@ async fn a_pages_scripts_are_named_by_the_page() {
     .await;
 }
 
-/// Prints how long pages take to come, for docs/BENCHMARKS.md: medians of visits with an empty cache, from the click to the first and to
-/// the largest content that shows, to the end of loading; and what comes over the wire.
+/// Prints how long pages take to come, for docs/BENCHMARKS.md: medians of visits with an empty cache, from the click to
+/// the first and to the largest content that shows, to the end of loading; and what comes over the wire.
 #[tokio::test]
 #[ignore = "prints times: scripts/page-speed"]
 async fn times_of_every_page() {

@@ -77,7 +77,8 @@ async fn a_sweep_goes_from_the_form_to_its_curves_and_table() {
 async fn both_branches_show_jumps_and_a_point_opens_as_a_response_of_its_own() {
     flow(async |browser| {
         let mut document = quick();
-        // Around the main resonance the teeth separate, and the curve bends over to lower speeds: two motions, a jump each way.
+        // Around the main resonance the teeth separate, and the curve bends over to lower speeds: two motions, a jump
+        // each way.
         document["axes"] = json!([{"pointer": "/operation/pinion_speed_rpm", "from": 10500, "to": 8500, "points": 21}]);
         document["operation"]["pinion_torque_nm"] = json!(300.0);
         document["model"]["mesh_damping_ratio"] = json!(0.01);

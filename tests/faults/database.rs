@@ -119,8 +119,8 @@ fn a_newer_schema_is_refused() {
     assert!(said.contains("written by a newer herringbone") && said.contains("9999"), "{said}");
 }
 
-/// Every page in turn is not affordable; a few, chosen by `FAULTS_SEED`. After a clean end the file is not read through at the
-/// start, so the damage may be met by a request: that one fails and says so, the process goes on.
+/// Every page in turn is not affordable; a few, chosen by `FAULTS_SEED`. After a clean end the file is not read through
+/// at the start, so the damage may be met by a request: that one fails and says so, the process goes on.
 #[test]
 fn an_overwritten_page_is_reported_and_nothing_panics() {
     let (_directory, original) = closed();

@@ -1,5 +1,5 @@
-//! What the programs of this package share: a plotter, stopwatches, repeatable random numbers, arguments, and (feature `service`) the
-//! running service as a process with a connection to it.
+//! What the programs of this package share: a plotter, stopwatches, repeatable random numbers, arguments, and (feature
+//! `service`) the running service as a process with a connection to it.
 
 pub mod arguments;
 pub mod plot;

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-/// A running measurement. On Linux it is the processor time of the thread, which other programs on the machine do not lengthen; elsewhere
-/// the time that passed. Belongs to the thread that started it.
+/// A running measurement. On Linux it is the processor time of the thread, which other programs on the machine do not
+/// lengthen; elsewhere the time that passed. Belongs to the thread that started it.
 #[derive(Debug, Clone, Copy)]
 pub struct Stopwatch {
     start: Instant,
@@ -33,8 +33,8 @@ fn processor_time() -> Option<Duration> {
     text.split_whitespace().next()?.parse().ok().map(Duration::from_nanos)
 }
 
-/// The value of a repeated calculation and the median of its times, s, over `runs` runs; with 0 runs the time of the first. What takes
-/// less than a fifth of a millisecond is repeated within a run.
+/// The value of a repeated calculation and the median of its times, s, over `runs` runs; with 0 runs the time of the
+/// first. What takes less than a fifth of a millisecond is repeated within a run.
 pub fn median_time<T>(runs: usize, mut run: impl FnMut() -> T) -> (T, f64) {
     let watch = Stopwatch::start();
     let mut value = run();

@@ -261,7 +261,7 @@ proptest! {
         let number = if whole { number.round() } else { number };
         let mut changed = document.clone();
         let refused = changed.slot(pointer).unwrap().set(number).err();
-        let refused = refused.map(|violation| super::Violation { pointer: pointer.clone(), ..violation });
+        let refused = refused.map(|violation| super::Violation { pointer: pointer.clone(), ..*violation });
         let is_refused = refused.is_some();
         let set = changed.checked(refused.into_iter().collect());
         let mut value = written.clone();

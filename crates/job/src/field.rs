@@ -137,19 +137,19 @@ impl Slot<'_> {
     ///
     /// # Errors
     /// The violation, without its pointer, of a number that is out of range or has to be whole; nothing is changed then.
-    pub fn set(self, number: f64) -> Result<(), Violation> {
+    pub fn set(self, number: f64) -> Result<(), Box<Violation>> {
         let declared = match &self {
             Slot::Number(_, declared) | Slot::OptionalNumber(_, declared) => declared,
             Slot::Whole(_, declared) | Slot::OptionalWhole(_, declared) => {
                 if let Some(fractional) = serde_json::Number::from_f64(number).filter(|_| number.fract() != 0.0) {
-                    return Err(not_whole(&fractional, declared));
+                    return Err(Box::new(not_whole(&fractional, declared)));
                 }
                 declared
             }
-            Slot::Other => return Err(Violation::new("", "conflict", "is not a number")),
+            Slot::Other => return Err(Box::new(Violation::new("", "conflict", "is not a number"))),
         };
         if let Some(violation) = out_of_range(number, declared) {
-            return Err(violation);
+            return Err(Box::new(violation));
         }
         match self {
             Slot::Number(slot, _) => *slot = number,

@@ -1,5 +1,5 @@
-//! Checks of tests against reference values. Each prints one line with what it measured, from which `scripts/validation` writes the
-//! tables of docs/validation/tables.
+//! Checks of tests against reference values. Each prints one line with what it measured, from which
+//! `scripts/validation` writes the tables of docs/validation/tables.
 
 /// The permitted distance of a value from its reference.
 #[derive(Debug, Clone, Copy)]
@@ -12,8 +12,8 @@ pub enum Tolerance {
 
 /// Fails unless `got` is within `tolerance` of `expected`. Prints `oracle|topic|quantity|expected|got|error|tolerance`.
 ///
-/// A topic is an area and a family, `Contact: FZG loads`: one file of tables for each area, one table for each family. The quantity, with its
-/// unit, is unique within the topic.
+/// A topic is an area and a family, `Contact: FZG loads`: one file of tables for each area, one table for each family.
+/// The quantity, with its unit, is unique within the topic.
 ///
 /// # Panics
 /// If the value is not within the tolerance.

@@ -1,10 +1,11 @@
-//! The source's pair with the contact in the equations over torque and speed, unrelieved and relieved: the RMS of the mesh acceleration as a map, and
-//! whether it is smooth.
+//! The source's pair with the contact in the equations over torque and speed, unrelieved and relieved: the RMS of the
+//! mesh acceleration as a map, and whether it is smooth.
 //!
-//! `cargo run --release -p herringbone-tools --no-default-features --bin contact_map [-- TORQUES SPEEDS]`
+//! `scripts/tool contact_map [TORQUES SPEEDS]`
 //!
-//! Prints a coarse table of each map and the largest departures from smoothness: of ln RMS at a point from the mean of its neighbours along the torque and the
-//! speed, and the regimes that occur. A jump of one point by itself would stand out.
+//! Prints a coarse table of each map and the largest departures from smoothness: of ln RMS at a point from the mean of
+//! its neighbours along the torque and the speed, and the regimes that occur. A jump of one point by itself would stand
+//! out.
 
 use herringbone_job::parse_value;
 use herringbone_job::result::SweepPoint;
@@ -81,8 +82,9 @@ fn report(name: &str, points: &[SweepPoint], torques: usize, speeds: usize, seco
     }
     let mut regimes: BTreeMap<String, usize> = BTreeMap::new();
     for p in &grid {
-        let word = |w: &Option<String>| w.clone().unwrap_or_default();
-        *regimes.entry(format!("{}, {}{}", word(&p.regime), word(&p.contact), word(&p.error))).or_default() += 1;
+        let regime = p.regime.map(|regime| regime.as_str()).unwrap_or_default();
+        let contact = p.contact.map(|contact| contact.as_str()).unwrap_or_default();
+        *regimes.entry(format!("{regime}, {contact}{}", p.error.as_deref().unwrap_or_default())).or_default() += 1;
     }
     println!("motions: {regimes:?}");
 }

@@ -1,6 +1,7 @@
-//! Motions with the contact in the equations against references: a file of cases, each a document (`input`) and what is expected.
+//! Motions with the contact in the equations against references: a file of cases, each a document (`input`) and what is
+//! expected.
 //!
-//! `cargo run --release -p herringbone-tools --no-default-features --bin contact_motion -- FILE`
+//! `scripts/tool contact_motion FILE`
 
 use herringbone_job::parse_value;
 use herringbone_job::study::{self, CheckedJob, SolveContext};

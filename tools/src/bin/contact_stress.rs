@@ -1,7 +1,8 @@
-//! Stress test of the loaded tooth contact: random feasible designs and loads far beyond the usual, every one of which has to give finite,
-//! non-negative, balanced forces and a stiffness curve whose steps shrink with the distance of the positions.
+//! Stress test of the loaded tooth contact: random feasible designs and loads far beyond the usual, every one of which
+//! has to give finite, non-negative, balanced forces and a stiffness curve whose steps shrink with the distance of the
+//! positions.
 //!
-//! `cargo run --release -p herringbone-tools --no-default-features --bin contact_stress [DESIGNS [fe|analytic [SEED]]]`
+//! `scripts/tool contact_stress [DESIGNS [fe|analytic [SEED]]]`
 
 use std::time::Instant;
 

@@ -1,5 +1,5 @@
 //! Compares the loaded tooth contact with the finite-element reference of a z 29/67 helical pair and prints the errors:
-//! `cargo run --release -p herringbone-tools --no-default-features --bin contact_validation [analytic|coarse|medium|standard|fine [SLICES [POSITIONS]]]`.
+//! `scripts/tool contact_validation [analytic|coarse|medium|standard|fine [SLICES [POSITIONS]]]`.
 
 use std::time::Instant;
 

@@ -2,13 +2,13 @@
 //! time, in finite numbers or in an error that names its reason; where the response states an accuracy, an independent
 //! integration of the reported motion must agree with it.
 //!
-//! `cargo run --release -p herringbone-tools --no-default-features --bin dynamics_stress -- [CASES [SEED [FIRST [usual|extreme|both [contact]]]]]`
+//! `scripts/tool dynamics_stress [CASES [SEED [FIRST [usual|extreme|both [contact]]]]]`
 //!
 //! Two populations take turns: `usual` pairs (what an engineer would build, at speeds that are run) and `extreme` ones
-//! (stiffness 1e3 … 1e13 N/m, damping ratios 0 … 2, backlash 0 … 1 mm, 1 … 100 000 r/min, mass and inertia ratios 1e-6 … 1e6,
-//! pulses 1e-6 … 1 mesh period long, torque of either sign or none). A case depends on seed and number alone: `1 SEED N`
-//! repeats it and prints its parameters. With `contact` the mesh forces are those of a loaded contact over approach and phase (soft at the
-//! beginning, with a free position that varies), without impacts.
+//! (stiffness 1e3 … 1e13 N/m, damping ratios 0 … 2, backlash 0 … 1 mm, 1 … 100 000 r/min, mass and inertia ratios 1e-6
+//! … 1e6, pulses 1e-6 … 1 mesh period long, torque of either sign or none). A case depends on seed and number alone: `1
+//! SEED N` repeats it and prints its parameters. With `contact` the mesh forces are those of a loaded contact over
+//! approach and phase (soft at the beginning, with a free position that varies), without impacts.
 
 use std::collections::BTreeMap;
 
@@ -179,8 +179,8 @@ fn case(r: &mut Random, of: &Ranges) -> StressCase {
     StressCase { parameters, description }
 }
 
-/// Puts contact forces in place of the stiffness: F = k(φ) e²/(e + c) beyond a free position that varies with the phase, on knots and levels as a contact
-/// analysis leaves them.
+/// Puts contact forces in place of the stiffness: F = k(φ) e²/(e + c) beyond a free position that varies with the
+/// phase, on knots and levels as a contact analysis leaves them.
 fn with_contact(p: &mut Parameters, r: &mut Random, of: &Ranges) -> Result<(), DynamicsError> {
     let knots: Vec<f64> = {
         let n = r.between(8.0, 160.0) as usize;
@@ -259,8 +259,8 @@ fn not_finite(r: &Response) -> bool {
 }
 
 /// The reported motion integrated once more from where it ended, by Runge–Kutta (by Taylor series where rounding makes
-/// that too coarse): the largest difference of the RMS accelerations relative to the largest of them, beyond the integration's
-/// own error. None where there is nothing to compare or the integration cannot be afforded.
+/// that too coarse): the largest difference of the RMS accelerations relative to the largest of them, beyond the
+/// integration's own error. None where there is nothing to compare or the integration cannot be afforded.
 fn independent(p: &Parameters, r: &Response) -> Option<f64> {
     let periods = r.summary.period_mesh_periods?;
     let analysis = Analysis {

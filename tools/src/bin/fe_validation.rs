@@ -1,7 +1,6 @@
 //! Cost and error of the finite elements at every resolution, against the stored reference of a z 29/67 pair.
 //!
-//! `cargo run --release -p herringbone-tools --no-default-features --bin fe_validation [coarse] [medium] [standard] [fine]`;
-//! `RAYON_NUM_THREADS=1` for the time on one core.
+//! `scripts/tool fe_validation [coarse] [medium] [standard] [fine]`; `RAYON_NUM_THREADS=1` for the time on one core.
 
 use std::sync::Mutex;
 use std::time::Instant;

@@ -1,7 +1,7 @@
-//! Error of the analytic compliance on short faces: mean mesh stiffness of one half against the product's own finite elements, over tooth
-//! numbers, helix angle and face width in normal modules. Prints the table of docs/VALIDATION.md (short faces):
-//! `cargo run --release -p herringbone-tools --no-default-features --bin short_faces [coarse|medium|standard|fine [Z1[:X1]/Z2[:X2] …]]`;
-//! teeth and profile shift coefficient of pinion and gear.
+//! Error of the analytic compliance on short faces: mean mesh stiffness of one half against the product's own finite
+//! elements, over tooth numbers, helix angle and face width in normal modules. Prints the table of
+//! docs/validation/contact.md (short faces): `scripts/tool short_faces [coarse|medium|standard|fine [Z1[:X1]/Z2[:X2]
+//! …]]`; teeth and profile shift coefficient of pinion and gear.
 
 use herringbone_physics::compliance::{Compliance, Settings};
 use herringbone_physics::contact::{ContactError, HalfCycle, solve_half};
@@ -51,7 +51,8 @@ fn pair(name: &str) -> Result<[(u32, f64); 2], Failure> {
     Ok([member(pinion)?, member(gear)?])
 }
 
-/// Mean tangent stiffness of the analytic compliance over that of finite elements, less one, in percent; none where the pair cannot run.
+/// Mean tangent stiffness of the analytic compliance over that of finite elements, less one, in percent; none where the
+/// pair cannot run.
 fn error(members: [(u32, f64); 2], helix_deg: f64, width: f64, resolution: Resolution) -> Result<Option<f64>, Failure> {
     let member = |(z, profile_shift): (u32, f64)| {
         let reference_m = 0.5 * f64::from(z) * MODULE_M / helix_deg.to_radians().cos();

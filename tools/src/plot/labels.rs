@@ -17,8 +17,8 @@ pub struct Label {
 /// About the width of a letter over the font size.
 const LETTER: f64 = 0.488;
 
-/// Writes each label as near to an end of its curve as it fits without touching another label or a curve (polylines in the sheet's
-/// coordinates). A label that fits nowhere stands on its first end.
+/// Writes each label as near to an end of its curve as it fits without touching another label or a curve (polylines in
+/// the sheet's coordinates). A label that fits nowhere stands on its first end.
 pub fn place(sheet: &mut Sheet, field: &Field, labels: &[Label], curves: &[Vec<[f64; 2]>]) {
     let font = sheet.font_size();
     let ink: Vec<[f64; 2]> =
@@ -56,7 +56,8 @@ fn between(a: [f64; 2], b: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// Upper left corners of a box whose middle lies on widening rings about two points, each ring clockwise from the right.
+/// Upper left corners of a box whose middle lies on widening rings about two points, each ring clockwise from the
+/// right.
 fn around(ends: [[f64; 2]; 2], width: f64, height: f64) -> Vec<[f64; 2]> {
     let rings = (0..60).flat_map(|ring| (0..48).map(move |turn| (4.0 * f64::from(ring), turn)));
     let corner = |(r, turn): (f64, usize)| {

@@ -1,4 +1,5 @@
-//! Plots as SVG: fields with linear or logarithmic axes, curves, points, bars, markers, labels that avoid each other, coloured maps.
+//! Plots as SVG: fields with linear or logarithmic axes, curves, points, bars, markers, labels that avoid each other,
+//! coloured maps.
 
 mod field;
 pub mod image;

@@ -227,8 +227,8 @@ mod tests {
 
     #[test]
     fn a_word_is_the_same_in_json_and_in_columns() {
-        let cell = |cell| match cell {
-            Cell::Word(word) => word.map(|word| format!("{word:?}")),
+        let cell = |cell: Cell| match cell {
+            Cell::Word(word) => word.as_ref().map(|word| format!("{word:?}")),
             _ => None,
         };
         let contact = ContactStateResult::DoubleSided;

@@ -1,9 +1,9 @@
-//! What a result says of its own errors: of the solution of the equations, and of the model of the mesh.
+//! Errors of a result: of the solution of the equations, and of the model of the mesh.
 
 use crate::document::{BodyInput, DesignInput, Elements, Fidelity, FlankInput, JobDocument, Ltca, MeshStiffness};
 use crate::result::{Accuracy, JobResult, Mesh, ModelError, SweepResult};
 
-/// Largest differences that the comparisons with references found, in per cent.
+/// Largest differences in the comparisons with references, in per cent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Bound {
     stiffness: f64,
@@ -11,8 +11,9 @@ struct Bound {
     basis: &'static str,
 }
 
-/// The one table of model errors. Each row rounds up the worst case of the comparison that its text names, and claims no less than the
-/// reference is known to (1.5 % in stiffness, 3 % in the first harmonic). Change a row with the section it names, never by itself.
+/// The table of model errors. Each row rounds up the worst case of the comparison that its text names, and claims no
+/// less than the uncertainty of the reference (1.5 % in stiffness, 3 % in the first harmonic). A row changes together
+/// with the section it names.
 mod measured {
     use super::Bound;
 
@@ -99,8 +100,9 @@ pub fn of_sweep(document: &JobDocument, sweep: &SweepResult) -> Accuracy {
 
 /// Relative error of the contact analysis by its positions and slices; a closed form and a given curve have none.
 fn discretisation(mesh: &Mesh) -> f64 {
-    let found = mesh.convergence.as_ref();
-    found.map_or(0.0, |found| 0.01 * found.position_error_percent.unwrap_or(0.0).max(found.slice_error_percent))
+    mesh.convergence.as_ref().map_or(0.0, |convergence| {
+        0.01 * convergence.position_error_percent.unwrap_or(0.0).max(convergence.slice_error_percent)
+    })
 }
 
 fn model(document: &JobDocument, mesh: Option<&Mesh>) -> ModelError {
@@ -195,8 +197,8 @@ mod tests {
         model(&parse_value(&value).expect("valid"), mesh.as_ref())
     }
 
-    fn numbers(found: &ModelError) -> (Option<f64>, Option<f64>) {
-        (found.mesh_stiffness_percent, found.transmission_error_harmonic_percent)
+    fn numbers(error: &ModelError) -> (Option<f64>, Option<f64>) {
+        (error.mesh_stiffness_percent, error.transmission_error_harmonic_percent)
     }
 
     #[test]
@@ -240,8 +242,8 @@ mod tests {
         };
         // The shorter and the steeper, the worse; a spur face has no such error.
         let faces = [(0.0, 3.6), (10.0, 3.6), (20.0, 3.6), (40.0, 6.0), (40.0, 3.6)];
-        let found = faces.map(|(helix, face)| short(helix, face).mesh_stiffness_percent);
-        assert!(found.is_sorted() && found[0] == Some(3.0) && found[3] >= Some(19.0), "{found:?}");
+        let errors = faces.map(|(helix, face)| short(helix, face).mesh_stiffness_percent);
+        assert!(errors.is_sorted() && errors[0] == Some(3.0) && errors[3] >= Some(19.0), "{errors:?}");
         let few = model_of(Some(6.0), |value| value["design"]["pinion"]["teeth"] = json!(16));
         assert_eq!(few.transmission_error_harmonic_percent, Some(35.0));
         assert!(short(20.0, 6.0).mesh_stiffness_percent >= Some(7.3) && short(20.0, 6.0).basis.contains("short faces"));

@@ -79,7 +79,7 @@ pub fn at<'a>(
     for (axis, number) in values {
         for pointer in axis.pointers() {
             let set = base.slot(pointer).map(|slot| slot.set(number));
-            violations.extend(set.and_then(Result::err).map(|v| Violation { pointer: pointer.to_owned(), ..v }));
+            violations.extend(set.and_then(Result::err).map(|v| Violation { pointer: pointer.to_owned(), ..*v }));
         }
     }
     base.checked(violations)

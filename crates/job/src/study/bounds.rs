@@ -1,4 +1,4 @@
-//! Where an answer rests on an assumption, or on a number beyond what its model or practice bears: coded warnings with pointer, value
+//! Warnings of assumptions, and of numbers outside the range of a model or of practice: each with code, pointer, value
 //! and limit.
 
 use super::equations::MotionPlane;
@@ -13,11 +13,11 @@ use crate::warning::Warning;
 use herringbone_physics::dynamics;
 use herringbone_physics::response::{Regime, Summary};
 
-/// Given inertias and masses more than this many times the geometry's, or less than its inverse, are told: beyond it a shaft, hub or web
-/// outweighs the gear, or a unit is wrong.
+/// Ratio of given inertias and masses to those of the geometry, or its inverse, above which there is a warning: a shaft,
+/// hub or web outweighs the gear, or a unit is wrong.
 const IMPLAUSIBLE_RATIO: f64 = 2.0;
 
-/// Part of the least backlash of practice below which a backlash is told.
+/// Part of the least backlash of practice below which there is a warning.
 const SMALL_BACKLASH: f64 = 0.25;
 
 /// Allowable contact stress number of case-hardened wrought steel, grade ME, MPa (ISO 6336-5:2016, figure 13): the highest of the
@@ -39,11 +39,12 @@ pub fn backlash_um(document: &JobDocument) -> f64 {
     document.design.backlash_um.unwrap_or(DEFAULT_BACKLASH_UM)
 }
 
-/// What can be said of a document before anything is solved: masses and inertias of which the geometry gives `discs` (kg, kg m²), backlash.
+/// Warnings of a document before anything is solved: masses and inertias, with those of solid discs by the geometry
+/// (`discs`, kg and kg m²), and backlash.
 pub fn of_document(document: &JobDocument, prepared: &Prepared, discs: [(f64, f64); 2]) -> Vec<Warning> {
     let vibrates = document.kind != JobKind::Mesh;
     let strikes = matches!(document.model.impact, ImpactInput::CornerContact(_) | ImpactInput::Zhou2008(_));
-    let mut found = Vec::new();
+    let mut warnings = Vec::new();
     let design = &document.design;
     for ((name, gear), (mass_kg, inertia_kg_m2)) in
         [("pinion", &design.pinion), ("gear", &design.gear)].into_iter().zip(discs)
@@ -51,30 +52,30 @@ pub fn of_document(document: &JobDocument, prepared: &Prepared, discs: [(f64, f6
         if vibrates || strikes {
             let pointer = format!("/design/{name}/inertia_kg_m2");
             match gear.inertia_kg_m2 {
-                None => found.push(warning(
+                None => warnings.push(warning(
                     "assumed-inertia",
                     pointer,
                     format!("not given: {} kg m2 assumed (solid discs of both halves from the bore to the reference circle; shaft and hub are not counted)", shown(inertia_kg_m2)),
                 )),
-                Some(given) => found.extend(implausible("inertia-implausible", pointer, given, inertia_kg_m2, "kg m2")),
+                Some(given) => warnings.extend(implausible("inertia-implausible", pointer, given, inertia_kg_m2, "kg m2")),
             }
         }
         if vibrates {
             let pointer = format!("/design/{name}/mass_kg");
             match gear.mass_kg {
-                None => found.push(warning(
+                None => warnings.push(warning(
                     "assumed-mass",
                     pointer,
                     format!("not given: {} kg assumed (solid discs of both halves from the bore to the reference circle; shaft and hub are not counted)", shown(mass_kg)),
                 )),
-                Some(given) => found.extend(implausible("mass-implausible", pointer, given, mass_kg, "kg")),
+                Some(given) => warnings.extend(implausible("mass-implausible", pointer, given, mass_kg, "kg")),
             }
         }
     }
     if vibrates {
-        found.extend(backlash(document, prepared));
+        warnings.extend(backlash(document, prepared));
     }
-    found
+    warnings
 }
 
 fn implausible(code: &str, pointer: String, given: f64, geometry: f64, unit: &str) -> Option<Warning> {
@@ -104,11 +105,11 @@ fn backlash(document: &JobDocument, prepared: &Prepared) -> Vec<Warning> {
     const POINTER: &str = "/design/backlash_um";
     let um = backlash_um(document);
     let least_um = 1e3 * least_backlash_mm(prepared.pair.center_distance_m * 1e3, document.design.normal_module_mm);
-    let mut found = Vec::new();
+    let mut warnings = Vec::new();
     if document.design.backlash_um.is_none() {
         let detail =
             format!("not given: {um} um assumed; practice for this size is {least_um:.0} um and more (ISO/TR 10064-2)");
-        found.push(warning("assumed-backlash", POINTER, detail));
+        warnings.push(warning("assumed-backlash", POINTER, detail));
     }
     let limit_um = SMALL_BACKLASH * least_um;
     if um < limit_um {
@@ -116,14 +117,14 @@ fn backlash(document: &JobDocument, prepared: &Prepared) -> Vec<Warning> {
             "is {um} um, below {limit_um:.0} um, a quarter of the least normal backlash of practice for this module and centre distance ({least_um:.0} um, ISO/TR 10064-2): \
              teeth that separate meet the back flanks sooner than those of a real pair"
         );
-        found.push(warning("backlash-small", POINTER, detail));
+        warnings.push(warning("backlash-small", POINTER, detail));
     }
-    found
+    warnings
 }
 
-/// What the mesh stage shows.
+/// Warnings of the mesh stage.
 pub fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
-    let mut found = Vec::new();
+    let mut warnings = Vec::new();
     let design = &document.design;
     let members = [&design.pinion, &design.gear].map(|gear| gear.material.as_ref().unwrap_or(&design.material));
     let modulus_gpa = members.iter().fold(f64::INFINITY, |m, material| m.min(material.youngs_modulus_gpa));
@@ -139,7 +140,7 @@ pub fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
         let detail = format!(
             "puts {mpa:.0} MPa of contact pressure on the flanks, more than {limit_mpa:.0} MPa ({material}, ISO 6336-5): flanks do not bear it, and the elastic contact analysis does not know that"
         );
-        found.push(warning("pressure-implausible", "/operation/pinion_torque_nm", detail));
+        warnings.push(warning("pressure-implausible", "/operation/pinion_torque_nm", detail));
     }
     let ratio = mesh.secant_stiffness_mean_n_per_um / mesh.stiffness_mean_n_per_um;
     let secant = matches!(&document.model.mesh_stiffness, MeshStiffness::Ltca(Ltca { law: StiffnessLaw::Secant, .. }));
@@ -149,18 +150,18 @@ pub fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
              counts as softness, and natural frequencies come out too low; \"transmission_error\" does not",
             mesh.secant_stiffness_mean_n_per_um, mesh.stiffness_mean_n_per_um
         );
-        found.push(warning("secant-law-misleading", "/model/mesh_stiffness/law", detail));
+        warnings.push(warning("secant-law-misleading", "/model/mesh_stiffness/law", detail));
     }
-    found
+    warnings
 }
 
-/// What the pulse of a half does to the equations: longer than the mesh period, or of more than the load.
+/// Warnings of pulses longer than the mesh period, or with a mean above the load.
 pub fn of_pulses(
     document: &JobDocument,
     plane: &MotionPlane,
     pulses: &[Option<dynamics::ImpactExcitation>; 2],
 ) -> Vec<Warning> {
-    let mut found = Vec::new();
+    let mut warnings = Vec::new();
     let longest = pulses.iter().flatten().filter_map(|pulse| match pulse {
         dynamics::ImpactExcitation::HalfSine { duration_mesh_periods, .. } => Some(*duration_mesh_periods),
         dynamics::ImpactExcitation::Harmonics { .. } => None,
@@ -180,7 +181,7 @@ pub fn of_pulses(
         let detail = format!(
             "makes a pulse of {longest:.3} mesh periods, longer than 1: the pulses of successive tooth pairs overlap, and a part of them is a constant force{advice}"
         );
-        found.push(warning("pulse-longer-than-period", pointer, detail));
+        warnings.push(warning("pulse-longer-than-period", pointer, detail));
     }
     let mean_n = pulses.iter().flatten().map(dynamics::ImpactExcitation::mean_n).fold(0.0, f64::max);
     let load_n = (document.operation.pinion_torque_nm / 2.0 / plane.pinion_radius_m).abs();
@@ -189,12 +190,12 @@ pub fn of_pulses(
         let detail = format!(
             "puts a mean of {mean_n:.0} N on each half over the mesh period, more than the load of the mesh, {load_n:.0} N: an impact that carries more momentum than the torque does no longer follows from it"
         );
-        found.push(warning("pulse-exceeds-load", pointer, detail));
+        warnings.push(warning("pulse-exceeds-load", pointer, detail));
     }
-    found
+    warnings
 }
 
-/// What the motion shows.
+/// Warnings of the motion.
 pub fn of_motion(document: &JobDocument, summary: &Summary) -> Vec<Warning> {
     let rate = summary.lyapunov_per_mesh_period.filter(|rate| rate.is_finite());
     match summary.regime {
@@ -268,17 +269,17 @@ mod tests {
         ] {
             let mut value = base.clone();
             set(&mut value, pointer, Value::Null);
-            let found = checked(&value);
-            let told =
-                found.iter().find(|w| w.code == code && w.pointer == pointer).unwrap_or_else(|| panic!("{pointer}"));
+            let warnings = checked(&value);
+            let warned =
+                warnings.iter().find(|w| w.code == code && w.pointer == pointer).unwrap_or_else(|| panic!("{pointer}"));
             assert!(
-                told.detail.contains("assumed") && told.detail.chars().any(|c| c.is_ascii_digit()),
+                warned.detail.contains("assumed") && warned.detail.chars().any(|c| c.is_ascii_digit()),
                 "{}",
-                told.detail
+                warned.detail
             );
             // A document that is stored with its defaults filled in says the same.
             let stored = serde_json::to_value(parse_value(&value).expect("valid")).expect("JSON");
-            assert_eq!(checked(&stored), found, "{pointer}");
+            assert_eq!(checked(&stored), warnings, "{pointer}");
             set(&mut value, pointer, given);
             assert!(!has(&checked(&value), code, pointer), "{pointer}");
             set(&mut value, pointer, Value::Null);
@@ -300,8 +301,8 @@ mod tests {
                     let member = [&geometry.pinion, &geometry.gear][at];
                     let natural = if field == "mass_kg" { member.mass_kg } else { member.inertia_kg_m2 };
                     set(&mut value, &pointer, json!(natural * factor));
-                    let told = has(&checked(&value), code, &pointer);
-                    assert_eq!(told, !(0.5..=2.0).contains(&factor), "{pointer}, {factor}");
+                    let warned = has(&checked(&value), code, &pointer);
+                    assert_eq!(warned, !(0.5..=2.0).contains(&factor), "{pointer}, {factor}");
                 }
             }
         }
@@ -328,14 +329,14 @@ mod tests {
                 value["design"][gear]["bore_diameter_mm"] = Value::Null;
             }
             value["design"]["backlash_um"] = json!(backlash_um);
-            let told = has(&checked(&value), "backlash-small", "/design/backlash_um");
-            assert_eq!(told, small, "module {module_mm} mm, {backlash_um} um");
+            let warned = has(&checked(&value), "backlash-small", "/design/backlash_um");
+            assert_eq!(warned, small, "module {module_mm} mm, {backlash_um} um");
         }
     }
 
     #[test]
     fn contact_pressure_beyond_hardened_steel_is_told() {
-        for (torque_nm, modulus_gpa, told) in
+        for (torque_nm, modulus_gpa, warned) in
             [(400.0, 206.0, false), (800.0, 206.0, false), (12_000.0, 206.0, true), (2000.0, 3.0, true)]
         {
             let mut value = example("table1");
@@ -349,7 +350,7 @@ mod tests {
             );
             assert_eq!(
                 has(&result.warnings, "pressure-implausible", "/operation/pinion_torque_nm"),
-                told,
+                warned,
                 "{torque_nm} N m, {modulus_gpa} GPa"
             );
         }
@@ -357,7 +358,7 @@ mod tests {
 
     #[test]
     fn a_secant_of_corrected_flanks_is_told() {
-        for (name, law, told) in [
+        for (name, law, warned) in [
             ("assembly_errors", "secant", true),
             ("assembly_errors", "transmission_error", false),
             ("assembly_errors", "tangent", false),
@@ -369,7 +370,7 @@ mod tests {
             let result = solved(&value);
             assert_eq!(
                 has(&result.warnings, "secant-law-misleading", "/model/mesh_stiffness/law"),
-                told,
+                warned,
                 "{name}, {law}"
             );
         }

@@ -26,7 +26,7 @@ pub fn order(axis: &Axis, direction: BranchDirection) -> Vec<usize> {
     order
 }
 
-/// Where a branch jumps between neighbours; `line` in the order of the axis.
+/// The jumps of a branch between neighbours; `line` in the order of the axis.
 pub fn jumps(
     axis: &Axis,
     direction: BranchDirection,
@@ -35,7 +35,7 @@ pub fn jumps(
 ) -> Vec<Jump> {
     let order = order(axis, direction);
     let changes: Vec<Option<f64>> = order.windows(2).map(|two| change(&line[two[0]], &line[two[1]])).collect();
-    let mut found = Vec::new();
+    let mut jumps = Vec::new();
     for (at, two) in order.windows(2).enumerate() {
         let (before, after) = (&line[two[0]], &line[two[1]]);
         let beside = |other: Option<usize>| other.and_then(|i| *changes.get(i)?).unwrap_or(0.0);
@@ -44,7 +44,7 @@ pub fn jumps(
             continue;
         };
         if change > JUMP.max(uncertainty(before, after)) && change > STANDS_OUT * usual {
-            found.push(Jump {
+            jumps.push(Jump {
                 branch: direction,
                 second_axis_value,
                 from: axis.value(two[0]),
@@ -54,17 +54,17 @@ pub fn jumps(
             });
         }
     }
-    found
+    jumps
 }
 
-/// Where the branches of the same line differ; both in the order of the axis.
+/// The intervals in which the branches of a line differ; both in the order of the axis.
 pub fn hysteresis(
     axis: &Axis,
     second_axis_value: Option<f64>,
     up: &[SweepPoint],
     down: &[SweepPoint],
 ) -> Vec<Hysteresis> {
-    let mut found: Vec<Hysteresis> = Vec::new();
+    let mut intervals: Vec<Hysteresis> = Vec::new();
     let mut open = false;
     for at in order(axis, BranchDirection::Up) {
         let differ = differences(&up[at], &down[at]);
@@ -75,10 +75,16 @@ pub fn hysteresis(
         let value = axis.value(at);
         if !open {
             let largest_rms_ratio = 1.0;
-            found.push(Hysteresis { second_axis_value, from: value, to: value, differ: Vec::new(), largest_rms_ratio });
+            intervals.push(Hysteresis {
+                second_axis_value,
+                from: value,
+                to: value,
+                differ: Vec::new(),
+                largest_rms_ratio,
+            });
         }
         open = true;
-        if let Some(interval) = found.last_mut() {
+        if let Some(interval) = intervals.last_mut() {
             interval.to = value;
             let ratio = change(&up[at], &down[at]).map_or(1.0, f64::exp);
             interval.largest_rms_ratio = interval.largest_rms_ratio.max(ratio);
@@ -89,7 +95,7 @@ pub fn hysteresis(
             }
         }
     }
-    found
+    intervals
 }
 
 fn differences(a: &SweepPoint, b: &SweepPoint) -> Vec<BranchDifference> {
@@ -152,13 +158,13 @@ mod tests {
     #[test]
     fn a_jump_stands_out_and_a_steep_slope_does_not() {
         let axis = axis(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-        let found = jumps(&axis, BranchDirection::Up, None, &line(&[10.0, 11.0, 12.0, 30.0, 29.0, 28.0]));
-        assert_eq!(found.len(), 1);
-        assert_eq!((found[0].from, found[0].to, found[0].rms_after_m_s2), (3.0, 4.0, 30.0));
+        let jumping = jumps(&axis, BranchDirection::Up, None, &line(&[10.0, 11.0, 12.0, 30.0, 29.0, 28.0]));
+        assert_eq!(jumping.len(), 1);
+        assert_eq!((jumping[0].from, jumping[0].to, jumping[0].rms_after_m_s2), (3.0, 4.0, 30.0));
         assert_eq!(jumps(&axis, BranchDirection::Up, None, &line(&[10.0, 13.0, 18.0, 26.0, 36.0, 48.0])), []);
         // Downwards the same place is met from above; a point without a response is no jump.
-        let found = jumps(&axis, BranchDirection::Down, Some(7.0), &line(&[10.0, 11.0, 12.0, 30.0, 29.0, 28.0]));
-        assert_eq!((found[0].from, found[0].to, found[0].second_axis_value), (4.0, 3.0, Some(7.0)));
+        let jumping = jumps(&axis, BranchDirection::Down, Some(7.0), &line(&[10.0, 11.0, 12.0, 30.0, 29.0, 28.0]));
+        assert_eq!((jumping[0].from, jumping[0].to, jumping[0].second_axis_value), (4.0, 3.0, Some(7.0)));
         assert_eq!(jumps(&axis, BranchDirection::Up, None, &line(&[10.0, 11.0, 0.0, 30.0, 29.0, 28.0])), []);
     }
 
@@ -166,13 +172,13 @@ mod tests {
     fn branches_differ_where_their_motions_do() {
         let axis = axis(&[4.0, 3.0, 2.0, 1.0]);
         let (up, down) = (line(&[5.0, 5.0, 2.0, 1.0]), line(&[5.0, 10.0, 4.0, 1.001]));
-        let found = hysteresis(&axis, None, &up, &down);
-        assert_eq!(found.len(), 1);
+        let intervals = hysteresis(&axis, None, &up, &down);
+        assert_eq!(intervals.len(), 1);
         assert_eq!(
-            (found[0].from, found[0].to, found[0].differ.as_slice()),
+            (intervals[0].from, intervals[0].to, intervals[0].differ.as_slice()),
             (2.0, 3.0, [BranchDifference::Rms].as_slice())
         );
-        assert!((found[0].largest_rms_ratio - 2.0).abs() < 1e-12);
+        assert!((intervals[0].largest_rms_ratio - 2.0).abs() < 1e-12);
         // Means of a finite record scatter by their errors.
         let mut noisy = up.clone();
         noisy[1].mesh_circumferential_acceleration_rms_m_s2 = Some(PerHalf { left: 5.2, right: 5.2 });

@@ -27,7 +27,7 @@ pub fn run(
     let speed = &sweep.axes[at];
     let other = sweep.axes.get(1 - at);
     let quiet = SolveContext { progress: &|_, _| {}, ..*context };
-    let mut found = Vec::new();
+    let mut diagrams = Vec::new();
     for index in 0..other.map_or(1, Axis::len) {
         let other_axis_value = other.map(|axis| axis.value(index));
         let mut values = vec![speed.value(0)];
@@ -43,14 +43,14 @@ pub fn run(
             Ok((modes, job.document().design.pinion.teeth))
         });
         match modes {
-            Ok((Some(modes), teeth)) => found.push(diagram(speed, other_axis_value, f64::from(teeth), modes)),
+            Ok((Some(modes), teeth)) => diagrams.push(diagram(speed, other_axis_value, f64::from(teeth), modes)),
             Ok((None, _)) => {}
             Err(SolveError::Canceled(canceled)) => return Err(canceled.into()),
             // The rows say why.
             Err(_) => {}
         }
     }
-    Ok(found)
+    Ok(diagrams)
 }
 
 fn diagram(speed: &Axis, other_axis_value: Option<f64>, teeth: f64, natural_modes: Vec<NaturalMode>) -> Campbell {

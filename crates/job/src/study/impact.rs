@@ -11,19 +11,19 @@ use herringbone_physics::dynamics;
 use herringbone_physics::gear::Half;
 use herringbone_physics::impact::{self, Inertia, MeshInConditions};
 
-/// What the impact stage leaves: its block of the result, and the pulse of each half.
+/// Outcome of the impact stage: its block of the result, and the pulse of each half.
 pub struct ImpactStage {
     pub summary: Option<result::ImpactResult>,
     pub pulses: [Option<dynamics::ImpactExcitation>; 2],
 }
 
-/// Whether the impact of a document is put on the equations of motion, or only reported. The one place where that is decided.
+/// True where the impact of a document acts in the equations of motion; else it is only reported.
 pub fn applied(document: &JobDocument) -> bool {
     // A mesh force by stiffness alone knows nothing of early contact; the loaded contact's contains it.
     document.model.mesh_force == MeshForce::Stiffness && !matches!(document.model.impact, ImpactInput::None)
 }
 
-/// Runs the impact stage: an impact that is not applied leaves no pulses. Warns of pulses that their model does not cover.
+/// Runs the impact stage: an impact that is not applied has no pulses. Warns of pulses outside the range of their model.
 pub fn run(
     document: &JobDocument,
     prepared: &Prepared,
@@ -31,7 +31,7 @@ pub fn run(
     mesh: &MeshStage,
     warnings: &mut Vec<Warning>,
 ) -> ImpactStage {
-    let mut stage = found(document, prepared, plane, mesh, warnings);
+    let mut stage = calculate(document, prepared, plane, mesh, warnings);
     let applied = applied(document);
     if !applied {
         stage.pulses = [None, None];
@@ -47,8 +47,8 @@ pub fn run(
     stage
 }
 
-/// The impact, applied or not. Where no corner contact can be found there is none, and a warning says why.
-fn found(
+/// The impact, applied or not. Without a corner contact there is none, and a warning gives the reason.
+fn calculate(
     document: &JobDocument,
     prepared: &Prepared,
     plane: &MotionPlane,

@@ -24,7 +24,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Positions of the closed-form and given curves over one mesh period.
 const CLOSED_FORM_POSITIONS: usize = 128;
 
-/// What the mesh stage leaves to the later stages.
+/// Outcome of the mesh stage for the later stages.
 #[derive(Debug, Clone)]
 pub struct MeshStage {
     pub summary: Mesh,
@@ -119,7 +119,7 @@ pub struct MeshMemo {
     pub(super) compliances: ComplianceMemo,
 }
 
-/// Outcomes kept by the hash of what they depend on.
+/// Outcomes by the hash of their inputs.
 pub struct Memo<T>(Mutex<HashMap<String, Arc<T>>>);
 
 impl<T> Default for Memo<T> {
@@ -193,10 +193,10 @@ fn loaded_contact(
     let (contact, reused) = match stored {
         Some(contact) => (contact, vec![ReusedStage::Mesh]),
         None => {
-            let found = compliance::find(case, pair, context, &memo.compliances)?;
-            let contact = solve_contact(case, pair, &found, context)?;
+            let compliances = compliance::find(case, pair, context, &memo.compliances)?;
+            let contact = solve_contact(case, pair, &compliances, context)?;
             context.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&contact).unwrap_or_default());
-            (contact, if found.elements_reused { vec![ReusedStage::FiniteElements] } else { Vec::new() })
+            (contact, if compliances.elements_reused { vec![ReusedStage::FiniteElements] } else { Vec::new() })
         }
     };
     let contact = Arc::new(contact);
@@ -207,14 +207,15 @@ fn loaded_contact(
 fn solve_contact(
     case: &ContactCase,
     pair: &Pair,
-    found: &compliance::Found,
+    compliances: &compliance::Found,
     context: &SolveContext,
 ) -> Result<LoadedContact, SolveError> {
-    let progress = |fraction: f64| (context.progress)(Stage::Mesh, found.done + (1.0 - found.done) * fraction);
+    let progress =
+        |fraction: f64| (context.progress)(Stage::Mesh, compliances.done + (1.0 - compliances.done) * fraction);
     let watch = Watch::new(&progress, context.canceled);
     let (torque_nm, stagger) = (case.torque_nm, case.half_stagger);
     let solve = if torque_nm < 0.0 { contact::solve_coast_halves } else { contact::solve_pair_of_halves };
-    solve(pair, torque_nm.abs(), stagger, &found.compliance, &case.settings, watch).map_err(contact_failed)
+    solve(pair, torque_nm.abs(), stagger, &compliances.compliance, &case.settings, watch).map_err(contact_failed)
 }
 
 pub fn contact_failed(error: ContactError) -> SolveError {

@@ -21,12 +21,14 @@ pub struct MeshForces {
     pub summary: ContactForceTable,
 }
 
-/// Accuracy of the table of the flanks that carry no load, over that of the others: they are met only after the whole play.
+/// Accuracy of the table of the flanks without load over that of the loaded ones: the teeth reach them only across the
+/// whole backlash.
 const IDLE_FLANKS: f64 = 10.0;
 /// The loosest accuracy of a table.
 const LOOSEST: f64 = 0.05;
 
-/// Tables of one half, or of both where they differ, of the flanks that carry the torque or of the others; from the job's memory, the store, or solved.
+/// Tables of one half, or of both where they differ, of the flanks that carry the torque or of the others; from the
+/// job's memo or the store, else solved.
 fn tables(
     case: &ContactCase,
     pair: &Pair,
@@ -42,7 +44,7 @@ fn tables(
     let tables = match stored {
         Some(tables) => tables,
         None => {
-            let found = compliance::find(case, pair, context, &memo.compliances)?;
+            let compliances = compliance::find(case, pair, context, &memo.compliances)?;
             let quiet = |_: f64| {};
             let watch = Watch::new(&quiet, context.canceled);
             let force_n = case.half_force_n(pair).abs();
@@ -53,7 +55,7 @@ fn tables(
             let halves: &[Half] = if same_gaps(flanks.pair) { &[Half::Left] } else { &Half::BOTH };
             let tables: Result<Vec<_>, _> = halves
                 .iter()
-                .map(|&half| ForceTable::new(flanks.pair, half, force_n, &found.compliance, &settings, watch))
+                .map(|&half| ForceTable::new(flanks.pair, half, force_n, &compliances.compliance, &settings, watch))
                 .collect();
             let tables = tables.map_err(contact_failed)?;
             context.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&tables).unwrap_or_default());
@@ -126,7 +128,8 @@ pub fn run(
     Ok(MeshForces { forces: [left, right], summary })
 }
 
-/// Whether both sides of the teeth meet the same gaps on their ways through the mesh (sampled on a grid finer than any modification needs).
+/// True where both sides of the teeth have the same gaps through the mesh, sampled on a grid finer than any
+/// modification needs.
 fn same_flanks(one: &Pair, other: &Pair) -> bool {
     const GRID: usize = 16;
     let (length_m, width_m) = (one.path_end_m - one.path_start_m, one.spec.face_width_m);
@@ -145,8 +148,8 @@ fn same_flanks(one: &Pair, other: &Pair) -> bool {
     })
 }
 
-/// A flank's force at `knots`, along s of the plane in use. `place` gives the phase of the table at a phase of the equations, and the sign with which it
-/// runs.
+/// Force of a flank at `knots`, along s of the plane in use. `place` maps a phase of the equations to that of the table
+/// and the sign of its direction.
 fn flank_force(
     table: &ForceTable,
     knots: &[f64],

@@ -1,4 +1,5 @@
-//! The springs outside the mesh: what the document gives, what follows from the gear bodies, and what is assumed after the size of the pair.
+//! The springs outside the mesh: given by the document, derived from the gear bodies, or assumed by the size of the
+//! pair.
 
 use crate::document::{self as doc, JobDocument, JobKind};
 use crate::result::{SpringOrigin, SpringValue, SupportsResult};
@@ -69,7 +70,8 @@ pub fn named(supports: &SupportsResult) -> [(&'static str, &SpringValue); 9] {
     ]
 }
 
-/// What was not given, with the values used; nothing where no equations of motion are solved. What a sweep varies is given.
+/// Warning of the springs that were not given, with the values used; none without equations of motion. Springs that a
+/// sweep varies are given.
 pub fn assumed(document: &JobDocument, used: &SupportsResult) -> Option<Warning> {
     if document.kind == JobKind::Mesh {
         return None;
@@ -77,8 +79,8 @@ pub fn assumed(document: &JobDocument, used: &SupportsResult) -> Option<Warning>
     let swept =
         |name: &str| document.axes.iter().any(|axis| axis.pointer.strip_prefix("/design/supports/") == Some(name));
     let list = |origin: SpringOrigin| {
-        let found = named(used).into_iter().filter(|(name, spring)| spring.origin == origin && !swept(name));
-        found.map(|(name, spring)| format!("{name} {}", shown(spring.value))).collect::<Vec<_>>().join(", ")
+        let springs = named(used).into_iter().filter(|(name, spring)| spring.origin == origin && !swept(name));
+        springs.map(|(name, spring)| format!("{name} {}", shown(spring.value))).collect::<Vec<_>>().join(", ")
     };
     let (assumed, derived) = (list(SpringOrigin::Assumed), list(SpringOrigin::Derived));
     let mut parts = Vec::new();

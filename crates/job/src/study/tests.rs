@@ -7,7 +7,10 @@ use super::unchecked::{check, solve};
 use super::*;
 use crate::document::JobDocument;
 use crate::parse_value;
-use crate::result::{Sweep, SweepPoint};
+use crate::result::{
+    BranchDifference, BranchDirection, ContactStateResult, RegimeResult, ReusedStage, SpringOrigin, SweepPoint,
+    SweepResult,
+};
 use herringbone_oracle::Tolerance::{Absolute, Relative};
 use herringbone_oracle::{check as check_value, check_worst};
 use serde_json::{Value, json};
@@ -241,7 +244,7 @@ fn the_contact_analysis_is_kept_and_taken_again() {
     let mut faster = example("table1");
     faster["operation"]["pinion_speed_rpm"] = json!(2500.0);
     let second = solve(&document(&faster), &context).expect("solved").result;
-    assert_eq!((first.numerics.reused.len(), second.numerics.reused), (0, vec!["mesh".to_owned()]));
+    assert_eq!((first.numerics.reused.len(), second.numerics.reused), (0, vec![ReusedStage::Mesh]));
     assert_eq!(first.mesh, second.mesh);
 }
 
@@ -258,7 +261,7 @@ fn finite_elements_are_solved_once_per_gear() {
         solve(&document(&value), &context).expect("solved").result
     };
     let (first, second) = (solve_at(800.0), solve_at(400.0));
-    assert_eq!((first.numerics.reused.len(), &second.numerics.reused), (0, &vec!["finite_elements".to_owned()]));
+    assert_eq!((first.numerics.reused.len(), &second.numerics.reused), (0, &vec![ReusedStage::FiniteElements]));
     value["model"]["mesh_stiffness"] = json!({"source": "ltca"});
     let analytic = solve(&document(&value), &context).expect("solved").result;
     let mean = |result: &crate::result::JobResult| result.mesh.as_ref().map_or(0.0, |m| m.stiffness_mean_n_per_um);
@@ -292,8 +295,8 @@ fn staggering_the_halves_shifts_the_right_one_by_its_part_of_the_period() {
 fn reference_case_c_repeats_every_second_period() {
     let result = solved(&example("given_stiffness")).result;
     let response = result.response.expect("a response");
-    assert_eq!(response.regime, "period-2");
-    assert_eq!(response.contact, "single-sided");
+    assert_eq!(response.regime, RegimeResult::Period(2));
+    assert_eq!(response.contact, ContactStateResult::SingleSided);
     // Event-exact reference: 95.76514756474366 m/s² over mesh periods 200 to 300.
     let rms = response.rms.mesh_circumferential_acceleration_m_s2.left;
     let topic = "Job: example documents";
@@ -305,7 +308,7 @@ fn a_response_says_how_it_repeats_and_how_well_it_is_balanced() {
     let mut value = example("given_stiffness");
     value["analysis"] = json!({"method": "periodic"});
     let response = solved(&value).result.response.expect("a response");
-    assert_eq!((response.regime.as_str(), response.period_mesh_periods), ("period-2", Some(2)));
+    assert_eq!((response.regime, response.period_mesh_periods), (RegimeResult::Period(2), Some(2)));
     let multipliers = response.floquet_multipliers.expect("found by the periodic method");
     // Ten coordinates without the free rotations, displacements and velocities, less the free screw motion's two.
     assert_eq!(multipliers.len(), 18);
@@ -329,7 +332,7 @@ fn a_chaotic_response_has_an_interval_and_no_multipliers() {
     value["operation"]["pinion_torque_nm"] = json!(40.0);
     value["analysis"] = json!({});
     let response = solved(&value).result.response.expect("a response");
-    assert_eq!((response.regime.as_str(), response.period_mesh_periods), ("chaotic", None));
+    assert_eq!((response.regime, response.period_mesh_periods), (RegimeResult::Chaotic, None));
     assert!(response.floquet_multipliers.is_none() && response.floquet_modulus_per_mesh_period.is_none());
     assert!(response.lyapunov_per_mesh_period.is_some_and(|exponent| exponent > 0.2));
     let interval = response.confidence_interval_95.expect("a long record").mesh_circumferential_acceleration_m_s2.left;
@@ -348,9 +351,9 @@ fn a_motion_that_is_too_dear_to_close_is_told_as_one_that_does_not_repeat() {
     value["operation"]["pinion_torque_nm"] = json!(11.878);
     value["model"]["impact"]["base_pitch_error_um"] = json!(8.0);
     let response = solved(&value).result.response.expect("a response");
-    assert_eq!(response.contact, "double-sided");
+    assert_eq!(response.contact, ContactStateResult::DoubleSided);
     println!("exponent {:?}", response.lyapunov_per_mesh_period);
-    assert!(["quasi-periodic", "chaotic"].contains(&response.regime.as_str()), "{}", response.regime);
+    assert!(matches!(response.regime, RegimeResult::QuasiPeriodic | RegimeResult::Chaotic), "{:?}", response.regime);
 }
 
 /// Event-exact references over the first twenty mesh periods from the static deflection, through the document: the mean of an
@@ -396,8 +399,8 @@ fn continuation_finds_both_branches_of_the_resonance_and_their_jumps() {
     value["continuation"] = json!("both");
     let sweep = solved(&value).result.sweep.expect("a sweep");
     let (up, down) = sweep.points.split_at(12);
-    assert!(up.iter().all(|row| row.branch.as_deref() == Some("up")));
-    assert!(down.iter().all(|row| row.branch.as_deref() == Some("down")));
+    assert!(up.iter().all(|row| row.branch == Some(BranchDirection::Up)));
+    assert!(down.iter().all(|row| row.branch == Some(BranchDirection::Down)));
     let rms = |row: &SweepPoint| row.mesh_circumferential_acceleration_rms_m_s2.expect("a response").left;
     // Far from the jumps there is one motion; between them, at 9100 r/min, the upper one is more than twice as strong.
     let topic = "Job: continuation";
@@ -406,17 +409,17 @@ fn continuation_finds_both_branches_of_the_resonance_and_their_jumps() {
         check_worst(topic, &format!("both branches at {rpm} r/min, RMS of x_left''"), [error], 1e-5);
     }
     assert_eq!(
-        (up[6].values[0], up[6].contact.as_deref(), down[6].contact.as_deref()),
-        (9100.0, Some("continuous"), Some("single-sided"))
+        (up[6].values[0], up[6].contact, down[6].contact),
+        (9100.0, Some(ContactStateResult::Continuous), Some(ContactStateResult::SingleSided))
     );
     assert!(rms(&down[6]) > 2.0 * rms(&up[6]), "{} and {}", rms(&down[6]), rms(&up[6]));
-    assert!(sweep.points.iter().all(|row| row.regime.as_deref() == Some("period-1")));
+    assert!(sweep.points.iter().all(|row| row.regime == Some(RegimeResult::Period(1))));
     let hysteresis = sweep.hysteresis.expect("both directions");
     assert_eq!(hysteresis.len(), 1);
     assert_eq!((hysteresis[0].from, hysteresis[0].to), (8900.0, 9300.0));
-    assert!(hysteresis[0].differ.contains(&"rms".to_owned()) && hysteresis[0].largest_rms_ratio > 2.0);
+    assert!(hysteresis[0].differ.contains(&BranchDifference::Rms) && hysteresis[0].largest_rms_ratio > 2.0);
     let jumps: Vec<_> = sweep.jumps.expect("a continuation").into_iter().map(|j| (j.branch, j.from, j.to)).collect();
-    assert_eq!(jumps, [("up".to_owned(), 9300.0, 9400.0), ("down".to_owned(), 8900.0, 8800.0)]);
+    assert_eq!(jumps, [(BranchDirection::Up, 9300.0, 9400.0), (BranchDirection::Down, 8900.0, 8800.0)]);
     // The branch from below is the one found by following the motion for long at each speed.
     value["analysis"] =
         json!({"accuracy": 1e-5, "method": "integrate", "mesh_periods": 400, "record_mesh_periods": 50});
@@ -441,14 +444,15 @@ fn rows_carry_what_is_asked_for() {
     let sweep = solved(&value).result.sweep.expect("a sweep");
     let orders = sweep.spectrum_mesh_orders.expect("asked for");
     assert_eq!((orders.len(), orders[0], orders[79]), (80, 0.25, 20.0));
-    for (row, (regime, points)) in sweep.points.iter().zip([("chaotic", 200), ("period-2", 2), ("period-1", 1)]) {
+    let regimes = [(RegimeResult::Chaotic, 200), (RegimeResult::Period(2), 2), (RegimeResult::Period(1), 1)];
+    for (row, (regime, points)) in sweep.points.iter().zip(regimes) {
         let poincare = row.poincare.as_ref().expect("asked for");
-        assert_eq!((row.regime.as_deref(), poincare.x_left_m.len()), (Some(regime), points));
+        assert_eq!((row.regime, poincare.x_left_m.len()), (Some(regime), points));
         assert_eq!(poincare.v_x_left_m_s.len(), points);
         let bands = row.acceleration_spectrum_m_s2.as_ref().expect("asked for");
         let power: f64 = bands.iter().map(|a| 0.5 * a * a).sum();
         let rms = row.mesh_circumferential_acceleration_rms_m_s2.expect("a response").left;
-        let quantity = format!("power of the row's spectrum against its RMS, {regime}");
+        let quantity = format!("power of the row's spectrum against its RMS, {}", regime.as_str());
         check_value("Job: sweeps", &quantity, power.sqrt(), rms, Relative(0.01));
         // A motion of one period has whole orders only, one of two the halves too.
         let besides = |per_order: f64| {
@@ -456,11 +460,11 @@ fn rows_carry_what_is_asked_for() {
             between.map(|(_, a)| 0.5 * a * a).sum::<f64>().sqrt() / rms
         };
         let least = match regime {
-            "period-1" => besides(1.0) < 1e-9,
-            "period-2" => besides(2.0) < 1e-9 && besides(1.0) > 0.1,
+            RegimeResult::Period(1) => besides(1.0) < 1e-9,
+            RegimeResult::Period(2) => besides(2.0) < 1e-9 && besides(1.0) > 0.1,
             _ => besides(2.0) > 0.1,
         };
-        assert!(least, "{regime}: {} {}", besides(1.0), besides(2.0));
+        assert!(least, "{regime:?}: {} {}", besides(1.0), besides(2.0));
     }
     let plainly = |mut row: SweepPoint| {
         (row.poincare, row.acceleration_spectrum_m_s2) = (None, None);
@@ -587,7 +591,7 @@ fn a_sweep_that_was_stopped_goes_on_where_it_was() {
             }
         };
         assert!(runs > 2, "{continuation}: {runs} run(s)");
-        assert_eq!(pieced.numerics.reused, ["points"]);
+        assert_eq!(pieced.numerics.reused, [ReusedStage::Points]);
         let (pieced, whole) = (pieced.sweep.expect("a sweep"), whole.sweep.expect("a sweep"));
         for (pieced, whole) in pieced.points.iter().zip(&whole.points) {
             // The largest force is looked for between the steps, which neighbours in a group may set.
@@ -595,7 +599,7 @@ fn a_sweep_that_was_stopped_goes_on_where_it_was() {
             assert!(difference.abs() < 1e-9, "{continuation}, {method}: {difference}");
             assert_eq!(&SweepPoint { dynamic_factor: whole.dynamic_factor, ..pieced.clone() }, whole, "{continuation}");
         }
-        let rest = |sweep| Sweep { points: Vec::new(), ..sweep };
+        let rest = |sweep| SweepResult { points: Vec::new(), ..sweep };
         assert!(rest(pieced) == rest(whole), "{continuation}, {method}: the rows are alike, but not the rest");
     }
 }
@@ -701,8 +705,8 @@ fn supports_that_were_not_given_are_said_with_their_values() {
     }
     let used = result.supports.expect("a response");
     assert_eq!(
-        (used.gear_axial_n_per_um.origin.as_str(), used.gear_halves_axial_n_per_um.origin.as_str()),
-        ("assumed", "derived")
+        (used.gear_axial_n_per_um.origin, used.gear_halves_axial_n_per_um.origin),
+        (SpringOrigin::Assumed, SpringOrigin::Derived)
     );
     // The document as accepted does not pretend that they were given.
     let accepted = serde_json::to_value(document(&value)).expect("JSON");
@@ -717,7 +721,11 @@ fn supports_that_were_not_given_are_said_with_their_values() {
     let again = solved(&given).result;
     assert_eq!(about_supports(&again), None);
     assert_eq!(again.response, result.response);
-    assert!(supports::named(&again.supports.expect("a response")).iter().all(|(_, spring)| spring.origin == "given"));
+    assert!(
+        supports::named(&again.supports.expect("a response"))
+            .iter()
+            .all(|(_, spring)| spring.origin == SpringOrigin::Given)
+    );
     // One of them given: the others are said.
     let mut some = value.clone();
     some["design"]["supports"] = json!({"gear_axial_n_per_um": 0.0});
@@ -844,8 +852,8 @@ fn the_dynamic_factor_counts_the_impact() {
         let factor = response.dynamic_factor.expect("a torque");
         let force = response.tooth_force_n.left;
         println!("{rpm} r/min, {acts_on}: impact {:.0} N, factor {factor:.4}, {force:?}", impact.force_n);
-        assert!(factor >= 1.0 && force.max_n >= force.static_n * (1.0 - 1e-9) && force.min_n <= force.static_n);
-        let largest = [response.tooth_force_n.left, response.tooth_force_n.right].map(|f| f.max_n / f.static_n);
+        assert!(factor >= 1.0 && force.max >= force.static_n * (1.0 - 1e-9) && force.min <= force.static_n);
+        let largest = [response.tooth_force_n.left, response.tooth_force_n.right].map(|f| f.max / f.static_n);
         assert_eq!(factor, largest[0].max(largest[1]).max(1.0));
     }
 }
@@ -872,11 +880,12 @@ fn a_record_that_ends_before_the_motion_is_not_settled() {
         (80, 60, 5000.0, 0.005),
     ] {
         let result = case(periods, record, rpm, ratio);
-        let regime = result.response.as_ref().expect("a response").regime.clone();
-        assert_eq!(regime, "not-settled", "{periods}, {record}, {rpm}, {ratio}");
+        let regime = result.response.as_ref().expect("a response").regime;
+        assert_eq!(regime, RegimeResult::NotSettled, "{periods}, {record}, {rpm}, {ratio}");
         assert!(warned(&result, "not-settled", "/analysis/mesh_periods"));
         let long = case(3000, 20, rpm, ratio);
-        assert!(long.response.as_ref().expect("a response").regime.starts_with("period-"), "{rpm}, {ratio}");
+        let regime = long.response.as_ref().expect("a response").regime;
+        assert!(matches!(regime, RegimeResult::Period(_)), "{rpm}, {ratio}: {regime:?}");
         assert!(!warned(&long, "not-settled", "/analysis/mesh_periods"));
     }
 }
@@ -903,7 +912,8 @@ fn an_unloaded_pair_is_at_rest_without_an_alarm() {
             }
             let result = solved(&value).result;
             let response = result.response.as_ref().expect("a response");
-            assert_eq!((response.regime.as_str(), response.contact.as_str()), ("period-1", "continuous"), "{method}");
+            let expected = (RegimeResult::Period(1), ContactStateResult::Continuous);
+            assert_eq!((response.regime, response.contact), expected, "{method}");
             assert_eq!((response.error_estimate, response.dynamic_factor), (0.0, None));
             assert_eq!(response.rms.mesh_circumferential_acceleration_m_s2, Default::default());
             assert_eq!(response.tooth_force_n, Default::default());
@@ -928,7 +938,7 @@ fn parametric_instability_is_told() {
         value["analysis"] = analysis;
         let result = solved(&value).result;
         let response = result.response.as_ref().expect("a response");
-        assert_eq!(response.regime, "unstable");
+        assert_eq!(response.regime, RegimeResult::Unstable);
         assert!(response.lyapunov_per_mesh_period.expect("a rate") > 0.0 && response.confidence_interval_95.is_none());
         let told = result.warnings.iter().find(|w| w.code == "unstable").expect("a warning");
         assert!(told.pointer == "/operation/pinion_speed_rpm" && told.detail.contains("growth rate"), "{told:?}");
@@ -938,7 +948,7 @@ fn parametric_instability_is_told() {
     value["kind"] = json!("sweep");
     value["axes"] = json!([{"pointer": "/model/mesh_damping_ratio", "values": [0.001, 0.2]}]);
     let points = solved(&value).result.sweep.expect("a sweep").points;
-    let regimes: Vec<_> = points.iter().map(|point| point.regime.as_deref()).collect();
-    assert_eq!(regimes, [Some("unstable"), Some("period-1")]);
+    let regimes: Vec<_> = points.iter().map(|point| point.regime).collect();
+    assert_eq!(regimes, [Some(RegimeResult::Unstable), Some(RegimeResult::Period(1))]);
     assert!(points[1].tooth_force_max_n.is_some_and(|force| force.left > 0.0));
 }

@@ -10,25 +10,25 @@ use herringbone_physics::dynamics::{self, DynamicsError, Parameters};
 use herringbone_physics::response::{self, Analysis, ChannelId, Regime};
 use herringbone_physics::watch::Watch;
 
-/// What the response stage leaves.
+/// Outcome of the response stage.
 pub struct Vibration {
     pub summary: ResponseResult,
     pub series: Vec<Channel>,
     pub warnings: Vec<Warning>,
     pub end_state: Option<Vec<f64>>,
-    /// What the row of a sweep carries beside its numbers.
+    /// Records for the row of a sweep, where the document asks for them.
     pub poincare: Option<Poincare>,
     pub bands: Option<Vec<f64>>,
 }
 
-/// Whether `asked` names the channel `name`: the velocities and accelerations of x may leave the x out (`a_left`).
-pub fn is_channel(asked: &str, name: &str) -> bool {
-    canonical(asked) == name
+/// True where `requested` names the channel `name`: velocities and accelerations of x may leave the x out (`a_left`).
+pub fn is_channel(requested: &str, name: &str) -> bool {
+    canonical(requested) == name
 }
 
-fn canonical(asked: &str) -> String {
-    match asked {
-        "v_left" | "v_right" | "a_left" | "a_right" => format!("{}_x{}", &asked[..1], &asked[1..]),
+fn canonical(requested: &str) -> String {
+    match requested {
+        "v_left" | "v_right" | "a_left" | "a_right" => format!("{}_x{}", &requested[..1], &requested[1..]),
         other => other.to_owned(),
     }
 }
@@ -38,10 +38,10 @@ fn canonical(asked: &str) -> String {
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
 pub fn channels(document: &JobDocument) -> Result<Vec<ChannelId>, DocumentError> {
-    let Some(asked) = &document.analysis.channels else { return Ok(ChannelId::all()) };
-    let mut ids = Vec::with_capacity(asked.len());
+    let Some(requested) = &document.analysis.channels else { return Ok(ChannelId::all()) };
+    let mut ids = Vec::with_capacity(requested.len());
     let mut violations = Vec::new();
-    for (index, name) in asked.iter().enumerate() {
+    for (index, name) in requested.iter().enumerate() {
         match ChannelId::parse(&canonical(name)) {
             Some(id) if !ids.contains(&id) => ids.push(id),
             Some(_) => {}
@@ -74,7 +74,7 @@ pub fn solve(
     Ok(response::solve(parameters, &analysis, &watch))
 }
 
-/// What the stage leaves of a response.
+/// Turns a response into the outcome of the stage.
 ///
 /// # Errors
 /// [`SolveError`].
@@ -130,32 +130,32 @@ fn word(value: &impl serde::Serialize) -> String {
     }
 }
 
-/// What is asked of the equations of motion.
+/// The analysis that the document requests of the equations of motion.
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
 pub fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, DocumentError> {
-    let asked = &document.analysis;
-    let state = wanted.start.or(asked.initial_state.as_deref());
+    let requested = &document.analysis;
+    let state = wanted.start.or(requested.initial_state.as_deref());
     let mut channels = channels(document)?;
     if wanted.records(Recorded::Spectrum) {
         channels.extend(ChannelId::parse(response_result::SPECTRUM_CHANNEL));
     }
     Ok(Analysis {
-        method: match asked.method {
+        method: match requested.method {
             MethodInput::Integrate => response::SolutionMethod::Integrate {
-                mesh_periods: u64::from(asked.mesh_periods),
-                record_mesh_periods: u64::from(asked.record_mesh_periods),
+                mesh_periods: u64::from(requested.mesh_periods),
+                record_mesh_periods: u64::from(requested.record_mesh_periods),
             },
             MethodInput::Periodic => response::SolutionMethod::Periodic,
             MethodInput::Auto => response::SolutionMethod::Auto,
         },
-        integrator: match asked.integrator {
+        integrator: match requested.integrator {
             IntegratorInput::Taylor => dynamics::Integrator::Taylor,
             IntegratorInput::RungeKutta4 => dynamics::Integrator::RungeKutta,
         },
-        accuracy: asked.accuracy,
-        samples_per_mesh_period: asked.samples_per_mesh_period as usize,
+        accuracy: requested.accuracy,
+        samples_per_mesh_period: requested.samples_per_mesh_period as usize,
         channels,
         initial_state: state.and_then(|state| <[f64; 24]>::try_from(state).ok()),
         energy_balance: wanted.whole,
@@ -163,7 +163,7 @@ pub fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, Doc
     })
 }
 
-/// Why the equations have no response.
+/// The error of a stage without a response.
 pub fn failed(error: DynamicsError) -> SolveError {
     let (code, sim_time_s) = match &error {
         DynamicsError::Canceled(canceled) => return (*canceled).into(),
@@ -183,7 +183,7 @@ pub fn failed(error: DynamicsError) -> SolveError {
 
 fn warnings(document: &JobDocument, summary: &response::Summary) -> Vec<Warning> {
     let mut warnings = bounds::of_motion(document, summary);
-    // An accuracy of numbers that mean nothing is nothing to be told.
+    // Numbers of an unstable motion mean nothing, and neither does their accuracy.
     if summary.error_estimate > document.analysis.accuracy && summary.regime != Regime::Unstable {
         let repeats = summary.period_mesh_periods.is_some();
         let reason =

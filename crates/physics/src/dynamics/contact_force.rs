@@ -262,13 +262,13 @@ pub(crate) struct ForceCells<R> {
 }
 
 impl<R: Real> ForceCells<R> {
-    pub fn none() -> Self {
+    pub(crate) fn none() -> Self {
         let zero = R::splat(0.0);
         Self { in_use: false, side: zero, lower: [zero; 4], upper: [zero; 4], coefficients: [[zero; 4]; 4] }
     }
 
     #[inline(always)]
-    pub fn set(&mut self, lane: usize, cell: &ForceCell) {
+    pub(crate) fn set(&mut self, lane: usize, cell: &ForceCell) {
         self.side.set(lane, cell.side);
         for k in 0..4 {
             self.lower[k].set(lane, cell.lower[k]);

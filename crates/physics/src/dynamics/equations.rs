@@ -93,7 +93,7 @@ pub(crate) struct Equations<const D: usize, R> {
 }
 
 impl<const D: usize> Equations<D, f64> {
-    pub fn new(p: &Parameters, omega_ref: f64) -> Self {
+    pub(crate) fn new(p: &Parameters, omega_ref: f64) -> Self {
         let couplings = &p.couplings;
         let torsional = [couplings.pinion_torsion, couplings.gear_torsion].iter().any(|s| *s != Spring::default());
         Self {
@@ -108,23 +108,23 @@ impl<const D: usize> Equations<D, f64> {
     }
 
     /// The equations of antisymmetric perturbations (D = 6): the other half moves as the opposite of the mirror image.
-    pub fn antisymmetric(&self) -> Self {
+    pub(crate) fn antisymmetric(&self) -> Self {
         Self { parity: -1.0, ..self.clone() }
     }
 
     /// Whether a torsional spring couples the halves of a gear.
-    pub fn couples_rotations(&self) -> bool {
+    pub(crate) fn couples_rotations(&self) -> bool {
         self.torsional
     }
 
     /// Indices of the coordinates that are integrated: all, or all but w where no torsional spring acts.
-    pub fn active(&self) -> impl Iterator<Item = usize> + use<D> {
+    pub(crate) fn active(&self) -> impl Iterator<Item = usize> + use<D> {
         let with_w = self.torsional && (D > PER_HALF || self.parity < 0.0);
         (0..D).filter(move |c| with_w || c % PER_HALF != W)
     }
 
     /// Diagonal of the mass matrix in solver coordinates, kg.
-    pub fn masses_kg(&self, omega_ref: f64) -> [f64; D] {
+    pub(crate) fn masses_kg(&self, omega_ref: f64) -> [f64; D] {
         let mut out = [0.0; D];
         let square = omega_ref * omega_ref;
         for (j, h) in self.halves[..Self::HALVES].iter().enumerate() {
@@ -135,7 +135,7 @@ impl<const D: usize> Equations<D, f64> {
     }
 
     /// The same equations in every lane.
-    pub fn broadcast<R: Real>(&self) -> Equations<D, R> {
+    pub(crate) fn broadcast<R: Real>(&self) -> Equations<D, R> {
         let mut out = Equations::at_rest();
         for lane in 0..R::LANES {
             out.put(lane, self);
@@ -145,10 +145,10 @@ impl<const D: usize> Equations<D, f64> {
 }
 
 impl<const D: usize, R: Real> Equations<D, R> {
-    pub const HALVES: usize = D / PER_HALF;
+    pub(crate) const HALVES: usize = D / PER_HALF;
 
     /// Equations without forces, for unused lanes.
-    pub fn at_rest() -> Self {
+    pub(crate) fn at_rest() -> Self {
         Self {
             halves: [HalfEquations::default(); 2],
             cos: R::default(),
@@ -161,7 +161,7 @@ impl<const D: usize, R: Real> Equations<D, R> {
     }
 
     /// Sets the equations of one lane. All lanes have the same parity.
-    pub fn put(&mut self, lane: usize, one: &Equations<D, f64>) {
+    pub(crate) fn put(&mut self, lane: usize, one: &Equations<D, f64>) {
         fn rate<R: Real>(to: &mut ScaledSpring<R>, lane: usize, from: &ScaledSpring<f64>) {
             to.k.set(lane, from.k);
             to.c.set(lane, from.c);
@@ -212,7 +212,7 @@ impl<const D: usize, R: Real> Equations<D, R> {
 
     /// Displacement s of a half along the tooth normal, m.
     #[inline(always)]
-    pub fn s(&self, j: usize, x: &[R; D]) -> R {
+    pub(crate) fn s(&self, j: usize, x: &[R; D]) -> R {
         let i = j * PER_HALF;
         self.cos * (x[i + YP] - x[i + YG] + x[i + U]) + self.halves[j].sin * (x[i + ZP] - x[i + ZG])
     }

@@ -22,14 +22,25 @@ pub struct Harmonic {
 #[serde(rename_all = "snake_case")]
 pub enum Stiffness {
     /// Constant stiffness.
-    Constant { mean_n_per_m: f64 },
+    Constant {
+        /// Stiffness, N/m.
+        mean_n_per_m: f64,
+    },
     /// k(φ) = mean (1 + Σ_i amplitude_i cos(2π i φ + phase_i)).
-    Fourier { mean_n_per_m: f64, harmonics: Vec<Harmonic> },
+    Fourier {
+        /// Mean, N/m.
+        mean_n_per_m: f64,
+        /// Harmonics from the first, relative to the mean.
+        harmonics: Vec<Harmonic>,
+    },
     /// Samples, equally spaced over one period, the first at φ = 0. Interpolation: periodic monotone cubic (F. N.
     /// Fritsch and R. E. Carlson, SIAM J. Numer. Anal. 17 (1980) 238–246, doi:10.1137/0717021) with the harmonic-mean
     /// slopes of Brodlie. It passes through all samples and has no extremum between them. The integrators use the
     /// cubics exactly.
-    Samples { values_n_per_m: Vec<f64> },
+    Samples {
+        /// Samples, N/m; not negative.
+        values_n_per_m: Vec<f64>,
+    },
 }
 
 impl Stiffness {
@@ -82,9 +93,19 @@ impl Stiffness {
 pub enum ImpactExcitation {
     /// F_s(φ) = force · sin(π (φ − start) / duration) for 0 ≤ φ − start < duration, once per mesh period. Pulses longer
     /// than a mesh period overlap and add up.
-    HalfSine { force_n: f64, duration_mesh_periods: f64, start_mesh_periods: f64 },
+    HalfSine {
+        /// Amplitude, N.
+        force_n: f64,
+        /// Duration in mesh periods, 1e-9 to 16.
+        duration_mesh_periods: f64,
+        /// Start in mesh periods.
+        start_mesh_periods: f64,
+    },
     /// F_s(φ) = Σ_i amplitude_i cos(2π i φ + phase_i), amplitudes in N.
-    Harmonics { harmonics: Vec<Harmonic> },
+    Harmonics {
+        /// Harmonics from the first, amplitudes in N.
+        harmonics: Vec<Harmonic>,
+    },
 }
 
 /// Longest half sine, in mesh periods; up to 16 pulses then overlap.
@@ -178,12 +199,12 @@ impl FourierSeries<f64> {
 }
 
 impl<R: Real> FourierSeries<R> {
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self { constant: R::splat(0.0), terms: Vec::new() }
     }
 
     /// Sets the series of one lane. Shorter series are padded with zero terms.
-    pub fn put(&mut self, lane: usize, one: &FourierSeries<f64>) {
+    pub(crate) fn put(&mut self, lane: usize, one: &FourierSeries<f64>) {
         let zero = R::splat(0.0);
         while self.terms.len() < one.terms.len() {
             self.terms.push(HarmonicTerm { cos: zero, sin: zero, even: [zero; PER_PARITY], odd: [zero; PER_PARITY] });
@@ -202,13 +223,13 @@ impl<R: Real> FourierSeries<R> {
 
     /// Whether no lane has harmonics.
     #[inline(always)]
-    pub fn is_constant(&self) -> bool {
+    pub(crate) fn is_constant(&self) -> bool {
         self.terms.is_empty()
     }
 
     /// Taylor coefficients in scaled time, orders 0 to `order`.
     #[inline(always)]
-    pub fn fill(&self, phase: R, order: usize, out: &mut [R; MAX_ORDER + 1]) {
+    pub(crate) fn fill(&self, phase: R, order: usize, out: &mut [R; MAX_ORDER + 1]) {
         let zero = R::splat(0.0);
         if self.is_constant() {
             out[..=order].fill(zero);
@@ -259,7 +280,7 @@ enum StiffnessKind {
 }
 
 impl StiffnessWaveform {
-    pub fn new(stiffness: &Stiffness, shift: f64, period_tau: f64) -> Self {
+    pub(crate) fn new(stiffness: &Stiffness, shift: f64, period_tau: f64) -> Self {
         let kind = match stiffness {
             Stiffness::Constant { mean_n_per_m } => {
                 StiffnessKind::Fourier(FourierSeries::new(*mean_n_per_m, 0.0, &[], shift, period_tau))
@@ -273,7 +294,7 @@ impl StiffnessWaveform {
     }
 
     /// Appends the phases at which the waveform is not smooth.
-    pub fn breakpoints(&self, out: &mut Vec<f64>) {
+    pub(crate) fn breakpoints(&self, out: &mut Vec<f64>) {
         if let StiffnessKind::Pieces(pieces) = &self.kind
             && pieces.len() > 1
         {
@@ -296,7 +317,7 @@ impl StiffnessWaveform {
     }
 
     /// Value at `phase`, on the smooth interval that contains `interior`, N/m.
-    pub fn value(&self, phase: f64, interior: f64) -> f64 {
+    pub(crate) fn value(&self, phase: f64, interior: f64) -> f64 {
         match &self.kind {
             StiffnessKind::Fourier(series) => series.value(phase),
             StiffnessKind::Pieces(pieces) => {
@@ -308,7 +329,7 @@ impl StiffnessWaveform {
     }
 
     /// The Fourier series, if the waveform is one (a constant is a series without terms).
-    pub fn series(&self) -> Option<&FourierSeries<f64>> {
+    pub(crate) fn series(&self) -> Option<&FourierSeries<f64>> {
         match &self.kind {
             StiffnessKind::Fourier(series) => Some(series),
             StiffnessKind::Pieces(_) => None,
@@ -317,7 +338,7 @@ impl StiffnessWaveform {
 
     /// Taylor coefficients about `phase`, orders 0 to 3; the higher ones are zero. None for a Fourier series.
     #[inline(always)]
-    pub fn cubic(&self, phase: f64, interior: f64) -> Option<[f64; 4]> {
+    pub(crate) fn cubic(&self, phase: f64, interior: f64) -> Option<[f64; 4]> {
         let StiffnessKind::Pieces(pieces) = &self.kind else { return None };
         let (i, u) = self.piece(pieces.len(), phase, interior);
         let c = &pieces[i];
@@ -340,7 +361,7 @@ pub(crate) enum ImpactWaveform {
 }
 
 impl ImpactWaveform {
-    pub fn new(impact: Option<&ImpactExcitation>, shift: f64, period_tau: f64) -> Self {
+    pub(crate) fn new(impact: Option<&ImpactExcitation>, shift: f64, period_tau: f64) -> Self {
         match impact {
             None => ImpactWaveform::None,
             Some(ImpactExcitation::HalfSine { force_n, .. }) if *force_n == 0.0 => ImpactWaveform::None,
@@ -359,7 +380,7 @@ impl ImpactWaveform {
     }
 
     /// Upper bound of the magnitude of the force, N.
-    pub fn largest_n(&self) -> f64 {
+    pub(crate) fn largest_n(&self) -> f64 {
         match self {
             ImpactWaveform::None => 0.0,
             ImpactWaveform::HalfSine { force_n, duration, .. } => force_n.abs() * duration.ceil(),
@@ -367,7 +388,7 @@ impl ImpactWaveform {
         }
     }
 
-    pub fn breakpoints(&self, out: &mut Vec<f64>) {
+    pub(crate) fn breakpoints(&self, out: &mut Vec<f64>) {
         if let ImpactWaveform::HalfSine { duration, start, .. } = self {
             out.push(start.rem_euclid(1.0));
             out.push((start + duration).rem_euclid(1.0));
@@ -390,7 +411,7 @@ impl ImpactWaveform {
         (sin, cos)
     }
 
-    pub fn value(&self, phase: f64, interior: f64) -> f64 {
+    pub(crate) fn value(&self, phase: f64, interior: f64) -> f64 {
         match self {
             ImpactWaveform::None => 0.0,
             ImpactWaveform::HalfSine { force_n, duration, start, .. } => {
@@ -402,21 +423,21 @@ impl ImpactWaveform {
 
     /// F sin and F cos of the active pulses at `phase` (those that are active at `interior`), N; None for harmonics.
     #[inline(always)]
-    pub fn pulse(&self, phase: f64, interior: f64) -> Option<(f64, f64)> {
+    pub(crate) fn pulse(&self, phase: f64, interior: f64) -> Option<(f64, f64)> {
         let ImpactWaveform::HalfSine { force_n, duration, start, .. } = self else { return None };
         let (sin, cos) = Self::sine(phase, interior, *duration, *start);
         Some((force_n * sin, force_n * cos))
     }
 
     /// (π/(duration · period))^n / n! of a half sine.
-    pub fn powers(&self) -> Option<&Coefficients> {
+    pub(crate) fn powers(&self) -> Option<&Coefficients> {
         match self {
             ImpactWaveform::HalfSine { power, .. } => Some(power),
             _ => None,
         }
     }
 
-    pub fn series(&self) -> Option<&FourierSeries<f64>> {
+    pub(crate) fn series(&self) -> Option<&FourierSeries<f64>> {
         match self {
             ImpactWaveform::Harmonics(series) => Some(series),
             _ => None,

@@ -22,7 +22,7 @@ pub(crate) struct ExcitationTerms<R> {
 }
 
 impl<R: Real> ExcitationTerms<R> {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let zero = [[R::splat(0.0); MAX_ORDER + 1]; 2];
         Self {
             stiffness: zero,
@@ -36,7 +36,7 @@ impl<R: Real> ExcitationTerms<R> {
 
     /// Copies the terms of one motion into all lanes.
     #[inline(always)]
-    pub fn broadcast(&mut self, one: &ExcitationTerms<f64>, order: usize) {
+    pub(crate) fn broadcast(&mut self, one: &ExcitationTerms<f64>, order: usize) {
         for j in 0..2 {
             for n in 0..=order {
                 self.stiffness[j][n] = R::splat(one.stiffness[j][n]);
@@ -49,7 +49,7 @@ impl<R: Real> ExcitationTerms<R> {
 
     /// Sets the stiffness of a half from its Taylor coefficients.
     #[inline(always)]
-    pub fn set_stiffness(&mut self, j: usize, coefficients: &[R], order: usize) {
+    pub(crate) fn set_stiffness(&mut self, j: usize, coefficients: &[R], order: usize) {
         self.stiffness[j][..coefficients.len()].copy_from_slice(coefficients);
         self.degree[j] = order;
         self.reverse_stiffness(j, order);
@@ -118,7 +118,7 @@ impl<const D: usize> DynamicModel<D> {
     /// Excitations of the variational equations about the scaled time `at` of a segment: for a tabulated contact force
     /// its stiffness along the motion.
     #[inline(always)]
-    pub fn expand_for_perturbations(
+    pub(crate) fn expand_for_perturbations(
         &self,
         segment: &Segment<'_, D>,
         at: f64,
@@ -192,7 +192,7 @@ pub(crate) struct LaneExcitations<'m, const L: usize> {
 }
 
 impl<'m, const L: usize> LaneExcitations<'m, L> {
-    pub fn none() -> Self {
+    pub(crate) fn none() -> Self {
         let half = || LaneExcitation {
             stiffness: FourierSeries::zero(),
             cubics: [None; L],
@@ -205,7 +205,7 @@ impl<'m, const L: usize> LaneExcitations<'m, L> {
     }
 
     /// Sets the excitations of one lane.
-    pub fn put(&mut self, lane: usize, one: &'m [Excitation]) {
+    pub(crate) fn put(&mut self, lane: usize, one: &'m [Excitation]) {
         const NONE: Coefficients = [0.0; MAX_ORDER + 1];
         for (to, from) in self.halves.iter_mut().zip(one) {
             let series = from.stiffness.series();

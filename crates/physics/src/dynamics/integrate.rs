@@ -65,7 +65,7 @@ pub(crate) struct Motion<'a, const D: usize> {
 
 impl<'a, const D: usize> Motion<'a, D> {
     /// `tolerance`: local error of a step relative to the size of the motion. `max_steps`: limit over all mesh periods.
-    pub fn new(
+    pub(crate) fn new(
         model: &'a DynamicModel<D>,
         state: MotionState<D>,
         integrator: Integrator,
@@ -88,13 +88,13 @@ impl<'a, const D: usize> Motion<'a, D> {
     }
 
     #[cfg(test)]
-    pub fn with_fixed_taylor(mut self, order: usize, step_tau: f64) -> Self {
+    pub(crate) fn with_fixed_taylor(mut self, order: usize, step_tau: f64) -> Self {
         self.stepper = Stepper::Taylor(Taylor::new(1.0, order, Some(step_tau)));
         self
     }
 
     #[cfg(test)]
-    pub fn with_fixed_runge_kutta(mut self, step_tau: f64) -> Self {
+    pub(crate) fn with_fixed_runge_kutta(mut self, step_tau: f64) -> Self {
         self.stepper = Stepper::RungeKutta(RungeKutta::new(1.0, Some(step_tau)));
         self
     }
@@ -103,7 +103,7 @@ impl<'a, const D: usize> Motion<'a, D> {
     ///
     /// # Errors
     /// [`DynamicsError`].
-    pub fn advance_period(
+    pub(crate) fn advance_period(
         &mut self,
         observer: &mut impl Observer<D>,
         watch: &Watch<'_>,
@@ -143,7 +143,7 @@ impl<'a, const D: usize> Motion<'a, D> {
     }
 
     /// Time since the start of the integration, s.
-    pub fn time_s(&self) -> f64 {
+    pub(crate) fn time_s(&self) -> f64 {
         (self.state.period as f64 + self.state.phase) * self.model.period_tau / self.model.omega_ref
     }
 }

@@ -80,13 +80,13 @@ const SAME_PHASE: f64 = 1e-12;
 
 impl<const D: usize> DynamicModel<D> {
     /// Number of solved halves.
-    pub const HALVES: usize = D / PER_HALF;
+    pub(crate) const HALVES: usize = D / PER_HALF;
 
     /// Scales the equations by the highest of the mesh frequency and the estimated natural frequencies.
     ///
     /// # Errors
     /// [`DynamicsError::InvalidParameter`].
-    pub fn new(p: &Parameters) -> Result<Self, DynamicsError> {
+    pub(crate) fn new(p: &Parameters) -> Result<Self, DynamicsError> {
         p.validate()?;
         let mesh_omega = std::f64::consts::TAU * p.mesh_frequency_hz;
         let omega_ref =
@@ -129,33 +129,33 @@ impl<const D: usize> DynamicModel<D> {
     }
 
     /// The same model with fixed contact.
-    pub fn with_fixed_contact(&self) -> Self {
+    pub(crate) fn with_fixed_contact(&self) -> Self {
         Self { fixed_contact: true, ..self.clone() }
     }
 
     /// The same model with the equations of antisymmetric perturbations (D = 6), see [`Equations::antisymmetric`].
-    pub fn antisymmetric(&self) -> Self {
+    pub(crate) fn antisymmetric(&self) -> Self {
         Self { equations: self.equations.antisymmetric(), ..self.clone() }
     }
 
     /// Diagonal of the mass matrix in solver coordinates, kg.
-    pub fn masses_kg(&self) -> [f64; D] {
+    pub(crate) fn masses_kg(&self) -> [f64; D] {
         self.equations.masses_kg(self.omega_ref)
     }
 
     /// Whether contact can change.
-    pub fn contact_can_change(&self) -> bool {
+    pub(crate) fn contact_can_change(&self) -> bool {
         self.uses_contact_force() || (self.b > 0.0 && !self.fixed_contact)
     }
 
     /// Whether the mesh force is a tabulated contact force, on all halves.
-    pub fn uses_contact_force(&self) -> bool {
+    pub(crate) fn uses_contact_force(&self) -> bool {
         self.excitations.iter().any(|e| e.contact.is_some())
     }
 
     /// Contact of half `j` at the displacement `s`. Without backlash the law of a mesh stiffness is linear: always
     /// driving.
-    pub fn contact_of(&self, j: usize, s: f64, phase: f64) -> ContactSide {
+    pub(crate) fn contact_of(&self, j: usize, s: f64, phase: f64) -> ContactSide {
         if let Some(contact) = &self.excitations[j].contact {
             return contact.force.contact_of(s, self.b, phase - contact.shift);
         }
@@ -169,21 +169,21 @@ impl<const D: usize> DynamicModel<D> {
     }
 
     /// Largest s of a half without force on its driving flanks at any phase, m.
-    pub fn first_contact_displacement_m(&self, j: usize) -> f64 {
+    pub(crate) fn first_contact_displacement_m(&self, j: usize) -> f64 {
         let contact = self.excitations[j].contact.as_ref();
         self.b + contact.map_or(0.0, |c| c.force.min_free_m(1))
     }
 
     /// Rate in scaled time of the displacement at which contact of a side (1 driving, −1 back) begins, measured from
     /// mid-gap; 0 for a mesh stiffness.
-    pub fn contact_onset_rate(&self, j: usize, side: ContactSide, phase: f64) -> f64 {
+    pub(crate) fn contact_onset_rate(&self, j: usize, side: ContactSide, phase: f64) -> f64 {
         let contact = self.excitations[j].contact.as_ref();
         contact.map_or(0.0, |c| c.force.free_rate_m(side, phase - c.shift) / self.period_tau)
     }
 
     /// Normal mesh force, N.
     #[inline(always)]
-    pub fn mesh_force(&self, j: usize, (phase, interior): (f64, f64), s: f64, s_v: f64) -> f64 {
+    pub(crate) fn mesh_force(&self, j: usize, (phase, interior): (f64, f64), s: f64, s_v: f64) -> f64 {
         let e = &self.excitations[j];
         let damper = |closed: bool| if closed { self.halves[j].cm } else { self.halves[j].cm_in_gap } * s_v;
         if let Some(contact) = &e.contact {
@@ -196,7 +196,7 @@ impl<const D: usize> DynamicModel<D> {
     }
 
     /// Accelerations in scaled time at a phase: right-hand side for Runge–Kutta methods.
-    pub fn acceleration(&self, phase: f64, interior: f64, x: &[f64; D], v: &[f64; D]) -> [f64; D] {
+    pub(crate) fn acceleration(&self, phase: f64, interior: f64, x: &[f64; D], v: &[f64; D]) -> [f64; D] {
         let mut a = [0.0; D];
         for j in 0..Self::HALVES {
             let force = self.mesh_force(j, (phase, interior), self.s(j, x), self.s(j, v));
@@ -209,19 +209,19 @@ impl<const D: usize> DynamicModel<D> {
     }
 
     /// Upper bound of load and impact on the mesh of a half, N.
-    pub fn max_excitation_force_n(&self, j: usize) -> f64 {
+    pub(crate) fn max_excitation_force_n(&self, j: usize) -> f64 {
         self.halves[j].load.abs() + self.excitations[j].impact.largest_n()
     }
 
     /// Accelerations in scaled time due to a normal mesh force (N) of half `j` alone.
-    pub fn acceleration_of_mesh_force(&self, j: usize, force: f64) -> [f64; D] {
+    pub(crate) fn acceleration_of_mesh_force(&self, j: usize, force: f64) -> [f64; D] {
         let mut out = [0.0; D];
         out[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, &[0.0; D], &[0.0; D], force, 0.0));
         out
     }
 
     /// Accelerations in scaled time due to the springs other than the mesh.
-    pub fn acceleration_of_springs(&self, x: &[f64; D]) -> [f64; D] {
+    pub(crate) fn acceleration_of_springs(&self, x: &[f64; D]) -> [f64; D] {
         let mut out = [0.0; D];
         for j in 0..Self::HALVES {
             out[j * PER_HALF..][..PER_HALF].copy_from_slice(&self.half_acceleration(j, x, &[0.0; D], 0.0, 0.0));
@@ -233,7 +233,7 @@ impl<const D: usize> DynamicModel<D> {
     /// rotational equation of motion and the polynomials `rows`; it does not depend on the law of the mesh force. Over
     /// a periodic motion its mean is T_p/(R_p cosβ) if no torsional spring couples the halves, and always in the sum of
     /// both halves.
-    pub fn tooth_force_coefficient(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
+    pub(crate) fn tooth_force_coefficient(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
         let n1 = (n + 1) as f64;
         let free = self.half_acceleration(j, &rows[n], &rows[n + 1].map(|c| c * n1), 0.0, 0.0);
         let a = rows[n + 2][j * PER_HALF + U] * n1 * (n1 + 1.0);
@@ -243,7 +243,7 @@ impl<const D: usize> DynamicModel<D> {
 
     /// The impact's contribution to the normal force in the lateral and axial equations, N: interpolating cubic through
     /// four phases of a step, in powers of the fraction of the step.
-    pub fn impact_in_normal(&self, j: usize, phase: f64, step: f64, interior: f64) -> [f64; 4] {
+    pub(crate) fn impact_in_normal(&self, j: usize, phase: f64, step: f64, interior: f64) -> [f64; 4] {
         if self.impact_normal == 0.0 {
             return [0.0; 4];
         }
@@ -259,7 +259,7 @@ impl<const D: usize> DynamicModel<D> {
 
     /// Taylor coefficient `n` of the normal force (mesh force, and an impact that acts on all motions), N, from the
     /// lateral equation of motion of the gear and the polynomials `rows`.
-    pub fn mesh_force_coefficient(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
+    pub(crate) fn mesh_force_coefficient(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
         let n1 = (n + 1) as f64;
         let free = self.half_acceleration(j, &rows[n], &rows[n + 1].map(|c| c * n1), 0.0, 0.0);
         let a = rows[n + 2][j * PER_HALF + YG] * n1 * (n1 + 1.0);
@@ -267,7 +267,7 @@ impl<const D: usize> DynamicModel<D> {
     }
 
     /// State from 12 displacements and 12 velocities.
-    pub fn state_from(&self, physical: &[f64; 24]) -> MotionState<D> {
+    pub(crate) fn state_from(&self, physical: &[f64; 24]) -> MotionState<D> {
         let mut state = MotionState { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [1; 2] };
         for j in 0..Self::HALVES {
             let h = &self.halves[j];
@@ -291,7 +291,7 @@ impl<const D: usize> DynamicModel<D> {
 
     /// For a tabulated contact force: rotates the gears until each half carries its load at the phase of the state.
     /// Halves coupled in torsion rotate by the mean of their angles.
-    pub fn close_contact(&self, state: &mut MotionState<D>) {
+    pub(crate) fn close_contact(&self, state: &mut MotionState<D>) {
         let mut turns = [0.0; 2];
         for (j, e) in self.excitations.iter().enumerate() {
             let Some(contact) = &e.contact else { return };
@@ -309,7 +309,7 @@ impl<const D: usize> DynamicModel<D> {
     }
 
     /// 12 displacements (m, rad) and 12 velocities (m/s, rad/s) of a state.
-    pub fn physical_state(&self, state: &MotionState<D>) -> [f64; 24] {
+    pub(crate) fn physical_state(&self, state: &MotionState<D>) -> [f64; 24] {
         let mut out = [0.0; 24];
         out[..12].copy_from_slice(&self.physical_displacements(&state.x));
         out[12..].copy_from_slice(&self.physical_displacements(&state.v).map(|v| v * self.omega_ref));
@@ -317,7 +317,7 @@ impl<const D: usize> DynamicModel<D> {
     }
 
     /// 12 displacements of solver coordinates; of velocities or accelerations when `row` holds those.
-    pub fn physical_displacements(&self, row: &[f64; D]) -> [f64; 12] {
+    pub(crate) fn physical_displacements(&self, row: &[f64; D]) -> [f64; 12] {
         let mut out = [0.0; 12];
         for j in 0..2 {
             let (from, mirrored) = if D > PER_HALF { (j, 1.0) } else { (0, if j == 0 { 1.0 } else { -1.0 }) };

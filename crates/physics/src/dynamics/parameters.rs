@@ -27,9 +27,13 @@ impl Spring {
 /// Parameters of one helix half of the pair (half of the mass and inertia of a whole gear).
 #[derive(Debug, Clone, PartialEq)]
 pub struct HalfParameters {
+    /// Mass of half the pinion, kg.
     pub pinion_mass_kg: f64,
+    /// Polar moment of inertia of half the pinion, kg m².
     pub pinion_inertia_kg_m2: f64,
+    /// Mass of half the gear, kg.
     pub gear_mass_kg: f64,
+    /// Polar moment of inertia of half the gear, kg m².
     pub gear_inertia_kg_m2: f64,
     /// Torque on this half of the pinion, N m. That of the gear is R_g/R_p times as large, so that rigid rotation is
     /// not accelerated.
@@ -86,9 +90,11 @@ pub struct Couplings {
 /// All parameters of the twelve equations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
+    /// Mesh frequency, Hz.
     pub mesh_frequency_hz: f64,
     /// R_p in the reference plane: pitch or base radius.
     pub pinion_radius_m: f64,
+    /// R_g in the reference plane, m.
     pub gear_radius_m: f64,
     /// β of the left half in the reference plane (β or β_b); the right half has −β.
     pub helix_angle_rad: f64,

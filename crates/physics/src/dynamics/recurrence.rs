@@ -27,7 +27,7 @@ pub(super) struct ContactSeries<R> {
 }
 
 impl<R: Real> ContactSeries<R> {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let zero = [R::splat(0.0); MAX_ORDER + 1];
         Self { e: zero, reversed: zero, square: zero, cube: zero }
     }
@@ -48,7 +48,7 @@ impl<R: Real> ContactSeries<R> {
 
     /// Adds coefficient `n` of s, and returns coefficient `n` of the stiffness Σ_a a coefficients[a] e^(a−1).
     #[inline(always)]
-    pub fn stiffness(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
+    pub(crate) fn stiffness(&mut self, cells: &ForceCells<R>, n: usize, s: R) -> R {
         self.add_displacement(cells, n, s);
         let (two, three) = (R::splat(2.0), R::splat(3.0));
         let mut sum = R::splat(0.0);
@@ -73,7 +73,7 @@ impl<R: Real> ContactSeries<R> {
 }
 
 impl<const D: usize, R: Real> TaylorWork<D, R> {
-    pub fn new() -> Box<Self> {
+    pub(crate) fn new() -> Box<Self> {
         let zero = R::splat(0.0);
         Box::new(Self {
             rows: [[zero; D]; MAX_ORDER + 1],

@@ -23,7 +23,7 @@ impl<const D: usize> RigidBodyModes<D> {
     ///
     /// # Errors
     /// [`DynamicsError::InvalidParameter`] when the eigenvalues of the stiffness matrix cannot be computed.
-    pub fn new(model: &DynamicModel<D>) -> Result<Self, DynamicsError> {
+    pub(crate) fn new(model: &DynamicModel<D>) -> Result<Self, DynamicsError> {
         let active: Vec<usize> = model.active().collect();
         let masses = model.masses_kg();
         let mesh = |j: usize| {
@@ -34,12 +34,12 @@ impl<const D: usize> RigidBodyModes<D> {
     }
 
     /// No modes: projections are the identity.
-    pub fn none() -> Self {
+    pub(crate) fn none() -> Self {
         Self { shapes: Vec::new(), masses: [0.0; D] }
     }
 
     /// Projection of a displacement or velocity onto the complement of the rigid-body modes.
-    pub fn project_out_of(&self, mut q: [f64; D]) -> [f64; D] {
+    pub(crate) fn project_out_of(&self, mut q: [f64; D]) -> [f64; D] {
         for n in &self.shapes {
             let along: f64 = (0..D).map(|c| n[c] * self.masses[c] * q[c]).sum();
             for c in 0..D {
@@ -50,7 +50,7 @@ impl<const D: usize> RigidBodyModes<D> {
     }
 
     /// The same projection of displacements and velocities.
-    pub fn project_out(&self, d: &Perturbation<D>) -> Perturbation<D> {
+    pub(crate) fn project_out(&self, d: &Perturbation<D>) -> Perturbation<D> {
         (self.project_out_of(d.0), self.project_out_of(d.1))
     }
 }

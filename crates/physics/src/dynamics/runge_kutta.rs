@@ -36,7 +36,7 @@ pub(super) struct RungeKutta<const D: usize> {
 }
 
 impl<const D: usize> RungeKutta<D> {
-    pub fn new(tolerance: f64, fixed: Option<f64>) -> Self {
+    pub(crate) fn new(tolerance: f64, fixed: Option<f64>) -> Self {
         Self {
             tolerance,
             fixed,
@@ -47,7 +47,7 @@ impl<const D: usize> RungeKutta<D> {
         }
     }
 
-    pub fn step(
+    pub(crate) fn step(
         &mut self,
         model: &DynamicModel<D>,
         state: &mut MotionState<D>,

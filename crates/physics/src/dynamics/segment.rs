@@ -22,7 +22,7 @@ pub(crate) struct Segment<'a, const D: usize> {
 
 impl<const D: usize> Segment<'_, D> {
     /// Displacements and velocities at scaled time `t` since the start of the segment.
-    pub fn at(&self, t: f64) -> ([f64; D], [f64; D]) {
+    pub(crate) fn at(&self, t: f64) -> ([f64; D], [f64; D]) {
         evaluate_rows(&self.rows[..=self.degree], t)
     }
 }

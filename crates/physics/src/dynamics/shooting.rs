@@ -59,7 +59,7 @@ impl<const D: usize> Observer<D> for AmplitudeMonitor {
 }
 
 impl<'m, const D: usize> Shooting<'m, D> {
-    pub fn new(
+    pub(crate) fn new(
         model: &'m DynamicModel<D>,
         mean_stiffness_n_per_m: [f64; 2],
         limits: IntegrationLimits<'m>,
@@ -75,7 +75,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
     ///
     /// # Errors
     /// [`DynamicsError`].
-    pub fn period_map(
+    pub(crate) fn period_map(
         &self,
         motion_model: &DynamicModel<D>,
         start: MotionState<D>,
@@ -124,7 +124,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
 
     /// Newton correction of the start for a motion that is to repeat after `periods` mesh periods; `defect` is end −
     /// start. Rigid-body modes get the velocity that cancels their drift. None if the linear system is singular.
-    pub fn correction(
+    pub(crate) fn correction(
         &self,
         defect: &Perturbation<D>,
         monodromy: &DMatrix<f64>,
@@ -152,7 +152,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
     }
 
     /// Largest mean force along a rigid-body mode over `periods`, N.
-    pub fn unbalanced_force_n(&self, defect: &Perturbation<D>, periods: u64) -> f64 {
+    pub(crate) fn unbalanced_force_n(&self, defect: &Perturbation<D>, periods: u64) -> f64 {
         let omega = self.model.omega_ref;
         let time = periods as f64 * self.model.period_tau;
         self.rigid_body.iter().fold(0.0f64, |worst, mode| {
@@ -162,7 +162,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
     }
 
     /// Floquet multipliers, rigid-body modes excluded, largest first.
-    pub fn multipliers(&self, monodromy: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    pub(crate) fn multipliers(&self, monodromy: &DMatrix<f64>) -> Vec<Complex<f64>> {
         let projector = self.rigid_body_projector();
         let Some(schur) = Schur::try_new(&projector * monodromy * &projector, f64::EPSILON, 10_000) else {
             return Vec::new();

@@ -216,7 +216,7 @@ pub(super) struct ChatterGuard {
 impl ChatterGuard {
     /// Counts a change of contact. Beyond the limit it takes a short step without event location, sets the contact from
     /// the new displacement and returns true.
-    pub fn contact_changed<const D: usize>(
+    pub(crate) fn contact_changed<const D: usize>(
         &mut self,
         model: &DynamicModel<D>,
         state: &mut MotionState<D>,
@@ -278,7 +278,7 @@ pub(super) struct Taylor<const D: usize> {
 
 impl<const D: usize> Taylor<D> {
     /// `tolerance`: local error of a step relative to the size of the motion.
-    pub fn new(tolerance: f64, order: usize, fixed: Option<f64>) -> Self {
+    pub(crate) fn new(tolerance: f64, order: usize, fixed: Option<f64>) -> Self {
         Self {
             order: order.clamp(4, MAX_ORDER),
             tolerance,
@@ -290,7 +290,7 @@ impl<const D: usize> Taylor<D> {
     }
 
     /// Advances by one step, at most to the phase `end`; `interior` is a phase inside the smooth interval.
-    pub fn step(
+    pub(crate) fn step(
         &mut self,
         model: &DynamicModel<D>,
         state: &mut MotionState<D>,

@@ -45,7 +45,7 @@ struct Workspace<const D: usize> {
 }
 
 impl<'m, const D: usize> Variation<'m, D> {
-    pub fn new(model: &'m DynamicModel<D>, columns: Vec<Perturbation<D>>, tolerance: f64) -> Self {
+    pub(crate) fn new(model: &'m DynamicModel<D>, columns: Vec<Perturbation<D>>, tolerance: f64) -> Self {
         let workspace = Workspace {
             one: TaylorWork::new(),
             several: TaylorWork::new(),
@@ -56,7 +56,7 @@ impl<'m, const D: usize> Variation<'m, D> {
     }
 
     /// The unit perturbations: one per active displacement, then one per active velocity.
-    pub fn unit_perturbations(model: &DynamicModel<D>) -> Vec<Perturbation<D>> {
+    pub(crate) fn unit_perturbations(model: &DynamicModel<D>) -> Vec<Perturbation<D>> {
         let unit = |c: usize| {
             let mut row = [0.0; D];
             row[c] = 1.0;

@@ -21,7 +21,12 @@ pub enum SolutionMethod {
     /// As `Auto`, but a motion that does not repeat is an error.
     Periodic,
     /// Integration from the initial state over `mesh_periods`; the last `record_mesh_periods` are recorded.
-    Integrate { mesh_periods: u64, record_mesh_periods: u64 },
+    Integrate {
+        /// Mesh periods integrated.
+        mesh_periods: u64,
+        /// Mesh periods recorded, the last ones.
+        record_mesh_periods: u64,
+    },
 }
 
 /// Settings of an analysis.

@@ -18,7 +18,7 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    pub fn new<const D: usize>(limits: &IntegrationLimits<'_>) -> Self {
+    pub(crate) fn new<const D: usize>(limits: &IntegrationLimits<'_>) -> Self {
         let per_step = (D / PER_HALF) as u64;
         Self {
             left: SEARCH_UNITS.min(limits.max_steps.saturating_mul(per_step)),
@@ -28,22 +28,22 @@ impl Budget {
     }
 
     /// Remaining steps of a motion with `perturbations`.
-    pub fn steps(&self, perturbations: usize) -> u64 {
+    pub(crate) fn steps(&self, perturbations: usize) -> u64 {
         (self.left / (self.per_step * (1 + perturbations as u64))).min(self.max_steps)
     }
 
     /// Whether `steps` steps of a motion with `perturbations` are within the remaining work.
-    pub fn affords(&self, steps: u64, perturbations: usize) -> bool {
+    pub(crate) fn affords(&self, steps: u64, perturbations: usize) -> bool {
         steps <= self.steps(perturbations)
     }
 
     /// Integration limits of a motion with `perturbations` within the remaining work.
-    pub fn limits<'a>(&self, of: &IntegrationLimits<'a>, perturbations: usize) -> IntegrationLimits<'a> {
+    pub(crate) fn limits<'a>(&self, of: &IntegrationLimits<'a>, perturbations: usize) -> IntegrationLimits<'a> {
         IntegrationLimits { max_steps: self.steps(perturbations), ..*of }
     }
 
     /// Subtracts the work of a motion with `perturbations`.
-    pub fn spend(&mut self, counts: &StepCounts, perturbations: usize) {
+    pub(crate) fn spend(&mut self, counts: &StepCounts, perturbations: usize) {
         let steps = counts.steps + counts.rejected_steps;
         self.left = self.left.saturating_sub(steps * self.per_step * (1 + perturbations as u64));
     }

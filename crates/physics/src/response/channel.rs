@@ -222,7 +222,7 @@ pub(super) enum ChannelEvaluator<const D: usize> {
 impl<const D: usize> ChannelEvaluator<D> {
     /// Polynomial of the channel in scaled time since the start of the segment; returns its degree.
     #[inline(always)]
-    pub fn polynomial(&self, segment: &Segment<'_, D>, out: &mut [f64; MAX_ORDER + 1]) -> usize {
+    pub(crate) fn polynomial(&self, segment: &Segment<'_, D>, out: &mut [f64; MAX_ORDER + 1]) -> usize {
         match self {
             ChannelEvaluator::Linear { row, positions, derivative } => {
                 let degree = segment.degree - derivative;

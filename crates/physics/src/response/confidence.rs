@@ -19,7 +19,7 @@ pub(super) struct MeanSquares {
 }
 
 impl MeanSquares {
-    pub fn new<const D: usize>(periods: u64) -> Self {
+    pub(crate) fn new<const D: usize>(periods: u64) -> Self {
         let ids = solved_halves::<D>()
             .flat_map(|half| [ChannelId::mesh_acceleration(half), ChannelId::pinion_axial_acceleration(half)]);
         let room = periods.min(1 << 16) as usize;
@@ -27,7 +27,7 @@ impl MeanSquares {
     }
 
     /// Adds a mesh period; called at its end.
-    pub fn push<const D: usize>(&mut self, recorder: &ChannelRecorder<D>) {
+    pub(crate) fn push<const D: usize>(&mut self, recorder: &ChannelRecorder<D>) {
         for (id, snapshot, squares) in &mut self.tracks {
             if let Some(now) = recorder.accumulator(*id) {
                 squares.push(now.square_since(snapshot));
@@ -36,7 +36,7 @@ impl MeanSquares {
         }
     }
 
-    pub fn finish(self) -> Vec<(ChannelId, Vec<f64>)> {
+    pub(crate) fn finish(self) -> Vec<(ChannelId, Vec<f64>)> {
         self.tracks.into_iter().map(|(id, _, squares)| (id, squares)).collect()
     }
 }

@@ -28,7 +28,7 @@ pub(super) struct EnergyBalance<'m, const D: usize> {
 }
 
 impl<'m, const D: usize> EnergyBalance<'m, D> {
-    pub fn new(model: &'m DynamicModel<D>) -> Self {
+    pub(crate) fn new(model: &'m DynamicModel<D>) -> Self {
         let mut masses = model.masses_kg();
         (0..D).filter(|c| c % PER_HALF == W).for_each(|c| masses[c] = 0.0);
         Self {
@@ -45,7 +45,7 @@ impl<'m, const D: usize> EnergyBalance<'m, D> {
     }
 
     /// `abs(ΔE − work)` over the integral of the absolute power of the forces on each coordinate. None where nothing moved.
-    pub fn residual(&self) -> Option<f64> {
+    pub(crate) fn residual(&self) -> Option<f64> {
         let change = self.final_energy - self.initial_energy?;
         let moves = self.largest_v > REST_VELOCITY_RATIO * self.largest_x && self.absolute_work > 0.0;
         moves.then(|| (change - self.work).abs() / self.absolute_work)

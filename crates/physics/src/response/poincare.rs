@@ -17,7 +17,7 @@ pub(super) struct PoincareSection<const D: usize> {
 
 impl<const D: usize> PoincareSection<D> {
     /// Section of the complete states, for motions whose periodicity is not tested.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { states: VecDeque::with_capacity(LONGEST_PERIOD + 1), rigid_body: RigidBodyModes::none() }
     }
 
@@ -25,11 +25,11 @@ impl<const D: usize> PoincareSection<D> {
     ///
     /// # Errors
     /// [`DynamicsError`] of [`RigidBodyModes::new`].
-    pub fn without_rigid_body(model: &DynamicModel<D>) -> Result<Self, DynamicsError> {
+    pub(crate) fn without_rigid_body(model: &DynamicModel<D>) -> Result<Self, DynamicsError> {
         Ok(Self { rigid_body: RigidBodyModes::new(model)?, ..Self::new() })
     }
 
-    pub fn push(&mut self, mut state: MotionState<D>) {
+    pub(crate) fn push(&mut self, mut state: MotionState<D>) {
         (state.x, state.v) = self.rigid_body.project_out(&(state.x, state.v));
         if self.states.len() > LONGEST_PERIOD {
             self.states.pop_front();
@@ -39,13 +39,13 @@ impl<const D: usize> PoincareSection<D> {
 
     /// Size of the motion: its largest velocity in scaled time, or 1e-9 of the largest displacement if that is larger
     /// (below it is rounding).
-    pub fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         let parts = |row: &[f64; D]| (0..D).filter(|c| c % PER_HALF != W).fold(0.0f64, |m, c| m.max(row[c].abs()));
         self.states.iter().fold(f64::MIN_POSITIVE, |m, s| m.max(parts(&s.v)).max(1e-9 * parts(&s.x)))
     }
 
     /// Relative change of the state over `n` mesh periods.
-    pub fn change(&self, n: usize) -> Option<f64> {
+    pub(crate) fn change(&self, n: usize) -> Option<f64> {
         let last = self.states.len().checked_sub(1)?;
         let before = self.states.get(last.checked_sub(n)?)?;
         Some(largest_component(&state_difference(&self.states[last], before)) / self.size())
@@ -53,7 +53,7 @@ impl<const D: usize> PoincareSection<D> {
 
     /// Shortest period, in mesh periods, over which the relative change is below `limit`, and that change. A multiple
     /// of a shorter period with a similar change is not taken.
-    pub fn repeats(&self, limit: f64) -> Option<(usize, f64)> {
+    pub(crate) fn repeats(&self, limit: f64) -> Option<(usize, f64)> {
         let best = (1..=LONGEST_PERIOD).filter_map(|n| self.change(n)).fold(f64::INFINITY, f64::min);
         if best > limit {
             return None;
@@ -66,7 +66,7 @@ impl<const D: usize> PoincareSection<D> {
     /// Period of a motion that is not refined to a periodic orbit: the shortest one over which the relative change is
     /// at most `limit`. A period of more than one mesh period must have a much smaller change than all shorter ones,
     /// because a decaying oscillation returns closer to itself after some numbers of mesh periods than after others.
-    pub fn settled_period(&self, limit: f64) -> Option<usize> {
+    pub(crate) fn settled_period(&self, limit: f64) -> Option<usize> {
         const STANDS_OUT: f64 = 0.03;
         let mut least = f64::INFINITY;
         let mut close = None;

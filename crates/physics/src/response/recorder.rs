@@ -29,7 +29,7 @@ pub(super) struct ChannelRecorder<const D: usize> {
 impl<const D: usize> ChannelRecorder<D> {
     /// `statistics`: channels with statistics, and whether extremes are needed. `series`: channels that are sampled,
     /// over `periods` mesh periods.
-    pub fn new(
+    pub(crate) fn new(
         model: &DynamicModel<D>,
         statistics: &[(ChannelId, bool)],
         series: &[ChannelId],
@@ -71,20 +71,20 @@ impl<const D: usize> ChannelRecorder<D> {
         }
     }
 
-    pub fn accumulator(&self, id: ChannelId) -> Option<&MomentAccumulator> {
+    pub(crate) fn accumulator(&self, id: ChannelId) -> Option<&MomentAccumulator> {
         self.tracks.iter().find(|t| t.id == id).map(|t| &t.accumulator)
     }
 
-    pub fn all(&self) -> impl Iterator<Item = (ChannelId, &MomentAccumulator, bool)> {
+    pub(crate) fn all(&self) -> impl Iterator<Item = (ChannelId, &MomentAccumulator, bool)> {
         self.tracks.iter().map(|t| (t.id, &t.accumulator, t.extremes))
     }
 
-    pub fn take_samples(&mut self) -> Vec<(ChannelId, Vec<f64>)> {
+    pub(crate) fn take_samples(&mut self) -> Vec<(ChannelId, Vec<f64>)> {
         self.tracks.iter_mut().filter_map(|t| t.samples.take().map(|s| (t.id, s))).collect()
     }
 
     /// Fractions of time on driving flank, apart and on back flank, left and right.
-    pub fn contact_shares(&self) -> [[f64; 3]; 2] {
+    pub(crate) fn contact_shares(&self) -> [[f64; 3]; 2] {
         let share = |j: usize| {
             let total: f64 = self.contact[j].iter().sum();
             self.contact[j].map(|c| c / total)

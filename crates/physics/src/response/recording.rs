@@ -47,7 +47,7 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
     ///
     /// # Errors
     /// [`DynamicsError`] of [`RigidBodyModes::new`](crate::dynamics).
-    pub fn new(
+    pub(crate) fn new(
         model: &'m DynamicModel<D>,
         start: MotionState<D>,
         tolerance: f64,
@@ -85,12 +85,12 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
     }
 
     /// Adds an energy balance of the record.
-    pub fn with_energy(self, energy: Option<EnergyBalance<'m, D>>) -> Self {
+    pub(crate) fn with_energy(self, energy: Option<EnergyBalance<'m, D>>) -> Self {
         Self { energy, ..self }
     }
 
     /// Stores the state at the start of the mesh period `store_at`.
-    pub fn storing_state_at(self, store_at: u64) -> Self {
+    pub(crate) fn storing_state_at(self, store_at: u64) -> Self {
         Self { store_at, ..self }
     }
 
@@ -112,7 +112,7 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
     ///
     /// # Errors
     /// The error that ended the integration.
-    pub fn finish(self) -> Result<FinishedRun<'m, D>, DynamicsError> {
+    pub(crate) fn finish(self) -> Result<FinishedRun<'m, D>, DynamicsError> {
         if let Some(error) = self.error {
             return Err(error);
         }

@@ -47,7 +47,7 @@ pub(super) struct MomentAccumulator {
 
 impl MomentAccumulator {
     /// `includes_mean`: whether the mean square includes the mean.
-    pub fn new(includes_mean: bool) -> Self {
+    pub(crate) fn new(includes_mean: bool) -> Self {
         Self {
             includes_mean,
             offset: None,
@@ -61,7 +61,7 @@ impl MomentAccumulator {
 
     /// Adds the polynomial `c` over [0, h].
     #[inline(always)]
-    pub fn add(&mut self, c: &[f64], h: f64, extremes: bool) {
+    pub(crate) fn add(&mut self, c: &[f64], h: f64, extremes: bool) {
         let offset = *self.offset.get_or_insert(c[0]);
         let mut b = [0.0; MAX_ORDER + 1];
         let mut power = 1.0;
@@ -138,7 +138,7 @@ impl MomentAccumulator {
     }
 
     /// Mean, and mean square about the mean unless the mean is included.
-    pub fn mean_and_square(&self) -> (f64, f64) {
+    pub(crate) fn mean_and_square(&self) -> (f64, f64) {
         let first = self.integral / self.length;
         let mean = self.offset.unwrap_or(0.0) + first;
         let variance = (self.square_integral / self.length - first * first).max(0.0);
@@ -146,21 +146,21 @@ impl MomentAccumulator {
     }
 
     /// Variance of the part after the snapshot `earlier`.
-    pub fn variance_since(&self, earlier: &MomentAccumulator) -> f64 {
+    pub(crate) fn variance_since(&self, earlier: &MomentAccumulator) -> f64 {
         let (first, second) = (self.integral - earlier.integral, self.square_integral - earlier.square_integral);
         let length = self.length - earlier.length;
         (second / length - (first / length).powi(2)).max(0.0)
     }
 
     /// Mean square, mean included, of the part after the snapshot `earlier`.
-    pub fn square_since(&self, earlier: &MomentAccumulator) -> f64 {
+    pub(crate) fn square_since(&self, earlier: &MomentAccumulator) -> f64 {
         let (first, second) = (self.integral - earlier.integral, self.square_integral - earlier.square_integral);
         let length = self.length - earlier.length;
         let offset = self.offset.unwrap_or(0.0);
         second / length + offset * (2.0 * first / length + offset)
     }
 
-    pub fn finish(&self) -> Statistics {
+    pub(crate) fn finish(&self) -> Statistics {
         let (mean, square) = self.mean_and_square();
         Statistics { mean, rms: square.sqrt(), min: self.min, max: self.max }
     }

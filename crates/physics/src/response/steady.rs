@@ -72,7 +72,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
     ///
     /// # Errors
     /// [`DynamicsError`].
-    pub fn run(&self, start: MotionState<D>) -> Result<SteadyMotion<D>, DynamicsError> {
+    pub(crate) fn run(&self, start: MotionState<D>) -> Result<SteadyMotion<D>, DynamicsError> {
         let mut budget = Budget::new::<D>(&self.limits);
         self.check_static_deflection(&start)?;
         let start = self.perturb_from_rest(start);

@@ -35,7 +35,11 @@ export function pointerLabel(pointer) {
   return { label: sentence(words.join(" ").toLowerCase()), unit };
 }
 
-/** A number with `digits` significant digits; other values as they are. @param {unknown} value @param {number} [digits] */
+/**
+ * A number with `digits` significant digits; other values as they are.
+ * @param {unknown} value
+ * @param {number} [digits]
+ */
 export function number(value, digits = 5) {
   if (value === null || value === undefined) return "–";
   if (typeof value !== "number") return String(value);

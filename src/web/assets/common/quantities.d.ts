@@ -14,7 +14,10 @@ export interface Quantity {
   kind: "number" | "word" | "flag";
   /** The value is a share of 1 that is shown in per cent. */
   percent: boolean;
-  /** How the difference of two values is written: in `percent`, as a `level` as well, in percentage `points`, `absolute` or not at all. */
+  /**
+   * How the difference of two values is written: in `percent`, as a `level` as well, in percentage `points`,
+   * `absolute` or not at all.
+   */
   change: "percent" | "level" | "points" | "absolute" | "none";
   lower_is_better: boolean;
 }

@@ -39,7 +39,11 @@ export function valueOf(result, scalar, half = "left") {
   return typeof value === "number" && scalar.percent ? 100 * value : (value ?? null);
 }
 
-/** @param {object | null | undefined} result @param {Quantity} scalar @returns {ScalarPerHalf | null} null where neither half has a value */
+/**
+ * @param {object | null | undefined} result
+ * @param {Quantity} scalar
+ * @returns {ScalarPerHalf | null} null where neither half has a value
+ */
 export function valuesPerHalf(result, scalar) {
   const [left, right] = [valueOf(result, scalar, "left"), valueOf(result, scalar, "right")];
   return left === null && right === null ? null : { left, right };
@@ -66,5 +70,9 @@ export function rowOf(result, scalar, digits = 5) {
   return [`${label}, left / right`, `${text(both.left)} / ${text(both.right)}`, unit];
 }
 
-/** As `rowOf`, by the pointer. @param {object} result @returns {(pointer: string, digits?: number) => [label: string, value: string | null, unit: string]} */
+/**
+ * As `rowOf`, by the pointer.
+ * @param {object} result
+ * @returns {(pointer: string, digits?: number) => [label: string, value: string | null, unit: string]}
+ */
 export const rowsFrom = (result) => (pointer, digits) => rowOf(result, scalarAt(pointer), digits);

@@ -14,7 +14,8 @@ import { QUANTITIES } from "../sweep/quantities.js";
  * @typedef {{ left: Found, right: Found } | null | undefined} FoundPerHalf
  * @typedef {{ name: string, label: string, unit: string, change?: Change }} Described
  * @typedef {Described & { pick: (job: ComparedJob) => Found }} Quantity
- * @typedef {Described & { pickBoth: (job: ComparedJob) => FoundPerHalf }} QuantityPerHalf one row when the halves are alike in all jobs
+ * @typedef {Described & { pickBoth: (job: ComparedJob) => FoundPerHalf }} QuantityPerHalf one row when the halves are
+ * alike in all jobs
  */
 
 /** @param {Scalar} scalar @returns {Quantity | QuantityPerHalf} */
@@ -32,7 +33,10 @@ function ofSweep({ name, label, unit, change, columns: { both, left, right } }) 
   return { ...described, pickBoth: ({ sweep }) => (sweep && left && right ? { left: largest(sweep, left), right: largest(sweep, right) } : null) };
 }
 
-/** Scalars of the result by their pointers, and rows of other origin. @type {[string, (string | Quantity | QuantityPerHalf)[]][]} */
+/**
+ * Scalars of the result by their pointers, and rows of other origin.
+ * @type {[string, (string | Quantity | QuantityPerHalf)[]][]}
+ */
 const CHOSEN = [
   ["Vibration", [
     "/response/rms/mesh_circumferential_acceleration_m_s2/{half}", "/response/rms/pinion_axial_acceleration_m_s2/{half}", "/response/dynamic_factor",

@@ -1,10 +1,10 @@
-//! Run time against error of every way to the mesh stiffness: ISO 6336-1, the analytic contact at several accuracies, finite elements at
-//! every resolution. Prints the tables of docs/BENCHMARKS.md and draws docs/contact_ladder.svg.
+//! Run time against error of every way to the mesh stiffness: ISO 6336-1, the analytic contact at several accuracies,
+//! finite elements at every resolution. Prints the tables of docs/BENCHMARKS.md and draws docs/contact_ladder.svg.
 //!
-//! `RAYON_NUM_THREADS=1 cargo run --release -p herringbone-tools --no-default-features --bin contact_ladder [KEEP]`
+//! `RAYON_NUM_THREADS=1 scripts/tool contact_ladder [KEEP]`
 //!
-//! Everything runs on one thread. `KEEP` is a folder for the finite elements of the references, which take most of the time: those found
-//! there are not solved again.
+//! Everything runs on one thread. `KEEP` is a folder for the finite elements of the references, which take most of the
+//! time: those found there are not solved again.
 
 mod cases;
 mod growth;

@@ -58,7 +58,8 @@ pub struct Answer {
     pub rung: Rung,
     /// Number of the case.
     pub case: usize,
-    /// Time of one half with nothing known, and with the compliance of the teeth (of finite elements: of both gears) already there.
+    /// Time of one half with nothing known, and with the compliance of the teeth (of finite elements: of both gears)
+    /// already there.
     pub cold_s: f64,
     pub stored_s: f64,
     /// Relative errors.
@@ -126,8 +127,9 @@ pub fn solve(
     solve_half(&case.pair, Half::Left, force_bt_n(case), compliance, settings, Watch::none())
 }
 
-/// Fine finite elements at 128 positions. The slices are the default ones: elements tell the half-space of a segment from its neighbours,
-/// which segments as short as the band of contact is wide do less well. The tangent is the difference quotient over 2 % of load.
+/// Fine finite elements at 128 positions. The slices are the default ones: elements tell the half-space of a segment
+/// from its neighbours, which segments as short as the band of contact is wide do less well. The tangent is the
+/// difference quotient over 2 % of load.
 fn reference(case: &Case, elements: &mut HashMap<String, Solved>, keep: Option<&Path>) -> Result<Reference, Failure> {
     let (flanks, _) = solved(case, Resolution::Fine, elements, keep)?;
     let settings = Settings { positions: Some(128), ..settings(case) };

@@ -1,5 +1,6 @@
-//! The service under load: what it answers in a second, how it grows with the jobs it holds, how soon a cancel is done, what
-//! memory it takes. Drives the release program over loopback and prints the tables of docs/BENCHMARKS.md; see `scripts/load`.
+//! The service under load: what it answers in a second, how it grows with the jobs it holds, how soon a cancel is done,
+//! what memory it takes. Drives the release program over loopback and prints the tables of docs/BENCHMARKS.md; see
+//! `scripts/load`.
 
 mod cancel;
 #[path = "../../../../tests/faults/documents.rs"]

@@ -24,8 +24,8 @@ pub struct Axis<'a> {
     pub values: &'a [f64],
 }
 
-/// A sweep's points, in the order of the axes (the first one fastest; those that were not solved have an `error`), and how long
-/// they took.
+/// A sweep's points, in the order of the axes (the first one fastest; those that were not solved have an `error`), and
+/// how long they took.
 pub struct Swept {
     pub points: Vec<Value>,
     pub seconds: f64,

@@ -9,7 +9,8 @@ pub fn load(path: &str) -> Outcome<Value> {
     Ok(serde_json::from_str(&text)?)
 }
 
-/// The source's own pair by the source's model: stiffness and impact in the equations, halves that turn freely against each other.
+/// The source's own pair by the source's model: stiffness and impact in the equations, halves that turn freely against
+/// each other.
 pub fn table1() -> Outcome<Value> {
     load("examples/table1.json")
 }

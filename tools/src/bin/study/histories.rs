@@ -54,7 +54,8 @@ pub fn write(study: &mut Study) -> Outcome<()> {
     Ok(())
 }
 
-/// The steady motion of a document in displacement, velocity and acceleration, whose channels are in the opposite order.
+/// The steady motion of a document in displacement, velocity and acceleration, whose channels are in the opposite
+/// order.
 fn history(study: &mut Study, ratio: f64, document: &Value, channels: &[&str]) -> Outcome<History> {
     let (result, mut series) = study.bench.series(document, channels)?;
     if result["response"]["regime"] != "period-1" {

@@ -58,7 +58,8 @@ pub fn write(study: &mut Study) -> Outcome<()> {
             sig(narrow, 2), sig(erring.ratios[0], 3), sig(highest, 2), sig(erring.ratios[peak], 3), sig(limit(safest), 2), sig(erring.ratios[safest], 3), sig(wide, 2), sig(erring.ratios[last], 3),
         ),
     );
-    // Rows of light loads, where contact returns within the map: best contact ratio, and how much more the widest face has.
+    // Rows of light loads, where contact returns within the map: best contact ratio, and how much more the widest face
+    // has.
     let light =
         (0..erring.map.upwards.values.len()).filter(|row| (90.0..210.0).contains(&erring.map.upwards.values[*row]));
     let ridge = erring.ridge();

@@ -1,6 +1,7 @@
-//! What the source paper reports, beside what the service answers, and the design guide that it left as future work. Drives the
-//! release program over loopback, documents in, results out, and writes docs/STUDY.md with its figures; see `scripts/study`.
-//! With names of chapters as arguments, only these are run: their figures are written, their text printed.
+//! What the source paper reports, beside what the service answers, and the design guide that it left as future work.
+//! Drives the release program over loopback, documents in, results out, and writes docs/STUDY.md with its figures; see
+//! `scripts/study`. With names of chapters as arguments, only these are run: their figures are written, their text
+//! printed.
 
 mod ask;
 mod best;

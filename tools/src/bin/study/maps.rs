@@ -1,4 +1,5 @@
-//! Maps over contact ratio and one other input, through sweeps: RMS, dynamic factor, regime and contact, the best designs marked.
+//! Maps over contact ratio and one other input, through sweeps: RMS, dynamic factor, regime and contact, the best
+//! designs marked.
 
 use crate::Study;
 use crate::ask::{Axis, Outcome, Swept};

@@ -19,8 +19,8 @@ pub fn lowest(curve: &Curve) -> ((f64, f64), bool) {
     (curve[best], best > 0 && best + 1 < curve.len())
 }
 
-/// One way of changing the contact ratio: RMS of the circumferential acceleration with everything, without the impact, with a
-/// constant stiffness, and the largest change that a missing backlash makes.
+/// One way of changing the contact ratio: RMS of the circumferential acceleration with everything, without the impact,
+/// with a constant stiffness, and the largest change that a missing backlash makes.
 struct Switched {
     all: Curve,
     quiet: Curve,

@@ -1,4 +1,5 @@
-//! The page that is written: text with numbers filled in, and sentences that fail when the numbers no longer bear them out.
+//! The page that is written: text with numbers filled in, and sentences that fail when the numbers no longer bear them
+//! out.
 
 use crate::ask::Outcome;
 use std::fmt::Write;

@@ -44,8 +44,8 @@ impl Number {
     }
 }
 
-/// A rule: its sentence, the documents before and after (of `documents/`; none: the gear as it is), the same changes of the second
-/// gear, what it looks at, and what it expects of after over before.
+/// A rule: its sentence, the documents before and after (of `documents/`; none: the gear as it is), the same changes of
+/// the second gear, what it looks at, and what it expects of after over before.
 struct Rule {
     text: &'static str,
     before: Option<&'static str>,

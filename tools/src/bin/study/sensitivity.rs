@@ -195,7 +195,8 @@ pub fn write(study: &mut Study) -> Outcome<()> {
 /// Ratio of both RMS values to those of the base document, and the assumption's name.
 type Ratios = Vec<(f64, f64, String)>;
 
-/// A row for every change of every assumption: what is assumed, what it is changed to, changes of the four headline numbers.
+/// A row for every change of every assumption: what is assumed, what it is changed to, changes of the four headline
+/// numbers.
 fn vary(
     study: &mut Study,
     document: &Value,

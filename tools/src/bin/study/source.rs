@@ -64,7 +64,8 @@ impl Printed {
         100.0 * (1.0 - self.buffered_kn / self.zhou_kn)
     }
 
-    /// The load share of the entering pair that the two forces imply: (F_Zhou/F)² = 1 + L/(1 − L) for a small inclination.
+    /// The load share of the entering pair that the two forces imply: (F_Zhou/F)² = 1 + L/(1 − L) for a small
+    /// inclination.
     pub fn share(&self) -> f64 {
         1.0 - (self.buffered_kn / self.zhou_kn).powi(2)
     }

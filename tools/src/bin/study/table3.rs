@@ -115,7 +115,8 @@ fn row(study: &mut Study, document: &Value) -> Outcome<Row> {
     })
 }
 
-/// The circumferential RMS that the printed impact forces give, over the pulse's length, and where it is the printed one.
+/// The circumferential RMS that the printed impact forces give, over the pulse's length, and where it is the printed
+/// one.
 fn pulse_lengths(study: &mut Study) -> Outcome<Vec<Vec<(f64, f64)>>> {
     let microseconds = spaced(1.0, 10f64.powf(3.2), 45, true);
     let (mut curves, mut needed) = (Vec::new(), Vec::new());

@@ -131,7 +131,7 @@ fn nothing_moves_without_excitation() {
 }
 
 /// Kinetic and potential energy of the twelve displacements, less the work of the torques, J.
-pub fn energy(p: &Parameters, x: &[f64; 12], v: &[f64; 12], k_mesh: f64) -> f64 {
+pub(crate) fn energy(p: &Parameters, x: &[f64; 12], v: &[f64; 12], k_mesh: f64) -> f64 {
     let mut e = 0.0;
     let (sin, cos) = p.helix_angle_rad.sin_cos();
     for (j, h) in p.halves.iter().enumerate() {

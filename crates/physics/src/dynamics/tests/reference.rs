@@ -13,7 +13,7 @@ use crate::watch::Watch;
 use herringbone_oracle::check_worst;
 
 #[derive(Deserialize)]
-pub struct ReferenceSolutions {
+pub(crate) struct ReferenceSolutions {
     common: CommonParameters,
     pub cases: BTreeMap<String, ReferenceCase>,
 }
@@ -41,7 +41,7 @@ struct CommonParameters {
 
 #[derive(Deserialize)]
 #[allow(dead_code)]
-pub struct ReferenceCase {
+pub(crate) struct ReferenceCase {
     pinion_torque_per_half_nm: f64,
     half_backlash_m: f64,
     mesh_damping_ratio: f64,
@@ -56,12 +56,12 @@ pub struct ReferenceCase {
     pub switches: u64,
 }
 
-pub fn reference() -> ReferenceSolutions {
+pub(crate) fn reference() -> ReferenceSolutions {
     serde_json::from_str(include_str!("../../../../../tests/data/dynamics_reference.json")).unwrap()
 }
 
 /// The parameters of a reference case.
-pub fn parameters(name: &str) -> Parameters {
+pub(crate) fn parameters(name: &str) -> Parameters {
     let r = reference();
     let (m, c) = (&r.common, &r.cases[name]);
     let (rp, rg) = (m.pinion_radius_m, m.gear_radius_m);
