@@ -120,6 +120,7 @@ pub fn shown(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::Input;
     use herringbone_physics::gear::{GearSpec, PairSpec};
 
     fn pair(spec: &PairSpec) -> Pair {
@@ -139,18 +140,10 @@ mod tests {
         PairSpec { gap_width_m: 0.03, ..PairSpec::plain(6e-3, [alpha_n, beta], 75e-3, teeth) }
     }
 
-    const NOTHING: doc::SupportsInput = doc::SupportsInput {
-        pinion_lateral_n_per_um: None,
-        gear_lateral_n_per_um: None,
-        pinion_halves_axial_n_per_um: None,
-        gear_axial_n_per_um: None,
-        gear_halves_axial_n_per_um: None,
-        damping_ratio: 0.03,
-        pinion_halves_torsional_nm_per_rad: None,
-        gear_halves_torsional_nm_per_rad: None,
-        pinion_halves_lateral_n_per_um: None,
-        gear_halves_lateral_n_per_um: None,
-    };
+    /// Supports of which nothing is given.
+    fn nothing() -> doc::SupportsInput {
+        doc::SupportsInput::defaults()
+    }
 
     fn scaled(factor: f64) -> Pair {
         let spec = source_pair(1.0);
@@ -167,7 +160,7 @@ mod tests {
 
     #[test]
     fn the_sources_pair_has_about_the_values_of_the_reference_cases() {
-        let used = used(&NOTHING, &scaled(1.0));
+        let used = used(&nothing(), &scaled(1.0));
         for (name, expected) in
             [("pinion_lateral_n_per_um", 600.0), ("gear_lateral_n_per_um", 600.0), ("gear_axial_n_per_um", 200.0)]
         {
@@ -190,7 +183,7 @@ mod tests {
     /// Similar pairs: stiffness along a length grows with the length, against rotation with its cube.
     #[test]
     fn everything_scales_with_the_size() {
-        let (base, large) = (used(&NOTHING, &scaled(1.0)), used(&NOTHING, &scaled(2.5)));
+        let (base, large) = (used(&nothing(), &scaled(1.0)), used(&nothing(), &scaled(2.5)));
         for ((name, small), (_, large)) in named(&base).into_iter().zip(named(&large)) {
             let power = if name.ends_with("per_rad") { 3 } else { 1 };
             let ratio = large.value / small.value / 2.5_f64.powi(power);
@@ -203,7 +196,7 @@ mod tests {
         let given = doc::SupportsInput {
             pinion_lateral_n_per_um: Some(123.0),
             gear_halves_torsional_nm_per_rad: Some(0.0),
-            ..NOTHING
+            ..nothing()
         };
         let used = used(&given, &scaled(1.0));
         assert_eq!(used.pinion_lateral_n_per_um, value(Some(123.0), 1.0, SpringOrigin::Assumed));

@@ -539,11 +539,11 @@ fn progress_is_that_of_the_whole_job_and_never_goes_back() {
 /// Keeps points as a store does, and lets the calculation go on for so many of them.
 #[derive(Default)]
 struct Points {
-    kept: Mutex<KeptPoints>,
+    kept: Mutex<StoredPoints>,
     saved: AtomicUsize,
 }
 impl PointStore for Points {
-    fn load(&self) -> KeptPoints {
+    fn load(&self) -> StoredPoints {
         // As a store would: rows go through JSON.
         let mut kept = self.kept.lock().expect("unpoisoned").clone();
         for row in kept.rows.values_mut() {
