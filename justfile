@@ -4,7 +4,7 @@
 default:
     @just --list
 
-# compile one crate without code generation: physics, job, oracle, tools, or nothing for the service
+# check one crate: physics, job, macros, oracle, tools; without a name the service
 check crate='':
     cargo check --locked -p herringbone{{ if crate == '' { '' } else { '-' + crate } }}
 
@@ -20,7 +20,7 @@ api filter='':
 browser filter='':
     scripts/test-browser {{ filter }}
 
-# run the debug build of the service on 127.0.0.1:8080; pages are read from src/web without a rebuild of the assets
+# run the debug build of the service on 127.0.0.1:8080
 run *arguments:
     cargo run --locked -- serve {{ arguments }}
 
@@ -28,9 +28,9 @@ run *arguments:
 solve document='examples/table1.json' *arguments:
     cargo run --release --locked -- solve {{ document }} {{ arguments }}
 
-# formatting, comments, links, lints, documentation
+# formatting, comments, links, lints, page scripts, documentation
 lint:
-    .ci/run format comments links lint docs
+    .ci/run format comments links lint pages docs
 
 # documentation of all crates, opened in a browser
 docs:
@@ -43,6 +43,10 @@ ci *steps:
 # write the OpenAPI document that the service serves
 openapi:
     cargo run --locked --quiet -- openapi > openapi/openapi.json
+
+# run a program of tools/: `just tool contact_stress 500`
+tool name *arguments:
+    scripts/tool {{ name }} {{ arguments }}
 
 # measure every oracle, write docs/validation/tables
 validation:

@@ -3,7 +3,7 @@
 use crate::store::{LineEndRow, PointBatch, PointRow, PointsDigest, RowsSummary};
 use herringbone_job::not_finite;
 use herringbone_job::result::{NotFinite, SweepPoint};
-use herringbone_job::study::{KeptPoints, LineEnd, PointStore};
+use herringbone_job::study::{LineEnd, PointStore, StoredPoints};
 use std::collections::HashSet;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -16,7 +16,7 @@ pub(super) struct RunningPoints {
 #[derive(Default)]
 struct PointsState {
     /// Points of an earlier attempt, until the solver takes them.
-    resumed: KeptPoints,
+    resumed: StoredPoints,
     /// Positions of all points that are stored or will be with the next batch.
     positions: HashSet<u64>,
     unwritten: PointBatch,
@@ -25,7 +25,7 @@ struct PointsState {
 impl RunningPoints {
     /// Resumes from stored points. A row that cannot be read is solved again.
     pub(super) fn resume(stored: PointBatch, solver_version: &'static str) -> Self {
-        let mut resumed = KeptPoints::default();
+        let mut resumed = StoredPoints::default();
         for row in stored.rows {
             if let Ok(point) = serde_json::from_str(&row.body) {
                 resumed.rows.insert(row.position as usize, point);
@@ -88,7 +88,7 @@ fn to_json(row: &SweepPoint) -> serde_json::Result<String> {
 }
 
 impl PointStore for RunningPoints {
-    fn load(&self) -> KeptPoints {
+    fn load(&self) -> StoredPoints {
         std::mem::take(&mut self.lock().resumed)
     }
 

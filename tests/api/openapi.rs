@@ -54,6 +54,7 @@ fn every_endpoint_is_described() {
         "get /api/v1/jobs/events",
         "get /api/v1/jobs/{id}",
         "get /api/v1/jobs/{id}/events",
+        "get /api/v1/jobs/{id}/gear-data",
         "get /api/v1/jobs/{id}/input",
         "get /api/v1/jobs/{id}/points",
         "get /api/v1/jobs/{id}/points/columns",

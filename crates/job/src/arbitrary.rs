@@ -1,5 +1,5 @@
-//! Tests only: random documents that are valid, over the full range of every field, out of the declarations themselves: a new field needs
-//! an entry here only where a rule between fields could refuse it.
+//! Tests only: random documents that are valid, over the full range of every field, out of the declarations themselves:
+//! a new field needs an entry here only where a rule between fields could refuse it.
 
 use super::schema::job_document_schema;
 use proptest::prelude::*;
@@ -236,8 +236,8 @@ proptest! {
         }
     }
 
-    /// A number set in a document is what reading the document with that number gives, or is refused with the same violations; and every
-    /// place has a slot exactly where the written document has a value.
+    /// A number set in a document is what reading the document with that number gives, or is refused with the same
+    /// violations; and every place has a slot exactly where the written document has a value.
     #[test]
     fn what_is_set_is_what_would_be_read(value in documents(), place in any::<prop::sample::Index>(), part in 0.0..=1.0f64, whole: bool) {
         let document = super::parse_value(&value).expect("valid").without_sweep();

@@ -1,9 +1,11 @@
-//! The character encoding of text that comes from outside: UTF-8 is read, with or without a byte order mark; others are named.
+//! The character encoding of text that comes from outside: UTF-8 is read, with or without a byte order mark; others are
+//! named.
 
 /// U+FEFF in UTF-8. RFC 8259, section 8.1: a parser may ignore it at the start of a JSON text.
 const UTF8_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Byte order marks of other encodings (The Unicode Standard, section 23.8), longer ones first: UTF-32's begins as UTF-16's.
+/// Byte order marks of other encodings (The Unicode Standard, section 23.8), longer ones first: UTF-32's begins as
+/// UTF-16's.
 const OTHER_MARKS: [(&[u8], &str); 4] = [
     (b"\xff\xfe\0\0", "UTF-32 (little-endian)"),
     (b"\0\0\xfe\xff", "UTF-32 (big-endian)"),
@@ -28,8 +30,8 @@ pub enum EncodingError {
 /// The text without its byte order mark. Checks the first bytes only: see [`utf8_text`].
 ///
 /// # Errors
-/// When the first bytes are those of UTF-16 or UTF-32. Without a mark they are told by the zero bytes of ASCII characters
-/// (RFC 4627, section 3), which no text in UTF-8 needs.
+/// When the first bytes are those of UTF-16 or UTF-32. Without a mark they are told by the zero bytes of ASCII
+/// characters (RFC 4627, section 3), which no text in UTF-8 needs.
 pub fn without_mark(bytes: &[u8]) -> Result<&[u8], EncodingError> {
     if let Some((_, name)) = OTHER_MARKS.iter().find(|(mark, _)| bytes.starts_with(mark)) {
         return Err(EncodingError::Other(name));

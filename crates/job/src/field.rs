@@ -1,8 +1,9 @@
 //! Fields of the job document: what a declaration says, and the types that a field can have.
 //!
-//! A field is declared once, as a field of a struct with `#[derive(Input)]`; `herringbone_macros::Input` lists the attributes. The reader,
-//! the JSON Schema, the form, the hints, the axes of sweeps and the random documents of tests follow from it. A closed list of words is an
-//! enum with `#[derive(Words)]`. A type whose JSON is of another shape than the type implements [`Input`] itself, out of derived parts.
+//! A field is declared once, as a field of a struct with `#[derive(Input)]`; `herringbone_macros::Input` lists the
+//! attributes. The reader, the JSON Schema, the form, the hints, the axes of sweeps and the random documents of tests
+//! follow from it. A closed list of words is an enum with `#[derive(Words)]`. A type whose JSON is of another shape
+//! than the type implements [`Input`] itself, out of derived parts.
 
 use super::path::{index, split_first};
 use super::reader::{Object, Place, Reading, not_whole, out_of_range};
@@ -45,7 +46,8 @@ pub struct FormPlace {
     pub derived: Option<&'static str>,
     /// The same of single fields of an object.
     pub derived_in: &'static [(&'static str, &'static str)],
-    /// A field of the same object (or, with a slash, of an object in it) and its values, separated by spaces, for which this one matters.
+    /// A field of the same object (or, with a slash, of an object in it) and its values, separated by spaces, for which
+    /// this one matters.
     pub when: Option<(&'static str, &'static str)>,
 }
 
@@ -68,8 +70,8 @@ impl Declared {
 
 /// An object of the document.
 pub trait Input: Sized {
-    /// Reads the members of `object`, and checks the rules between them. A member that is left out takes its value in `base`, without
-    /// a base its declared default. Members that are not declared are not reported.
+    /// Reads the members of `object`, and checks the rules between them. A member that is left out takes its value in
+    /// `base`, without a base its declared default. Members that are not declared are not reported.
     fn read(object: &Object, base: Option<&Self>) -> Self;
 
     /// Checks the rules between fields, of this object and of those in it.
@@ -136,7 +138,8 @@ impl Slot<'_> {
     /// Puts a number in.
     ///
     /// # Errors
-    /// The violation, without its pointer, of a number that is out of range or has to be whole; nothing is changed then.
+    /// The violation, without its pointer, of a number that is out of range or has to be whole; nothing is changed
+    /// then.
     pub fn set(self, number: f64) -> Result<(), Box<Violation>> {
         let declared = match &self {
             Slot::Number(_, declared) | Slot::OptionalNumber(_, declared) => declared,

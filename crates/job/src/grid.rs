@@ -1,5 +1,5 @@
-//! Values from one end of a range to the other. Both ends are met exactly, and so are the round values between them: a grid from
-//! 1 to 1000 in decades has 10 and 100, one from 0.1 to 1 in tenths has 0.3.
+//! Values from one end of a range to the other. Both ends are met exactly, and so are the round values between them: a
+//! grid from 1 to 1000 in decades has 10 and 100, one from 0.1 to 1 in tenths has 0.3.
 
 use super::document::Spacing;
 
@@ -28,8 +28,9 @@ pub fn value(from: f64, to: f64, count: usize, spacing: Spacing, index: usize) -
     }
 }
 
-/// With both ends as whole multiples of the same power of ten, as they are written, the value is a quotient of two whole numbers:
-/// one division, so the nearest float to what the decimals say. Where they have too many digits for that, as floats give it.
+/// With both ends as whole multiples of the same power of ten, as they are written, the value is a quotient of two
+/// whole numbers: one division, so the nearest float to what the decimals say. Where they have too many digits for
+/// that, as floats give it.
 fn linear(from: f64, to: f64, index: f64, last: f64) -> f64 {
     exact_linear(from, to, index, last).unwrap_or_else(|| from + (to - from) * (index / last))
 }

@@ -1,5 +1,5 @@
-//! What to write instead of a name that is not a field: names and units that people bring from standards and from other programs, with
-//! the value worked out for the document at hand where it says enough for that.
+//! What to write instead of a name that is not a field: names and units that people bring from standards and from other
+//! programs, with the value worked out for the document at hand where it says enough for that.
 
 use super::schema::field_descriptions;
 use super::unit::{Quantity, Unit};
@@ -30,7 +30,8 @@ pub fn hint(unknown: &Unknown) -> Option<String> {
     foreign.by_meaning().or_else(|| foreign.in_another_unit()).or_else(|| foreign.elsewhere(&name))
 }
 
-/// Lower case, with underscores, "center" for "centre": "transverseModule" and "Transverse-Module" become "transverse_module".
+/// Lower case, with underscores, "center" for "centre": "transverseModule" and "Transverse-Module" become
+/// "transverse_module".
 fn plain(name: &str) -> String {
     let mut text = String::with_capacity(name.len() + 4);
     for letter in name.chars() {
@@ -418,7 +419,8 @@ impl ForeignName<'_> {
         Some(beta.to_degrees())
     }
 
-    /// The given diameter (or `factor` times the given length) and the reference diameter, as multiples of the normal module.
+    /// The given diameter (or `factor` times the given length) and the reference diameter, as multiples of the normal
+    /// module.
     fn over_module(&self, factor: f64) -> Option<(f64, f64)> {
         let module = self.number("/design/normal_module_mm")?;
         Some((factor * self.mm()? / module, self.of_member("teeth", None)? / self.cos_beta()?))

@@ -1,5 +1,5 @@
-//! JSON in which no object says a thing twice. RFC 8259 leaves open what a repeated member means; a document that could be
-//! read in two ways is refused instead.
+//! JSON in which no object says a thing twice. RFC 8259 leaves open what a repeated member means; a document that could
+//! be read in two ways is refused instead.
 
 use super::encoding::{EncodingError, utf8_text};
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
@@ -17,8 +17,8 @@ pub struct NotJson {
 /// Reads JSON text in UTF-8, with or without a byte order mark.
 ///
 /// # Errors
-/// What is not JSON, is encoded otherwise, is nested deeper than 127 levels, has numbers that 64-bit floats cannot hold, or
-/// repeats a member; each with line and column.
+/// What is not JSON, is encoded otherwise, is nested deeper than 127 levels, has numbers that 64-bit floats cannot
+/// hold, or repeats a member; each with line and column.
 pub fn read(bytes: &[u8]) -> Result<Value, NotJson> {
     let text = utf8_text(bytes).map_err(|error| {
         let (line, column) = match error {

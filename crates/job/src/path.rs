@@ -1,4 +1,5 @@
-//! JSON pointers (RFC 6901) into a document: written from the place where a reader stands, and taken apart to find a field.
+//! JSON pointers (RFC 6901) into a document: written from the place where a reader stands, and taken apart to find a
+//! field.
 
 use std::fmt;
 
@@ -44,7 +45,8 @@ impl fmt::Display for Path<'_> {
     }
 }
 
-/// First member and rest of a pointer; none of one that is empty or does not begin with a slash. Names of fields need no escapes.
+/// First member and rest of a pointer; none of one that is empty or does not begin with a slash. Names of fields need
+/// no escapes.
 pub fn split_first(pointer: &str) -> Option<(&str, &str)> {
     let rest = pointer.strip_prefix('/')?;
     Some(rest.find('/').map_or((rest, ""), |end| rest.split_at(end)))

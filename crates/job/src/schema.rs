@@ -29,14 +29,17 @@ pub fn job_document_schema() -> Value {
     root
 }
 
-/// The same for one kind of job: `kind` fixed, and without the fields that only sweeps have.
+/// The same for one kind of job: `kind` fixed, and without the fields that only other kinds have.
 pub fn job_document_schema_of(kind: JobKind) -> Value {
     let mut schema = job_document_schema();
     schema["title"] = json!(format!("JobDocument ({})", kind.as_str()));
     if let Some(properties) = schema["properties"].as_object_mut() {
-        if kind != JobKind::Sweep {
-            for name in ["axes", "continuation", "record"] {
-                properties.remove(name);
+        for field in field_descriptions() {
+            let excluded = field.condition.is_some_and(|condition| {
+                condition.on == "/kind" && !condition.values.split(' ').any(|word| word == kind.as_str())
+            });
+            if excluded {
+                properties.remove(field.pointer.trim_start_matches('/'));
             }
         }
         let help = properties.get("kind").and_then(|field| field.get("description")).cloned();

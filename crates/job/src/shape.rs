@@ -1,4 +1,5 @@
-//! What sweeps consist of: the axes and rows of a stored one without reading the rest of its document, and the document of a row.
+//! What sweeps consist of: the axes and rows of a stored one without reading the rest of its document, and the document
+//! of a row.
 
 use super::document::{JobDocument, JobKind};
 use serde::Deserialize;
@@ -16,8 +17,8 @@ impl JobDocument {
         }
     }
 
-    /// The document of a row of this sweep as a job of its own: a response with the values of the axes put in. None where the sweep
-    /// has no such row.
+    /// The document of a row of this sweep as a job of its own: a response with the values of the axes put in. None
+    /// where the sweep has no such row.
     pub fn of_row(&self, position: usize) -> Option<JobDocument> {
         if position >= self.sweep_points() {
             return None;

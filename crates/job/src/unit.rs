@@ -106,8 +106,8 @@ impl Unit {
     /// No unit: a plain number.
     pub const ONE: &'static Unit = Unit::of_field("", "1");
 
-    /// The unit `text` of a field. Evaluated when the crate is compiled: an unknown unit, and a name that does not end in its unit,
-    /// are errors there.
+    /// The unit `text` of a field. Evaluated when the crate is compiled: an unknown unit, and a name that does not end
+    /// in its unit, are errors there.
     pub const fn of_field(name: &str, text: &str) -> &'static Unit {
         let mut index = 0;
         let mut found = None;

@@ -1,6 +1,7 @@
 //! The loaded contact of one half of the source paper's example pair, part by part, on one core.
 //!
-//! `RAYON_NUM_THREADS=1 cargo bench -p herringbone-physics --bench contact`; what came out stands in docs/BENCHMARKS.md.
+//! `RAYON_NUM_THREADS=1 cargo bench -p herringbone-physics --bench contact`; what came out stands in
+//! docs/BENCHMARKS.md.
 
 use std::hint::black_box;
 

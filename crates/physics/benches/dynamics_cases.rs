@@ -14,7 +14,8 @@ pub fn case(name: &str) -> Parameters {
     }
 }
 
-/// Reference cases A (linear, contact kept) and C (period 2, contact lost and closed) of tests/data/dynamics_reference.json.
+/// Reference cases A (linear, contact kept) and C (period 2, contact lost and closed) of
+/// tests/data/dynamics_reference.json.
 fn parameters(torque_per_half_nm: f64, half_backlash_m: f64, damping_ratio: f64, amplitude: f64) -> Parameters {
     let (rp, rg) = (0.056_015_195_318_438_44, 0.144_980_505_530_064_2);
     let (mp, ip, mg, ig) = (6.0, 0.0325, 38.0, 1.85);

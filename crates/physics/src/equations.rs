@@ -37,8 +37,8 @@ pub struct Mounting {
 /// Parameters of the equations of motion in the base plane, without impact and without stagger.
 ///
 /// Each half has half of the mass and inertia of the gears. Its mesh stiffness along the tooth normal is that of
-/// [`equivalent_stiffness`], which carries the loaded transmission error and the mean tangent stiffness of `contact`, times
-/// 1/cos²β_b.
+/// [`equivalent_stiffness`], which carries the loaded transmission error and the mean tangent stiffness of `contact`,
+/// times 1/cos²β_b.
 pub fn base_plane_parameters(
     pair: &Pair,
     contact: &LoadedContact,

@@ -1,8 +1,8 @@
 //! # herringbone-physics
 //!
 //! Contact ratios, loaded tooth contact, mesh-in impact and nonlinear vibration of double-helical gear pairs: pure
-//! functions without I/O, clock, async or HTTP. Every quantity is in SI units (m, N, kg, s, rad, Pa) unless its name says
-//! otherwise; a unit at the end of a name (`_m`, `_n_per_m`) states the unit of the value.
+//! functions without I/O, clock, async or HTTP. Every quantity is in SI units (m, N, kg, s, rad, Pa) unless its name
+//! says otherwise; a unit at the end of a name (`_m`, `_n_per_m`) states the unit of the value.
 //!
 //! | module | contents |
 //! |---|---|

@@ -1,5 +1,5 @@
-//! The sections of the form, in the order in which an engineer thinks of them, and the blocks in them. Which section a field stands in,
-//! its name, range, unit, default and help come from its declaration in the job document.
+//! The sections of the form, in the order in which an engineer thinks of them, and the blocks in them. Which section a
+//! field stands in, its name, range, unit, default and help come from its declaration in the job document.
 
 /// A section of the form.
 pub(super) struct GroupPlan {
@@ -14,8 +14,8 @@ pub(super) struct GroupPlan {
     pub blocks: &'static [BlockPlan],
 }
 
-/// Fields that stand together under a common (perhaps empty) title: those of the section in one object (or several side by side) and in
-/// the objects in it that have no block of their own.
+/// Fields that stand together under a common (perhaps empty) title: those of the section in one object (or several side
+/// by side) and in the objects in it that have no block of their own.
 pub(super) struct BlockPlan {
     pub title: &'static str,
     /// Folded away until it is opened.

@@ -7,6 +7,7 @@ use serde::Serialize;
 /// Largest number of samples per recorded channel.
 pub const MAX_SERIES_SAMPLES: u64 = 4_000_000;
 
+/// Accuracy and method of the analysis of a response.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 #[input(group = "analysis", rules = analysis_rules)]
 pub struct AnalysisInput {
@@ -56,13 +57,18 @@ fn analysis_rules(analysis: &mut AnalysisInput, place: &Place) {
     analysis.record_mesh_periods = recorded.min(analysis.mesh_periods);
 }
 
+/// Method by which the steady motion is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum MethodInput {
+    /// The cheapest that is right.
     Auto,
+    /// As a periodic orbit.
     Periodic,
+    /// By integration from the initial state over the given number of mesh periods.
     Integrate,
 }
 
+/// Time integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum IntegratorInput {
     /// Event-exact Taylor series on the piecewise-linear equations.

@@ -9,6 +9,7 @@ use std::sync::LazyLock;
 /// Backlash along s where none is given, µm: that of the source.
 pub const DEFAULT_BACKLASH_UM: f64 = 2.0;
 
+/// The gear pair: teeth, flanks, material, supports and assembly errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 #[input(group = "gears", rules = design_rules)]
 pub struct DesignInput {
@@ -80,12 +81,16 @@ fn design_rules(design: &mut DesignInput, place: &Place) {
     }
 }
 
+/// Section in which the pressure angle of the rack is given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum PressureAnglePlane {
+    /// Perpendicular to the teeth.
     Normal,
+    /// Perpendicular to the axis.
     Transverse,
 }
 
+/// An elastic, isotropic material.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 pub struct MaterialInput {
     /// Young's modulus.
@@ -99,6 +104,7 @@ pub struct MaterialInput {
     pub density_kg_m3: f64,
 }
 
+/// Hand of a helix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum Hand {
     Left,
@@ -106,6 +112,7 @@ pub enum Hand {
 }
 
 impl Hand {
+    /// The hand of a mating half of an external pair.
     pub fn opposite(self) -> Hand {
         match self {
             Hand::Left => Hand::Right,
@@ -114,6 +121,7 @@ impl Hand {
     }
 }
 
+/// One gear of the pair, with both halves.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 #[input(group = "gears")]
 pub struct GearInput {
@@ -156,6 +164,7 @@ pub struct GearInput {
     #[input(derived = "as both gears")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<MaterialInput>,
+    /// Modifications of the drive flanks of both halves.
     #[input(flatten, first)]
     #[serde(flatten)]
     pub flank: FlankInput,
@@ -181,9 +190,10 @@ impl GearInput {
     }
 }
 
-/// Modifications of the flanks that are in contact while the pinion is driven.
+/// Modifications of the flanks that are in contact under negative torque.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 pub struct CoastInput {
+    /// Modifications of both halves.
     #[input(flatten)]
     #[serde(flatten)]
     pub flank: FlankInput,
@@ -222,6 +232,7 @@ pub struct FlankInput {
     pub end_relief: EndReliefInput,
 }
 
+/// Tip relief.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 #[input(rules = tip_relief_rules)]
 pub struct TipReliefInput {
@@ -242,12 +253,14 @@ fn tip_relief_rules(relief: &mut TipReliefInput, place: &Place) {
     }
 }
 
+/// Course of a tip relief over its roll length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum ReliefShapeInput {
     Linear,
     Parabolic,
 }
 
+/// End relief.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 #[input(rules = end_relief_rules)]
 pub struct EndReliefInput {
@@ -265,7 +278,7 @@ fn end_relief_rules(relief: &mut EndReliefInput, place: &Place) {
     }
 }
 
-/// Shafts and bearings, per half. What is null is derived (`study::supports`); a spring of zero is not there.
+/// Shafts and bearings, per half. A spring that is null is derived (`study::supports`), one of zero is absent.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 #[input(group = "supports")]
 pub struct SupportsInput {

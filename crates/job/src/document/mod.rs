@@ -1,7 +1,8 @@
 //! The job document: what goes in. Names and units are the public contract; every default is filled in, so that a
 //! document written out again says everything that was used.
 //!
-//! Each field is declared here, once: see [`crate::field`]. The doc comments' first paragraphs are the help texts of schema and form.
+//! Each field is declared here, once: see [`crate::field`]. The doc comments' first paragraphs are the help texts of
+//! schema and form.
 
 mod analysis;
 mod design;

@@ -1,7 +1,7 @@
 //! Choices of the physical model: mesh stiffness and impact.
 //!
-//! [`MeshStiffness`] and [`ImpactInput`] are enums whose variants share one JSON object. Their members are declared in structs of all
-//! members, from which the variant that `source` names is taken.
+//! [`MeshStiffness`] and [`ImpactInput`] are enums whose variants share one JSON object. Their members are declared in
+//! structs of all members, from which the variant that `source` names is taken.
 
 use crate::field::{Field, Input, Slot, number_slot};
 use crate::path::split_first;
@@ -9,6 +9,7 @@ use crate::reader::{Object, Place};
 use herringbone_macros::{Input, Words};
 use serde::Serialize;
 
+/// Choices of the physical model.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 #[input(group = "model", rules = model_rules)]
 pub struct ModelInput {
@@ -66,17 +67,23 @@ impl MeshForce {
 /// Plane in which the equations of motion are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum Plane {
+    /// The base plane, in which the contact acts.
     #[words(label = "base (consistent)")]
     Base,
+    /// The pitch plane, as in the source.
     #[words(label = "pitch (the source's)")]
     Pitch,
 }
 
+/// Source of the mesh stiffness.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "source", rename_all = "snake_case")]
 pub enum MeshStiffness {
+    /// Loaded tooth contact analysis.
     Ltca(Ltca),
+    /// The closed form of ISO 6336-1.
     Iso6336,
+    /// A given curve.
     Given(GivenStiffness),
 }
 
@@ -136,6 +143,7 @@ impl Input for MeshStiffness {
     }
 }
 
+/// Loaded tooth contact analysis.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 pub struct Ltca {
     /// ltca: how the tooth and body compliance is found: analytic (milliseconds) or fe (finite elements of both gears, seconds; kept for
@@ -184,9 +192,12 @@ pub enum StiffnessLaw {
     Tangent,
 }
 
+/// Method for the compliance of teeth and bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum Fidelity {
+    /// Plates on an elastic ring.
     Analytic,
+    /// Finite elements of both gears.
     #[words(label = "finite elements")]
     Fe,
     /// Contact lines as a uniform elastic foundation: a plain model for comparisons.
@@ -194,6 +205,7 @@ pub enum Fidelity {
     Uniform,
 }
 
+/// Fineness of the finite elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum Elements {
     Coarse,
@@ -205,7 +217,9 @@ pub enum Elements {
 /// Radius at which the gear bodies are held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum BodyInput {
+    /// Three normal modules below the root circle.
     Rim,
+    /// At the bore.
     Bore,
 }
 
@@ -282,6 +296,7 @@ fn lowest_of(harmonics: &[HarmonicInput]) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
+/// One harmonic of a given mesh stiffness.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Input)]
 pub struct HarmonicInput {
     /// Fraction of the mean.
@@ -292,12 +307,17 @@ pub struct HarmonicInput {
     pub phase_rad: f64,
 }
 
+/// Source of the mesh-in impact.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "source", rename_all = "snake_case")]
 pub enum ImpactInput {
+    /// From the corner contact, buffered by the pairs in mesh.
     CornerContact(CornerImpactInput),
+    /// From the corner contact, unbuffered.
     Zhou2008(CornerImpactInput),
+    /// No impact.
     None,
+    /// A given half sine.
     Given(GivenImpactInput),
 }
 
@@ -414,6 +434,7 @@ pub enum ActsOn {
     All,
 }
 
+/// An impact that is calculated from the corner contact.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CornerImpactInput {
     pub acts_on: ActsOn,
@@ -423,6 +444,7 @@ pub struct CornerImpactInput {
     pub base_pitch_error_um: f64,
 }
 
+/// Length of the pulse of an impact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum ImpactDuration {
     /// From the first corner contact to the theoretical start of contact.
@@ -431,6 +453,7 @@ pub enum ImpactDuration {
     EnergyBalance,
 }
 
+/// A given half sine.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GivenImpactInput {
     pub acts_on: ActsOn,

@@ -55,6 +55,7 @@ pub struct Axis {
     pub points: AxisPoints,
 }
 
+/// The values of an axis.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum AxisPoints {
@@ -62,6 +63,7 @@ pub enum AxisPoints {
     Values { values: Vec<f64> },
 }
 
+/// Spacing of the values of a range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum Spacing {
     Linear,
@@ -158,10 +160,14 @@ impl Axis {
     }
 }
 
+/// Start of the points of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
 pub enum Continuation {
+    /// From rest.
     None,
+    /// From the end of the neighbour below along the first axis.
     Up,
+    /// From the end of the neighbour above along the first axis.
     Down,
     /// Up and then down, and where the two differ.
     Both,

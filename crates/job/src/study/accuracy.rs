@@ -73,13 +73,14 @@ mod measured {
         23.0,
         "; with tip relief of more than three times the deflection (docs/VALIDATION.md, Not reached or doubtful: amplitude of the transmission error)",
     );
-    /// Error of the stiffness of short helical faces, over (m_n/b) tan β: it is proportional to that, and envelops all cases of the section; from
-    /// 17 teeth on, and below.
+    /// Error of the stiffness of short helical faces, over (m_n/b) tan β: it is proportional to that, and envelops all
+    /// cases of the section; from 17 teeth on, and below.
     pub const SHORT_FACE: [f64; 2] = [23.5, 40.5];
     pub const SHORT_FACE_BASIS: &str = "; a face this short for its helix angle is too stiff (docs/VALIDATION.md, Not reached or doubtful: helical and short faces)";
 }
 
-/// Tip relief over the elastic deflection from which on the load counts as light: the reference with 10 and 15 % had 1.2 and 2.8, that with 23 % 14.
+/// Tip relief over the elastic deflection from which on the load counts as light: the reference with 10 and 15 % had
+/// 1.2 and 2.8, that with 23 % 14.
 const LIGHT_LOAD: f64 = 3.0;
 
 /// The accuracy of a point whose other stages are in `result`.

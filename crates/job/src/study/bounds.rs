@@ -13,21 +13,21 @@ use crate::warning::Warning;
 use herringbone_physics::dynamics;
 use herringbone_physics::response::{Regime, Summary};
 
-/// Ratio of given inertias and masses to those of the geometry, or its inverse, above which there is a warning: a shaft,
-/// hub or web outweighs the gear, or a unit is wrong.
+/// Ratio of given inertias and masses to those of the geometry, or its inverse, above which there is a warning: a
+/// shaft, hub or web outweighs the gear, or a unit is wrong.
 const IMPLAUSIBLE_RATIO: f64 = 2.0;
 
 /// Part of the least backlash of practice below which there is a warning.
 const SMALL_BACKLASH: f64 = 0.25;
 
-/// Allowable contact stress number of case-hardened wrought steel, grade ME, MPa (ISO 6336-5:2016, figure 13): the highest of the
-/// standard. What lies above no steel bears for long.
+/// Allowable contact stress number of case-hardened wrought steel, grade ME, MPa (ISO 6336-5:2016, figure 13): the
+/// highest of the standard. What lies above no steel bears for long.
 const ALLOWABLE_PRESSURE_MPA: f64 = 1650.0;
 /// Young's modulus of steel, GPa: the limit of a softer material is taken in proportion to its modulus.
 const STEEL_GPA: f64 = 206.0;
 
-/// Secant over tangent stiffness below which the secant says more of flank modifications than of the teeth. Hertzian contact alone
-/// keeps it above 0.8.
+/// Secant over tangent stiffness below which the secant says more of flank modifications than of the teeth. Hertzian
+/// contact alone keeps it above 0.8.
 const SECANT_OF_TANGENT: f64 = 0.7;
 
 fn warning(code: &str, pointer: impl Into<String>, detail: String) -> Warning {
@@ -95,8 +95,8 @@ fn implausible(code: &str, pointer: String, given: f64, geometry: f64, unit: &st
     })
 }
 
-/// Least normal backlash of industrial drives with steel housings, mm: (2/3)(0.06 + 0.0005 a + 0.03 m_n), a and m_n in mm
-/// (ISO/TR 10064-2:1996, table A.1 and its formula).
+/// Least normal backlash of industrial drives with steel housings, mm: (2/3)(0.06 + 0.0005 a + 0.03 m_n), a and m_n in
+/// mm (ISO/TR 10064-2:1996, table A.1 and its formula).
 pub fn least_backlash_mm(center_distance_mm: f64, normal_module_mm: f64) -> f64 {
     2.0 / 3.0 * (0.06 + 0.0005 * center_distance_mm + 0.03 * normal_module_mm)
 }

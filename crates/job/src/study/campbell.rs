@@ -10,8 +10,8 @@ const SPEED: &str = "/operation/pinion_speed_rpm";
 /// Highest mesh order whose line is drawn.
 const ORDERS: u32 = 10;
 
-/// One diagram for every value of the other axis (one where there is none); nothing when no axis is the speed. Values at which
-/// the stages before the response fail have none.
+/// One diagram for every value of the other axis (one where there is none); nothing when no axis is the speed. Values
+/// at which the stages before the response fail have none.
 ///
 /// # Errors
 /// [`SolveError::Canceled`].

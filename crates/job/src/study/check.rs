@@ -8,8 +8,8 @@ use super::{CheckReport, demand, vibration};
 use crate::DocumentError;
 use crate::document::{JobDocument, JobKind};
 
-/// A job document that can be solved: its gear can exist, and everything it asks for can be computed. The pair and all that follows from
-/// it without solving is derived once, here.
+/// A job document that can be solved: its gear can exist, and everything it asks for can be computed. The pair and all
+/// that follows from it without solving is derived once, here.
 #[derive(Debug, Clone)]
 pub struct CheckedJob {
     document: JobDocument,
@@ -20,8 +20,8 @@ impl CheckedJob {
     /// Checks a document.
     ///
     /// # Errors
-    /// [`DocumentError::Invalid`] with every reason why it cannot be solved; [`DocumentError::Unsupported`] for what this version does not
-    /// compute.
+    /// [`DocumentError::Invalid`] with every reason why it cannot be solved; [`DocumentError::Unsupported`] for what
+    /// this version does not compute.
     pub fn new(document: JobDocument) -> Result<Self, DocumentError> {
         let job = Self::of_point(document)?;
         vibration::channels(&job.document)?;

@@ -63,7 +63,8 @@ pub fn find(
     Ok(Found { compliance, elements_reused, done })
 }
 
-/// Finite elements of one gear, from the store or solved (over the given part of the stage's progress); and whether they were stored.
+/// Finite elements of one gear, from the store or solved (over the given part of the stage's progress); and whether
+/// they were stored.
 fn flank(
     input: &FlankInput,
     context: &SolveContext,

@@ -16,7 +16,8 @@ fn references() -> Vec<Value> {
     file["cases"].as_array().expect("cases").clone()
 }
 
-/// One half in torsion with every slice of every tooth pair a spring of its own and the exact gaps of the tip corners, by fixed small steps.
+/// One half in torsion with every slice of every tooth pair a spring of its own and the exact gaps of the tip corners,
+/// by fixed small steps.
 #[test]
 fn motions_agree_with_a_model_that_keeps_every_slice() {
     for case in references() {

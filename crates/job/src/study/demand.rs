@@ -1,7 +1,7 @@
 //! How much memory a document's calculation takes, known before it starts.
 //!
-//! Upper estimates from the sizes that grow with the input; what is the same for every job (a few tens of MiB) is left out.
-//! `scripts/memory` holds them against the peak of real runs.
+//! Upper estimates from the sizes that grow with the input; what is the same for every job (a few tens of MiB) is left
+//! out. `scripts/memory` holds them against the peak of real runs.
 
 use crate::document::{Axis, Elements, Fidelity, JobDocument, JobKind, MeshStiffness};
 
@@ -67,8 +67,8 @@ pub fn demand(document: &JobDocument, threads: usize) -> Demand {
     }
 }
 
-/// Peak of the elimination and of the teeth's coupling, MiB at a face 12.5 modules wide, and the width in modules from which on the
-/// number of load cells along the face stays the same. Measured (`scripts/memory`).
+/// Peak of the elimination and of the teeth's coupling, MiB at a face 12.5 modules wide, and the width in modules from
+/// which on the number of load cells along the face stays the same. Measured (`scripts/memory`).
 const FINITE_ELEMENTS: [(Elements, f64, f64); 4] = [
     (Elements::Coarse, 60.0, 73.0),
     (Elements::Medium, 270.0, 36.5),

@@ -23,8 +23,8 @@ pub struct MotionPlane {
 }
 
 impl MotionPlane {
-    /// Base plane: base radii and β_b, k_m = k_bt / cos²β_b. Pitch plane: working pitch radii and helix angle there, with
-    /// k_m R² cos²β equal to k_bt r_b² (physics of the mesh unchanged, only written elsewhere).
+    /// Base plane: base radii and β_b, k_m = k_bt / cos²β_b. Pitch plane: working pitch radii and helix angle there,
+    /// with k_m R² cos²β equal to k_bt r_b² (physics of the mesh unchanged, only written elsewhere).
     pub fn new(plane: Plane, prepared: &Prepared) -> Self {
         let pair = &prepared.pair;
         let base = [pair.pinion.base_radius_m, pair.gear.base_radius_m];
@@ -66,8 +66,9 @@ pub fn given_stiffness(given: &GivenStiffness) -> Stiffness {
 
 /// The same parameters with the mesh forces of the loaded contact (left, right) in place of the stiffness.
 ///
-/// The mesh damper then has the damping ratio along the transverse direction of the mesh, c = 2 ζ √(k m_e) there with k the mean tangent stiffness at the working
-/// load, so that ζ is the damping ratio of the two bodies turning on their mesh: along s that is 1/cosβ times the source's c_m.
+/// The mesh damper then has the damping ratio along the transverse direction of the mesh, c = 2 ζ √(k m_e) there with k
+/// the mean tangent stiffness at the working load, so that ζ is the damping ratio of the two bodies turning on their
+/// mesh: along s that is 1/cosβ times the source's c_m.
 pub fn with_contact_forces(mut parameters: Parameters, forces: &[Arc<ContactForce>; 2]) -> Parameters {
     let cos = parameters.helix_angle_rad.cos();
     for (half, force) in parameters.halves.iter_mut().zip(forces) {
@@ -77,8 +78,8 @@ pub fn with_contact_forces(mut parameters: Parameters, forces: &[Arc<ContactForc
     parameters
 }
 
-/// Assembles the parameters. `stiffness` (along s) and `impact` are those of the left and the right half; the excitations of
-/// the right half come `right_lead_mesh_periods` earlier than written (stagger).
+/// Assembles the parameters. `stiffness` (along s) and `impact` are those of the left and the right half; the
+/// excitations of the right half come `right_lead_mesh_periods` earlier than written (stagger).
 pub fn parameters(
     document: &JobDocument,
     prepared: &Prepared,

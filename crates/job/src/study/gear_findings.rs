@@ -1,4 +1,5 @@
-//! Reasons and warnings of a gear pair as the service answers them: code, pointer to the field of the document, one sentence.
+//! Reasons and warnings of a gear pair as the service answers them: code, pointer to the field of the document, one
+//! sentence.
 
 use crate::Violation;
 use crate::warning::Warning;
@@ -314,5 +315,68 @@ fn field_unit(field: SpecField) -> (&'static str, fn(f64) -> f64) {
             | GearField::EndReliefAmount => MICROMETRE,
             _ => COEFFICIENT,
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use herringbone_physics::gear::{GearSpec, Pair, PairSpec};
+
+    /// z 19/63, m_n 16 mm, profile shifts of 1.309 in all: 680 mm fit.
+    fn large(center_distance_mm: f64) -> PairSpec {
+        let side =
+            |teeth, profile_shift| GearSpec { profile_shift, tip_alteration: -0.058_625, ..GearSpec::plain(teeth) };
+        let angles = [20f64.to_radians(), 7f64.to_radians()];
+        let free = PairSpec::plain(16e-3, angles, 0.28, [side(19, 0.52), side(63, 0.789)]);
+        PairSpec { center_distance_m: Some(center_distance_mm * 1e-3), ..free }
+    }
+
+    #[test]
+    fn a_centre_distance_that_does_not_fit_is_named_with_what_fits() {
+        for (center_distance_mm, code) in
+            [(861.0, "center-distance-does-not-fit"), (600.0, "center-distance-too-small")]
+        {
+            let reasons = Pair::new(&large(center_distance_mm)).expect_err("infeasible");
+            let [reason] = &reasons[..] else { panic!("{reasons:?}") };
+            let found = violation(reason);
+            assert_eq!((found.pointer.as_str(), found.code.as_str()), ("/design/center_distance_mm", code));
+            assert_eq!(found.unit.as_deref(), Some("mm"));
+            for part in ["680.0007 mm", "add up to 1.3090"] {
+                assert!(found.detail.contains(part), "{part}: {}", found.detail);
+            }
+            assert_eq!(found.detail.contains("fits a sum of 20.3552"), center_distance_mm == 861.0, "{}", found.detail);
+        }
+    }
+
+    #[test]
+    fn backlash_beyond_the_allowances_is_a_warning_of_the_centre_distance() {
+        for (center_distance_mm, code, part) in
+            [(679.0, "negative-play", "overlap by"), (682.0, "large-play", "play along the base tangent")]
+        {
+            let (_, warnings) = Pair::new(&large(center_distance_mm)).expect("feasible");
+            let [found] = &warnings[..] else { panic!("{warnings:?}") };
+            let found = warning(found);
+            assert_eq!((found.pointer.as_str(), found.code.as_str()), ("/design/center_distance_mm", code));
+            assert!(found.detail.contains(part) && found.detail.contains("fit 680.0007 mm"), "{}", found.detail);
+        }
+    }
+
+    #[test]
+    fn stated_values_are_reported_in_the_units_of_the_document() {
+        let mut wrong = large(680.0);
+        wrong.gap_width_m = -1e-3;
+        wrong.pinion.bore_radius_m = 60.0;
+        wrong.material.youngs_modulus_pa = 1e6;
+        let reasons = Pair::new(&wrong).expect_err("infeasible");
+        let details: Vec<_> = reasons.iter().map(violation).map(|v| (v.pointer, v.detail)).collect();
+        let expected = [
+            ("/design/gap_width_mm", "-1 mm is outside 0 … 10000 mm"),
+            ("/design/material/youngs_modulus_gpa", "0.001 GPa is outside 0.01 … 2000 GPa"),
+            ("/design/pinion/bore_diameter_mm", "120000 mm is outside 0 … 100000 mm"),
+        ];
+        for (pointer, detail) in expected {
+            assert!(details.iter().any(|(p, d)| p == pointer && d == detail), "{pointer}: {details:?}");
+        }
     }
 }

@@ -14,13 +14,14 @@ pub fn input_hash(document: &JobDocument) -> String {
     hash("result", &unnamed)
 }
 
-/// Hash of a contact analysis: the teeth with their errors, the torque and the choices of the model; not speed, supports,
-/// inertias or the analysis of the response.
+/// Hash of a contact analysis: the teeth with their errors, the torque and the choices of the model; not speed,
+/// supports, inertias or the analysis of the response.
 pub fn mesh_hash(case: &ContactCase) -> String {
     hash("mesh", case)
 }
 
-/// Hash of the contact's force over approach and phase, on the flanks that carry the torque or on the `idle` ones: of the same things as [`mesh_hash`].
+/// Hash of the contact's force over approach and phase, on the flanks that carry the torque or on the `idle` ones: of
+/// the same things as [`mesh_hash`].
 pub fn force_hash(case: &ContactCase, idle: bool) -> String {
     hash("mesh-force", &(case, idle))
 }

@@ -23,7 +23,8 @@ pub fn applied(document: &JobDocument) -> bool {
     document.model.mesh_force == MeshForce::Stiffness && !matches!(document.model.impact, ImpactInput::None)
 }
 
-/// Runs the impact stage: an impact that is not applied has no pulses. Warns of pulses outside the range of their model.
+/// Runs the impact stage: an impact that is not applied has no pulses. Warns of pulses outside the range of their
+/// model.
 pub fn run(
     document: &JobDocument,
     prepared: &Prepared,

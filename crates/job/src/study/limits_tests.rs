@@ -73,7 +73,8 @@ fn codes(result: &JobResult) -> Vec<&str> {
     result.warnings.iter().map(|warning| warning.code.as_str()).collect()
 }
 
-/// Every stage gave numbers that can be: stiffness and shares positive, the loaded contact at least as long as the unloaded one.
+/// Every stage gave numbers that can be: stiffness and shares positive, the loaded contact at least as long as the
+/// unloaded one.
 fn plausible(value: &Value) -> JobResult {
     let result = solved(value);
     let mesh = result.mesh.as_ref().expect("a mesh");

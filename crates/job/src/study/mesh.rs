@@ -319,8 +319,8 @@ fn tangent_stiffness(contact: &LoadedContact, plane: &MotionPlane) -> [Stiffness
     })
 }
 
-/// Both halves at one rotation, the axial shift u opening one by u tanβ_b and closing the other: k_L and k_R in series move the load,
-/// their difference moves the common displacement.
+/// Both halves at one rotation, the axial shift u opening one by u tanβ_b and closing the other: k_L and k_R in series
+/// move the load, their difference moves the common displacement.
 fn apex_sensitivity(contact: &LoadedContact, prepared: &Prepared) -> ApexSensitivity {
     let [left, right] = &contact.halves;
     let tan = prepared.pair.base_helix_angle_rad.tan();
@@ -381,8 +381,8 @@ fn foot_m(pair: &Pair, phase: f64) -> f64 {
     pair.path_start_m - pair.spec.face_width_m * pair.base_helix_angle_rad.tan() + phase * pair.base_pitch_m
 }
 
-/// A stage from a stiffness curve k_bt(phase) alone: deflection F/k; the entering pair's share by the length of its line of
-/// contact (uniform line load).
+/// A stage from a stiffness curve k_bt(phase) alone: deflection F/k; the entering pair's share by the length of its
+/// line of contact (uniform line load).
 fn closed_form(source: StiffnessSource, prepared: &Prepared, curve: impl Fn(f64) -> f64) -> MeshStage {
     let force_n = prepared.half_force_n;
     let phase: Vec<f64> = (0..CLOSED_FORM_POSITIONS).map(|i| i as f64 / CLOSED_FORM_POSITIONS as f64).collect();

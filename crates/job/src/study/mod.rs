@@ -31,13 +31,13 @@ use crate::warning::Warning;
 
 use herringbone_physics::watch::Canceled;
 use mesh::MeshMemo;
-use point::Wanted;
+use point::PointOptions;
 use serde::{Deserialize, Serialize};
 
 pub use check::CheckedJob;
 pub use demand::{Demand, demand};
 pub use hash::input_hash;
-pub use points::{KeptPoints, LineEnd, NoPointStore, PointStore};
+pub use points::{LineEnd, NoPointStore, PointStore, StoredPoints};
 pub use vibration::is_channel;
 
 /// Version of the calculation: results and stages stored under another version are not reused.
@@ -177,13 +177,13 @@ pub fn solve(job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveE
     let document = job.document();
     let memo = MeshMemo::default();
     if document.kind != JobKind::Sweep {
-        let point = point::solve(job, context, &memo, &Wanted::WHOLE)?;
+        let point = point::solve(job, context, &memo, &PointOptions::WHOLE)?;
         return Ok(Outcome { result: point.result, series: point.series });
     }
     let started_ms = (context.clock_ms)();
-    let kept = context.points.load();
-    let reused = if kept.rows.is_empty() { Vec::new() } else { vec![ReusedStage::Points] };
-    let sweep = sweep::run(document, kept, context, &memo)?;
+    let stored = context.points.load();
+    let reused = if stored.rows.is_empty() { Vec::new() } else { vec![ReusedStage::Points] };
+    let sweep = sweep::run(document, stored, context, &memo)?;
     let report = job.report();
     let mut result = JobResult {
         geometry: Some(report.geometry),

@@ -21,22 +21,22 @@ pub struct Point {
     pub bands: Option<Vec<f64>>,
 }
 
-/// How much of a point is wanted.
-pub struct Wanted<'a> {
+/// Extent of the solution of a point.
+pub struct PointOptions<'a> {
     /// A neighbour's end state to continue from.
     pub start: Option<&'a [f64]>,
-    /// Everything a result has; a point of a sweep leaves out what its row does not hold.
+    /// With everything a result has; a point of a sweep leaves out the parts that its row does not hold.
     pub whole: bool,
-    /// What the row of a sweep carries beside its numbers.
+    /// Data that the row of a sweep carries beside its numbers.
     pub record: &'a [Recorded],
 }
 
-impl Wanted<'_> {
+impl PointOptions<'_> {
     /// A job of its own.
     pub const WHOLE: Self = Self { start: None, whole: true, record: &[] };
 
-    pub fn records(&self, what: Recorded) -> bool {
-        self.record.contains(&what)
+    pub fn records(&self, data: Recorded) -> bool {
+        self.record.contains(&data)
     }
 }
 
@@ -57,11 +57,16 @@ impl Staged<'_> {
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn solve(job: &CheckedJob, context: &SolveContext, memo: &MeshMemo, wanted: &Wanted) -> Result<Point, SolveError> {
+pub fn solve(
+    job: &CheckedJob,
+    context: &SolveContext,
+    memo: &MeshMemo,
+    options: &PointOptions,
+) -> Result<Point, SolveError> {
     let progress = |stage, fraction| (context.progress)(stage, of_whole(job.document().kind, stage, fraction));
     let context = &SolveContext { progress: &progress, ..*context };
     let staged = stage(job, context, memo)?;
-    respond(job.document(), staged, context, wanted)
+    respond(job.document(), staged, context, options)
 }
 
 /// Geometry, contact and impact of a point, and the equations of motion that follow.
@@ -114,21 +119,21 @@ pub fn respond(
     document: &JobDocument,
     staged: Staged,
     context: &SolveContext,
-    wanted: &Wanted,
+    options: &PointOptions,
 ) -> Result<Point, SolveError> {
-    let solve = |parameters| vibration::solve(document, parameters, wanted, context);
+    let solve = |parameters| vibration::solve(document, parameters, options, context);
     let response = staged.parameters().map(solve).transpose()?;
-    answered(document, staged, wanted, response)
+    assemble(document, staged, options, response)
 }
 
 /// A staged point with the response to its equations, where it has any.
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn answered(
+pub fn assemble(
     document: &JobDocument,
     staged: Staged,
-    wanted: &Wanted,
+    options: &PointOptions,
     response: Option<Result<Response, DynamicsError>>,
 ) -> Result<Point, SolveError> {
     let Staged { mut result, parameters, mut stopwatch } = staged;
@@ -136,7 +141,7 @@ pub fn answered(
         result.accuracy = Some(accuracy::of(document, &result));
         return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });
     };
-    let vibration = vibration::to_result(document, &parameters, wanted, response, &mut result.numerics)?;
+    let vibration = vibration::to_result(document, &parameters, options, response, &mut result.numerics)?;
     result.response = Some(vibration.summary);
     result.accuracy = Some(accuracy::of(document, &result));
     result.warnings.extend(vibration.warnings);

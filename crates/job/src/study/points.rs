@@ -1,14 +1,14 @@
-//! The points of a sweep that are kept as they are found, so that a sweep which was stopped goes on where it was.
+//! The points of a sweep, stored as they are solved, so that a sweep that was stopped resumes there.
 
 use crate::result::SweepPoint;
 use std::collections::{BTreeMap, HashMap};
 
-/// Where the points of one sweep are kept while it runs. Positions are those in the result's `sweep.points`.
+/// Store of the points of one sweep while it runs. Positions are those in the result's `sweep.points`.
 ///
 /// What is loaded must have been saved by a sweep over the same document under the same solver version.
 pub trait PointStore: Sync {
     /// What an earlier run of the same sweep left.
-    fn load(&self) -> KeptPoints;
+    fn load(&self) -> StoredPoints;
 
     /// Keeps a point that was just solved. `end`, with continuation: how far its line is followed with it.
     fn save(&self, position: usize, row: &SweepPoint, end: Option<&LineEnd>);
@@ -16,7 +16,7 @@ pub trait PointStore: Sync {
 
 /// Points of an earlier run.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct KeptPoints {
+pub struct StoredPoints {
     /// By position.
     pub rows: HashMap<usize, SweepPoint>,
     /// By line of a continuation: up to where it was followed.
@@ -38,8 +38,8 @@ pub struct LineEnd {
 pub struct NoPointStore;
 
 impl PointStore for NoPointStore {
-    fn load(&self) -> KeptPoints {
-        KeptPoints::default()
+    fn load(&self) -> StoredPoints {
+        StoredPoints::default()
     }
 
     fn save(&self, _position: usize, _row: &SweepPoint, _end: Option<&LineEnd>) {}

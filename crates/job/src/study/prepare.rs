@@ -29,8 +29,8 @@ pub struct Prepared {
     pub contact_torque_nm: f64,
 }
 
-/// Line load for which the contact is solved where the torque is zero, N/m of face width: 1 N/mm, about a hundredth of a micrometre to a
-/// tenth of deflection.
+/// Line load for which the contact is solved where the torque is zero, N/m of face width: 1 N/mm, about a hundredth of
+/// a micrometre to a tenth of deflection.
 const LIGHT_LINE_LOAD_N_PER_M: f64 = 1e3;
 
 /// Derives everything about the gear that costs no solving.

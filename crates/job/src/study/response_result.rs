@@ -146,8 +146,8 @@ pub fn summary(document: &JobDocument, parameters: &Parameters, response: &respo
 const SPECTRUM_ORDERS: f64 = 20.0;
 const SPECTRUM_LINES: usize = 4000;
 
-/// Spectrum of the left half's circumferential acceleration, where it was recorded. Of more lines than the result holds,
-/// the largest of each group of neighbours stays.
+/// Spectrum of the left half's circumferential acceleration, where it was recorded. Of more lines than the result
+/// holds, the largest of each group of neighbours stays.
 pub fn spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<SpectrumResult> {
     let full = full_spectrum(response, mesh_frequency_hz)?;
     let lines = full.mesh_order.iter().filter(|order| **order <= SPECTRUM_ORDERS).count();

@@ -1,9 +1,9 @@
-//! One row of a sweep: the document of a point, and what is kept of its solution.
+//! One row of a sweep: the job of a point, and the part of its solution that the row has.
 
 use super::axes;
 use super::check::CheckedJob;
 use super::mesh::MeshMemo;
-use super::point::{self, Point, Wanted};
+use super::point::{self, Point, PointOptions};
 use super::{SolveContext, SolveError, vibration};
 use crate::DocumentError;
 use crate::document::JobDocument;
@@ -42,15 +42,16 @@ pub fn solve(
     memo: &MeshMemo,
 ) -> Result<Solved, SolveError> {
     let quiet = SolveContext { progress: &|_, _| {}, ..*context };
-    let wanted = Wanted { start, whole: false, record: &sweep.record };
-    let solved = job(base, sweep, &values).and_then(|job| point::solve(&job, &quiet, memo, &wanted));
+    let options = PointOptions { start, whole: false, record: &sweep.record };
+    let solved = job(base, sweep, &values).and_then(|job| point::solve(&job, &quiet, memo, &options));
     match solved {
         Ok(point) => Ok(of_point(values, point)),
         Err(error) => failed(values, error),
     }
 }
 
-/// Solves several points from their own starts, their motions side by side where they are integrated: as [`solve`] does each.
+/// Solves several points from their own starts, their motions side by side where they are integrated: as [`solve`] does
+/// each.
 ///
 /// # Errors
 /// [`SolveError::Canceled`].
@@ -62,38 +63,38 @@ pub fn solve_together(
     memo: &MeshMemo,
 ) -> Result<Vec<Solved>, SolveError> {
     let quiet = SolveContext { progress: &|_, _| {}, ..*context };
-    let wanted = Wanted { start: None, whole: false, record: &sweep.record };
+    let options = PointOptions { start: None, whole: false, record: &sweep.record };
     let staged: Vec<_> = group
         .iter()
         .map(|values| {
             let job = job(base, sweep, values)?;
             let staged = point::stage(&job, &quiet, memo)?;
-            let analysis = vibration::analysis(job.document(), &wanted)?;
+            let analysis = vibration::analysis(job.document(), &options)?;
             Ok::<_, SolveError>((job, staged, analysis))
         })
         .collect();
-    // Together: those that ask the same of their equations.
-    let mut asked: Vec<(&Analysis, Vec<usize>, Vec<Parameters>)> = Vec::new();
+    // Points with the same analysis are integrated together.
+    let mut batches: Vec<(&Analysis, Vec<usize>, Vec<Parameters>)> = Vec::new();
     for (i, one) in staged.iter().enumerate() {
         let Ok((_, staged, analysis)) = one else { continue };
         let Some(parameters) = staged.parameters() else { continue };
-        match asked.iter_mut().find(|(other, ..)| *other == analysis) {
+        match batches.iter_mut().find(|(other, ..)| *other == analysis) {
             Some((_, places, points)) => {
                 places.push(i);
                 points.push(parameters.clone());
             }
-            None => asked.push((analysis, vec![i], vec![parameters.clone()])),
+            None => batches.push((analysis, vec![i], vec![parameters.clone()])),
         }
     }
     let mut responses: Vec<Option<Result<Response, DynamicsError>>> = group.iter().map(|_| None).collect();
     let watch = Watch::new(&|_| {}, context.canceled);
-    for (analysis, places, points) in asked {
+    for (analysis, places, points) in batches {
         for (i, response) in places.into_iter().zip(response::solve_many(&points, analysis, &watch)?) {
             responses[i] = Some(response);
         }
     }
     let solved = group.into_iter().zip(staged).zip(responses).map(|((values, staged), response)| {
-        let point = staged.and_then(|(job, staged, _)| point::answered(job.document(), staged, &wanted, response));
+        let point = staged.and_then(|(job, staged, _)| point::assemble(job.document(), staged, &options, response));
         match point {
             Ok(point) => Ok(of_point(values, point)),
             Err(error) => failed(values, error),

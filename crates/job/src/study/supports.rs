@@ -6,14 +6,16 @@ use crate::result::{SpringOrigin, SpringValue, SupportsResult};
 use crate::warning::Warning;
 use herringbone_physics::gear::{BodyStiffness, Material, Pair};
 
-/// Lateral support of a half over E a, E that of steel (bearings are steel whatever the gears are of) and a the centre distance.
+/// Lateral support of a half over E a, E that of steel (bearings are steel whatever the gears are of) and a the centre
+/// distance.
 ///
-/// Why E a: bearings of similar shape, loaded in proportion to what similar gears carry, are as stiff as they are large (a stiffness is a
-/// modulus times a length, and the only length that both shafts share, and that bounds the bearings beside each other, is the centre distance).
-/// Rolling bearings with line contact do this by themselves: δ = 7.68e-5 Q^0.9 / l^0.8 (mm, N; T. A. Harris, Rolling Bearing Analysis), so F/δ
-/// grows with F^0.1 l^0.8, that is with the length at equal stress. Why this number: a cylindrical roller bearing of 50 mm bore (16 rollers, 13 mm
-/// long, Q = 4.08 F/16) has 850 N/µm under the force of the source's pair, shaft and housing behind it leave about 600, the value of the
-/// dynamic reference cases; a = 201 mm there.
+/// Why E a: bearings of similar shape, loaded in proportion to what similar gears carry, are as stiff as they are large
+/// (a stiffness is a modulus times a length, and the only length that both shafts share, and that bounds the bearings
+/// beside each other, is the centre distance). Rolling bearings with line contact do this by themselves: δ = 7.68e-5
+/// Q^0.9 / l^0.8 (mm, N; T. A. Harris, Rolling Bearing Analysis), so F/δ grows with F^0.1 l^0.8, that is with the
+/// length at equal stress. Why this number: a cylindrical roller bearing of 50 mm bore (16 rollers, 13 mm long, Q =
+/// 4.08 F/16) has 850 N/µm under the force of the source's pair, shaft and housing behind it leave about 600, the value
+/// of the dynamic reference cases; a = 201 mm there.
 const LATERAL_PER_MODULUS_AND_DISTANCE: f64 = 0.0145;
 
 /// Axial over lateral stiffness of a support: 200 to 600 N/µm in the dynamic reference cases.
@@ -120,13 +122,15 @@ pub fn shown(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::Input;
     use herringbone_physics::gear::{GearSpec, PairSpec};
 
     fn pair(spec: &PairSpec) -> Pair {
         Pair::new(spec).unwrap_or_else(|reasons| panic!("{reasons:#?}")).0
     }
 
-    /// Table 1 of the source paper: z 17/44, m_n 6 mm, transverse pressure angle 20 deg, helix 24.43 deg, b 75 mm per half.
+    /// Table 1 of the source paper: z 17/44, m_n 6 mm, transverse pressure angle 20 deg, helix 24.43 deg, b 75 mm per
+    /// half.
     fn source_pair(addendum: f64) -> PairSpec {
         let beta: f64 = 24.43_f64.to_radians();
         let alpha_n = (20.0_f64.to_radians().tan() * beta.cos()).atan();
@@ -139,18 +143,10 @@ mod tests {
         PairSpec { gap_width_m: 0.03, ..PairSpec::plain(6e-3, [alpha_n, beta], 75e-3, teeth) }
     }
 
-    const NOTHING: doc::SupportsInput = doc::SupportsInput {
-        pinion_lateral_n_per_um: None,
-        gear_lateral_n_per_um: None,
-        pinion_halves_axial_n_per_um: None,
-        gear_axial_n_per_um: None,
-        gear_halves_axial_n_per_um: None,
-        damping_ratio: 0.03,
-        pinion_halves_torsional_nm_per_rad: None,
-        gear_halves_torsional_nm_per_rad: None,
-        pinion_halves_lateral_n_per_um: None,
-        gear_halves_lateral_n_per_um: None,
-    };
+    /// Supports of which nothing is given.
+    fn nothing() -> doc::SupportsInput {
+        doc::SupportsInput::defaults()
+    }
 
     fn scaled(factor: f64) -> Pair {
         let spec = source_pair(1.0);
@@ -167,7 +163,7 @@ mod tests {
 
     #[test]
     fn the_sources_pair_has_about_the_values_of_the_reference_cases() {
-        let used = used(&NOTHING, &scaled(1.0));
+        let used = used(&nothing(), &scaled(1.0));
         for (name, expected) in
             [("pinion_lateral_n_per_um", 600.0), ("gear_lateral_n_per_um", 600.0), ("gear_axial_n_per_um", 200.0)]
         {
@@ -190,7 +186,7 @@ mod tests {
     /// Similar pairs: stiffness along a length grows with the length, against rotation with its cube.
     #[test]
     fn everything_scales_with_the_size() {
-        let (base, large) = (used(&NOTHING, &scaled(1.0)), used(&NOTHING, &scaled(2.5)));
+        let (base, large) = (used(&nothing(), &scaled(1.0)), used(&nothing(), &scaled(2.5)));
         for ((name, small), (_, large)) in named(&base).into_iter().zip(named(&large)) {
             let power = if name.ends_with("per_rad") { 3 } else { 1 };
             let ratio = large.value / small.value / 2.5_f64.powi(power);
@@ -203,7 +199,7 @@ mod tests {
         let given = doc::SupportsInput {
             pinion_lateral_n_per_um: Some(123.0),
             gear_halves_torsional_nm_per_rad: Some(0.0),
-            ..NOTHING
+            ..nothing()
         };
         let used = used(&given, &scaled(1.0));
         assert_eq!(used.pinion_lateral_n_per_um, value(Some(123.0), 1.0, SpringOrigin::Assumed));

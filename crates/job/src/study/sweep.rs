@@ -3,7 +3,7 @@
 use super::axes::base;
 use super::branches;
 use super::mesh::MeshMemo;
-use super::points::{KeptPoints, LineEnd};
+use super::points::{LineEnd, StoredPoints};
 use super::row;
 use super::{SolveContext, SolveError, Stage, campbell, response_result};
 use crate::document::{Axis, Continuation, JobDocument, MethodInput, Recorded};
@@ -15,14 +15,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Points that are integrated side by side: a multiple of the lanes, few enough to keep all threads busy.
 const POINTS_TOGETHER: usize = 32;
 
-/// Solves every point that is not in `kept`. Points without continuation are independent and run in parallel; with it, each line
-/// along the first axis is followed in order, the lines of the second axis in parallel, and upwards beside downwards.
+/// Solves every point that is not in `stored`. Points without continuation are independent and run in parallel; with
+/// it, each line along the first axis is followed in order, the lines of the second axis in parallel, and upwards
+/// beside downwards.
 ///
 /// # Errors
 /// [`SolveError::Canceled`]. A point that fails says so in its row.
 pub fn run(
     document: &JobDocument,
-    kept: KeptPoints,
+    stored: StoredPoints,
     context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<SweepResult, SolveError> {
@@ -67,16 +68,17 @@ pub fn run(
             count(points.len());
             Ok(rows)
         };
-        // Points that are integrated go side by side; the others take very different times, so each is for the next free thread.
+        // Points that are integrated go side by side; the others take very different times, so each is for the next
+        // free thread.
         let together = if document.analysis.method == MethodInput::Integrate { POINTS_TOGETHER } else { 1 };
-        let rows: HashMap<_, _> = kept.rows.into_iter().filter(|(position, _)| *position < all).collect();
+        let rows: HashMap<_, _> = stored.rows.into_iter().filter(|(position, _)| *position < all).collect();
         count(rows.len());
         sweep.points = independent((lines, length), together, rows, solve)?;
     } else {
         let follow = |line: usize| -> Result<Vec<SweepPoint>, SolveError> {
             let way = ways[line / lines];
             let order = branches::order(first, way);
-            let (mut followed, mut state) = followed(&kept, line, length, &order);
+            let (mut followed, mut state) = followed(&stored, line, length, &order);
             count(followed.len());
             for &index in &order[followed.len()..] {
                 let position = line * length + index;
@@ -114,9 +116,9 @@ pub fn run(
     Ok(sweep)
 }
 
-/// Solves all points without a row in parallel, but the very first before all others and the first of every line before the rest
-/// of it: whatever the points share (compliance, contact) is then there and not computed by several at once. The rest goes in
-/// groups of `together`.
+/// Solves all points without a row in parallel, but the very first before all others and the first of every line before
+/// the rest of it: whatever the points share (compliance, contact) is then there and not computed by several at once.
+/// The rest goes in groups of `together`.
 fn independent(
     (lines, length): (usize, usize),
     together: usize,
@@ -136,11 +138,11 @@ fn independent(
 }
 
 /// What an earlier run followed of a line, in the order in which it is followed, and the state to go on from.
-fn followed(kept: &KeptPoints, line: usize, length: usize, order: &[usize]) -> (Vec<SweepPoint>, Option<Vec<f64>>) {
-    let Some(end) = kept.ends.get(&line) else { return Default::default() };
+fn followed(stored: &StoredPoints, line: usize, length: usize, order: &[usize]) -> (Vec<SweepPoint>, Option<Vec<f64>>) {
+    let Some(end) = stored.ends.get(&line) else { return Default::default() };
     let upto = order.iter().position(|index| line * length + index == end.position).map_or(0, |last| last + 1);
     let rows: Vec<_> =
-        order[..upto].iter().map_while(|index| kept.rows.get(&(line * length + index)).cloned()).collect();
+        order[..upto].iter().map_while(|index| stored.rows.get(&(line * length + index)).cloned()).collect();
     // Without every row up to the end the line is followed afresh.
     if rows.len() == upto { (rows, end.state.clone()) } else { Default::default() }
 }

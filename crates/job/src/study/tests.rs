@@ -54,8 +54,8 @@ fn the_variants_of_table2_reach_their_contact_ratios() {
     }
 }
 
-/// What the pairs in mesh take off the impact force, beside the two columns of the source's Table 2 (9.255 and 8.896 kN, …):
-/// less for every higher contact ratio. The bound is what is reached, 2 percentage points.
+/// What the pairs in mesh take off the impact force, beside the two columns of the source's Table 2 (9.255 and 8.896
+/// kN, …): less for every higher contact ratio. The bound is what is reached, 2 percentage points.
 #[test]
 fn the_buffering_of_table2_falls_with_the_contact_ratio() {
     let printed = [
@@ -342,8 +342,8 @@ fn a_chaotic_response_has_an_interval_and_no_multipliers() {
     assert!(response.energy_balance_residual.is_some_and(|residual| residual < 1e-8));
 }
 
-/// A motion that comes near to itself after many periods, again and again, uses up what Newton's method may cost: it is then a motion
-/// that does not repeat, not an error.
+/// A motion that comes near to itself after many periods, again and again, uses up what Newton's method may cost: it is
+/// then a motion that does not repeat, not an error.
 #[test]
 fn a_motion_that_is_too_dear_to_close_is_told_as_one_that_does_not_repeat() {
     let mut value = example("table1");
@@ -356,8 +356,8 @@ fn a_motion_that_is_too_dear_to_close_is_told_as_one_that_does_not_repeat() {
     assert!(matches!(response.regime, RegimeResult::QuasiPeriodic | RegimeResult::Chaotic), "{:?}", response.regime);
 }
 
-/// Event-exact references over the first twenty mesh periods from the static deflection, through the document: the mean of an
-/// acceleration over a transient counts.
+/// Event-exact references over the first twenty mesh periods from the static deflection, through the document: the mean
+/// of an acceleration over a transient counts.
 #[test]
 fn the_first_twenty_periods_of_the_reference_cases() {
     for (torque_nm, backlash_um, damping, amplitude, expected) in [
@@ -386,8 +386,8 @@ fn the_first_twenty_periods_of_the_reference_cases() {
     }
 }
 
-/// Primary resonance with loss of contact (backlash 40 µm, mesh damping ratio 0.03): two motions at the same speed, found by coming
-/// from below and from above, each branch with its jump.
+/// Primary resonance with loss of contact (backlash 40 µm, mesh damping ratio 0.03): two motions at the same speed,
+/// found by coming from below and from above, each branch with its jump.
 #[test]
 fn continuation_finds_both_branches_of_the_resonance_and_their_jumps() {
     let mut value = example("given_stiffness");
@@ -539,11 +539,11 @@ fn progress_is_that_of_the_whole_job_and_never_goes_back() {
 /// Keeps points as a store does, and lets the calculation go on for so many of them.
 #[derive(Default)]
 struct Points {
-    kept: Mutex<KeptPoints>,
+    kept: Mutex<StoredPoints>,
     saved: AtomicUsize,
 }
 impl PointStore for Points {
-    fn load(&self) -> KeptPoints {
+    fn load(&self) -> StoredPoints {
         // As a store would: rows go through JSON.
         let mut kept = self.kept.lock().expect("unpoisoned").clone();
         for row in kept.rows.values_mut() {
@@ -641,8 +641,8 @@ fn rigid_body() -> Value {
     Value::Object(halves.into_iter().flatten().collect())
 }
 
-/// Staggered by half a pitch the excitations of the halves oppose each other at the first order: on one body the torsional motion loses it and
-/// the axial one gains it. In the source's model each half turns by itself, and keeps it.
+/// Staggered by half a pitch the excitations of the halves oppose each other at the first order: on one body the
+/// torsional motion loses it and the axial one gains it. In the source's model each half turns by itself, and keeps it.
 #[test]
 fn stagger_on_one_body_moves_the_first_order_from_torsion_to_the_axis() {
     const RESONANCE_RPM: f64 = 12_100.0;
@@ -783,7 +783,8 @@ fn a_result_says_both_its_errors() {
     assert!(written["accuracy"]["model"]["basis"].as_str().is_some_and(|basis| basis.contains("given")));
 }
 
-/// What a result says of the model's error is not below what finite elements find, on short and steep faces and on few teeth too.
+/// What a result says of the model's error is not below what finite elements find, on short and steep faces and on few
+/// teeth too.
 #[test]
 fn the_model_error_that_is_said_is_not_below_the_error() {
     let pairs = [
@@ -836,7 +837,8 @@ fn warned(result: &crate::result::JobResult, code: &str, pointer: &str) -> bool 
     result.warnings.iter().any(|w| w.code == code && w.pointer == pointer)
 }
 
-/// Impacts of the source's model up to several times the load: every force on the tooth counts, on either kind of reaction.
+/// Impacts of the source's model up to several times the load: every force on the tooth counts, on either kind of
+/// reaction.
 #[test]
 fn the_dynamic_factor_counts_the_impact() {
     for (rpm, acts_on) in
@@ -858,7 +860,8 @@ fn the_dynamic_factor_counts_the_impact() {
     }
 }
 
-/// A record that ends while the start decays, from rest in the middle of the backlash: not settled, with a warning; long after, it is.
+/// A record that ends while the start decays, from rest in the middle of the backlash: not settled, with a warning;
+/// long after, it is.
 #[test]
 fn a_record_that_ends_before_the_motion_is_not_settled() {
     let case = |periods: u32, record: u32, rpm: f64, ratio: f64| {
@@ -922,7 +925,8 @@ fn an_unloaded_pair_is_at_rest_without_an_alarm() {
     }
 }
 
-/// Twice the frequency of the mesh mode, hardly damped, no play: the growth is told, with its rate, by every method and in a sweep's row.
+/// Twice the frequency of the mesh mode, hardly damped, no play: the growth is told, with its rate, by every method and
+/// in a sweep's row.
 #[test]
 fn parametric_instability_is_told() {
     let mut value = example("given_stiffness");

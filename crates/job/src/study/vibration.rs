@@ -1,6 +1,6 @@
 //! The response stage: the steady vibration of the pair and its statistics.
 
-use super::point::Wanted;
+use super::point::PointOptions;
 use super::{Channel, SolveContext, SolveError, Stage, bounds, response_result};
 use crate::document::{IntegratorInput, JobDocument, MethodInput, Recorded};
 use crate::result::{NumericsResult, Poincare, ResponseResult};
@@ -65,10 +65,10 @@ const POINCARE_POINTS: usize = 200;
 pub fn solve(
     document: &JobDocument,
     parameters: &Parameters,
-    wanted: &Wanted,
+    options: &PointOptions,
     context: &SolveContext,
 ) -> Result<Result<response::Response, DynamicsError>, DocumentError> {
-    let analysis = analysis(document, wanted)?;
+    let analysis = analysis(document, options)?;
     let progress = |fraction: f64| (context.progress)(Stage::Response, fraction);
     let watch = Watch::new(&progress, context.canceled);
     Ok(response::solve(parameters, &analysis, &watch))
@@ -81,7 +81,7 @@ pub fn solve(
 pub fn to_result(
     document: &JobDocument,
     parameters: &Parameters,
-    wanted: &Wanted,
+    options: &PointOptions,
     response: Result<response::Response, DynamicsError>,
     numerics: &mut NumericsResult,
 ) -> Result<Vibration, SolveError> {
@@ -92,14 +92,14 @@ pub fn to_result(
     numerics.force_evaluations = summary.counts.force_evaluations;
     numerics.degrees_of_freedom = summary.degrees_of_freedom;
     let mut block = response_result::summary(document, parameters, &response);
-    if wanted.whole {
+    if options.whole {
         block.poincare = response_result::poincare(&response, usize::MAX);
         block.spectrum = response_result::spectrum(&response, parameters.mesh_frequency_hz);
         block.natural_modes = response_result::natural_modes(parameters).map_err(failed)?;
     }
-    let poincare = wanted.records(Recorded::Poincare).then(|| response_result::poincare(&response, POINCARE_POINTS));
+    let poincare = options.records(Recorded::Poincare).then(|| response_result::poincare(&response, POINCARE_POINTS));
     let bands =
-        wanted.records(Recorded::Spectrum).then(|| response_result::bands(&response, parameters.mesh_frequency_hz));
+        options.records(Recorded::Spectrum).then(|| response_result::bands(&response, parameters.mesh_frequency_hz));
     // Moved, not copied: a long record is most of what a job holds.
     let channels = std::mem::take(&mut response.channels);
     let channel = |channel: response::Channel| Channel {
@@ -115,7 +115,7 @@ pub fn to_result(
         summary: block,
         poincare,
         bands: bands.flatten(),
-        series: if wanted.whole { channels.into_iter().map(channel).collect() } else { Vec::new() },
+        series: if options.whole { channels.into_iter().map(channel).collect() } else { Vec::new() },
         warnings: warnings(document, &response.summary),
         // From a motion that grows for ever there is nothing to go on.
         end_state: (response.summary.regime != Regime::Unstable).then(|| response.final_state.to_vec()),
@@ -134,11 +134,11 @@ fn word(value: &impl serde::Serialize) -> String {
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
-pub fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, DocumentError> {
+pub fn analysis(document: &JobDocument, options: &PointOptions) -> Result<Analysis, DocumentError> {
     let requested = &document.analysis;
-    let state = wanted.start.or(requested.initial_state.as_deref());
+    let state = options.start.or(requested.initial_state.as_deref());
     let mut channels = channels(document)?;
-    if wanted.records(Recorded::Spectrum) {
+    if options.records(Recorded::Spectrum) {
         channels.extend(ChannelId::parse(response_result::SPECTRUM_CHANNEL));
     }
     Ok(Analysis {
@@ -158,7 +158,7 @@ pub fn analysis(document: &JobDocument, wanted: &Wanted) -> Result<Analysis, Doc
         samples_per_mesh_period: requested.samples_per_mesh_period as usize,
         channels,
         initial_state: state.and_then(|state| <[f64; 24]>::try_from(state).ok()),
-        energy_balance: wanted.whole,
+        energy_balance: options.whole,
         ..Analysis::default()
     })
 }

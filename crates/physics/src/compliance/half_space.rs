@@ -5,7 +5,8 @@
 //! middle in by
 //!
 //! ```text
-//! u = 2 (1-ν²)/(πE) w G(l / 2b),   G(r) = (4/π) ∫₀^{π/2} cos²θ asinh(r / sinθ) dθ   (→ ln 4r + 1/2 + 1/(16 r²) for r >> 1)
+//! u = 2 (1-ν²)/(πE) w G(l / 2b),   G(r) = (4/π) ∫₀^{π/2} cos²θ asinh(r / sinθ) dθ
+//! (G(r) → ln 4r + 1/2 + 1/(16 r²) for r >> 1)
 //! ```
 //!
 //! and a point on the line at the distances η₁ < η₂ from its ends by (1-ν²)/(πE) w [G(η₂/b) - G(η₁/b)] (ln(η₂/η₁) where

@@ -44,7 +44,8 @@ impl<'m, const D: usize> EnergyBalance<'m, D> {
         }
     }
 
-    /// `abs(ΔE − work)` over the integral of the absolute power of the forces on each coordinate. None where nothing moved.
+    /// `abs(ΔE − work)` over the integral of the absolute power of the forces on each coordinate. None where nothing
+    /// moved.
     pub(crate) fn residual(&self) -> Option<f64> {
         let change = self.final_energy - self.initial_energy?;
         let moves = self.largest_v > REST_VELOCITY_RATIO * self.largest_x && self.absolute_work > 0.0;

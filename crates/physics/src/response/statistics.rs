@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::dynamics::MAX_ORDER;
 use crate::numerics::gauss::gauss_legendre_unit;
 
-/// Gauss–Legendre nodes per segment: exact for powers up to 2·24 − 1 = 47 in time, so for the square of any step's series.
+/// Gauss–Legendre nodes per segment: exact for powers up to 2·24 − 1 = 47 in time, so for the square of any step's
+/// series.
 const NODES: usize = 24;
 
 /// Nodes and weights over 0 … 1.

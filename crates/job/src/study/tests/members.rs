@@ -32,7 +32,8 @@ fn a_plastic_gear_runs_on_a_steel_pinion() {
     assert!(response.rms.mesh_circumferential_acceleration_m_s2.left.is_finite());
     let steel = mesh(&example("table1"));
     let mixed = outcome.result.mesh.expect("a mesh");
-    // The plastic tooth alone against both of steel: an order of magnitude, but not E over E, as it has half of the compliance of two.
+    // The plastic tooth alone against both of steel: an order of magnitude, but not E over E, as it has half of the
+    // compliance of two.
     let ratio = mixed.stiffness_mean_n_per_um / steel.stiffness_mean_n_per_um;
     assert!(ratio > 2.8 / 206.0 && ratio < 4.0 * 2.8 / 206.0, "{ratio}");
     assert!(mixed.max_contact_pressure_mpa < steel.max_contact_pressure_mpa);

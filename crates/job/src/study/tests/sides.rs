@@ -25,7 +25,8 @@ fn rms(outcome: &Outcome) -> f64 {
     outcome.result.response.as_ref().expect("a response").rms.mesh_circumferential_acceleration_m_s2.left
 }
 
-/// The closed form's course is the same forwards and backwards: but for where the curve is sampled, the other flank vibrates as this one does.
+/// The closed form's course is the same forwards and backwards: but for where the curve is sampled, the other flank
+/// vibrates as this one does.
 #[test]
 fn the_closed_form_runs_on_the_other_flank() {
     let [drive, coast] = [800.0, -800.0].map(|torque| under(&closed_form(), torque));
@@ -53,7 +54,8 @@ fn the_closed_form_runs_on_the_other_flank() {
     assert_ne!(curve(c), curve(d));
 }
 
-/// Loaded contact: a drive-flank relief does nothing to the coast flanks that have none, not by a bit, and the coast flanks' own does.
+/// Loaded contact: a drive-flank relief does nothing to the coast flanks that have none, not by a bit, and the coast
+/// flanks' own does.
 #[test]
 fn loaded_contact_runs_on_the_other_flank_with_its_own_modifications() {
     let mut bare = example("table1");
@@ -97,7 +99,8 @@ fn loaded_contact_runs_on_the_other_flank_with_its_own_modifications() {
     let right = crowned.right_curve.expect("halves that differ");
     assert_eq!(crowned.curve.stiffness_n_per_um, plain.curve.stiffness_n_per_um);
     assert_ne!(right.stiffness_n_per_um, plain.curve.stiffness_n_per_um);
-    // The right half's flanks are open by the crowning, more than the left's: its displacement is the larger one, and negative.
+    // The right half's flanks are open by the crowning, more than the left's: its displacement is the larger one, and
+    // negative.
     let mean = |curve: &[f64]| curve.iter().sum::<f64>() / curve.len() as f64;
     assert!(mean(&right.transmission_error_um) < mean(&crowned.curve.transmission_error_um));
     let tan = check(&document(&bare)).expect("feasible").geometry.base_helix_angle_deg.to_radians().tan();

@@ -144,8 +144,8 @@ impl<const D: usize> Observer<D> for MeanSquare {
     }
 }
 
-/// Largest relative errors of the states at 1, 5 and 20 periods and of the RMS over the first 20 (relative to the largest
-/// displacement or velocity of its kind).
+/// Largest relative errors of the states at 1, 5 and 20 periods and of the RMS over the first 20 (relative to the
+/// largest displacement or velocity of its kind).
 fn errors<const D: usize>(name: &str, integrator: Integrator, tolerance: f64) -> (BTreeMap<u64, f64>, f64, StepCounts) {
     let p = parameters(name);
     let case = &reference().cases[name];
