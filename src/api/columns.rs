@@ -6,19 +6,19 @@ use utoipa::openapi::{ObjectBuilder, RefOr, Schema, Type};
 use utoipa::{PartialSchema, ToSchema};
 
 /// The columns of a table when none are requested: numbers, then texts.
-pub fn default_columns() -> Vec<&'static Column> {
+pub(super) fn default_columns() -> Vec<&'static Column> {
     let of_kind = |kind| SweepPoint::COLUMNS.iter().filter(move |column| column.kind == kind && !column.on_request);
     of_kind(CellKind::Number).chain(of_kind(CellKind::Word)).collect()
 }
 
 /// Every column, by its name.
-pub fn all() -> Vec<(&'static str, &'static Column)> {
+pub(super) fn all() -> Vec<(&'static str, &'static Column)> {
     let on_request = SweepPoint::COLUMNS.iter().filter(|column| column.on_request);
     default_columns().into_iter().chain(on_request).map(|column| (column.name, column)).collect()
 }
 
 /// The name of a column, for the OpenAPI document.
-pub struct ColumnName;
+pub(super) struct ColumnName;
 
 impl PartialSchema for ColumnName {
     fn schema() -> RefOr<Schema> {
@@ -31,7 +31,7 @@ impl PartialSchema for ColumnName {
 impl ToSchema for ColumnName {}
 
 /// Rows, serialized as an object with a list for each column.
-pub struct ColumnTable<'a> {
+pub(super) struct ColumnTable<'a> {
     pub columns: &'a [&'static Column],
     pub rows: &'a [SweepPoint],
 }

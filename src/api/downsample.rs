@@ -2,10 +2,10 @@
 
 use minmaxlttb::{LttbBuilder, LttbMethod, Point};
 
-/// How points are selected.
+/// How points are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, utoipa::ToSchema)]
 #[schema(as = Method, rename_all = "lowercase")]
-pub enum DownsampleMethod {
+pub(super) enum DownsampleMethod {
     /// Smallest and largest of each of equal stretches, and both ends: every spike stays.
     MinMax,
     /// Largest triangle three buckets over preselected extremes (MinMaxLTTB, arXiv 2305.00332).
@@ -15,10 +15,10 @@ pub enum DownsampleMethod {
 }
 
 impl DownsampleMethod {
-    pub const ALL: [(&'static str, DownsampleMethod); 3] =
+    pub(super) const ALL: [(&'static str, DownsampleMethod); 3] =
         [("minmax", DownsampleMethod::MinMax), ("lttb", DownsampleMethod::Lttb), ("none", DownsampleMethod::None)];
 
-    pub fn as_str(self) -> &'static str {
+    pub(super) fn as_str(self) -> &'static str {
         Self::ALL.iter().find(|(_, method)| *method == self).map_or("none", |(name, _)| name)
     }
 }
@@ -28,7 +28,11 @@ const PRESELECTION_RATIO: usize = 4;
 
 /// Selects at most `max_points` (4 or more) of the values. Returns their indices, ascending, and the method applied:
 /// [`DownsampleMethod::None`] when all values are selected.
-pub fn downsample(values: &[f64], max_points: usize, method: DownsampleMethod) -> (Vec<usize>, DownsampleMethod) {
+pub(super) fn downsample(
+    values: &[f64],
+    max_points: usize,
+    method: DownsampleMethod,
+) -> (Vec<usize>, DownsampleMethod) {
     if method == DownsampleMethod::None || values.len() <= max_points {
         return ((0..values.len()).collect(), DownsampleMethod::None);
     }

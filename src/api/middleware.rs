@@ -40,7 +40,7 @@ const SECURITY_HEADERS: [(HeaderName, &str); 5] = [
 ];
 
 /// Middleware around all routes and all other layers but compression.
-pub async fn request_middleware(mut request: Request, next: Next) -> Response {
+pub(super) async fn request_middleware(mut request: Request, next: Next) -> Response {
     let started = Instant::now();
     let id = request_id(request.headers());
     request.extensions_mut().insert(RequestId(id.clone()));
@@ -64,7 +64,7 @@ pub async fn request_middleware(mut request: Request, next: Next) -> Response {
 }
 
 /// The response to a panic in a handler: a fixed text; the message of the panic is logged.
-pub fn panic_response(panic: Box<dyn Any + Send + 'static>) -> Response {
+pub(super) fn panic_response(panic: Box<dyn Any + Send + 'static>) -> Response {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
     metrics::counter!("herringbone_panics_total", "in" => "request").increment(1);

@@ -15,7 +15,7 @@ use std::io;
 ///
 /// # Errors
 /// The database cannot be read.
-pub async fn read_page(
+pub(super) async fn read_page(
     store: &Store,
     id: JobId,
     from: u64,
@@ -31,7 +31,7 @@ pub async fn read_page(
 
 /// The rows of a job from position `from` on, in pages of [`MAX_ROWS`]; the last page has fewer rows, perhaps none. An
 /// error ends the stream, and with it the connection of a response made from it.
-pub fn pages(store: Store, id: JobId, from: u64) -> impl Stream<Item = Result<Vec<PointRow>, StoreError>> {
+pub(super) fn pages(store: Store, id: JobId, from: u64) -> impl Stream<Item = Result<Vec<PointRow>, StoreError>> {
     stream::try_unfold(Some(from), move |from| {
         let store = store.clone();
         async move {
@@ -45,7 +45,7 @@ pub fn pages(store: Store, id: JobId, from: u64) -> impl Stream<Item = Result<Ve
 
 /// A response body with rows as CSV, from position `from` on, `limit` at most: a header with a column for each of
 /// `axes`, then a record for each row.
-pub fn csv_body(store: Store, id: JobId, axes: &[String], (from, limit): (u64, u64), decimal: Decimal) -> Body {
+pub(super) fn csv_body(store: Store, id: JobId, axes: &[String], (from, limit): (u64, u64), decimal: Decimal) -> Body {
     let header = header(axes, decimal).map(Bytes::from).map_err(to_store_error);
     let end = from.saturating_add(limit);
     let records = pages(store, id, from).map(move |page| {

@@ -20,7 +20,7 @@ use std::io::{self, Write};
 ///
 /// # Errors
 /// The stored result is not the JSON of a sweep's result.
-pub fn result_body(store: Store, id: JobId, result: &str, count: u64) -> Result<Body, StoreError> {
+pub(super) fn result_body(store: Store, id: JobId, result: &str, count: u64) -> Result<Body, StoreError> {
     let (head, tail) =
         split_at_rows(result).map_err(|error| StoreError::Corrupt { what: "result", detail: error.to_string() })?;
     let mut sent = 0;

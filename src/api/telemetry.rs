@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 const SECONDS: [f64; 14] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, 3600.0];
 
 /// The recorder of this process, installed on first use.
-pub fn recorder() -> PrometheusHandle {
+pub(super) fn recorder() -> PrometheusHandle {
     static HANDLE: OnceLock<PrometheusHandle> = OnceLock::new();
     HANDLE
         .get_or_init(|| {
@@ -27,10 +27,10 @@ pub fn recorder() -> PrometheusHandle {
 }
 
 /// Counts an event stream as open until it is dropped.
-pub struct OpenStream(());
+pub(super) struct OpenStream(());
 
 impl OpenStream {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         metrics::gauge!("herringbone_event_streams").increment(1.0);
         Self(())
     }
@@ -43,10 +43,10 @@ impl Drop for OpenStream {
 }
 
 /// Counts a connection as open until it is dropped.
-pub struct OpenConnection(());
+pub(super) struct OpenConnection(());
 
 impl OpenConnection {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         metrics::gauge!("herringbone_connections").increment(1.0);
         Self(())
     }
@@ -59,7 +59,7 @@ impl Drop for OpenConnection {
 }
 
 /// Updates the gauges of the process: uptime, versions, memory.
-pub fn measure_process(started_at: Timestamp, now: Timestamp, solver_version: &'static str) {
+pub(super) fn measure_process(started_at: Timestamp, now: Timestamp, solver_version: &'static str) {
     let uptime_s = now.duration_since(started_at).as_secs_f64().max(0.0);
     metrics::gauge!("herringbone_uptime_seconds").set(uptime_s);
     let labels = [("version", env!("CARGO_PKG_VERSION")), ("solver_version", solver_version)];
@@ -70,7 +70,7 @@ pub fn measure_process(started_at: Timestamp, now: Timestamp, solver_version: &'
 }
 
 /// Updates the gauges of the size of the database.
-pub fn measure_database(usage: &DatabaseUsage) {
+pub(super) fn measure_database(usage: &DatabaseUsage) {
     let parts = [("used", usage.used_bytes), ("file", usage.file_bytes), ("log", usage.log_bytes)];
     for (part, bytes) in parts {
         metrics::gauge!("herringbone_database_bytes", "part" => part).set(bytes as f64);

@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 
 /// A job as it stands. Times are RFC 3339 in UTC.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
-pub struct Job {
+pub(super) struct Job {
     #[schema(example = "0199f3c4-6f0b-7c41-9d5e-2f1f0f6f3c11", format = "uuid")]
     pub id: String,
     /// `mesh`, `response` or `sweep`.
@@ -52,7 +52,7 @@ pub struct Job {
 
 /// Paths of what belongs to a job.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
-pub struct JobLinks {
+pub(super) struct JobLinks {
     #[serde(rename = "self")]
     pub itself: String,
     pub events: String,
@@ -97,17 +97,17 @@ impl From<&JobRecord> for Job {
 }
 
 /// The path of a job.
-pub fn job_path(job: &JobRecord) -> String {
+pub(super) fn job_path(job: &JobRecord) -> String {
     format!("/api/v1/jobs/{}", job.id)
 }
 
 /// The weak entity tag of a job: its revision.
-pub fn job_etag(job: &JobRecord) -> Result<ETag, ApiError> {
+pub(super) fn job_etag(job: &JobRecord) -> Result<ETag, ApiError> {
     format!("W/\"{}\"", job.revision).parse().map_err(ApiError::internal)
 }
 
 /// The response with a job: its entity tag, and `Retry-After` until it has ended.
-pub fn job_response(status: StatusCode, job: &JobRecord) -> Result<Response, ApiError> {
+pub(super) fn job_response(status: StatusCode, job: &JobRecord) -> Result<Response, ApiError> {
     let mut response = (status, Json(Job::from(job))).into_response();
     response.headers_mut().typed_insert(job_etag(job)?);
     response.headers_mut().insert(CACHE_CONTROL, HeaderValue::from_static("no-cache"));
@@ -118,7 +118,7 @@ pub fn job_response(status: StatusCode, job: &JobRecord) -> Result<Response, Api
 }
 
 /// The response 304 with the entity tag.
-pub fn not_modified(etag: ETag) -> Response {
+pub(super) fn not_modified(etag: ETag) -> Response {
     let mut response = StatusCode::NOT_MODIFIED.into_response();
     response.headers_mut().typed_insert(etag);
     response

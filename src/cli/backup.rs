@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
-pub struct BackupArguments {
+pub(super) struct BackupArguments {
     /// Database to copy; the service may be using it.
     #[arg(long, env = "HERRINGBONE_DATABASE", value_name = "FILE", default_value = "herringbone.db")]
     database: PathBuf,
@@ -21,7 +21,7 @@ pub struct BackupArguments {
 }
 
 #[tokio::main(flavor = "current_thread")]
-pub async fn run(arguments: BackupArguments) -> ExitCode {
+pub(super) async fn run(arguments: BackupArguments) -> ExitCode {
     let BackupArguments { database, force, target } = arguments;
     match store::backup(&database, &target, force).await {
         Ok(summary) => {

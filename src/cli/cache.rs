@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 /// A directory with cached stages. Stages that cannot be read are solved again; errors of writing are reported on
 /// standard error.
-pub struct DirectoryStages {
+pub(super) struct DirectoryStages {
     directory: PathBuf,
 }
 
@@ -14,7 +14,7 @@ impl DirectoryStages {
     ///
     /// # Errors
     /// It cannot be created.
-    pub fn open(directory: PathBuf) -> std::io::Result<DirectoryStages> {
+    pub(super) fn open(directory: PathBuf) -> std::io::Result<DirectoryStages> {
         std::fs::create_dir_all(&directory)?;
         Ok(DirectoryStages { directory })
     }

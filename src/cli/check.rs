@@ -8,12 +8,12 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
-pub struct CheckArguments {
+pub(super) struct CheckArguments {
     /// Job document (JSON); `-` reads standard input.
     file: PathBuf,
 }
 
-pub fn run(arguments: CheckArguments) -> ExitCode {
+pub(super) fn run(arguments: CheckArguments) -> ExitCode {
     let document = match read_document(&arguments.file) {
         Ok(document) => document,
         Err(code) => return code,

@@ -14,7 +14,7 @@ const MAX_BYTES: u64 = MAX_BODY_BYTES as u64;
 ///
 /// # Errors
 /// The exit code, after the error was printed on standard error.
-pub fn read_document(path: &Path) -> Result<JobDocument, ExitCode> {
+pub(super) fn read_document(path: &Path) -> Result<JobDocument, ExitCode> {
     let bytes = read_bytes(path).map_err(|error| {
         eprintln!("{}: {error}", path.display());
         ExitCode::from(2)
@@ -23,7 +23,7 @@ pub fn read_document(path: &Path) -> Result<JobDocument, ExitCode> {
 }
 
 /// Prints the errors of a document as problem+json. Returns the exit code for invalid input, 2.
-pub fn invalid(error: DocumentError) -> ExitCode {
+pub(super) fn invalid(error: DocumentError) -> ExitCode {
     super::problem::print(&Problem::from(error));
     ExitCode::from(2)
 }

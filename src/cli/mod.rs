@@ -18,7 +18,7 @@ use std::process::ExitCode;
 /// Contact, mesh-in impact and nonlinear vibration of double-helical gear pairs.
 #[derive(Debug, Parser)]
 #[command(version, about, long_about = None, arg_required_else_help = true)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     #[command(subcommand)]
     command: Command,
 }
@@ -38,7 +38,7 @@ enum Command {
 }
 
 /// Runs the subcommand. Returns the exit code of the process.
-pub fn run(arguments: Arguments) -> ExitCode {
+pub(crate) fn run(arguments: Arguments) -> ExitCode {
     match arguments.command {
         Command::Serve(arguments) => serve::run(*arguments),
         Command::Backup(arguments) => backup::run(arguments),

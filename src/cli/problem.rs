@@ -3,7 +3,7 @@
 use herringbone::api::Problem;
 
 /// Prints a problem as JSON on standard error.
-pub fn print(problem: &Problem) {
+pub(super) fn print(problem: &Problem) {
     match serde_json::to_string_pretty(problem) {
         Ok(text) => eprintln!("{text}"),
         Err(error) => eprintln!("{error}"),

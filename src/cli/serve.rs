@@ -17,7 +17,7 @@ use tracing_subscriber::EnvFilter;
 const OTHER_FILES: u64 = 64;
 
 #[derive(Debug, Args)]
-pub struct ServeArguments {
+pub(super) struct ServeArguments {
     #[command(flatten)]
     http: HttpConfig,
     #[command(flatten)]
@@ -40,7 +40,7 @@ struct LogConfig {
     log_json: bool,
 }
 
-pub fn run(arguments: ServeArguments) -> ExitCode {
+pub(super) fn run(arguments: ServeArguments) -> ExitCode {
     start_log(&arguments.log);
     match serve(&arguments) {
         Ok(()) => ExitCode::SUCCESS,

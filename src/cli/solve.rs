@@ -14,7 +14,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 #[derive(Debug, Args)]
-pub struct SolveArguments {
+pub(super) struct SolveArguments {
     /// Job document (JSON); `-` reads standard input.
     file: PathBuf,
     /// Write a recorded channel, full resolution, as CSV (`t_s,value`); may be given several times.
@@ -44,7 +44,7 @@ fn decimal(text: &str) -> Result<Decimal, String> {
     decimal.ok_or_else(|| "give point or comma".to_owned())
 }
 
-pub fn run(arguments: SolveArguments) -> ExitCode {
+pub(super) fn run(arguments: SolveArguments) -> ExitCode {
     let mut document = match read_document(&arguments.file) {
         Ok(document) => document,
         Err(code) => return code,

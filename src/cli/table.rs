@@ -8,7 +8,7 @@ use std::io::{Result, Write};
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write(out: &mut impl Write, result: &JobResult) -> Result<()> {
+pub(super) fn write(out: &mut impl Write, result: &JobResult) -> Result<()> {
     let value = serde_json::to_value(result)?;
     for quantity in headlines() {
         for (pointer, label) in quantity.places() {

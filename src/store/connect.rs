@@ -1,7 +1,7 @@
 //! Opening the database: one connection that writes, several that read, write-ahead log.
 
 use super::backup;
-pub use super::error::StoreError;
+pub(super) use super::error::StoreError;
 use super::examine::{OPEN_WAIT, examine, with_suffix};
 use super::ids::IdGenerator;
 use super::open_error::OpenError;

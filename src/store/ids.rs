@@ -11,7 +11,7 @@ pub(super) struct IdGenerator(Arc<Mutex<Option<JobId>>>);
 
 impl IdGenerator {
     /// A generator that continues after the newest stored job.
-    pub async fn after_stored(pool: &SqlitePool) -> Result<Self, sqlx::Error> {
+    pub(super) async fn after_stored(pool: &SqlitePool) -> Result<Self, sqlx::Error> {
         let row = sqlx::query("SELECT MAX(id) AS id FROM jobs").fetch_one(pool).await?;
         let newest: Option<String> = row.try_get("id")?;
         Ok(Self(Arc::new(Mutex::new(newest.and_then(|text| text.parse().ok())))))

@@ -11,16 +11,16 @@ pub(super) struct QueuedCount(Arc<AtomicI64>);
 
 impl QueuedCount {
     /// Counts the queued jobs in the database.
-    pub async fn read(pool: &SqlitePool) -> Result<Self, sqlx::Error> {
+    pub(super) async fn read(pool: &SqlitePool) -> Result<Self, sqlx::Error> {
         let row = sqlx::query("SELECT COUNT(*) AS n FROM jobs WHERE state = 'queued'").fetch_one(pool).await?;
         Ok(Self(Arc::new(AtomicI64::new(row.try_get("n")?))))
     }
 
-    pub fn add(&self, change: i64) {
+    pub(super) fn add(&self, change: i64) {
         self.0.fetch_add(change, Ordering::Relaxed);
     }
 
-    pub fn get(&self) -> i64 {
+    pub(super) fn get(&self) -> i64 {
         self.0.load(Ordering::Relaxed)
     }
 }

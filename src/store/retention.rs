@@ -59,7 +59,7 @@ impl SizeLimit {
     }
 
     /// Largest size of the stage cache: a quarter of the limit.
-    pub fn stage_cache_bytes(limit: Option<&Self>) -> i64 {
+    pub(super) fn stage_cache_bytes(limit: Option<&Self>) -> i64 {
         limit.map_or(i64::MAX, |limit| i64::try_from(limit.bytes / 4).unwrap_or(i64::MAX))
     }
 }

@@ -78,7 +78,7 @@ impl Store {
         .await?;
         let Some(row) = row else { return Ok(None) };
         let computed = Duration::from_micros(row.try_get::<i64, _>("computed_us")?.unsigned_abs());
-        let claim = Claim { job: sqlx::FromRow::from_row(&row)?, input: row.try_get("input")?, computed };
+        let claim = Claim { job: FromRow::from_row(&row)?, input: row.try_get("input")?, computed };
         record_event(&mut transaction, &claim.job, now).await?;
         transaction.commit().await?;
         self.queued_count.add(-1);

@@ -18,7 +18,7 @@ struct Files;
 const QUANTITIES: &str = "common/quantities.js";
 
 /// `/assets/{*file}`: revalidated by entity tag, so that a new version is used at once.
-pub async fn file(Path(name): Path<String>, headers: HeaderMap) -> Response {
+pub(super) async fn file(Path(name): Path<String>, headers: HeaderMap) -> Response {
     let Some((content, media_type)) = find(&name) else {
         return super::not_found().await;
     };
@@ -37,7 +37,7 @@ pub async fn file(Path(name): Path<String>, headers: HeaderMap) -> Response {
 }
 
 /// The text of a file.
-pub fn text(name: &str) -> Option<String> {
+pub(super) fn text(name: &str) -> Option<String> {
     String::from_utf8(find(name)?.0.data.into_owned()).ok()
 }
 

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 
 /// The addresses of a module of the assets and of everything that it imports without condition, each once, itself
 /// first.
-pub fn needed_by(module: &str) -> Vec<String> {
+pub(super) fn needed_by(module: &str) -> Vec<String> {
     let mut found = vec![module.to_owned()];
     let mut open = VecDeque::from(found.clone());
     while let Some(name) = open.pop_front() {

@@ -62,33 +62,33 @@ struct LoginPage<'a> {
 
 /// Whether the service has a login, so that the pages offer to log out.
 #[derive(Debug, Clone, Copy)]
-pub struct HasLogin(pub bool);
+pub(super) struct HasLogin(pub bool);
 
 type Site = Extension<HasLogin>;
 
 /// `/`: the form for a new job, filled with the source paper's example.
-pub async fn design(Extension(HasLogin(has_login)): Site) -> Response {
+pub(super) async fn design(Extension(HasLogin(has_login)): Site) -> Response {
     let (groups, sweepable) = (form::groups(), form::sweepable_pointers());
     page(StatusCode::OK, &DesignPage { has_login, groups, sweepable, presets: presets::GROUPS })
 }
 
 /// `/jobs`: the list of jobs.
-pub async fn jobs(Extension(HasLogin(has_login)): Site) -> Response {
+pub(super) async fn jobs(Extension(HasLogin(has_login)): Site) -> Response {
     page(StatusCode::OK, &JobsPage { has_login })
 }
 
 /// `/jobs/{id}`: one job. The page's script asks the API whether it exists.
-pub async fn job(Extension(HasLogin(has_login)): Site, Path(id): Path<String>) -> Response {
+pub(super) async fn job(Extension(HasLogin(has_login)): Site, Path(id): Path<String>) -> Response {
     page(StatusCode::OK, &JobPage { has_login, id, plotly_script: plotly::script_url() })
 }
 
 /// `/compare`: jobs side by side. The page's script reads their ids from the query.
-pub async fn compare(Extension(HasLogin(has_login)): Site) -> Response {
+pub(super) async fn compare(Extension(HasLogin(has_login)): Site) -> Response {
     page(StatusCode::OK, &ComparePage { has_login, plotly_script: plotly::script_url() })
 }
 
 /// `/jobs/{id}/report`: one job on paper.
-pub async fn report(Extension(HasLogin(has_login)): Site, Path(id): Path<String>) -> Response {
+pub(super) async fn report(Extension(HasLogin(has_login)): Site, Path(id): Path<String>) -> Response {
     page(StatusCode::OK, &ReportPage { has_login, id, plotly_script: plotly::script_url() })
 }
 

@@ -25,7 +25,7 @@ static PLOTLY: LazyLock<Plotly> = LazyLock::new(|| {
 });
 
 /// Address of the script: with its version, so that it can be cached for a year.
-pub fn script_url() -> String {
+pub(super) fn script_url() -> String {
     format!("/assets/plotly.js?v={}", PLOTLY.version)
 }
 
@@ -35,7 +35,7 @@ static COMPRESSED: LazyLock<Option<Bytes>> =
 
 /// `/assets/plotly.js`: compressed beforehand for browsers that accept zstd (they do over TLS and on localhost), as
 /// any other file for the rest.
-pub async fn script(request: HeaderMap) -> Response {
+pub(super) async fn script(request: HeaderMap) -> Response {
     let headers = [
         (header::CONTENT_TYPE, "text/javascript; charset=utf-8"),
         (header::CACHE_CONTROL, FOR_A_YEAR),
@@ -64,7 +64,7 @@ fn reads_zstd(request: &HeaderMap) -> bool {
 /// `/assets/plotly.css`: the rules that the script would otherwise insert as an inline style element, which the
 /// content security policy forbids. The script leaves them out when it finds an element with the id
 /// `plotly.js-style-global` and the class `no-inline-styles`; the page's link to this file is that element.
-pub async fn stylesheet() -> Response {
+pub(super) async fn stylesheet() -> Response {
     let headers = [(header::CONTENT_TYPE, "text/css; charset=utf-8"), (header::CACHE_CONTROL, "no-cache")];
     (headers, PLOTLY.stylesheet.as_str()).into_response()
 }

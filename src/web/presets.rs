@@ -7,7 +7,7 @@ use serde_json::value::RawValue;
 use std::sync::LazyLock;
 
 /// A document to start from.
-pub struct Preset {
+pub(super) struct Preset {
     pub id: &'static str,
     pub title: &'static str,
     /// Its subject, in a sentence.
@@ -16,7 +16,7 @@ pub struct Preset {
 }
 
 /// Presets under a common heading.
-pub struct PresetGroup {
+pub(super) struct PresetGroup {
     pub title: &'static str,
     pub presets: &'static [Preset],
 }
@@ -33,7 +33,7 @@ macro_rules! preset {
 }
 
 /// All presets, in the order of the selection on the page.
-pub const GROUPS: &[PresetGroup] = &[
+pub(super) const GROUPS: &[PresetGroup] = &[
     PresetGroup {
         title: "One operating point",
         presets: &[
@@ -109,7 +109,7 @@ static JSON: LazyLock<String> = LazyLock::new(|| {
 });
 
 /// `/assets/presets.json`.
-pub async fn presets() -> Response {
+pub(super) async fn presets() -> Response {
     let headers = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-cache")];
     (headers, JSON.as_str()).into_response()
 }

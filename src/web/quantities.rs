@@ -40,7 +40,7 @@ static MODULE: LazyLock<String> = LazyLock::new(|| {
 });
 
 /// The text of the module.
-pub fn module() -> &'static str {
+pub(super) fn module() -> &'static str {
     &MODULE
 }
 

@@ -38,29 +38,29 @@ pub enum JobEvent {
 
 impl Hub {
     /// Publishes the new state of a job; subscribers ignore a revision older than the last.
-    pub fn publish(&self, job: &JobRecord) {
+    pub(super) fn publish(&self, job: &JobRecord) {
         self.broadcast(|| JobEvent::Changed(Arc::new(job.clone())));
         self.publish_to_subscribers(job);
     }
 
     /// As [`Hub::publish`], when only the progress changed.
-    pub fn publish_progress(&self, job: &JobRecord) {
+    pub(super) fn publish_progress(&self, job: &JobRecord) {
         self.broadcast(|| JobEvent::Progress(Arc::new(job.clone())));
         self.publish_to_subscribers(job);
     }
 
     /// Publishes the deletion of a job.
-    pub fn publish_deletion(&self, id: JobId) {
+    pub(super) fn publish_deletion(&self, id: JobId) {
         self.broadcast(|| JobEvent::Deleted(id));
     }
 
     /// Tells listeners to read the list of jobs again.
-    pub fn publish_resync(&self) {
+    pub(super) fn publish_resync(&self) {
         self.broadcast(|| JobEvent::Resync);
     }
 
     /// Listens to all later events. To miss none, listen first, then list the jobs.
-    pub fn listen(&self) -> JobEventListener {
+    pub(super) fn listen(&self) -> JobEventListener {
         JobEventListener(self.all.subscribe())
     }
 
@@ -85,7 +85,7 @@ impl Hub {
     }
 
     /// Subscribes to later changes of a job. To miss none, subscribe first, then read the job from the store.
-    pub fn subscribe(self: &Arc<Self>, job: JobId) -> JobSubscription {
+    pub(super) fn subscribe(self: &Arc<Self>, job: JobId) -> JobSubscription {
         let mut channels = self.channels.lock().unwrap_or_else(PoisonError::into_inner);
         let receiver = channels.entry(job).or_insert_with(|| watch::channel(None).0).subscribe();
         JobSubscription { job, receiver, hub: Arc::clone(self) }

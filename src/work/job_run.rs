@@ -55,7 +55,7 @@ pub(super) struct JobRun<'a> {
 impl JobRun<'_> {
     /// Runs the job on the pool and stores its outcome. Failed writes are retried until they succeed or the service
     /// closes; in the latter case the job is still running in the database and runs again after the restart.
-    pub async fn run(&self, input: &str) {
+    pub(super) async fn run(&self, input: &str) {
         let document = match herringbone_job::parse(input.as_bytes()) {
             Ok(document) => document,
             Err(error) => return self.fail(document_failure(error)).await,

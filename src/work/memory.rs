@@ -13,7 +13,7 @@ pub(super) struct MemoryLimit {
 }
 
 impl MemoryLimit {
-    pub fn new(config: &WorkConfig) -> Self {
+    pub(super) fn new(config: &WorkConfig) -> Self {
         Self { limit_mib: config.job_memory_mib, threads: config.thread_count() }
     }
 
@@ -21,7 +21,7 @@ impl MemoryLimit {
     ///
     /// # Errors
     /// [`DocumentError::Invalid`] with a pointer to the field that needs most of the memory.
-    pub fn check(&self, document: &JobDocument) -> Result<(), DocumentError> {
+    pub(super) fn check(&self, document: &JobDocument) -> Result<(), DocumentError> {
         let (demand, limit_mib) = (demand(document, self.threads), self.limit_mib);
         let total_mib = demand.total_mib();
         if total_mib <= f64::from(limit_mib) {

@@ -24,7 +24,7 @@ struct PointsState {
 
 impl RunningPoints {
     /// Resumes from stored points. A row that cannot be read is solved again.
-    pub fn resume(stored: PointBatch, solver_version: &'static str) -> Self {
+    pub(super) fn resume(stored: PointBatch, solver_version: &'static str) -> Self {
         let mut resumed = StoredPoints::default();
         for row in stored.rows {
             if let Ok(point) = serde_json::from_str(&row.body) {
@@ -41,14 +41,14 @@ impl RunningPoints {
     }
 
     /// Takes the points that were solved since the last call.
-    pub fn take_unwritten(&self) -> PointBatch {
+    pub(super) fn take_unwritten(&self) -> PointBatch {
         let mut batch = std::mem::take(&mut self.lock().unwritten);
         batch.solver_version = self.solver_version.to_owned();
         batch
     }
 
     /// Returns a batch that could not be stored, for the next call of [`RunningPoints::take_unwritten`].
-    pub fn restore(&self, mut batch: PointBatch) {
+    pub(super) fn restore(&self, mut batch: PointBatch) {
         let mut state = self.lock();
         batch.append(std::mem::take(&mut state.unwritten));
         state.unwritten = batch;
@@ -58,7 +58,7 @@ impl RunningPoints {
     ///
     /// # Errors
     /// A point cannot be written as JSON.
-    pub fn finish(&self, points: &[SweepPoint]) -> serde_json::Result<(PointBatch, RowsSummary)> {
+    pub(super) fn finish(&self, points: &[SweepPoint]) -> serde_json::Result<(PointBatch, RowsSummary)> {
         let mut batch = self.take_unwritten();
         let positions = std::mem::take(&mut self.lock().positions);
         let mut digest = PointsDigest::default();

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 /// The reason for stopping a calculation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
-pub enum StopReason {
+pub(super) enum StopReason {
     Cancel = 1,
     Shutdown,
     /// Its turn is over, and other jobs wait.
@@ -15,21 +15,21 @@ pub enum StopReason {
 
 /// A request to stop, set once and read by the calculation at every checkpoint. The first reason is kept.
 #[derive(Debug, Default)]
-pub struct StopSignal(AtomicU8);
+pub(super) struct StopSignal(AtomicU8);
 
 impl StopSignal {
     /// Requests the stop, unless it was requested before.
-    pub fn request(&self, reason: StopReason) {
+    pub(super) fn request(&self, reason: StopReason) {
         let _ = self.0.compare_exchange(0, reason as u8, Ordering::Relaxed, Ordering::Relaxed);
     }
 
     /// Whether the stop was requested.
-    pub fn is_requested(&self) -> bool {
+    pub(super) fn is_requested(&self) -> bool {
         self.0.load(Ordering::Relaxed) != 0
     }
 
     /// The first reason; `None` without a request.
-    pub fn reason(&self) -> Option<StopReason> {
+    pub(super) fn reason(&self) -> Option<StopReason> {
         [StopReason::Cancel, StopReason::Shutdown, StopReason::Turn, StopReason::TimeLimit]
             .into_iter()
             .find(|reason| *reason as u8 == self.0.load(Ordering::Relaxed))

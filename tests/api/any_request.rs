@@ -53,7 +53,7 @@ const HEADERS: [&str; 9] = [
     "authorization",
 ];
 
-/// Where `PROPTEST_RNG_SEED` does not say another.
+/// The seed, unless `PROPTEST_RNG_SEED` sets another.
 const SEED: u64 = 1;
 
 #[derive(Debug, Clone)]

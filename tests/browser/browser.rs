@@ -20,19 +20,19 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// One browser at a time: several would only slow each other down.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::const_new(());
 
-pub struct Browser {
+pub(crate) struct Browser {
     pub driver: WebDriver,
     pub server: Server,
     requested: AtomicUsize,
 }
 
 /// Runs a flow in a fresh browser against a fresh server, then checks the console and where requests went.
-pub async fn flow(steps: impl AsyncFnOnce(&Browser)) {
+pub(crate) async fn flow(steps: impl AsyncFnOnce(&Browser)) {
     flow_against(Server::start, steps).await;
 }
 
 /// The same against a particular server.
-pub async fn flow_against(server: impl FnOnce() -> Server, steps: impl AsyncFnOnce(&Browser)) {
+pub(crate) async fn flow_against(server: impl FnOnce() -> Server, steps: impl AsyncFnOnce(&Browser)) {
     let _turn = ONE_AT_A_TIME.lock().await;
     let server = server();
     let mut command = Command::new(std::env::var("CHROMEDRIVER").unwrap_or_else(|_| "chromedriver".to_owned()));
@@ -91,28 +91,28 @@ fn capabilities(profile: &str) -> Capabilities {
 }
 
 impl Browser {
-    pub async fn open(&self, path: &str) {
+    pub(crate) async fn open(&self, path: &str) {
         self.driver.goto(format!("{}{path}", self.server.url)).await.unwrap();
     }
 
-    pub async fn element(&self, selector: &str) -> WebElement {
+    pub(crate) async fn element(&self, selector: &str) -> WebElement {
         self.driver.query(By::Css(selector)).first().await.unwrap_or_else(|error| panic!("{selector}: {error}"))
     }
 
     /// The input of the field at a JSON pointer of the job document.
-    pub async fn field(&self, pointer: &str) -> WebElement {
+    pub(crate) async fn field(&self, pointer: &str) -> WebElement {
         self.element(&format!("[data-pointer='{pointer}'] :is(input, select, textarea)")).await
     }
 
     /// Replaces the text in a field as a person does.
-    pub async fn fill(&self, pointer: &str, text: &str) {
+    pub(crate) async fn fill(&self, pointer: &str, text: &str) {
         let input = self.field(pointer).await;
         input.clear().await.unwrap();
         input.send_keys(text).await.unwrap();
     }
 
     /// Chooses an option as the keyboard does: sets it and tells the page.
-    pub async fn choose(&self, selector: &str, value: &str) {
+    pub(crate) async fn choose(&self, selector: &str, value: &str) {
         let script = "const node = document.querySelector(arguments[0]); node.value = arguments[1]; \
                       for (const name of ['input', 'change']) node.dispatchEvent(new Event(name, {bubbles: true})); \
                       return node.value;";
@@ -121,25 +121,25 @@ impl Browser {
         assert_eq!(chosen, value, "{selector} has no such option");
     }
 
-    pub async fn text(&self, selector: &str) -> String {
+    pub(crate) async fn text(&self, selector: &str) -> String {
         self.element(selector).await.text().await.unwrap()
     }
 
     /// The value of a JavaScript expression.
-    pub async fn value(&self, expression: &str) -> Value {
+    pub(crate) async fn value(&self, expression: &str) -> Value {
         let script = format!("return {expression};");
         let answer = self.driver.execute(&script, Vec::new()).await;
         answer.unwrap_or_else(|error| panic!("{expression}: {error}")).json().clone()
     }
 
     /// What `fetch` of a path of the API answers, as the page sees it.
-    pub async fn fetch(&self, path: &str) -> Value {
+    pub(crate) async fn fetch(&self, path: &str) -> Value {
         let script = "const done = arguments[1]; fetch(arguments[0]).then((answer) => answer.json()).then(done, (error) => done(String(error)));";
         self.driver.execute_async(script, vec![json!(path)]).await.unwrap().json().clone()
     }
 
     /// Submits a document as a page would (one has to be open); the job's id.
-    pub async fn submitted(&self, document: &Value) -> String {
+    pub(crate) async fn submitted(&self, document: &Value) -> String {
         let script = "const done = arguments[1]; const headers = {'Content-Type': 'application/json'}; \
                       fetch('/api/v1/jobs', {method: 'POST', headers, body: JSON.stringify(arguments[0])}) \
                       .then((answer) => answer.json()).then(done, (error) => done(String(error)));";
@@ -148,7 +148,7 @@ impl Browser {
     }
 
     /// Waits until a job has ended, which may take longer than what a page does.
-    pub async fn ended(&self, id: &str) {
+    pub(crate) async fn ended(&self, id: &str) {
         let deadline = Instant::now() + 10 * PATIENCE;
         loop {
             let job = self.fetch(&format!("/api/v1/jobs/{id}")).await;
@@ -161,14 +161,14 @@ impl Browser {
     }
 
     /// Submits a document and waits until its job has ended; its id.
-    pub async fn solved(&self, document: &Value) -> String {
+    pub(crate) async fn solved(&self, document: &Value) -> String {
         let id = self.submitted(document).await;
         self.ended(&id).await;
         id
     }
 
     /// Makes the window so wide, also narrower than a desktop's windows can be.
-    pub async fn resize(&self, width: u32) {
+    pub(crate) async fn resize(&self, width: u32) {
         let height = if width < 600 { 844 } else { 1000 };
         let size = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
         self.command("Emulation.setDeviceMetricsOverride", size).await;
@@ -176,18 +176,18 @@ impl Browser {
     }
 
     /// Whether the system prefers dark pages.
-    pub async fn prefer_dark(&self, dark: bool) {
+    pub(crate) async fn prefer_dark(&self, dark: bool) {
         let scheme = json!({"name": "prefers-color-scheme", "value": if dark { "dark" } else { "light" }});
         self.command("Emulation.setEmulatedMedia", json!({"features": [scheme]})).await;
     }
 
     /// A command of the browser's own protocol.
-    pub async fn command(&self, method: &str, parameters: Value) -> Value {
+    pub(crate) async fn command(&self, method: &str, parameters: Value) -> Value {
         self.driver.cdp().send_raw(method, parameters).await.unwrap_or_else(|error| panic!("{method}: {error}"))
     }
 
     /// Waits until a JavaScript expression is true.
-    pub async fn until(&self, expression: &str) {
+    pub(crate) async fn until(&self, expression: &str) {
         let deadline = Instant::now() + PATIENCE;
         while self.value(&format!("Boolean({expression})")).await != json!(true) {
             if Instant::now() > deadline {
@@ -215,7 +215,7 @@ impl Browser {
 
     /// What was requested from the server since this was last asked: paths with their queries. Whatever else was asked
     /// fails the flow.
-    pub async fn requests(&self) -> Vec<String> {
+    pub(crate) async fn requests(&self) -> Vec<String> {
         let mut paths = Vec::new();
         for entry in self.driver.get_log("performance").await.unwrap() {
             let event: Value = serde_json::from_str(&entry.message).unwrap();
@@ -240,7 +240,7 @@ impl Browser {
     }
 
     /// What the console says since this was last asked; what is read here is no matter of the check at the end.
-    pub async fn console(&self) -> Vec<String> {
+    pub(crate) async fn console(&self) -> Vec<String> {
         self.driver.browser_log().await.unwrap().into_iter().map(|entry| entry.message).collect()
     }
 }

@@ -4,7 +4,7 @@ use crate::browser::{Browser, flow};
 use serde_json::{Value, json};
 
 /// Submits the form as it stands and returns the job's id, on whose page the browser then is.
-pub async fn submit(browser: &Browser) -> String {
+pub(crate) async fn submit(browser: &Browser) -> String {
     browser.element("#submit").await.click().await.unwrap();
     browser.until("location.pathname.startsWith('/jobs/')").await;
     let path = browser.value("location.pathname").await;
@@ -12,7 +12,7 @@ pub async fn submit(browser: &Browser) -> String {
 }
 
 /// Waits until the job has succeeded and its whole result is drawn.
-pub async fn succeeded(browser: &Browser) {
+pub(crate) async fn succeeded(browser: &Browser) {
     browser.until("['succeeded', 'failed', 'canceled'].includes(document.querySelector('#state')?.textContent)").await;
     assert_eq!(browser.text("#state").await, "succeeded", "{}", browser.text("main").await);
     browser.until("document.querySelector('#job').dataset.ready").await;
@@ -20,13 +20,13 @@ pub async fn succeeded(browser: &Browser) {
 }
 
 /// A document of the folder of examples.
-pub fn example(name: &str) -> Value {
+pub(crate) fn example(name: &str) -> Value {
     let path = format!("{}/examples/{name}.json", env!("CARGO_MANIFEST_DIR"));
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
 /// Submits a document to the API from a page of the service; returns the job's id.
-pub async fn submit_document(browser: &Browser, document: &Value) -> String {
+pub(crate) async fn submit_document(browser: &Browser, document: &Value) -> String {
     browser.open("/nowhere").await;
     let script = "const done = arguments[1]; fetch('/api/v1/jobs', {method: 'POST', headers: {'Content-Type': 'application/json'}, \
                   body: JSON.stringify(arguments[0])}).then((answer) => answer.json()).then(done, (error) => done(String(error)));";
@@ -35,18 +35,18 @@ pub async fn submit_document(browser: &Browser, document: &Value) -> String {
 }
 
 /// Elements that reach beyond the right edge of the window, but those that scroll inside.
-pub const STICKING_OUT: &str = "[...document.querySelectorAll('main *')].filter((node) => node.getBoundingClientRect().right > \
+pub(crate) const STICKING_OUT: &str = "[...document.querySelectorAll('main *')].filter((node) => node.getBoundingClientRect().right > \
      window.innerWidth && !node.closest('.scroll, .visually-hidden, defs, clipPath, dialog:not([open])')).map((node) => \
      `${node.tagName} ${node.id} ${node.getAttribute('class')}`)";
 
 /// Nothing that is missing shows as a word of the programming language.
-pub async fn assert_complete(browser: &Browser) {
+pub(crate) async fn assert_complete(browser: &Browser) {
     let words = "document.querySelector('main').innerText.match(/\\b(null|undefined|NaN|Infinity)\\b|\\[object/g)";
     assert_eq!(browser.value(words).await, Value::Null, "{}", browser.text("main").await);
 }
 
 /// The text of the file of a media type that a click on a button saves.
-pub async fn saved_by(browser: &Browser, selector: &str, media_type: &str) -> String {
+pub(crate) async fn saved_by(browser: &Browser, selector: &str, media_type: &str) -> String {
     let script = "const [selector, type, done] = arguments; const make = URL.createObjectURL; \
                   HTMLAnchorElement.prototype.click = function () {}; \
                   URL.createObjectURL = (blob) => { if (blob.type.startsWith(type)) blob.text().then(done); return make.call(URL, blob); }; \

@@ -25,7 +25,7 @@ fn long(name: &str) -> Value {
 }
 
 /// Submits a document from within the page that is open, as another program would; the job's id.
-pub async fn post(browser: &Browser, document: &Value) -> String {
+pub(crate) async fn post(browser: &Browser, document: &Value) -> String {
     let script = "const done = arguments[1]; fetch('/api/v1/jobs', {method: 'POST', body: arguments[0], \
                   headers: {'Content-Type': 'application/json'}}).then((answer) => answer.json()).then(done, (error) => done(String(error)));";
     let job = browser.driver.execute_async(script, vec![json!(document.to_string())]).await.unwrap().json().clone();

@@ -4,7 +4,7 @@ use crate::browser::Browser;
 use serde_json::{Value, json};
 
 /// A page with something on it.
-pub struct Page {
+pub(crate) struct Page {
     pub name: &'static str,
     pub path: String,
     /// True when everything is there: a JavaScript expression.
@@ -24,12 +24,12 @@ impl Page {
     }
 
     /// Whether the page is as its address gives it.
-    pub fn can_be_timed(&self) -> bool {
+    pub(crate) fn can_be_timed(&self) -> bool {
         !self.spoilt
     }
 
     /// Opens the page and waits until everything is there.
-    pub async fn open(&self, browser: &Browser) {
+    pub(crate) async fn open(&self, browser: &Browser) {
         if self.path == "/" {
             // The form keeps a draft of what was changed; here it starts as for somebody new.
             browser.open("/nowhere").await;
@@ -52,7 +52,7 @@ const COMPARED: &str = "document.querySelector('#curves[data-ready]')";
 const SHOWN: &str = "document.querySelector('[data-ready]')";
 
 /// All pages of a service without a token, with jobs that it has solved for them.
-pub async fn all(browser: &Browser) -> Vec<Page> {
+pub(crate) async fn all(browser: &Browser) -> Vec<Page> {
     browser.open("/nowhere").await;
     let example: Value = serde_json::from_str(include_str!("../../examples/table1.json")).unwrap();
     let changed = |change: &dyn Fn(&mut Value)| {

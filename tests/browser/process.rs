@@ -8,14 +8,14 @@ use std::time::{Duration, Instant};
 
 /// A child process whose output is read line by line; killed when dropped, with the processes that it has started
 /// itself (a driver's browser, when a page hangs and the driver cannot close it).
-pub struct Process {
+pub(crate) struct Process {
     child: Child,
     lines: Receiver<String>,
 }
 
 impl Process {
     /// Starts a command. `hint` says what to do when it cannot be started.
-    pub fn start(mut command: Command, hint: &str) -> Self {
+    pub(crate) fn start(mut command: Command, hint: &str) -> Self {
         command.process_group(0).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap_or_else(|error| panic!("{command:?}: {error}. {hint}"));
         let (sender, lines) = channel();
@@ -25,7 +25,7 @@ impl Process {
     }
 
     /// The first thing that `find` finds in a line of output.
-    pub fn wait_for<T>(&self, what: &str, find: impl Fn(&str) -> Option<T>) -> T {
+    pub(crate) fn wait_for<T>(&self, what: &str, find: impl Fn(&str) -> Option<T>) -> T {
         let deadline = Instant::now() + Duration::from_secs(20);
         let mut seen = Vec::new();
         loop {

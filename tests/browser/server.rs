@@ -5,16 +5,16 @@ use std::process::Command;
 use tempfile::TempDir;
 
 /// The one name that the browser can resolve.
-pub const NAME: &str = "gears.test";
+pub(crate) const NAME: &str = "gears.test";
 
-pub struct Server {
+pub(crate) struct Server {
     pub url: String,
     _process: Option<Process>,
     _folder: TempDir,
 }
 
 impl Server {
-    pub fn start() -> Self {
+    pub(crate) fn start() -> Self {
         let folder = tempfile::tempdir().unwrap();
         if let Ok(url) = std::env::var("HERRINGBONE_BROWSER_TEST_URL") {
             return Self { url: url.trim_end_matches('/').to_owned(), _process: None, _folder: folder };
@@ -25,7 +25,7 @@ impl Server {
 
     /// A server with a token, reached by plain HTTP under a name: browsers trust such a site less than one on this
     /// machine or behind TLS, and send it fewer headers.
-    pub fn start_with_token(token: &str) -> Self {
+    pub(crate) fn start_with_token(token: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("token");
         std::fs::write(&file, token).unwrap();

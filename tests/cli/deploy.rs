@@ -29,7 +29,7 @@ fn a_stop_outlasts_the_drain() {
     assert!(grace.trim_end_matches('s').parse::<u32>().expect("seconds") > drain + connections);
 }
 
-/// Where systemd is installed, it checks the unit.
+/// The unit is checked by systemd, if installed.
 #[test]
 fn systemd_accepts_the_unit() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! Whether a database holds what was promised: reads the file itself, beside the service's own code.
+//! Audit of a database against the answers of the service. Reads the file with its own SQL.
 
 use sha2::{Digest, Sha256};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteRow};
@@ -6,19 +6,19 @@ use sqlx::{ConnectOptions, Connection, Row};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-/// What the clients were told.
+/// The submissions that the service accepted.
 #[derive(Debug, Default, Clone)]
-pub struct Accepted {
+pub(crate) struct Accepted {
     /// Ids of accepted jobs.
     pub ids: Vec<String>,
     /// Idempotency key and the id answered under it, as often as it was answered.
     pub keys: Vec<(String, String)>,
 }
 
-/// What was found.
+/// The findings of an audit.
 #[derive(Debug, Default)]
-pub struct Findings {
-    /// What is not as promised; empty when all is.
+pub(crate) struct Findings {
+    /// Violations of the guarantees.
     pub broken: Vec<String>,
     /// Jobs by state.
     pub states: BTreeMap<String, usize>,
@@ -46,7 +46,7 @@ struct Event {
 }
 
 /// Reads the database, which no service may have open, and compares.
-pub fn audit(database: &Path, accepted: &Accepted) -> Findings {
+pub(crate) fn audit(database: &Path, accepted: &Accepted) -> Findings {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
     runtime.block_on(async {
         let mut connection =

@@ -10,24 +10,24 @@ const PATIENCE: Duration = Duration::from_secs(40);
 
 /// Status, headers (names in lower case) and body.
 #[derive(Debug, Clone)]
-pub struct Answer {
+pub(crate) struct Answer {
     pub status: u16,
     headers: Vec<(String, String)>,
     pub text: String,
 }
 
 impl Answer {
-    pub fn header(&self, name: &str) -> Option<&str> {
+    pub(crate) fn header(&self, name: &str) -> Option<&str> {
         self.headers.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
     }
 
     /// The body as JSON; null when it is none.
-    pub fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         serde_json::from_str(&self.text).unwrap_or_default()
     }
 
     /// Whether it is the problem with this code.
-    pub fn is_problem(&self, status: u16, code: &str) -> bool {
+    pub(crate) fn is_problem(&self, status: u16, code: &str) -> bool {
         self.status == status && self.json()["code"] == code
     }
 }
@@ -35,8 +35,14 @@ impl Answer {
 /// One request on a connection of its own.
 ///
 /// # Errors
-/// When no connection is made, when it breaks, or when the answer ends early.
-pub fn send(address: SocketAddr, method: &str, path: &str, headers: &[(&str, &str)], body: &str) -> Result<Answer> {
+/// No connection is made, it breaks, or the answer ends early.
+pub(crate) fn send(
+    address: SocketAddr,
+    method: &str,
+    path: &str,
+    headers: &[(&str, &str)],
+    body: &str,
+) -> Result<Answer> {
     let mut stream = open(address, method, path, headers, body)?;
     let mut bytes = Vec::new();
     stream.read_to_end(&mut bytes)?;
@@ -46,8 +52,14 @@ pub fn send(address: SocketAddr, method: &str, path: &str, headers: &[(&str, &st
 /// The connection with the request sent, for whoever reads the answer as it comes.
 ///
 /// # Errors
-/// When no connection is made or it breaks.
-pub fn open(address: SocketAddr, method: &str, path: &str, headers: &[(&str, &str)], body: &str) -> Result<TcpStream> {
+/// No connection is made, or it breaks.
+pub(crate) fn open(
+    address: SocketAddr,
+    method: &str,
+    path: &str,
+    headers: &[(&str, &str)],
+    body: &str,
+) -> Result<TcpStream> {
     let mut stream = TcpStream::connect_timeout(&address, PATIENCE)?;
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A response with given stiffness, directly periodic, hardly a series: milliseconds. Each one differs in speed, so
 /// that no result is reused by chance.
-pub fn response() -> Value {
+pub(crate) fn response() -> Value {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let speed_rpm = 1000.0 + 0.01 * f64::from(COUNT.fetch_add(1, Ordering::Relaxed));
     json!({
@@ -32,14 +32,14 @@ pub fn response() -> Value {
 }
 
 /// As [`response`], up to the mesh.
-pub fn mesh() -> Value {
+pub(crate) fn mesh() -> Value {
     let mut document = response();
     document["kind"] = json!("mesh");
     document
 }
 
 /// As [`response`], over so many speeds.
-pub fn sweep(points: u32) -> Value {
+pub(crate) fn sweep(points: u32) -> Value {
     let mut document = response();
     document["kind"] = json!("sweep");
     document["operation"]["pinion_torque_nm"] = document["operation"]["pinion_speed_rpm"].take();
@@ -51,7 +51,7 @@ pub fn sweep(points: u32) -> Value {
 }
 
 /// As [`response`], integrated over so many mesh periods.
-pub fn integration(mesh_periods: u32) -> Value {
+pub(crate) fn integration(mesh_periods: u32) -> Value {
     let mut document = response();
     document["analysis"]["method"] = json!("integrate");
     document["analysis"]["mesh_periods"] = json!(mesh_periods);
@@ -59,14 +59,14 @@ pub fn integration(mesh_periods: u32) -> Value {
 }
 
 /// Finite elements of both gears, as fine as there are.
-pub fn elements() -> Value {
+pub(crate) fn elements() -> Value {
     let mut document = mesh();
     document["model"]["mesh_stiffness"] = json!({"source": "ltca", "fidelity": "fe", "elements": "fine"});
     document
 }
 
 /// Many wide teeth in mesh, finely sliced.
-pub fn contact() -> Value {
+pub(crate) fn contact() -> Value {
     let mut document = mesh();
     document["design"] = json!({
         "normal_module_mm": 6.0, "pressure_angle_deg": 17.5, "helix_angle_deg": 35.0, "face_width_mm": 800.0,

@@ -29,36 +29,39 @@ fn no_job_is_lost_or_done_twice_in_two_hundred_kills_under_load() {
     let killing_s = began.elapsed().as_secs_f64();
     let service = program.start();
     load.serve_at(Some(service.address));
-    let told = load.stop();
+    let answers = load.stop();
     let deadline = Instant::now() + PATIENCE;
     while service.get("/api/v1/jobs?state=queued,running&limit=1")["items"] != json!([]) {
         assert!(Instant::now() < deadline, "jobs do not end: {}", service.get("/api/v1/system"));
         std::thread::sleep(Duration::from_millis(50));
     }
     let drained_s = began.elapsed().as_secs_f64() - killing_s;
-    for id in told.accepted.ids.iter().step_by(7) {
+    for id in answers.accepted.ids.iter().step_by(7) {
         let job = service.get(&format!("/api/v1/jobs/{id}"));
         assert!(crate::program::is_ended(&job), "{job}");
     }
     assert!(service.end().0.success());
-    let findings = audit(program.database(), &told.accepted);
+    let findings = audit(program.database(), &answers.accepted);
     println!(
         "seed {seed}: {kills} kills in {killing_s:.0} s, all ended {drained_s:.0} s later; answers 202: {}, jobs: {:?}, started more \
          than once: {}, sweeps gone on with: {}, points: {}; connections broken: {}, sent again under a key: {}, canceled: {}, 503: {}",
-        told.accepted.ids.len(),
+        answers.accepted.ids.len(),
         findings.states,
         findings.restarted,
         findings.resumed_sweeps,
         findings.points,
-        told.broken_connections,
-        told.sent_again,
-        told.canceled,
-        told.refused,
+        answers.broken_connections,
+        answers.sent_again,
+        answers.canceled,
+        answers.refused,
     );
     assert_eq!(findings.broken, [""; 0], "seed {seed}");
-    assert_eq!(told.surprises, [""; 0], "seed {seed}");
+    assert_eq!(answers.unexpected, [""; 0], "seed {seed}");
     // The kills met what they were meant to meet.
-    assert!(findings.restarted > 0 && told.sent_again > 0 && told.accepted.ids.len() as u64 > kills, "{findings:?}");
+    assert!(
+        findings.restarted > 0 && answers.sent_again > 0 && answers.accepted.ids.len() as u64 > kills,
+        "{findings:?}"
+    );
     assert!(!program.log().contains("panicked"), "{}", program.log());
 }
 

@@ -1,4 +1,4 @@
-//! Clients that keep a service busy while it dies and comes back, and remember what they were told.
+//! Clients that keep a service busy while it is killed and restarted, and record its answers.
 
 use crate::audit::Accepted;
 use crate::chance::Chance;
@@ -11,17 +11,17 @@ use std::sync::{Arc, Mutex, RwLock};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// What the clients share.
+/// The state shared by the clients.
 #[derive(Default)]
-struct Shared {
+struct LoadShared {
     address: RwLock<Option<SocketAddr>>,
     over: AtomicBool,
-    told: Mutex<Told>,
+    answers: Mutex<Answers>,
 }
 
-/// What was heard, and what should not have been.
+/// The answers of the service.
 #[derive(Default, Clone)]
-pub struct Told {
+pub(crate) struct Answers {
     pub accepted: Accepted,
     pub canceled: usize,
     /// Submissions sent again under their key because the connection broke.
@@ -29,19 +29,20 @@ pub struct Told {
     pub broken_connections: usize,
     /// Answers refusing a job for a passing reason (503).
     pub refused: usize,
-    pub surprises: Vec<String>,
+    /// Answers that no request should have had.
+    pub unexpected: Vec<String>,
 }
 
 /// Running clients.
-pub struct Load {
-    shared: Arc<Shared>,
+pub(crate) struct Load {
+    shared: Arc<LoadShared>,
     clients: Vec<JoinHandle<()>>,
 }
 
 impl Load {
     /// Starts so many clients; they wait until they are told an address.
-    pub fn start(clients: u64, seed: u64, pause: Duration) -> Self {
-        let shared = Arc::new(Shared::default());
+    pub(crate) fn start(clients: u64, seed: u64, pause: Duration) -> Self {
+        let shared = Arc::new(LoadShared::default());
         let start = |client| {
             let shared = Arc::clone(&shared);
             let client = Client { shared, chance: Chance::new(seed ^ (client << 32)), client, pause, keys: 0 };
@@ -50,23 +51,23 @@ impl Load {
         Self { clients: (0..clients).map(start).collect(), shared }
     }
 
-    /// Where the service is now; nowhere when it was just killed.
-    pub fn serve_at(&self, address: Option<SocketAddr>) {
+    /// Sets the address of the service; `None` while it does not run.
+    pub(crate) fn serve_at(&self, address: Option<SocketAddr>) {
         *self.shared.address.write().expect("not poisoned") = address;
     }
 
     /// Stops the clients; a service has to be there for what they still have to send again.
-    pub fn stop(self) -> Told {
+    pub(crate) fn stop(self) -> Answers {
         self.shared.over.store(true, Ordering::Relaxed);
         for client in self.clients {
             client.join().expect("no client panics");
         }
-        self.shared.told.lock().expect("not poisoned").clone()
+        self.shared.answers.lock().expect("not poisoned").clone()
     }
 }
 
 struct Client {
-    shared: Arc<Shared>,
+    shared: Arc<LoadShared>,
     chance: Chance,
     client: u64,
     pause: Duration,
@@ -101,27 +102,27 @@ impl Client {
             match self.send("POST", "/api/v1/jobs", headers, &document.to_string()) {
                 Some(answer) if answer.status == 202 => {
                     let id = answer.json()["id"].as_str().unwrap_or_default().to_owned();
-                    self.tell(|told| match keyed {
+                    self.record(|answers| match keyed {
                         true => {
-                            told.accepted.ids.push(id.clone());
-                            told.accepted.keys.push((key.clone(), id));
+                            answers.accepted.ids.push(id.clone());
+                            answers.accepted.keys.push((key.clone(), id));
                         }
-                        false => told.accepted.ids.push(id),
+                        false => answers.accepted.ids.push(id),
                     });
                     times -= 1;
                 }
                 Some(answer) if answer.status == 503 => {
-                    self.tell(|told| told.refused += 1);
+                    self.record(|answers| answers.refused += 1);
                     return;
                 }
                 Some(answer) => {
-                    let surprise = format!("submission: {} {}", answer.status, answer.text);
-                    return self.tell(|told| told.surprises.push(surprise));
+                    let unexpected = format!("submission: {} {}", answer.status, answer.text);
+                    return self.record(|answers| answers.unexpected.push(unexpected));
                 }
                 // Without a key nobody knows whether it was accepted.
                 None if !keyed => return,
                 None => {
-                    self.tell(|told| told.sent_again += 1);
+                    self.record(|answers| answers.sent_again += 1);
                     std::thread::sleep(Duration::from_millis(2));
                 }
             }
@@ -132,8 +133,8 @@ impl Client {
         let Some(id) = self.some_id() else { return };
         let Some(answer) = self.send("GET", &format!("/api/v1/jobs/{id}"), &[], "") else { return };
         if answer.status != 200 {
-            let surprise = format!("{id}: {} {}", answer.status, answer.text);
-            self.tell(|told| told.surprises.push(surprise));
+            let unexpected = format!("{id}: {} {}", answer.status, answer.text);
+            self.record(|answers| answers.unexpected.push(unexpected));
         }
     }
 
@@ -141,11 +142,11 @@ impl Client {
         let Some(id) = self.some_id() else { return };
         let Some(answer) = self.send("POST", &format!("/api/v1/jobs/{id}/cancel"), &[], "") else { return };
         match answer.status {
-            200 | 202 => self.tell(|told| told.canceled += 1),
-            503 => self.tell(|told| told.refused += 1),
+            200 | 202 => self.record(|answers| answers.canceled += 1),
+            503 => self.record(|answers| answers.refused += 1),
             _ => {
-                let surprise = format!("cancel {id}: {} {}", answer.status, answer.text);
-                self.tell(|told| told.surprises.push(surprise));
+                let unexpected = format!("cancel {id}: {} {}", answer.status, answer.text);
+                self.record(|answers| answers.unexpected.push(unexpected));
             }
         }
     }
@@ -153,7 +154,7 @@ impl Client {
     /// One of the jobs accepted last.
     fn some_id(&mut self) -> Option<String> {
         let back = self.chance.below(10) as usize;
-        self.shared.told.lock().expect("not poisoned").accepted.ids.iter().rev().nth(back).cloned()
+        self.shared.answers.lock().expect("not poisoned").accepted.ids.iter().rev().nth(back).cloned()
     }
 
     fn send(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &str) -> Option<Answer> {
@@ -164,12 +165,12 @@ impl Client {
         };
         let answer = send(address, method, path, headers, body).ok();
         if answer.is_none() {
-            self.tell(|told| told.broken_connections += 1);
+            self.record(|answers| answers.broken_connections += 1);
         }
         answer
     }
 
-    fn tell(&self, what: impl FnOnce(&mut Told)) {
-        what(&mut self.shared.told.lock().expect("not poisoned"));
+    fn record(&self, update: impl FnOnce(&mut Answers)) {
+        update(&mut self.shared.answers.lock().expect("not poisoned"));
     }
 }

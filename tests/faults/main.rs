@@ -1,4 +1,4 @@
-//! What happens when things go wrong: the real program, killed, out of room, on a damaged file, asked to stop under
+//! Faults of the real program: killed, out of disk space, on a damaged file, shut down under
 //! load.
 
 mod audit;

@@ -10,42 +10,42 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// Longest wait for anything that has to happen.
-pub const PATIENCE: Duration = Duration::from_secs(120);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(120);
 
-/// How the program is started; again and again over the same database.
+/// The command line of the program, which is started repeatedly on the same database.
 #[derive(Clone)]
-pub struct Program {
+pub(crate) struct Program {
     directory: PathBuf,
     database: PathBuf,
     options: Vec<String>,
-    /// What the command line begins with, before the program itself.
+    /// Words before the program on the command line.
     wrapper: Vec<String>,
 }
 
 impl Program {
     /// Over `jobs.db` in a directory, with its log in `log` there.
-    pub fn at(directory: &Path) -> Self {
+    pub(crate) fn at(directory: &Path) -> Self {
         let (directory, database) = (directory.to_owned(), directory.join("jobs.db"));
         Self { directory, database, options: Vec::new(), wrapper: Vec::new() }
     }
 
-    pub fn with(mut self, options: &[&str]) -> Self {
+    pub(crate) fn with(mut self, options: &[&str]) -> Self {
         self.options.extend(options.iter().map(|option| (*option).to_owned()));
         self
     }
 
     /// Started by another program, which has to become it (`exec`).
-    pub fn under(mut self, wrapper: &[&str]) -> Self {
+    pub(crate) fn under(mut self, wrapper: &[&str]) -> Self {
         self.wrapper = wrapper.iter().map(|word| (*word).to_owned()).collect();
         self
     }
 
-    pub fn over(mut self, database: &Path) -> Self {
+    pub(crate) fn over(mut self, database: &Path) -> Self {
         self.database = database.to_owned();
         self
     }
 
-    pub fn database(&self) -> &Path {
+    pub(crate) fn database(&self) -> &Path {
         &self.database
     }
 
@@ -59,12 +59,12 @@ impl Program {
     }
 
     /// Starts it and waits until it serves.
-    pub fn start(&self) -> Service {
+    pub(crate) fn start(&self) -> Service {
         self.try_start().unwrap_or_else(|status| panic!("not started ({status}): {}", self.log()))
     }
 
     /// As [`Program::start`]; how it ended when it does not come to serve.
-    pub fn try_start(&self) -> Result<Service, ExitStatus> {
+    pub(crate) fn try_start(&self) -> Result<Service, ExitStatus> {
         let log = OpenOptions::new().create(true).append(true).open(self.directory.join("log")).expect("a log");
         let mut process =
             self.command().stdout(Stdio::piped()).stderr(log).stdin(Stdio::null()).spawn().expect("a process");
@@ -78,41 +78,41 @@ impl Program {
     }
 
     /// Everything that was logged since the first start.
-    pub fn log(&self) -> String {
+    pub(crate) fn log(&self) -> String {
         std::fs::read_to_string(self.directory.join("log")).unwrap_or_default()
     }
 }
 
 /// A program that serves; killed when it is dropped.
-pub struct Service {
+pub(crate) struct Service {
     process: Child,
     pub address: SocketAddr,
 }
 
 impl Service {
-    pub fn id(&self) -> u32 {
+    pub(crate) fn id(&self) -> u32 {
         self.process.id()
     }
 
     /// One request that has to be answered.
-    pub fn send(&self, method: &str, path: &str, body: &str) -> Answer {
+    pub(crate) fn send(&self, method: &str, path: &str, body: &str) -> Answer {
         let answer = client::send(self.address, method, path, &[], body);
         answer.unwrap_or_else(|error| panic!("{method} {path}: {error}"))
     }
 
-    pub fn get(&self, path: &str) -> Value {
+    pub(crate) fn get(&self, path: &str) -> Value {
         self.send("GET", path, "").json()
     }
 
     /// Submits a job that has to be accepted; its path.
-    pub fn submit(&self, document: &Value) -> String {
+    pub(crate) fn submit(&self, document: &Value) -> String {
         let answer = self.send("POST", "/api/v1/jobs", &document.to_string());
         assert_eq!(answer.status, 202, "{}", answer.text);
         answer.header("location").expect("a location").to_owned()
     }
 
     /// The answer as soon as it is as asked for.
-    pub fn until(&self, path: &str, enough: impl Fn(&Answer) -> bool) -> Answer {
+    pub(crate) fn until(&self, path: &str, enough: impl Fn(&Answer) -> bool) -> Answer {
         let deadline = Instant::now() + PATIENCE;
         loop {
             let answer = self.send("GET", path, "");
@@ -125,36 +125,36 @@ impl Service {
     }
 
     /// The job as soon as it is in this state.
-    pub fn in_state(&self, path: &str, state: &str) -> Value {
+    pub(crate) fn in_state(&self, path: &str, state: &str) -> Value {
         self.until(path, |answer| answer.json()["state"] == state).json()
     }
 
     /// The job as soon as it has ended.
-    pub fn ended(&self, path: &str) -> Value {
+    pub(crate) fn ended(&self, path: &str) -> Value {
         self.until(path, |answer| is_ended(&answer.json())).json()
     }
 
     /// kill −9; nothing is left of the process.
-    pub fn kill(mut self) {
+    pub(crate) fn kill(mut self) {
         self.process.kill().expect("killed");
         self.process.wait().expect("it ends");
     }
 
     /// Sends SIGTERM.
-    pub fn ask_to_end(&self) {
+    pub(crate) fn ask_to_end(&self) {
         let asked = Command::new("kill").args(["-TERM", &self.id().to_string()]).status().expect("kill runs");
         assert!(asked.success());
     }
 
     /// Ends as an operator ends it: how, and after how long.
-    pub fn end(mut self) -> (ExitStatus, Duration) {
+    pub(crate) fn end(mut self) -> (ExitStatus, Duration) {
         let asked = Instant::now();
         self.ask_to_end();
         (self.process.wait().expect("it ends"), asked.elapsed())
     }
 
     /// After [`Service::ask_to_end`].
-    pub fn wait(mut self) -> ExitStatus {
+    pub(crate) fn wait(mut self) -> ExitStatus {
         self.process.wait().expect("it ends")
     }
 }
@@ -166,6 +166,6 @@ impl Drop for Service {
     }
 }
 
-pub fn is_ended(job: &Value) -> bool {
+pub(crate) fn is_ended(job: &Value) -> bool {
     ["succeeded", "failed", "canceled"].iter().any(|state| job["state"] == *state)
 }

@@ -112,8 +112,8 @@ fn a_full_disk_refuses_jobs_until_there_is_room() {
     assert!(service.end().0.success());
 }
 
-/// How a command is started in a mount namespace of its own; none, with the reason printed, where that is not
-/// permitted.
+/// The command prefix that starts a program in a mount namespace of its own; `None`, with the reason printed, where
+/// that is not permitted.
 fn namespace() -> Option<Vec<String>> {
     let mut reasons = Vec::new();
     for options in [&["--user", "--map-root-user", "--mount"][..], &["--mount"]] {

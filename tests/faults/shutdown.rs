@@ -41,7 +41,7 @@ fn a_shutdown_under_load_ends_in_time_and_loses_nothing() {
     let kept = service.get(&points)["n_solved"].as_u64().expect("a number");
     assert!(kept >= 20, "{kept} points were kept");
     load.serve_at(Some(service.address));
-    let told = load.stop();
+    let answers = load.stop();
     let job = service.ended(&sweep);
     assert_eq!((job["state"].as_str(), job["attempt"].as_i64()), (Some("succeeded"), Some(2)), "{job}");
     let result = service.get(&format!("{sweep}/result"));
@@ -53,14 +53,14 @@ fn a_shutdown_under_load_ends_in_time_and_loses_nothing() {
         std::thread::sleep(Duration::from_millis(50));
     }
     assert!(service.end().0.success());
-    let findings = audit(program.database(), &told.accepted);
+    let findings = audit(program.database(), &answers.accepted);
     println!(
         "ended {:.2} s after SIGTERM; {} answers 202, {:?}, sweep went on with {kept} of {POINTS} points",
         took.as_secs_f64(),
-        told.accepted.ids.len(),
+        answers.accepted.ids.len(),
         findings.states
     );
     assert_eq!(findings.broken, [""; 0]);
-    assert_eq!(told.surprises, [""; 0]);
+    assert_eq!(answers.unexpected, [""; 0]);
     assert!(!program.log().contains("panicked"));
 }

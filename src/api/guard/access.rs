@@ -18,7 +18,7 @@ struct AccessInner {
 }
 
 /// The token, the sessions opened with it, and the limiter of failed attempts.
-pub struct Authenticator {
+pub(crate) struct Authenticator {
     pub token: Token,
     sessions: Mutex<Sessions>,
     failures: Mutex<FailureLimiter>,
@@ -76,11 +76,11 @@ impl Access {
 }
 
 impl Authenticator {
-    pub fn sessions(&self) -> MutexGuard<'_, Sessions> {
+    pub(crate) fn sessions(&self) -> MutexGuard<'_, Sessions> {
         self.sessions.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    pub fn failures(&self) -> MutexGuard<'_, FailureLimiter> {
+    pub(crate) fn failures(&self) -> MutexGuard<'_, FailureLimiter> {
         self.failures.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -8,19 +8,19 @@ const COOKIE_NAME: &str = "herringbone_session";
 const X_FORWARDED_PROTO: HeaderName = HeaderName::from_static("x-forwarded-proto");
 
 /// The session ids in the cookies of a request; there may be several cookies of the name, set for different paths.
-pub fn session_ids(headers: &HeaderMap) -> impl Iterator<Item = &str> {
+pub(super) fn session_ids(headers: &HeaderMap) -> impl Iterator<Item = &str> {
     let lines = headers.get_all(COOKIE).into_iter().filter_map(|value| value.to_str().ok());
     let pairs = lines.flat_map(|line| line.split(';')).filter_map(|pair| pair.trim().split_once('='));
     pairs.filter(|(name, _)| *name == COOKIE_NAME).map(|(_, value)| value)
 }
 
 /// The `Set-Cookie` header of a new session.
-pub fn set(id: &str, request: &HeaderMap) -> Option<HeaderValue> {
+pub(super) fn set(id: &str, request: &HeaderMap) -> Option<HeaderValue> {
     set_cookie(id, SESSION_LIFETIME.as_secs(), request)
 }
 
 /// The `Set-Cookie` header that removes the session cookie.
-pub fn clear(request: &HeaderMap) -> Option<HeaderValue> {
+pub(super) fn clear(request: &HeaderMap) -> Option<HeaderValue> {
     set_cookie("", 0, request)
 }
 

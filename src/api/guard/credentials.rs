@@ -16,7 +16,7 @@ use std::time::Instant;
 const PUBLIC_PATHS: [&str; 5] = ["/healthz", "/readyz", "/login", "/assets/common/style.css", "/assets/icon.svg"];
 
 /// Middleware: requires the token, or a session opened with it, except on [`PUBLIC_PATHS`].
-pub async fn check_credentials(State(access): State<Access>, request: Request, next: Next) -> Response {
+pub(crate) async fn check_credentials(State(access): State<Access>, request: Request, next: Next) -> Response {
     let Some(authenticator) = access.authenticator() else { return next.run(request).await };
     if PUBLIC_PATHS.contains(&request.uri().path()) {
         return next.run(request).await;
@@ -63,7 +63,7 @@ fn has_session(authenticator: &Authenticator, headers: &HeaderMap, now: Instant)
 }
 
 /// The response to a wrong token: 401, or 429 after too many.
-pub fn wrong_token(authenticator: &Authenticator, now: Instant) -> Response {
+pub(super) fn wrong_token(authenticator: &Authenticator, now: Instant) -> Response {
     match authenticator.failures().record(now) {
         Ok(()) => unauthenticated("The token is wrong."),
         Err(seconds) => {

@@ -12,7 +12,7 @@ const INTERVAL: Duration = Duration::from_secs(1);
 
 /// A token bucket from which each failure takes one token.
 #[derive(Debug, Default)]
-pub struct FailureLimiter {
+pub(crate) struct FailureLimiter {
     /// Time at which the bucket is full again, if nothing is taken.
     full_at: Option<Instant>,
 }
@@ -22,7 +22,7 @@ impl FailureLimiter {
     ///
     /// # Errors
     /// The bucket is empty: the seconds to wait.
-    pub fn record(&mut self, now: Instant) -> Result<(), u64> {
+    pub(crate) fn record(&mut self, now: Instant) -> Result<(), u64> {
         let full_at = self.full_at.map_or(now, |known| known.max(now)) + INTERVAL;
         let excess = (full_at - now).saturating_sub(INTERVAL * BURST);
         if excess.is_zero() {

@@ -19,7 +19,7 @@ const PROBES: [&str; 2] = ["/healthz", "/readyz"];
 pub struct HostName(String);
 
 /// The names of this host, besides loopback addresses.
-pub struct AllowedHosts(Vec<HostName>);
+pub(crate) struct AllowedHosts(Vec<HostName>);
 
 impl FromStr for HostName {
     type Err = String;
@@ -34,7 +34,7 @@ impl FromStr for HostName {
 }
 
 impl AllowedHosts {
-    pub fn new(names: Vec<HostName>) -> Self {
+    pub(crate) fn new(names: Vec<HostName>) -> Self {
         Self(names)
     }
 
@@ -53,7 +53,7 @@ fn is_loopback(host: &str) -> bool {
 
 /// Middleware: refuses requests for other hosts. A request without a host (HTTP/1.0) does not come from a browser and
 /// passes.
-pub async fn check_host(State(access): State<Access>, request: Request, next: Next) -> Response {
+pub(crate) async fn check_host(State(access): State<Access>, request: Request, next: Next) -> Response {
     let Some(hosts) = access.hosts() else { return next.run(request).await };
     let names = request.headers().get_all(HOST).into_iter().map(|value| value.to_str().unwrap_or_default());
     let mut names = names.chain(request.uri().authority().map(Authority::as_str));

@@ -58,7 +58,7 @@ struct LoginQuery {
 }
 
 /// The routes for login and logout; none for a service without a token.
-pub fn routes(access: &Access, renderer: LoginRenderer) -> Router {
+pub(crate) fn routes(access: &Access, renderer: LoginRenderer) -> Router {
     if access.authenticator().is_none() {
         return Router::new();
     }
@@ -77,7 +77,7 @@ pub fn routes(access: &Access, renderer: LoginRenderer) -> Router {
 }
 
 /// The URL of the login page with `target` as the path to return to.
-pub fn login_url(target: &str) -> String {
+pub(super) fn login_url(target: &str) -> String {
     let mut url = "/login?next=".to_owned();
     for byte in local_path(target).bytes() {
         match byte {

@@ -16,7 +16,7 @@ mod token;
 
 pub use access::{Access, AccessError};
 pub use config::AccessConfig;
-pub use credentials::check_credentials;
-pub use host::check_host;
-pub use login::{LoginNotice, LoginRenderer, routes as login_routes};
-pub use origin::check_origin;
+pub(super) use credentials::check_credentials;
+pub(super) use host::check_host;
+pub(super) use login::{LoginNotice, LoginRenderer, routes as login_routes};
+pub(super) use origin::check_origin;

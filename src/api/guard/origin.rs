@@ -6,7 +6,7 @@ use tower_http::csrf::{CsrfLayer, ProtectionError};
 
 /// Layer: refuses requests of other methods than GET, HEAD and OPTIONS that a page of another site made the browser
 /// send, by the headers `Sec-Fetch-Site` and `Origin`.
-pub fn check_origin() -> CsrfLayer<fn(ProtectionError) -> Response> {
+pub(crate) fn check_origin() -> CsrfLayer<fn(ProtectionError) -> Response> {
     CsrfLayer::new().with_rejection_response(refuse)
 }
 

@@ -6,18 +6,18 @@ use std::time::{Duration, Instant};
 use uuid::Uuid;
 
 /// Duration of a session.
-pub const SESSION_LIFETIME: Duration = Duration::from_secs(12 * 60 * 60);
+pub(super) const SESSION_LIFETIME: Duration = Duration::from_secs(12 * 60 * 60);
 /// Largest number of open sessions; a further one ends the oldest.
 const MAX_SESSIONS: usize = 1000;
 
 /// Open sessions: end time by the SHA-256 digest of the id. The time of looking up a digest reveals nothing about the
 /// id.
 #[derive(Debug, Default)]
-pub struct Sessions(HashMap<[u8; 32], Instant>);
+pub(crate) struct Sessions(HashMap<[u8; 32], Instant>);
 
 impl Sessions {
     /// Opens a session and returns its id (244 random bits of the system's generator).
-    pub fn open(&mut self, now: Instant) -> String {
+    pub(crate) fn open(&mut self, now: Instant) -> String {
         self.0.retain(|_, end| *end > now);
         if self.0.len() >= MAX_SESSIONS {
             let oldest = self.0.iter().min_by_key(|(_, end)| **end).map(|(digest, _)| *digest);
@@ -28,11 +28,11 @@ impl Sessions {
         id
     }
 
-    pub fn is_open(&self, id: &str, now: Instant) -> bool {
+    pub(crate) fn is_open(&self, id: &str, now: Instant) -> bool {
         self.0.get(&digest(id)).is_some_and(|end| *end > now)
     }
 
-    pub fn end(&mut self, id: &str) {
+    pub(crate) fn end(&mut self, id: &str) {
         self.0.remove(&digest(id));
     }
 }

@@ -13,7 +13,7 @@ use subtle::ConstantTimeEq;
 const TOKEN_LENGTH: RangeInclusive<usize> = 16..=1024;
 
 /// The SHA-256 digest of the token.
-pub struct Token([u8; 32]);
+pub(crate) struct Token([u8; 32]);
 
 /// Failure to read a token file. The message does not contain any of its content.
 #[derive(Debug, thiserror::Error)]
@@ -36,7 +36,7 @@ impl Token {
     ///
     /// # Errors
     /// The file cannot be read, or does not hold a usable token.
-    pub fn read(path: &Path) -> Result<Self, TokenError> {
+    pub(crate) fn read(path: &Path) -> Result<Self, TokenError> {
         let (bytes, mode) = read_start(path).map_err(|source| TokenError::Unreadable { path: path.into(), source })?;
         let path = path.to_owned();
         let token = match without_mark(&bytes) {
@@ -60,7 +60,7 @@ impl Token {
 
     /// Whether `presented` is the token. The time taken reveals neither the place of the first difference nor the
     /// length, as digests are compared in constant time.
-    pub fn matches(&self, presented: &[u8]) -> bool {
+    pub(crate) fn matches(&self, presented: &[u8]) -> bool {
         self.0.ct_eq(&digest(presented)).into()
     }
 }

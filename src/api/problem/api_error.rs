@@ -11,7 +11,7 @@ use herringbone_job::DocumentError;
 
 /// An error response. Its body is written by the request middleware, which knows the request id.
 #[derive(Debug, Clone)]
-pub struct ApiError(Box<ApiErrorContent>);
+pub(crate) struct ApiError(Box<ApiErrorContent>);
 
 #[derive(Debug, Clone)]
 struct ApiErrorContent {
@@ -22,23 +22,23 @@ struct ApiErrorContent {
 }
 
 impl ApiError {
-    pub fn new(code: ProblemCode, detail: impl Into<String>) -> Self {
+    pub(crate) fn new(code: ProblemCode, detail: impl Into<String>) -> Self {
         Problem::new(code, detail).into()
     }
 
     /// A failure of the service: the response has a fixed text, `cause` is logged.
-    pub fn internal(cause: impl std::fmt::Display) -> Self {
+    pub(crate) fn internal(cause: impl std::fmt::Display) -> Self {
         let mut error = Self::new(ProblemCode::Internal, "The request failed for a reason that lies in the service.");
         error.0.cause = Some(cause.to_string());
         error
     }
 
-    pub fn not_found(detail: impl Into<String>) -> Self {
+    pub(crate) fn not_found(detail: impl Into<String>) -> Self {
         Self::new(ProblemCode::NotFound, detail)
     }
 
     /// Returns this error with a `Retry-After` header.
-    pub fn retry_after(mut self, seconds: u64) -> Self {
+    pub(crate) fn retry_after(mut self, seconds: u64) -> Self {
         self.0.retry_after_s = Some(seconds);
         self
     }

@@ -62,7 +62,7 @@ const fn entry(
 }
 
 /// Every code, by status.
-pub const CODES: [CodeEntry; 32] = [
+pub(crate) const CODES: [CodeEntry; 32] = [
     entry(
         ProblemCode::MalformedJson,
         "malformed-json",

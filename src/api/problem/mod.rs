@@ -4,8 +4,8 @@ mod api_error;
 mod codes;
 mod convert;
 
-pub use api_error::ApiError;
-pub use codes::{CODES, CodeEntry, ProblemCode};
+pub(super) use api_error::ApiError;
+pub(super) use codes::{CODES, CodeEntry, ProblemCode};
 
 use herringbone_job::Violation;
 use serde::Serialize;

@@ -13,7 +13,7 @@ use axum::response::{IntoResponse, Response};
 ///
 /// # Errors
 /// 406 when `Accept` permits none of them.
-pub fn negotiate(headers: &HeaderMap, offers: &[&'static str]) -> Result<&'static str, ApiError> {
+pub(crate) fn negotiate(headers: &HeaderMap, offers: &[&'static str]) -> Result<&'static str, ApiError> {
     let ranges = media_ranges(headers);
     let mut best: Option<(&'static str, f32)> = None;
     for offer in offers {
@@ -31,7 +31,7 @@ pub fn negotiate(headers: &HeaderMap, offers: &[&'static str]) -> Result<&'stati
 ///
 /// # Errors
 /// 406 when `Accept` permits neither JSON nor CSV, or not CSV although the query selects it.
-pub fn negotiate_table(headers: &HeaderMap, query: &mut QueryParameters) -> Result<Option<Decimal>, ApiError> {
+pub(crate) fn negotiate_table(headers: &HeaderMap, query: &mut QueryParameters) -> Result<Option<Decimal>, ApiError> {
     if let Some(decimal) = query.choice("decimal", &Decimal::ALL) {
         return negotiate(headers, &["text/csv"]).map(|_| Some(decimal));
     }
@@ -62,12 +62,12 @@ fn accepted_decimal(headers: &HeaderMap) -> Result<Decimal, ApiError> {
 }
 
 /// Middleware of paths with JSON responses only.
-pub async fn json_only(request: Request, next: Next) -> Response {
+pub(crate) async fn json_only(request: Request, next: Next) -> Response {
     require(&["application/json"], request, next).await
 }
 
 /// Middleware of paths with event streams only.
-pub async fn event_stream_only(request: Request, next: Next) -> Response {
+pub(crate) async fn event_stream_only(request: Request, next: Next) -> Response {
     require(&["text/event-stream"], request, next).await
 }
 

@@ -10,7 +10,7 @@ use herringbone_job::document::JobDocument;
 
 /// A parsed job document from the body of a request; the feasibility of the gear is not checked.
 #[derive(Debug)]
-pub struct DocumentBody(pub JobDocument);
+pub(crate) struct DocumentBody(pub JobDocument);
 
 impl<S: Send + Sync> FromRequest<S> for DocumentBody {
     type Rejection = ApiError;

@@ -10,11 +10,11 @@ const LENGTH: usize = 1 + 16 + 8;
 
 /// The position after a page: the id of its last job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Cursor(pub JobId);
+pub(crate) struct Cursor(pub JobId);
 
 impl Cursor {
     /// The cursor as text, for a list with this filter.
-    pub fn encode(self, filter: &JobFilter) -> String {
+    pub(crate) fn encode(self, filter: &JobFilter) -> String {
         let mut bytes = vec![VERSION];
         bytes.extend_from_slice(self.0.as_bytes());
         bytes.extend_from_slice(&digest(filter));
@@ -22,7 +22,7 @@ impl Cursor {
     }
 
     /// Parses a cursor; `None` for text that [`Cursor::encode`] did not make with the same filter.
-    pub fn decode(text: &str, filter: &JobFilter) -> Option<Self> {
+    pub(crate) fn decode(text: &str, filter: &JobFilter) -> Option<Self> {
         let mut bytes = [0; LENGTH];
         hex::decode_to_slice(text, &mut bytes).ok()?;
         let (head, filters) = bytes.split_at(17);

@@ -12,30 +12,30 @@ use std::time::Duration;
 
 /// The id of a request in responses and logs; set by the request middleware.
 #[derive(Debug, Clone)]
-pub struct RequestId(pub String);
+pub(crate) struct RequestId(pub String);
 
 /// `Idempotency-Key`: the client's identifier of a submission.
 #[derive(Debug, Clone)]
-pub struct IdempotencyKey(pub Option<String>);
+pub(crate) struct IdempotencyKey(pub Option<String>);
 
 /// `Prefer: wait=N` (RFC 7240), limited to the longest wait of the service; malformed preferences are ignored.
 #[derive(Debug, Clone, Copy)]
-pub struct Prefer {
+pub(crate) struct Prefer {
     pub wait: Option<Duration>,
 }
 
 /// `If-None-Match` (RFC 9110, 13.1.2).
 #[derive(Debug, Clone)]
-pub struct IfNoneMatch(Option<headers::IfNoneMatch>);
+pub(crate) struct IfNoneMatch(Option<headers::IfNoneMatch>);
 
 impl IfNoneMatch {
     /// Whether the request has the header.
-    pub fn is_given(&self) -> bool {
+    pub(crate) fn is_given(&self) -> bool {
         self.0.is_some()
     }
 
     /// Whether the header lists this entity tag (weak comparison) or is `*`.
-    pub fn matches(&self, etag: &ETag) -> bool {
+    pub(crate) fn matches(&self, etag: &ETag) -> bool {
         self.0.as_ref().is_some_and(|header| !header.precondition_passes(etag))
     }
 }

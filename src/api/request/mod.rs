@@ -7,9 +7,9 @@ mod headers;
 mod path;
 mod query;
 
-pub use accept::{event_stream_only, json_only, negotiate, negotiate_table};
-pub use body::DocumentBody;
-pub use cursor::Cursor;
-pub use headers::{IdempotencyKey, IfNoneMatch, Prefer, RequestId};
-pub use path::{ChannelPath, JobPath, PointPath};
-pub use query::QueryParameters;
+pub(super) use accept::{event_stream_only, json_only, negotiate, negotiate_table};
+pub(super) use body::DocumentBody;
+pub(super) use cursor::Cursor;
+pub(super) use headers::{IdempotencyKey, IfNoneMatch, Prefer, RequestId};
+pub(super) use path::{ChannelPath, JobPath, PointPath};
+pub(super) use query::QueryParameters;

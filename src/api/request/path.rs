@@ -7,15 +7,15 @@ use axum::http::request::Parts;
 
 /// `{id}` of a job.
 #[derive(Debug, Clone, Copy)]
-pub struct JobPath(pub JobId);
+pub(crate) struct JobPath(pub JobId);
 
 /// `{id}` and `{channel}`.
 #[derive(Debug, Clone)]
-pub struct ChannelPath(pub JobId, pub String);
+pub(crate) struct ChannelPath(pub JobId, pub String);
 
 /// `{id}` and `{position}`.
 #[derive(Debug, Clone, Copy)]
-pub struct PointPath(pub JobId, pub usize);
+pub(crate) struct PointPath(pub JobId, pub usize);
 
 impl<S: Send + Sync> FromRequestParts<S> for JobPath {
     type Rejection = ApiError;

@@ -8,7 +8,7 @@ use std::str::FromStr;
 
 /// The query parameters of a request: each known one is read by a method, then [`QueryParameters::finish`] is called.
 #[derive(Debug)]
-pub struct QueryParameters {
+pub(crate) struct QueryParameters {
     pairs: Vec<(String, String)>,
     known: Vec<&'static str>,
     violations: Vec<Violation>,
@@ -26,7 +26,7 @@ impl<S: Send + Sync> FromRequestParts<S> for QueryParameters {
 
 impl QueryParameters {
     /// A text; `None` when it is empty or absent.
-    pub fn text(&mut self, name: &'static str) -> Option<String> {
+    pub(crate) fn text(&mut self, name: &'static str) -> Option<String> {
         self.value(name).filter(|value| !value.is_empty())
     }
 
@@ -42,7 +42,7 @@ impl QueryParameters {
     }
 
     /// An integer of at least `minimum`. A value above `maximum` is reduced to `maximum` if `capped`, else a violation.
-    pub fn integer(&mut self, name: &'static str, minimum: u64, maximum: u64, capped: bool) -> Option<u64> {
+    pub(crate) fn integer(&mut self, name: &'static str, minimum: u64, maximum: u64, capped: bool) -> Option<u64> {
         let text = self.value(name)?;
         // More digits than 64 bits hold are still a large integer.
         let is_integer = text.bytes().all(|byte| byte.is_ascii_digit());
@@ -61,7 +61,7 @@ impl QueryParameters {
     }
 
     /// A finite number; `unit` is named in the violation.
-    pub fn number(&mut self, name: &'static str, unit: &str) -> Option<f64> {
+    pub(crate) fn number(&mut self, name: &'static str, unit: &str) -> Option<f64> {
         let text = self.value(name)?;
         let value = f64::from_str(&text).ok().filter(|value| value.is_finite());
         if value.is_none() {
@@ -73,13 +73,13 @@ impl QueryParameters {
     }
 
     /// One of a closed list of names.
-    pub fn choice<T: Copy>(&mut self, name: &'static str, choices: &[(&'static str, T)]) -> Option<T> {
+    pub(crate) fn choice<T: Copy>(&mut self, name: &'static str, choices: &[(&'static str, T)]) -> Option<T> {
         let text = self.value(name)?;
         self.look_up(name, &text, choices)
     }
 
     /// Any number of names of a closed list, separated by commas.
-    pub fn choices<T: Copy>(&mut self, name: &'static str, choices: &[(&'static str, T)]) -> Vec<T> {
+    pub(crate) fn choices<T: Copy>(&mut self, name: &'static str, choices: &[(&'static str, T)]) -> Vec<T> {
         let Some(text) = self.value(name) else { return Vec::new() };
         text.split(',').filter_map(|value| self.look_up(name, value, choices)).collect()
     }
@@ -95,7 +95,7 @@ impl QueryParameters {
     }
 
     /// Adds a violation found by the caller.
-    pub fn add_violation(&mut self, violation: Violation) {
+    pub(crate) fn add_violation(&mut self, violation: Violation) {
         self.violations.push(violation);
     }
 
@@ -103,7 +103,7 @@ impl QueryParameters {
     ///
     /// # Errors
     /// 400 with all violations, if there are any, including parameters that were not read.
-    pub fn finish(mut self) -> Result<(), ApiError> {
+    pub(crate) fn finish(mut self) -> Result<(), ApiError> {
         for (key, _) in &self.pairs {
             if !self.known.contains(&key.as_str()) {
                 let known = if self.known.is_empty() { "none".to_owned() } else { self.known.join(", ") };

@@ -21,7 +21,7 @@ use axum::response::Response;
         (status = 404, description = "No such job."),
     )
 )]
-pub async fn cancel_job(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Response, ApiError> {
+pub(super) async fn cancel_job(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Response, ApiError> {
     match state.jobs().cancel(id).await? {
         Cancellation::Canceled(job) | Cancellation::Ended(job) => job_response(StatusCode::OK, &job),
         Cancellation::Requested(job) => job_response(StatusCode::ACCEPTED, &job),

@@ -17,7 +17,7 @@ use axum::http::StatusCode;
         (status = 409, description = "The job has not ended (`job-not-ended`): cancel it first."),
     )
 )]
-pub async fn delete_job(State(state): State<AppState>, JobPath(id): JobPath) -> Result<StatusCode, ApiError> {
+pub(super) async fn delete_job(State(state): State<AppState>, JobPath(id): JobPath) -> Result<StatusCode, ApiError> {
     match state.jobs().delete(id).await? {
         Deletion::Deleted => Ok(StatusCode::NO_CONTENT),
         Deletion::NotEnded => Err(ApiError::new(ProblemCode::JobNotEnded, "The job has not ended; cancel it first.")),

@@ -12,7 +12,7 @@ use utoipa::ToSchema;
 
 /// What a problem code means.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct ProblemExplanation {
+pub(super) struct ProblemExplanation {
     pub code: &'static str,
     pub status: u16,
     pub title: &'static str,
@@ -29,7 +29,7 @@ pub struct ProblemExplanation {
         (status = 404, description = "No such code."),
     )
 )]
-pub async fn explain_problem(Path(code): Path<String>, headers: HeaderMap) -> Result<Response, ApiError> {
+pub(super) async fn explain_problem(Path(code): Path<String>, headers: HeaderMap) -> Result<Response, ApiError> {
     let media_type = negotiate(&headers, &["application/json", "text/html"])?;
     let code = ProblemCode::from_name(&code).ok_or_else(|| ApiError::not_found("There is no such problem code."))?;
     let entry = code.entry();

@@ -9,7 +9,7 @@ use serde::Serialize;
 use utoipa::ToSchema;
 
 #[derive(Debug, Serialize, ToSchema)]
-pub struct Health {
+pub(super) struct Health {
     #[schema(example = "ok")]
     pub status: &'static str,
 }
@@ -21,7 +21,7 @@ const OK: Json<Health> = Json(Health { status: "ok" });
     get, path = "/healthz", tag = "operation",
     responses((status = 200, description = "The process answers.", body = Health))
 )]
-pub async fn read_liveness() -> Json<Health> {
+pub(super) async fn read_liveness() -> Json<Health> {
     OK
 }
 
@@ -33,7 +33,7 @@ pub async fn read_liveness() -> Json<Health> {
         (status = 503, description = "`shutting-down`, or `storage-unavailable`: the database is full, locked or failing."),
     )
 )]
-pub async fn read_readiness(State(state): State<AppState>) -> Result<Json<Health>, ApiError> {
+pub(super) async fn read_readiness(State(state): State<AppState>) -> Result<Json<Health>, ApiError> {
     if state.jobs().is_closing() {
         let detail = "The service is shutting down.";
         return Err(ApiError::new(ProblemCode::ShuttingDown, detail).retry_after(RETRY_FULL_S));

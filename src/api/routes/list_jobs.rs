@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 
 /// Jobs, newest first.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct JobList {
+pub(super) struct JobList {
     pub items: Vec<Job>,
     /// Leads to the next page; null on the last.
     pub next_cursor: Option<String>,
@@ -37,7 +37,10 @@ pub struct JobList {
         (status = 400, description = "`invalid-parameter` or `invalid-cursor`."),
     )
 )]
-pub async fn list_jobs(State(state): State<AppState>, mut query: QueryParameters) -> Result<Json<JobList>, ApiError> {
+pub(super) async fn list_jobs(
+    State(state): State<AppState>,
+    mut query: QueryParameters,
+) -> Result<Json<JobList>, ApiError> {
     let filter = JobFilter {
         states: query.choices("state", &JobState::ALL.map(|state| (state.as_str(), state))),
         kind: query.choice("kind", &JobKind::ALL).map(|kind| kind.as_str().to_owned()),

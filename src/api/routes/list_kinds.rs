@@ -11,13 +11,13 @@ use utoipa::ToSchema;
 
 /// The kinds of jobs.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct KindList {
+pub(super) struct KindList {
     pub items: Vec<KindEntry>,
 }
 
 /// A kind of job: what its document may say.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct KindEntry {
+pub(super) struct KindEntry {
     pub kind: JobKind,
     pub description: &'static str,
     /// JSON Schema (2020-12) of the document: ranges, defaults, units (`x-unit`).
@@ -29,7 +29,7 @@ pub struct KindEntry {
 
 /// Limits beside the ranges of single fields.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct KindLimits {
+pub(super) struct KindLimits {
     pub max_body_bytes: usize,
     /// Points of all axes together; null for other kinds.
     pub max_sweep_points: Option<usize>,
@@ -42,7 +42,7 @@ pub struct KindLimits {
     get, path = "/kinds", tag = "service",
     responses((status = 200, description = "The kinds of jobs.", body = KindList))
 )]
-pub async fn list_kinds() -> Json<KindList> {
+pub(super) async fn list_kinds() -> Json<KindList> {
     Json(KindList { items: JobKind::ALL.iter().map(|(_, kind)| entry(*kind)).collect() })
 }
 

@@ -19,7 +19,7 @@ use utoipa::ToSchema;
 
 /// Some points of a sweep, in the order of their positions.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct PointList {
+pub(super) struct PointList {
     pub items: Vec<PointItem>,
     /// Position to go on from; null when nothing follows yet.
     pub next_position: Option<u64>,
@@ -29,7 +29,7 @@ pub struct PointList {
 }
 
 #[derive(Debug, Serialize, ToSchema)]
-pub struct PointItem {
+pub(super) struct PointItem {
     /// Place in the result's `sweep.points`.
     pub position: u64,
     #[schema(value_type = SweepPoint)]
@@ -61,7 +61,7 @@ pub struct PointItem {
         (status = 406, description = "Neither JSON nor CSV is accepted."),
     )
 )]
-pub async fn list_points(
+pub(super) async fn list_points(
     State(state): State<AppState>,
     JobPath(id): JobPath,
     mut query: QueryParameters,

@@ -11,14 +11,14 @@ use utoipa::ToSchema;
 
 /// The recorded channels of a job.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct SeriesList {
+pub(super) struct SeriesList {
     pub items: Vec<SeriesView>,
 }
 
 /// A recorded channel.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Series)]
-pub struct SeriesView {
+pub(super) struct SeriesView {
     #[schema(example = "a_x_left")]
     pub name: String,
     pub quantity: String,
@@ -63,7 +63,10 @@ impl From<SeriesEntry> for SeriesView {
         (status = 409, description = "`result-not-ready` or `job-not-succeeded`."),
     )
 )]
-pub async fn list_series(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Json<SeriesList>, ApiError> {
+pub(super) async fn list_series(
+    State(state): State<AppState>,
+    JobPath(id): JobPath,
+) -> Result<Json<SeriesList>, ApiError> {
     super::find_succeeded_job(&state, id).await?;
     let entries = state.jobs().store().series_catalogue(id).await?;
     Ok(Json(SeriesList { items: entries.into_iter().map(SeriesView::from).collect() }))

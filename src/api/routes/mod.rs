@@ -36,7 +36,7 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The endpoints under `/api/v1`, with their OpenAPI descriptions.
-pub fn versioned() -> OpenApiRouter<AppState> {
+pub(super) fn versioned() -> OpenApiRouter<AppState> {
     let json = OpenApiRouter::new()
         .routes(routes!(list_jobs::list_jobs, submit_job::submit_job))
         .routes(routes!(validate_job::validate_job))
@@ -61,7 +61,7 @@ pub fn versioned() -> OpenApiRouter<AppState> {
 }
 
 /// The other endpoints, with their OpenAPI descriptions.
-pub fn operational() -> OpenApiRouter<AppState> {
+pub(super) fn operational() -> OpenApiRouter<AppState> {
     OpenApiRouter::new()
         .routes(routes!(health::read_liveness))
         .routes(routes!(health::read_readiness))
@@ -70,7 +70,7 @@ pub fn operational() -> OpenApiRouter<AppState> {
 }
 
 /// The route of the OpenAPI document, which does not describe itself.
-pub fn undocumented() -> Router<AppState> {
+pub(super) fn undocumented() -> Router<AppState> {
     Router::new().route("/openapi.json", get(read_openapi::read_openapi))
 }
 

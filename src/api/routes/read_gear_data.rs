@@ -19,7 +19,10 @@ use herringbone_job::gear_data::GearData;
         (status = 422, description = "`invalid-design` or `unsupported-design`: this version refuses the document of an earlier one."),
     )
 )]
-pub async fn read_gear_data(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Json<GearData>, ApiError> {
+pub(super) async fn read_gear_data(
+    State(state): State<AppState>,
+    JobPath(id): JobPath,
+) -> Result<Json<GearData>, ApiError> {
     let input = state.jobs().store().input(id).await?.ok_or_else(super::job_not_found)?;
     let data = tokio::task::spawn_blocking(move || GearData::of_stored(&input)).await;
     Ok(Json(data.map_err(ApiError::internal)??))

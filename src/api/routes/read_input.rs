@@ -16,7 +16,7 @@ use axum::response::{IntoResponse, Response};
         (status = 404, description = "No such job."),
     )
 )]
-pub async fn read_input(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Response, ApiError> {
+pub(super) async fn read_input(State(state): State<AppState>, JobPath(id): JobPath) -> Result<Response, ApiError> {
     let input = state.jobs().store().input(id).await?.ok_or_else(super::job_not_found)?;
     Ok(([(CONTENT_TYPE, "application/json")], input).into_response())
 }

@@ -29,7 +29,7 @@ use axum::response::Response;
         (status = 404, description = "No such job."),
     )
 )]
-pub async fn read_job(
+pub(super) async fn read_job(
     State(state): State<AppState>,
     JobPath(id): JobPath,
     prefer: Prefer,

@@ -14,7 +14,7 @@ use jiff::Timestamp;
     responses((status = 200, description = "Metrics in the Prometheus text format.", body = String,
         content_type = "text/plain"))
 )]
-pub async fn read_metrics(State(state): State<AppState>) -> Response {
+pub(super) async fn read_metrics(State(state): State<AppState>) -> Response {
     let jobs = state.jobs();
     // Metrics are served without the database too.
     let measured = measure_store(jobs.store()).await;

@@ -6,7 +6,7 @@ use axum::response::IntoResponse;
 use std::sync::OnceLock;
 
 /// Answers with the OpenAPI document, which is generated once.
-pub async fn read_openapi() -> impl IntoResponse {
+pub(super) async fn read_openapi() -> impl IntoResponse {
     static DOCUMENT: OnceLock<String> = OnceLock::new();
     ([(CONTENT_TYPE, "application/json")], DOCUMENT.get_or_init(openapi_json).as_str())
 }

@@ -28,7 +28,7 @@ enum PointValue {
 
 /// Some rows of a sweep, a list for each column.
 #[derive(Serialize, ToSchema)]
-pub struct PointColumns<'a> {
+pub(super) struct PointColumns<'a> {
     /// Places of the rows in the result's `sweep.points`, ascending.
     pub positions: Vec<u64>,
     /// For each column the values of these rows; null where a row does not have one.
@@ -61,7 +61,7 @@ pub struct PointColumns<'a> {
         (status = 404, description = "No such job, or it is not a sweep."),
     )
 )]
-pub async fn read_point_columns(
+pub(super) async fn read_point_columns(
     State(state): State<AppState>,
     JobPath(id): JobPath,
     mut query: QueryParameters,

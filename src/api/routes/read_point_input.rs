@@ -23,7 +23,7 @@ use herringbone_job::parse;
         (status = 404, description = "No such job, it is not a sweep, or it has no such point."),
     )
 )]
-pub async fn read_point_input(
+pub(super) async fn read_point_input(
     State(state): State<AppState>,
     PointPath(id, position): PointPath,
 ) -> Result<Json<JobDocument>, ApiError> {

@@ -32,7 +32,7 @@ use herringbone_job::result::JobResult;
             or was canceled."),
     )
 )]
-pub async fn read_result(
+pub(super) async fn read_result(
     State(state): State<AppState>,
     JobPath(id): JobPath,
     if_none_match: IfNoneMatch,

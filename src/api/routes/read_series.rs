@@ -19,7 +19,7 @@ use utoipa::ToSchema;
 
 /// Samples of a channel.
 #[derive(Debug, Serialize, ToSchema)]
-pub struct SeriesData {
+pub(super) struct SeriesData {
     pub channel: String,
     pub quantity: String,
     pub unit: String,
@@ -62,7 +62,7 @@ pub struct SeriesData {
         (status = 409, description = "`result-not-ready` or `job-not-succeeded`."),
     )
 )]
-pub async fn read_series(
+pub(super) async fn read_series(
     State(state): State<AppState>,
     ChannelPath(id, channel): ChannelPath,
     mut query: QueryParameters,

@@ -13,7 +13,7 @@ use utoipa::ToSchema;
 /// The service and what it does now.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = System)]
-pub struct SystemView {
+pub(super) struct SystemView {
     pub name: &'static str,
     pub version: &'static str,
     /// Results stored under another version are not reused.
@@ -26,7 +26,7 @@ pub struct SystemView {
 }
 
 #[derive(Debug, Serialize, ToSchema)]
-pub struct QueueView {
+pub(super) struct QueueView {
     /// Jobs that wait.
     pub depth: u64,
     /// Jobs that may wait; further ones are answered with 503.
@@ -34,7 +34,7 @@ pub struct QueueView {
 }
 
 #[derive(Debug, Serialize, ToSchema)]
-pub struct WorkersView {
+pub(super) struct WorkersView {
     /// Jobs of one operating point that can run at once.
     pub total: usize,
     /// Those that run.
@@ -48,7 +48,7 @@ pub struct WorkersView {
 /// Limits of requests.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Limits)]
-pub struct RequestLimits {
+pub(super) struct RequestLimits {
     pub max_body_bytes: usize,
     pub max_wait_s: u64,
     pub page_default: u32,
@@ -64,7 +64,7 @@ pub struct RequestLimits {
     get, path = "/system", tag = "service",
     responses((status = 200, description = "The service and what it does now.", body = SystemView))
 )]
-pub async fn read_system(State(state): State<AppState>) -> Result<Json<SystemView>, ApiError> {
+pub(super) async fn read_system(State(state): State<AppState>) -> Result<Json<SystemView>, ApiError> {
     let jobs = state.jobs();
     let workers = jobs.workers();
     Ok(Json(SystemView {

@@ -38,7 +38,7 @@ use axum::response::{IntoResponse, Response};
         (status = 503, description = "`queue-full`, `shutting-down` or `storage-unavailable`; `Retry-After` says when to try again."),
     )
 )]
-pub async fn submit_job(
+pub(super) async fn submit_job(
     State(state): State<AppState>,
     RequestId(request_id): RequestId,
     IdempotencyKey(idempotency_key): IdempotencyKey,

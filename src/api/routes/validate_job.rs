@@ -13,7 +13,7 @@ use utoipa::ToSchema;
 /// What a check found, and the drawing where it was asked for.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Checked)]
-pub struct ValidationResponse {
+pub(super) struct ValidationResponse {
     #[serde(flatten)]
     pub report: CheckReport,
     /// The pair to scale; only with `drawing=true`.
@@ -36,7 +36,7 @@ pub struct ValidationResponse {
         (status = 422, description = "`invalid-design` or `unsupported-design`."),
     )
 )]
-pub async fn validate_job(
+pub(super) async fn validate_job(
     State(state): State<AppState>,
     mut query: QueryParameters,
     DocumentBody(document): DocumentBody,

@@ -36,7 +36,7 @@ use tokio_util::sync::CancellationToken;
         (status = 503, description = "`too-many-streams`; `Retry-After` says when to try again."),
     )
 )]
-pub async fn watch_job(
+pub(super) async fn watch_job(
     State(state): State<AppState>,
     JobPath(id): JobPath,
     headers: HeaderMap,

@@ -39,7 +39,10 @@ use tokio_util::sync::CancellationToken;
         (status = 503, description = "`too-many-streams`; `Retry-After` says when to try again."),
     )
 )]
-pub async fn watch_jobs(State(state): State<AppState>, mut query: QueryParameters) -> Result<Response, ApiError> {
+pub(super) async fn watch_jobs(
+    State(state): State<AppState>,
+    mut query: QueryParameters,
+) -> Result<Response, ApiError> {
     let filter =
         EventFilter { kind: query.choice("kind", &JobKind::ALL).map(JobKind::as_str), label: query.text("label") };
     query.finish()?;

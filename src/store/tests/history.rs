@@ -30,12 +30,12 @@ async fn apply(store: &Store, id: JobId, step: Step) {
     match step {
         Step::Claim => drop(store.claim_next(WorkClass::Single, at(1)).await.unwrap()),
         Step::Progress(attempt) => {
-            drop(store.progress(id, attempt, "mesh", 0.5, &PointBatch::default()).await.unwrap())
+            drop(store.progress(id, attempt, "mesh", 0.5, &PointBatch::default()).await.unwrap());
         }
         Step::Succeed(attempt) => drop(store.succeed(id, attempt, &completion("a"), at(1)).await.unwrap()),
         Step::Fail(attempt) => drop(store.fail(id, attempt, &failure, at(1)).await.unwrap()),
         Step::Release(attempt) => {
-            drop(store.release(id, attempt, ReleaseReason::Shutdown, Duration::ZERO, at(1)).await.unwrap())
+            drop(store.release(id, attempt, ReleaseReason::Shutdown, Duration::ZERO, at(1)).await.unwrap());
         }
         Step::Cancel => drop(store.cancel(id, at(1)).await.unwrap()),
         Step::Recover => drop(store.recover(3, at(1)).await.unwrap()),

@@ -64,7 +64,7 @@ async fn a_clock_behind_deletes_nothing_and_one_ahead_no_live_job() {
     let ahead = config.keep_from(at(31 * 86_400)).unwrap();
     assert_eq!(store.delete_ended_before(ahead, 8).await.unwrap(), 1);
     assert!(exists(store, runs).await);
-    assert_eq!(config.keep_from(jiff::Timestamp::MIN), None, "no time before all times");
+    assert_eq!(config.keep_from(Timestamp::MIN), None, "no time before all times");
 }
 
 #[tokio::test]

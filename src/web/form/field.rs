@@ -5,7 +5,7 @@ use herringbone_job::unit::Unit;
 use serde_json::Value;
 
 /// What kind of input a field has; the page's script reads its value back accordingly.
-pub enum Control {
+pub(crate) enum Control {
     Number,
     Integer,
     Boolean,
@@ -22,14 +22,14 @@ pub enum Control {
 }
 
 /// An option of a [`Control::Choice`].
-pub struct Choice {
+pub(crate) struct Choice {
     pub word: String,
     pub label: String,
     pub chosen: bool,
 }
 
 /// A field: all its texts as they stand on the page.
-pub struct Field {
+pub(crate) struct Field {
     pub id: String,
     pub pointer: String,
     pub label: String,
@@ -60,7 +60,7 @@ pub struct Field {
 
 impl Field {
     /// A field from its declaration; nothing for objects, whose fields are declared on their own.
-    pub fn new(description: &FieldDescription, example: Option<&Value>) -> Option<Field> {
+    pub(crate) fn new(description: &FieldDescription, example: Option<&Value>) -> Option<Field> {
         let FieldDescription { pointer, schema, derived, .. } = description;
         let derived = *derived;
         let default = if derived.is_some() { String::new() } else { text(&schema["default"]) };
@@ -93,7 +93,7 @@ impl Field {
     }
 
     /// Name of the control for the page's script.
-    pub fn control_name(&self) -> &'static str {
+    pub(crate) fn control_name(&self) -> &'static str {
         match self.control {
             Control::Number => "number",
             Control::Integer => "integer",
@@ -107,7 +107,7 @@ impl Field {
     }
 
     /// Where a field differs from this, the page offers to put it back; in words for people.
-    pub fn default_text(&self) -> String {
+    pub(crate) fn default_text(&self) -> String {
         let default = match (&self.control, self.default.as_str()) {
             (Control::Choice(choices), word) => {
                 choices.iter().find(|choice| choice.word == word).map_or(String::new(), |choice| choice.label.clone())
@@ -118,7 +118,7 @@ impl Field {
         format!("{default} {}", self.unit).trim_end().to_owned()
     }
 
-    pub fn is_sweep_target(&self) -> bool {
+    pub(crate) fn is_sweep_target(&self) -> bool {
         self.pointer.starts_with("/axes/") && self.pointer.ends_with("/pointer")
     }
 }

@@ -2,7 +2,7 @@
 //! field stands in, its name, range, unit, default and help come from its declaration in the job document.
 
 /// A section of the form.
-pub struct GroupPlan {
+pub(super) struct GroupPlan {
     pub id: &'static str,
     pub title: &'static str,
     /// The title in the list of sections.
@@ -16,14 +16,14 @@ pub struct GroupPlan {
 
 /// Fields that stand together under a common (perhaps empty) title: those of the section in one object (or several side
 /// by side) and in the objects in it that have no block of their own.
-pub struct BlockPlan {
+pub(super) struct BlockPlan {
     pub title: &'static str,
     /// Folded away until it is opened.
     pub folded: bool,
     pub layout: LayoutPlan,
 }
 
-pub enum LayoutPlan {
+pub(super) enum LayoutPlan {
     /// Pointer of the object.
     Fields(&'static str),
     /// Several objects with the same fields side by side: heading and pointer of each.
@@ -32,7 +32,7 @@ pub enum LayoutPlan {
 
 impl BlockPlan {
     /// Pointers of the block's objects.
-    pub fn objects(&self) -> Vec<&'static str> {
+    pub(super) fn objects(&self) -> Vec<&'static str> {
         match self.layout {
             LayoutPlan::Fields(object) => vec![object],
             LayoutPlan::Table(columns) => columns.iter().map(|(_, object)| *object).collect(),
@@ -79,7 +79,7 @@ const fn section(id: &'static str, title: &'static str, open: bool, blocks: &'st
     GroupPlan { id, title, short: title, help: "", open, nothing: DEFAULTS, blocks }
 }
 
-pub const GROUPS: &[GroupPlan] = &[
+pub(super) const GROUPS: &[GroupPlan] = &[
     section("job", "Job", true, &[block("", "")]),
     section(
         "gears",
@@ -147,4 +147,4 @@ pub const GROUPS: &[GroupPlan] = &[
 ];
 
 /// Number of axes that a sweep can have.
-pub const AXES: usize = 2;
+pub(super) const AXES: usize = 2;

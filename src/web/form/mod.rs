@@ -3,7 +3,7 @@
 mod field;
 mod groups;
 
-pub use field::{Control, Field};
+pub(super) use field::{Control, Field};
 
 use groups::{BlockPlan, GroupPlan, LayoutPlan};
 use herringbone_job::schema::{FieldDescription, field_descriptions};
@@ -11,7 +11,7 @@ use serde_json::Value;
 use std::sync::LazyLock;
 
 /// A section of the form.
-pub struct Group {
+pub(super) struct Group {
     pub id: &'static str,
     pub title: &'static str,
     /// The title in the list of sections.
@@ -24,26 +24,26 @@ pub struct Group {
 }
 
 /// Fields that stand together under a common (perhaps empty) title.
-pub struct Block {
+pub(super) struct Block {
     pub title: &'static str,
     pub folded: bool,
     pub layout: Layout,
 }
 
-pub enum Layout {
+pub(super) enum Layout {
     Fields(Vec<Field>),
     Table { columns: Vec<&'static str>, rows: Vec<Row> },
 }
 
 /// The same field of several objects, with what it has in common.
-pub struct Row {
+pub(super) struct Row {
     pub label: String,
     pub cells: Vec<Field>,
 }
 
 impl Row {
     /// The cells have the same declaration: the first speaks for all.
-    pub fn first(&self) -> Option<&Field> {
+    pub(super) fn first(&self) -> Option<&Field> {
         self.cells.first()
     }
 }
@@ -71,12 +71,12 @@ static SWEEPABLE: LazyLock<Vec<String>> = LazyLock::new(|| {
 });
 
 /// The sections of the form.
-pub fn groups() -> &'static [Group] {
+pub(super) fn groups() -> &'static [Group] {
     &GROUPS
 }
 
 /// Pointers of the numbers that a sweep can vary.
-pub fn sweepable_pointers() -> &'static [String] {
+pub(super) fn sweepable_pointers() -> &'static [String] {
     &SWEEPABLE
 }
 

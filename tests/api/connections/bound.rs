@@ -1,9 +1,9 @@
-//! More connections than there are places.
+//! More connections than the bound permits.
 
 use super::*;
 
-/// How many of these the service still holds open.
-fn open(streams: &[TcpStream]) -> usize {
+/// Number of these connections that the service holds open.
+fn open_count(streams: &[TcpStream]) -> usize {
     let is_open = |stream: &&TcpStream| match stream.try_read(&mut [0; 16]) {
         Ok(n) => n > 0,
         Err(error) => error.kind() == std::io::ErrorKind::WouldBlock,
@@ -14,7 +14,7 @@ fn open(streams: &[TcpStream]) -> usize {
 async fn at_most_open(streams: &[TcpStream], limit: usize) -> usize {
     in_time(async {
         loop {
-            let n = open(streams);
+            let n = open_count(streams);
             if n <= limit {
                 return n;
             }
@@ -25,10 +25,9 @@ async fn at_most_open(streams: &[TcpStream], limit: usize) -> usize {
 }
 
 /// Opens idle connections, and asks in between and afterwards.
-async fn crowded(idle: usize, places: u32) {
-    // No time-out helps: only who makes room.
-    let limits =
-        ConnectionConfig { max_connections: places, header_timeout: PATIENCE * 10, ..ConnectionConfig::default() };
+async fn open_idle_connections(idle: usize, max_connections: u32) {
+    // No timeout applies: only eviction closes connections.
+    let limits = ConnectionConfig { max_connections, header_timeout: PATIENCE * 10, ..ConnectionConfig::default() };
     let served = served_with(limits).await;
     let mut streams = Vec::with_capacity(idle);
     for index in 0..idle {
@@ -38,27 +37,27 @@ async fn crowded(idle: usize, places: u32) {
         }
     }
     let served_at_once = served.get("/api/v1/jobs").await;
-    assert_eq!(served_at_once.status(), 200, "the longest waiting made room");
-    let left = at_most_open(&streams, places as usize).await;
-    assert!(left > 0, "nobody is sent away without need");
-    println!("{idle} idle connections, {places} places: {left} are held, clients with requests are served");
+    assert_eq!(served_at_once.status(), 200, "the connection idle longest was closed");
+    let left = at_most_open(&streams, max_connections as usize).await;
+    assert!(left > 0, "no more connections are closed than necessary");
+    println!("{idle} idle connections, at most {max_connections}: {left} are held, clients with requests are served");
     // The youngest are those that stay.
-    assert_eq!(open(&streams[idle - left..]), left);
+    assert_eq!(open_count(&streams[idle - left..]), left);
 }
 
 #[tokio::test]
-async fn idle_connections_beyond_the_bound_make_room_for_requests() {
-    crowded(2000, 200).await;
+async fn idle_connections_beyond_the_bound_are_closed_for_requests() {
+    open_idle_connections(2000, 200).await;
 }
 
 #[tokio::test]
 #[ignore = "opens ten thousand connections: needs `ulimit -n` of 12000"]
 async fn ten_thousand_idle_connections_are_bounded() {
-    crowded(10_000, 1024).await;
+    open_idle_connections(10_000, 1024).await;
 }
 
 #[tokio::test]
-async fn idle_connections_go_by_themselves() {
+async fn idle_connections_are_closed_after_the_timeout() {
     let limits = ConnectionConfig { max_connections: 50, header_timeout: moments(300), ..ConnectionConfig::default() };
     let served = served_with(limits).await;
     let mut streams = Vec::new();
@@ -69,7 +68,7 @@ async fn idle_connections_go_by_themselves() {
 }
 
 #[tokio::test]
-async fn who_has_a_request_in_progress_is_not_sent_away() {
+async fn connections_with_a_request_in_progress_are_not_closed() {
     let connections = ConnectionConfig { max_connections: 2, ..ConnectionConfig::default() };
     let served = served(HttpConfig { request_timeout_s: 1, connections, ..HttpConfig::default() }).await;
     let head = "POST /api/v1/jobs HTTP/1.1\r\nhost: localhost\r\ncontent-type: application/json\r\n\

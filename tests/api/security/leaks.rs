@@ -1,10 +1,10 @@
-//! What goes wrong inside stays inside.
+//! Errors show no internals.
 
 use super::*;
 use axum::body::Body;
 use axum::http::Method;
 
-/// What a path of this machine, the database, or the text of a panic would show.
+/// Texts that would reveal a path of this machine, the database, or the message of a panic.
 const INSIDE: [&str; 14] = [
     "/home", "/root", "/tmp", "/usr", "/var", ".cargo", "src/", ".rs:", "panicked", "secret", "sqlx", "SQLITE",
     "sqlite", "jobs.db",

@@ -1,4 +1,4 @@
-//! Who gets in, and what answers tell.
+//! Access control, and information in responses.
 
 mod escaping;
 mod headers;
@@ -12,10 +12,10 @@ mod token;
 use crate::support::*;
 use herringbone::api::{AccessConfig, HttpConfig};
 
-pub const TOKEN: &str = "correct-horse-battery-staple";
+pub(crate) const TOKEN: &str = "correct-horse-battery-staple";
 
 /// A service with a token.
-pub async fn guarded() -> App {
+pub(crate) async fn guarded() -> App {
     let directory = tempfile::tempdir().expect("temporary directory");
     let file = directory.path().join("token");
     std::fs::write(&file, format!("{TOKEN}\n")).expect("written");
@@ -24,6 +24,6 @@ pub async fn guarded() -> App {
 }
 
 /// The header of someone who has the token.
-pub fn bearer() -> (&'static str, String) {
+pub(crate) fn bearer() -> (&'static str, String) {
     ("authorization", format!("Bearer {TOKEN}"))
 }

@@ -1,4 +1,4 @@
-//! What browsers say about the page that made them ask.
+//! The headers with which browsers name the origin of a request.
 
 use super::*;
 use axum::http::Method;

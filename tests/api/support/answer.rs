@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::time::Duration;
 
 /// An answer that was read to its end.
-pub struct Answer {
+pub(crate) struct Answer {
     pub status: u16,
     pub headers: HeaderMap,
     pub body: Bytes,
@@ -16,7 +16,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    pub async fn of(response: Response<Body>) -> Self {
+    pub(crate) async fn of(response: Response<Body>) -> Self {
         let (parts, body) = response.into_parts();
         let body = body.collect().await.expect("a whole body").to_bytes();
         let json = serde_json::from_slice(&body).unwrap_or_default();
@@ -24,17 +24,17 @@ impl Answer {
     }
 
     /// Empty when there is no such header.
-    pub fn header(&self, name: &str) -> &str {
+    pub(crate) fn header(&self, name: &str) -> &str {
         self.headers.get(name).and_then(|value| value.to_str().ok()).unwrap_or_default()
     }
 
-    pub fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         String::from_utf8_lossy(&self.body).into_owned()
     }
 
     /// Asserts a problem with this status and code, in the one schema.
     #[track_caller]
-    pub fn assert_problem(&self, status: u16, code: &str) {
+    pub(crate) fn assert_problem(&self, status: u16, code: &str) {
         assert_eq!((self.status, self.json["code"].as_str()), (status, Some(code)), "{self:?}");
         assert_eq!(self.header("content-type"), "application/problem+json");
         assert_eq!(self.json["type"], format!("/problems/{code}"));
@@ -45,13 +45,13 @@ impl Answer {
     }
 
     #[track_caller]
-    pub fn assert_status(&self, status: u16) {
+    pub(crate) fn assert_status(&self, status: u16) {
         assert_eq!(self.status, status, "{self:?}");
     }
 
     /// The violation with this pointer.
     #[track_caller]
-    pub fn violation(&self, pointer: &str) -> &Value {
+    pub(crate) fn violation(&self, pointer: &str) -> &Value {
         let errors = self.json["errors"].as_array().expect("errors");
         errors.iter().find(|error| error["pointer"] == pointer).unwrap_or_else(|| panic!("no {pointer}: {self:?}"))
     }
@@ -65,7 +65,7 @@ impl std::fmt::Debug for Answer {
 
 /// A server-sent event.
 #[derive(Debug, PartialEq)]
-pub struct Event {
+pub(crate) struct Event {
     pub name: String,
     /// 0 when it has none.
     pub id: i64,
@@ -73,7 +73,7 @@ pub struct Event {
 }
 
 /// An event stream, read one event at a time.
-pub struct EventStream {
+pub(crate) struct EventStream {
     pub status: u16,
     pub media_type: String,
     body: Body,
@@ -81,7 +81,7 @@ pub struct EventStream {
 }
 
 impl EventStream {
-    pub fn of(response: Response<Body>) -> Self {
+    pub(crate) fn of(response: Response<Body>) -> Self {
         let media_type = response.headers().get("content-type").and_then(|value| value.to_str().ok());
         Self {
             status: response.status().as_u16(),
@@ -92,7 +92,7 @@ impl EventStream {
     }
 
     /// The next event, or `None` at the end of the stream.
-    pub async fn next(&mut self) -> Option<Event> {
+    pub(crate) async fn next(&mut self) -> Option<Event> {
         loop {
             if let Some((block, rest)) = self.buffer.split_once("\n\n") {
                 let event = parsed(block);
@@ -110,7 +110,7 @@ impl EventStream {
     }
 
     /// All events up to the end of the stream.
-    pub async fn rest(&mut self) -> Vec<Event> {
+    pub(crate) async fn rest(&mut self) -> Vec<Event> {
         let mut events = Vec::new();
         while let Some(event) = self.next().await {
             events.push(event);

@@ -9,7 +9,7 @@ use tokio::sync::Notify;
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
 #[derive(Default)]
-pub struct Breakpoints {
+pub(crate) struct Breakpoints {
     state: Mutex<State>,
     released: Condvar,
     reached: Notify,
@@ -23,23 +23,23 @@ struct State {
 
 impl Breakpoints {
     /// Calculations will stop at this point.
-    pub fn hold(&self, point: &str) {
+    pub(crate) fn hold(&self, point: &str) {
         self.state.lock().expect("no panic while locked").held.insert(point.to_owned());
     }
 
     /// Lets go on whoever stopped at this point, and all that come later.
-    pub fn release(&self, point: &str) {
+    pub(crate) fn release(&self, point: &str) {
         self.state.lock().expect("no panic while locked").held.remove(point);
         self.released.notify_all();
     }
 
-    /// How often the point was reached.
-    pub fn count(&self, point: &str) -> u32 {
+    /// Number of times that the point was reached.
+    pub(crate) fn count(&self, point: &str) -> u32 {
         self.state.lock().expect("no panic while locked").reached.get(point).copied().unwrap_or(0)
     }
 
     /// Waits until the point was reached so many times.
-    pub async fn reached(&self, point: &str, times: u32) {
+    pub(crate) async fn reached(&self, point: &str, times: u32) {
         let waiting = async {
             loop {
                 let notified = self.reached.notified();
@@ -54,7 +54,7 @@ impl Breakpoints {
     }
 
     /// Called by the calculation: false when it was canceled while it stood here.
-    pub fn pass(&self, point: &str, canceled: &dyn Fn() -> bool) -> bool {
+    pub(crate) fn pass(&self, point: &str, canceled: &dyn Fn() -> bool) -> bool {
         let mut state = self.state.lock().expect("no panic while locked");
         *state.reached.entry(point.to_owned()).or_default() += 1;
         self.reached.notify_waiters();

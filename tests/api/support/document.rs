@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A valid document; each one differs in speed, so that no result is reused by chance.
-pub fn document() -> Value {
+pub(crate) fn document() -> Value {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let speed_rpm = 1000.0 + f64::from(COUNT.fetch_add(1, Ordering::Relaxed));
     json!({
@@ -19,14 +19,14 @@ pub fn document() -> Value {
 }
 
 /// A valid document whose name tells the scripted solver what to do.
-pub fn scripted(script: &str) -> Value {
+pub(crate) fn scripted(script: &str) -> Value {
     let mut document = document();
     document["name"] = json!(script);
     document
 }
 
 /// A valid sweep over so many speeds whose name tells the scripted solver what to do.
-pub fn sweep(script: &str, points: u32) -> Value {
+pub(crate) fn sweep(script: &str, points: u32) -> Value {
     let mut document = scripted(script);
     let torque_nm = document["operation"]["pinion_speed_rpm"].clone();
     document["kind"] = json!("sweep");

@@ -7,12 +7,12 @@ mod program;
 mod service;
 mod solver;
 
-pub use answer::{Answer, Event, EventStream};
-pub use breakpoints::Breakpoints;
-pub use document::{document, scripted, sweep};
-pub use program::Program;
-pub use service::Service;
-pub use solver::ScriptedSolver;
+pub(crate) use answer::{Answer, Event, EventStream};
+pub(crate) use breakpoints::Breakpoints;
+pub(crate) use document::{document, scripted, sweep};
+pub(crate) use program::Program;
+pub(crate) use service::Service;
+pub(crate) use solver::ScriptedSolver;
 
 use axum::Router;
 use axum::body::Body;
@@ -28,7 +28,7 @@ use tempfile::TempDir;
 use tower::ServiceExt;
 
 /// A running service.
-pub struct App {
+pub(crate) struct App {
     pub router: Router,
     pub jobs: Jobs,
     pub solver: Arc<ScriptedSolver>,
@@ -36,31 +36,31 @@ pub struct App {
 }
 
 /// Two workers, a queue of ten.
-pub fn small() -> WorkConfig {
+pub(crate) fn small() -> WorkConfig {
     WorkConfig { workers: Some(2), threads: Some(2), queue_capacity: 10, drain_s: 5, ..WorkConfig::default() }
 }
 
-pub async fn app() -> App {
+pub(crate) async fn app() -> App {
     app_with(small()).await
 }
 
-pub async fn app_with(work: WorkConfig) -> App {
+pub(crate) async fn app_with(work: WorkConfig) -> App {
     start(tempfile::tempdir().expect("temporary directory"), work, HttpConfig::default()).await
 }
 
 /// A service with a request timeout of zero.
-pub async fn impatient_app() -> App {
+pub(crate) async fn impatient_app() -> App {
     let http = HttpConfig { request_timeout_s: 0, ..HttpConfig::default() };
     start(tempfile::tempdir().expect("temporary directory"), small(), http).await
 }
 
 /// A service with these HTTP settings.
-pub async fn app_with_http(http: HttpConfig) -> App {
+pub(crate) async fn app_with_http(http: HttpConfig) -> App {
     start(tempfile::tempdir().expect("temporary directory"), small(), http).await
 }
 
 /// A service whose database may not grow beyond so many megabytes.
-pub async fn limited_app(max_database_mb: u32) -> App {
+pub(crate) async fn limited_app(max_database_mb: u32) -> App {
     let directory = tempfile::tempdir().expect("temporary directory");
     let retention = RetentionConfig { keep_days: None, max_database_mb: Some(max_database_mb) };
     let store = StoreConfig { retention, ..StoreConfig::at(directory.path().join("jobs.db")) };
@@ -93,7 +93,13 @@ async fn panics() -> &'static str {
 
 impl App {
     /// Sends a request with headers given as `name: value`.
-    pub async fn send(&self, method: Method, path: &str, headers: &[(&str, &str)], body: impl Into<Body>) -> Answer {
+    pub(crate) async fn send(
+        &self,
+        method: Method,
+        path: &str,
+        headers: &[(&str, &str)],
+        body: impl Into<Body>,
+    ) -> Answer {
         let mut request = Request::builder().method(method).uri(path);
         for (name, value) in headers {
             request = request.header(*name, *value);
@@ -103,56 +109,56 @@ impl App {
         Answer::of(response).await
     }
 
-    pub async fn get(&self, path: &str) -> Answer {
+    pub(crate) async fn get(&self, path: &str) -> Answer {
         self.send(Method::GET, path, &[], Body::empty()).await
     }
 
-    pub async fn get_with(&self, path: &str, headers: &[(&str, &str)]) -> Answer {
+    pub(crate) async fn get_with(&self, path: &str, headers: &[(&str, &str)]) -> Answer {
         self.send(Method::GET, path, headers, Body::empty()).await
     }
 
-    pub async fn post(&self, path: &str) -> Answer {
+    pub(crate) async fn post(&self, path: &str) -> Answer {
         self.send(Method::POST, path, &[], Body::empty()).await
     }
 
-    pub async fn delete(&self, path: &str) -> Answer {
+    pub(crate) async fn delete(&self, path: &str) -> Answer {
         self.send(Method::DELETE, path, &[], Body::empty()).await
     }
 
     /// `POST /jobs` with more headers than the media type.
-    pub async fn submit_with(&self, document: &Value, headers: &[(&str, &str)]) -> Answer {
+    pub(crate) async fn submit_with(&self, document: &Value, headers: &[(&str, &str)]) -> Answer {
         let headers = [&[("content-type", "application/json")], headers].concat();
         self.send(Method::POST, "/api/v1/jobs", &headers, document.to_string()).await
     }
 
     /// `POST /jobs`; the job's path.
-    pub async fn submit(&self, document: &Value) -> String {
+    pub(crate) async fn submit(&self, document: &Value) -> String {
         let answer = self.submit_with(document, &[]).await;
         assert_eq!(answer.status, 202, "{answer:?}");
         answer.header("location").to_owned()
     }
 
     /// Submits and waits for the end; the job's path and the ended job.
-    pub async fn run(&self, document: &Value) -> (String, Value) {
+    pub(crate) async fn run(&self, document: &Value) -> (String, Value) {
         let path = self.submit(document).await;
         let job = self.ended(&path).await;
         (path, job)
     }
 
     /// Waits for the end of a job.
-    pub async fn ended(&self, path: &str) -> Value {
+    pub(crate) async fn ended(&self, path: &str) -> Value {
         let answer = self.get_with(path, &[("prefer", "wait=30")]).await;
         assert!(!["queued", "running"].contains(&answer.json["state"].as_str().unwrap_or_default()), "{answer:?}");
         answer.json
     }
 
     /// Events of a job, read one by one.
-    pub async fn events(&self, path: &str, headers: &[(&str, &str)]) -> EventStream {
+    pub(crate) async fn events(&self, path: &str, headers: &[(&str, &str)]) -> EventStream {
         self.stream(&format!("{path}/events"), headers).await
     }
 
     /// Events from this path, read one by one.
-    pub async fn stream(&self, path: &str, headers: &[(&str, &str)]) -> EventStream {
+    pub(crate) async fn stream(&self, path: &str, headers: &[(&str, &str)]) -> EventStream {
         let mut request = Request::builder().uri(path);
         for (name, value) in headers {
             request = request.header(*name, *value);
@@ -162,7 +168,7 @@ impl App {
     }
 
     /// Stops as a shutdown does and starts again over the same database.
-    pub async fn restart(self) -> App {
+    pub(crate) async fn restart(self) -> App {
         assert!(self.jobs.close().await, "running jobs did not stop");
         self.jobs.store().close().await;
         let App { router, jobs, solver, directory } = self;
@@ -170,7 +176,7 @@ impl App {
         start(directory, small(), HttpConfig::default()).await
     }
 
-    pub fn database(&self) -> std::path::PathBuf {
+    pub(crate) fn database(&self) -> std::path::PathBuf {
         self.directory.path().join("jobs.db")
     }
 }

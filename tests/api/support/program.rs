@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 const PROGRAM: &str = env!("CARGO_BIN_EXE_herringbone");
 
 /// A service that runs until it is dropped.
-pub struct Program {
+pub(crate) struct Program {
     process: Child,
     address: SocketAddr,
     log: Option<JoinHandle<String>>,
@@ -30,12 +30,12 @@ fn without_variables(mut command: Command) -> Command {
 
 impl Program {
     /// Starts it and waits until it listens.
-    pub fn start(arguments: &[&str]) -> Self {
+    pub(crate) fn start(arguments: &[&str]) -> Self {
         Self::of(serve(arguments))
     }
 
     /// The same with few files.
-    pub fn start_with_files(files: u32, arguments: &[&str]) -> Self {
+    pub(crate) fn start_with_files(files: u32, arguments: &[&str]) -> Self {
         let mut command = Command::new("sh");
         let script = format!("ulimit -n {files}; exec \"$0\" serve \"$@\"");
         command.args(["-c", &script, PROGRAM]).args(arguments);
@@ -43,7 +43,7 @@ impl Program {
     }
 
     /// The output of a start that has to fail.
-    pub fn refused(arguments: &[&str], variables: &[(&str, &str)]) -> Output {
+    pub(crate) fn refused(arguments: &[&str], variables: &[(&str, &str)]) -> Output {
         let output = serve(arguments).envs(variables.iter().copied()).output().expect("the program starts");
         assert!(!output.status.success(), "{output:?}");
         output
@@ -68,23 +68,23 @@ impl Program {
         Self { process, address, log: Some(log) }
     }
 
-    /// Where it listens; by its own address when that is no particular one.
-    pub fn address(&self) -> SocketAddr {
+    /// The loopback address on which it listens.
+    pub(crate) fn address(&self) -> SocketAddr {
         SocketAddr::from(([127, 0, 0, 1], self.address.port()))
     }
 
     /// Status and body.
-    pub fn get(&self, path: &str) -> (u16, String) {
+    pub(crate) fn get(&self, path: &str) -> (u16, String) {
         self.get_with(path, "")
     }
 
     /// The same with header lines.
-    pub fn get_with(&self, path: &str, headers: &str) -> (u16, String) {
+    pub(crate) fn get_with(&self, path: &str, headers: &str) -> (u16, String) {
         self.exchange("GET", path, headers, "")
     }
 
     /// Status and body of a request with header lines and a body.
-    pub fn exchange(&self, method: &str, path: &str, headers: &str, body: &str) -> (u16, String) {
+    pub(crate) fn exchange(&self, method: &str, path: &str, headers: &str, body: &str) -> (u16, String) {
         let mut stream = TcpStream::connect(self.address()).expect("a connection");
         let request =
             format!("{method} {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n{headers}\r\n{body}");
@@ -97,13 +97,13 @@ impl Program {
     }
 
     /// Ends it; what it has logged.
-    pub fn end(mut self) -> String {
+    pub(crate) fn end(mut self) -> String {
         let _ = self.process.kill();
         self.logged()
     }
 
     /// Has it end itself, as an operator does; what it has logged.
-    pub fn stop(mut self) -> String {
+    pub(crate) fn stop(mut self) -> String {
         let id = self.process.id().to_string();
         assert!(Command::new("kill").args(["-TERM", &id]).status().expect("kill runs").success());
         assert!(self.process.wait().expect("it ends").success());

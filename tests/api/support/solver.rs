@@ -11,7 +11,7 @@ use herringbone_physics::watch::Canceled;
 /// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every
 /// calculation passes the breakpoint `solve`, and the one of its own name.
 #[derive(Default)]
-pub struct ScriptedSolver {
+pub(crate) struct ScriptedSolver {
     pub breakpoints: Breakpoints,
 }
 
