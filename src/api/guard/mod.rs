@@ -18,5 +18,6 @@ pub use access::{Access, AccessError};
 pub use config::AccessConfig;
 pub(super) use credentials::check_credentials;
 pub(super) use host::check_host;
-pub(super) use login::{LoginNotice, LoginRenderer, routes as login_routes};
+pub(super) use login::routes as login_routes;
+pub use login::{LoginNotice, LoginRenderer};
 pub(super) use origin::check_origin;

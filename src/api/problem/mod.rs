@@ -5,7 +5,8 @@ mod codes;
 mod convert;
 
 pub(super) use api_error::ApiError;
-pub(super) use codes::{CODES, CodeEntry, ProblemCode};
+pub use codes::ProblemCode;
+pub(super) use codes::{CODES, CodeEntry};
 
 use herringbone_job::Violation;
 use serde::Serialize;
