@@ -28,15 +28,78 @@ fn pulse(base: &Value, factor: f64) -> Outcome<(String, Vec<(&'static str, Value
     Ok((format!("{} µs", sig(us, 3)), vec![("/model/impact", impact)]))
 }
 
+/// An assumption with one change.
+fn one(name: &'static str, stated: &str, to: &str, changes: Vec<(&'static str, Value)>) -> Assumption {
+    Assumption { name, stated: stated.into(), changes: vec![(to.into(), changes)] }
+}
+
+fn inertias() -> Assumption {
+    Assumption {
+        name: "inertias",
+        stated: "printed, whole gears".into(),
+        changes: vec![
+            (
+                "printed for one half (doubled)".into(),
+                vec![("/design/pinion/inertia_kg_m2", json!(0.13)), ("/design/gear/inertia_kg_m2", json!(7.4))],
+            ),
+            (
+                "solid discs of 2 × 75 mm".into(),
+                vec![("/design/pinion/inertia_kg_m2", Value::Null), ("/design/gear/inertia_kg_m2", Value::Null)],
+            ),
+        ],
+    }
+}
+
+fn torque_side() -> Assumption {
+    one(
+        "torque of 800 N·m acts on",
+        "pinion",
+        "gear (pinion 309 N·m)",
+        vec![("/operation/pinion_torque_nm", json!(800.0 * 17.0 / 44.0))],
+    )
+}
+
+fn face_width() -> Assumption {
+    one("face width of 75 mm is", "one half's", "both halves'", vec![("/design/face_width_mm", json!(37.5))])
+}
+
+fn pressure_angle_plane() -> Assumption {
+    one(
+        "pressure angle of 20° is",
+        "transverse (as printed)",
+        "normal",
+        vec![("/design/pressure_angle_plane", json!("normal"))],
+    )
+}
+
+fn plane_of_motion() -> Assumption {
+    one("plane of the equations", "base", "pitch (as printed)", vec![("/model/plane", json!("pitch"))])
+}
+
+/// Assumptions of the loaded contact and the assembly.
+fn contact_details() -> [Assumption; 4] {
+    [
+        one("gear bodies held", "at the rim", "at the bores", vec![("/model/mesh_stiffness/body", json!("bore"))]),
+        one(
+            "contact beyond the path of contact",
+            "tip corners may touch",
+            "not",
+            vec![("/model/mesh_stiffness/corner_contact", json!(false))],
+        ),
+        one(
+            "misalignment in the plane of action",
+            "0",
+            "12 µm over a half",
+            vec![("/design/assembly/in_plane_misalignment_um", json!(12.0))],
+        ),
+        one("centre distance", "exact", "+50 µm", vec![("/design/assembly/center_distance_error_um", json!(50.0))]),
+    ]
+}
+
 fn assumptions(base: &Value) -> Outcome<Vec<Assumption>> {
-    let one = |name, stated: &str, to: &str, changes: Vec<(&'static str, Value)>| Assumption {
-        name,
-        stated: stated.into(),
-        changes: vec![(to.into(), changes)],
-    };
     let mass = |gear: &str| number(base, &format!("/geometry/{gear}/mass_kg"));
     let us = number(base, "/impact/duration_us")?;
-    Ok(vec![
+    let mut assumptions = vec![
         Assumption {
             name: "length of the pulse",
             stated: format!("{} µs, first touch to theoretical start", sig(us, 3)),
@@ -56,33 +119,10 @@ fn assumptions(base: &Value) -> Outcome<Vec<Assumption>> {
             "8 µm, a single pitch deviation of class 5 (ISO 1328-1)",
             vec![("/model/impact/base_pitch_error_um", json!(8.0))],
         ),
-        one(
-            "torque of 800 N·m acts on",
-            "pinion",
-            "gear (pinion 309 N·m)",
-            vec![("/operation/pinion_torque_nm", json!(800.0 * 17.0 / 44.0))],
-        ),
-        Assumption {
-            name: "inertias",
-            stated: "printed, whole gears".into(),
-            changes: vec![
-                (
-                    "printed for one half (doubled)".into(),
-                    vec![("/design/pinion/inertia_kg_m2", json!(0.13)), ("/design/gear/inertia_kg_m2", json!(7.4))],
-                ),
-                (
-                    "solid discs of 2 × 75 mm".into(),
-                    vec![("/design/pinion/inertia_kg_m2", Value::Null), ("/design/gear/inertia_kg_m2", Value::Null)],
-                ),
-            ],
-        },
-        one("face width of 75 mm is", "one half's", "both halves'", vec![("/design/face_width_mm", json!(37.5))]),
-        one(
-            "pressure angle of 20° is",
-            "transverse (as printed)",
-            "normal",
-            vec![("/design/pressure_angle_plane", json!("normal"))],
-        ),
+        torque_side(),
+        inertias(),
+        face_width(),
+        pressure_angle_plane(),
         halved_and_doubled("mesh damping ratio (0.1 printed)", "/model/mesh_damping_ratio", 0.1, ""),
         halved_and_doubled("support damping ratio", "/design/supports/damping_ratio", 0.03, ""),
         halved_and_doubled("pinion's lateral support", "/design/supports/pinion_lateral_n_per_um", 600.0, "N/µm"),
@@ -102,7 +142,7 @@ fn assumptions(base: &Value) -> Outcome<Vec<Assumption>> {
         ),
         halved_and_doubled("pinion's mass (disc)", "/design/pinion/mass_kg", mass("pinion")?, "kg"),
         halved_and_doubled("gear's mass (disc)", "/design/gear/mass_kg", mass("gear")?, "kg"),
-        one("plane of the equations", "base", "pitch (as printed)", vec![("/model/plane", json!("pitch"))]),
+        plane_of_motion(),
         halved_and_doubled("backlash (2 µm printed)", "/design/backlash_um", 2.0, "µm"),
         one("damping while apart", "acts (as printed)", "does not", vec![("/model/damping_in_gap", json!(false))]),
         one(
@@ -123,21 +163,9 @@ fn assumptions(base: &Value) -> Outcome<Vec<Assumption>> {
             "secant F/δ",
             vec![("/model/mesh_stiffness/law", json!("secant"))],
         ),
-        one("gear bodies held", "at the rim", "at the bores", vec![("/model/mesh_stiffness/body", json!("bore"))]),
-        one(
-            "contact beyond the path of contact",
-            "tip corners may touch",
-            "not",
-            vec![("/model/mesh_stiffness/corner_contact", json!(false))],
-        ),
-        one(
-            "misalignment in the plane of action",
-            "0",
-            "12 µm over a half",
-            vec![("/design/assembly/in_plane_misalignment_um", json!(12.0))],
-        ),
-        one("centre distance", "exact", "+50 µm", vec![("/design/assembly/center_distance_error_um", json!(50.0))]),
-    ])
+    ];
+    assumptions.extend(contact_details());
+    Ok(assumptions)
 }
 
 /// Impact (N, none where there is none), both RMS accelerations, dynamic factor.
@@ -233,11 +261,6 @@ fn vary(
 
 /// What the answer with the contact in the equations rests on.
 fn assumptions_of_contact(base: &Value) -> Outcome<Vec<Assumption>> {
-    let one = |name, stated: &str, to: &str, changes: Vec<(&'static str, Value)>| Assumption {
-        name,
-        stated: stated.into(),
-        changes: vec![(to.into(), changes)],
-    };
     let mass = |gear: &str| number(base, &format!("/geometry/{gear}/mass_kg"));
     let spring = |name: &str| number(base, &format!("/supports/{name}/value"));
     let couplings = [
@@ -257,7 +280,7 @@ fn assumptions_of_contact(base: &Value) -> Outcome<Vec<Assumption>> {
     };
     let [pinion, gear, axial] =
         [spring("pinion_lateral_n_per_um")?, spring("gear_lateral_n_per_um")?, spring("gear_axial_n_per_um")?];
-    Ok(vec![
+    let mut assumptions = vec![
         Assumption {
             name: "couplings between the halves",
             stated: "of the gear bodies".into(),
@@ -279,34 +302,11 @@ fn assumptions_of_contact(base: &Value) -> Outcome<Vec<Assumption>> {
         halved_and_doubled("mesh damping ratio (0.1 printed)", "/model/mesh_damping_ratio", 0.1, ""),
         halved_and_doubled("pinion's mass (disc)", "/design/pinion/mass_kg", mass("pinion")?, "kg"),
         halved_and_doubled("gear's mass (disc)", "/design/gear/mass_kg", mass("gear")?, "kg"),
-        Assumption {
-            name: "inertias",
-            stated: "printed, whole gears".into(),
-            changes: vec![
-                (
-                    "printed for one half (doubled)".into(),
-                    vec![("/design/pinion/inertia_kg_m2", json!(0.13)), ("/design/gear/inertia_kg_m2", json!(7.4))],
-                ),
-                (
-                    "solid discs of 2 × 75 mm".into(),
-                    vec![("/design/pinion/inertia_kg_m2", Value::Null), ("/design/gear/inertia_kg_m2", Value::Null)],
-                ),
-            ],
-        },
-        one(
-            "torque of 800 N·m acts on",
-            "pinion",
-            "gear (pinion 309 N·m)",
-            vec![("/operation/pinion_torque_nm", json!(800.0 * 17.0 / 44.0))],
-        ),
-        one("face width of 75 mm is", "one half's", "both halves'", vec![("/design/face_width_mm", json!(37.5))]),
-        one(
-            "pressure angle of 20° is",
-            "transverse (as printed)",
-            "normal",
-            vec![("/design/pressure_angle_plane", json!("normal"))],
-        ),
-        one("plane of the equations", "base", "pitch (as printed)", vec![("/model/plane", json!("pitch"))]),
+        inertias(),
+        torque_side(),
+        face_width(),
+        pressure_angle_plane(),
+        plane_of_motion(),
         one(
             "backlash (2 µm printed)",
             "2.00 µm",
@@ -314,21 +314,9 @@ fn assumptions_of_contact(base: &Value) -> Outcome<Vec<Assumption>> {
             vec![("/design/backlash_um", json!(200.0))],
         ),
         one("loaded contact", "analytic", "finite elements", vec![("/model/mesh_stiffness/fidelity", json!("fe"))]),
-        one("gear bodies held", "at the rim", "at the bores", vec![("/model/mesh_stiffness/body", json!("bore"))]),
-        one(
-            "contact beyond the path of contact",
-            "tip corners may touch",
-            "not",
-            vec![("/model/mesh_stiffness/corner_contact", json!(false))],
-        ),
-        one(
-            "misalignment in the plane of action",
-            "0",
-            "12 µm over a half",
-            vec![("/design/assembly/in_plane_misalignment_um", json!(12.0))],
-        ),
-        one("centre distance", "exact", "+50 µm", vec![("/design/assembly/center_distance_error_um", json!(50.0))]),
-    ])
+    ];
+    assumptions.extend(contact_details());
+    Ok(assumptions)
 }
 
 /// The same question with the contact in the equations.
