@@ -6,7 +6,9 @@ use super::{problem, table};
 use clap::Args;
 use herringbone::api::{CsvField, CsvWriter, Decimal, Problem};
 use herringbone_job::document::JobDocument;
-use herringbone_job::study::{self, Channel, CheckedJob, NoStageStore, SolveContext, SolveError, Stage, StageStore};
+use herringbone_job::study::{
+    self, CheckedJob, NoStageStore, RecordedChannel, SolveContext, SolveError, Stage, StageStore,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
@@ -144,7 +146,7 @@ fn write_json(result: &herringbone_job::result::JobResult) -> std::io::Result<()
     writeln!(out)
 }
 
-fn write_csv(series: &Channel, path: &PathBuf, decimal: Decimal) -> std::io::Result<()> {
+fn write_csv(series: &RecordedChannel, path: &PathBuf, decimal: Decimal) -> std::io::Result<()> {
     let mut writer = CsvWriter::with_mark(std::fs::File::create(path)?, decimal)?;
     writer.write_record(["t_s", "value"].map(CsvField::Text))?;
     for (index, value) in series.values.iter().enumerate() {

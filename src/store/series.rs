@@ -2,7 +2,7 @@
 
 use super::connect::{Store, StoreError};
 use super::lifecycle::JobId;
-use herringbone_job::study::Channel;
+use herringbone_job::study::RecordedChannel;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{FromRow, Row, Sqlite, Transaction};
 
@@ -38,7 +38,7 @@ impl PackedSeries {
     ///
     /// # Errors
     /// The compression fails, for want of memory.
-    pub fn pack(channel: &Channel) -> Result<Self, StoreError> {
+    pub fn pack(channel: &RecordedChannel) -> Result<Self, StoreError> {
         let bytes: Vec<u8> = channel.values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let samples = zstd::bulk::compress(&bytes, ZSTD_LEVEL).map_err(|error| corrupt(&error))?;
         let finite = || channel.values.iter().copied().filter(|value| value.is_finite());

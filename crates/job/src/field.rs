@@ -6,7 +6,7 @@
 //! than the type implements [`Input`] itself, out of derived parts.
 
 use super::path::{index, split_first};
-use super::reader::{Object, Place, Reading, not_whole, out_of_range};
+use super::reader::{Object, ObjectPlace, Reading, not_whole, out_of_range};
 use super::unit::Unit;
 use super::violation::Violation;
 use serde_json::{Map, Value};
@@ -75,7 +75,7 @@ pub trait Input: Sized {
     fn read(object: &Object, base: Option<&Self>) -> Self;
 
     /// Checks the rules between fields, of this object and of those in it.
-    fn check(&mut self, place: &Place);
+    fn check(&mut self, place: &ObjectPlace);
 
     /// The field at `pointer`, from this object on; none where the document has none there.
     fn slot(&mut self, pointer: &str) -> Option<Slot<'_>>;
@@ -92,7 +92,7 @@ pub trait Field: Sized {
     fn read(object: &Object, declared: &'static Declared, default: Option<&Self>) -> Self;
 
     /// Checks the rules between fields inside this one.
-    fn check(&mut self, _declared: &'static Declared, _place: &Place) {}
+    fn check(&mut self, _declared: &'static Declared, _place: &ObjectPlace) {}
 
     /// The field at `pointer`, from this one on.
     fn slot(&mut self, declared: &'static Declared, pointer: &str) -> Option<Slot<'_>>;
@@ -299,7 +299,7 @@ impl<T: Input> Field for T {
         value
     }
 
-    fn check(&mut self, declared: &'static Declared, place: &Place) {
+    fn check(&mut self, declared: &'static Declared, place: &ObjectPlace) {
         Input::check(self, &place.member(declared.name));
     }
 
@@ -317,7 +317,7 @@ impl<T: Input> Field for Option<T> {
         Some(value)
     }
 
-    fn check(&mut self, declared: &'static Declared, place: &Place) {
+    fn check(&mut self, declared: &'static Declared, place: &ObjectPlace) {
         if let Some(value) = self {
             Field::check(value, declared, place);
         }
@@ -342,7 +342,7 @@ impl<T: Input> Field for Vec<T> {
         items.collect()
     }
 
-    fn check(&mut self, declared: &'static Declared, place: &Place) {
+    fn check(&mut self, declared: &'static Declared, place: &ObjectPlace) {
         for (index, item) in self.iter_mut().enumerate() {
             Input::check(item, &place.item(declared.name, index));
         }

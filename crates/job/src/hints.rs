@@ -2,7 +2,7 @@
 //! programs, with the value worked out for the document at hand where it says enough for that.
 
 use super::schema::field_descriptions;
-use super::unit::{Quantity, Unit};
+use super::unit::{Unit, UnitQuantity};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -68,7 +68,7 @@ impl ForeignName<'_> {
     }
 
     /// The unknown member's value in SI, taken to be in `default` (its size in SI) where its name states no unit.
-    fn si(&self, quantity: Quantity, default: f64) -> Option<f64> {
+    fn si(&self, quantity: UnitQuantity, default: f64) -> Option<f64> {
         let size = match self.unit {
             None => default,
             Some(unit) if unit.quantity == quantity => unit.size,
@@ -78,7 +78,7 @@ impl ForeignName<'_> {
     }
 
     fn mm(&self) -> Option<f64> {
-        Some(self.si(Quantity::Length, 1e-3)? * 1e3)
+        Some(self.si(UnitQuantity::Length, 1e-3)? * 1e3)
     }
 
     fn cos_beta(&self) -> Option<f64> {
@@ -245,7 +245,7 @@ impl ForeignName<'_> {
                     .to_owned(),
             ),
             "addendum" | "dedendum" | "fillet_radius" | "tip_alteration" | "profile_shift"
-                if self.unit.is_some_and(|unit| unit.quantity == Quantity::Length) =>
+                if self.unit.is_some_and(|unit| unit.quantity == UnitQuantity::Length) =>
             {
                 let multiple =
                     self.mm().zip(self.number("/design/normal_module_mm")).map(|(length, module)| length / module);
@@ -275,20 +275,20 @@ impl ForeignName<'_> {
             "crowning" => Some(format!("crowning along the tooth is {member}/lead_crowning_um")),
             "torque" if self.is_about_the_gear() => {
                 let torque =
-                    self.si(Quantity::Torque, 1.0).zip(self.teeth()).map(|(torque, (z1, z2))| torque * z1 / z2);
+                    self.si(UnitQuantity::Torque, 1.0).zip(self.teeth()).map(|(torque, (z1, z2))| torque * z1 / z2);
                 Some(format!(
                     "the torque is the pinion's, /operation/pinion_torque_nm: T_1 = T_2 z_1 / z_2{}",
                     shown(torque, "N m")
                 ))
             }
             "torque" | "load" | "moment" if object != "/operation" || bare == stem => {
-                let torque = self.si(Quantity::Torque, 1.0).filter(|_| self.unit.is_some());
+                let torque = self.si(UnitQuantity::Torque, 1.0).filter(|_| self.unit.is_some());
                 Some(format!("the torque is /operation/pinion_torque_nm, of the whole pinion{}", shown(torque, "N m")))
             }
             "speed" | "rpm" | "angular_velocity" | "angular_speed" | "omega" | "rotational_speed" | "n" | "n1"
                 if object != "/operation" || bare == stem || self.is_about_the_gear() || bare != "speed" =>
             {
-                let rpm = self.si(Quantity::Speed, PI / 30.0).map(|speed| speed * 30.0 / PI);
+                let rpm = self.si(UnitQuantity::Speed, PI / 30.0).map(|speed| speed * 30.0 / PI);
                 if self.is_about_the_gear() {
                     let rpm = rpm.zip(self.teeth()).map(|(speed, (z1, z2))| speed * z2 / z1);
                     return Some(format!(
@@ -301,7 +301,7 @@ impl ForeignName<'_> {
             }
             "power" => {
                 let speed = self.number("/operation/pinion_speed_rpm");
-                let torque = self.si(Quantity::Power, 1e3).zip(speed).map(|(power, rpm)| power * 30.0 / (PI * rpm));
+                let torque = self.si(UnitQuantity::Power, 1e3).zip(speed).map(|(power, rpm)| power * 30.0 / (PI * rpm));
                 Some(format!(
                     "the load is given as a torque, /operation/pinion_torque_nm: T_1 = P / ω_1{}",
                     shown(torque, "N m")
@@ -314,8 +314,10 @@ impl ForeignName<'_> {
                 Some(format!("the speed is given, /operation/pinion_speed_rpm: n_1 = f_z / z_1{}", shown(rpm, "r/min")))
             }
             "tangential_force" | "circumferential_force" | "ft" | "f_t" => {
-                let torque =
-                    self.si(Quantity::Force, 1.0).zip(self.reference_diameter()).map(|(force, d)| force * d * 0.5e-3);
+                let torque = self
+                    .si(UnitQuantity::Force, 1.0)
+                    .zip(self.reference_diameter())
+                    .map(|(force, d)| force * d * 0.5e-3);
                 Some(format!(
                     "the load is given as a torque, /operation/pinion_torque_nm: T_1 = F_t d_1 / 2{}",
                     shown(torque, "N m")
@@ -404,12 +406,12 @@ impl ForeignName<'_> {
 
     /// " = 20 deg" where the angle was given in another unit.
     fn in_degrees(&self) -> String {
-        let angle = self.si(Quantity::Angle, PI / 180.0).filter(|_| self.unit.is_some());
+        let angle = self.si(UnitQuantity::Angle, PI / 180.0).filter(|_| self.unit.is_some());
         shown(angle.map(f64::to_degrees), "deg")
     }
 
     fn helix_from_base(&self) -> Option<f64> {
-        let base = self.si(Quantity::Angle, PI / 180.0)?;
+        let base = self.si(UnitQuantity::Angle, PI / 180.0)?;
         let angle = self.number("/design/pressure_angle_deg").unwrap_or(20.0).to_radians();
         // tan α_n = tan α_t cos β and sin β_b = sin β cos α_n; with α_t given, tan β_b = tan β cos α_t.
         let beta = match self.unknown.document.pointer("/design/pressure_angle_plane").and_then(Value::as_str) {

@@ -166,8 +166,8 @@ pub struct Object<'a> {
 
 impl<'a> Object<'a> {
     /// Where the rules between the fields of this object find what they need.
-    pub fn place(&self) -> Place<'_> {
-        Place { reading: self.reading, path: self.path, object: Some(self) }
+    pub fn place(&self) -> ObjectPlace<'_> {
+        ObjectPlace { reading: self.reading, path: self.path, object: Some(self) }
     }
 
     fn pointer_to(&self, name: &str) -> String {
@@ -598,27 +598,27 @@ impl<'a> Object<'a> {
 }
 
 /// Where a rule between the fields of an object reports what breaks it.
-pub struct Place<'a> {
+pub struct ObjectPlace<'a> {
     reading: &'a Reading,
     path: Path<'a>,
     /// None where the object is not read but was there: then everything in it counts as given.
     object: Option<&'a Object<'a>>,
 }
 
-impl<'a> Place<'a> {
+impl<'a> ObjectPlace<'a> {
     /// The root of a document that is not read.
     pub fn root(reading: &'a Reading) -> Self {
         Self { reading, path: Path::ROOT, object: None }
     }
 
     /// The nested object `name`.
-    pub fn member<'b>(&'b self, name: &'b str) -> Place<'b> {
-        Place { reading: self.reading, path: self.path.member(name), object: None }
+    pub fn member<'b>(&'b self, name: &'b str) -> ObjectPlace<'b> {
+        ObjectPlace { reading: self.reading, path: self.path.member(name), object: None }
     }
 
     /// An item of the list `name`.
-    pub fn item<'b>(&'b self, name: &'b str, index: usize) -> Place<'b> {
-        Place { reading: self.reading, path: self.path.item(name, Some(index)), object: None }
+    pub fn item<'b>(&'b self, name: &'b str, index: usize) -> ObjectPlace<'b> {
+        ObjectPlace { reading: self.reading, path: self.path.item(name, Some(index)), object: None }
     }
 
     /// Whether the document gives this field (and not null), be it rightly or wrongly.

@@ -13,14 +13,14 @@ pub struct Unit {
     pub symbol: &'static str,
     /// Its size in the SI unit of its quantity.
     pub size: f64,
-    pub quantity: Quantity,
+    pub quantity: UnitQuantity,
     /// Whether fields may be declared in it.
     declared: bool,
 }
 
 /// What a unit measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
+pub enum UnitQuantity {
     /// None in particular: plain numbers, and numbers in the unit of something else.
     Number,
     Length,
@@ -38,13 +38,13 @@ pub enum Quantity {
     TorsionalStiffness,
 }
 
-use Quantity::*;
+use UnitQuantity::*;
 
-const fn declared(suffix: &'static str, text: &'static str, symbol: &'static str, size: f64, of: Quantity) -> Unit {
+const fn declared(suffix: &'static str, text: &'static str, symbol: &'static str, size: f64, of: UnitQuantity) -> Unit {
     Unit { text, suffix, symbol, size, quantity: of, declared: true }
 }
 
-const fn other(suffix: &'static str, text: &'static str, size: f64, quantity: Quantity) -> Unit {
+const fn other(suffix: &'static str, text: &'static str, size: f64, quantity: UnitQuantity) -> Unit {
     Unit { text, suffix, symbol: "", size, quantity, declared: false }
 }
 

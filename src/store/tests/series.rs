@@ -1,8 +1,8 @@
 use super::*;
-use herringbone_job::study::Channel;
+use herringbone_job::study::RecordedChannel;
 
-fn channel(values: Vec<f64>) -> Channel {
-    Channel {
+fn channel(values: Vec<f64>) -> RecordedChannel {
+    RecordedChannel {
         name: "a_x_left".into(),
         quantity: "acceleration".into(),
         unit: "m/s2".into(),

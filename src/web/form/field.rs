@@ -29,7 +29,7 @@ pub(crate) struct Choice {
 }
 
 /// A field: all its texts as they stand on the page.
-pub(crate) struct Field {
+pub(crate) struct FormField {
     pub id: String,
     pub pointer: String,
     pub label: String,
@@ -58,9 +58,9 @@ pub(crate) struct Field {
     pub order: i32,
 }
 
-impl Field {
+impl FormField {
     /// A field from its declaration; nothing for objects, whose fields are declared on their own.
-    pub(crate) fn new(description: &FieldDescription, example: Option<&Value>) -> Option<Field> {
+    pub(crate) fn new(description: &FieldDescription, example: Option<&Value>) -> Option<FormField> {
         let FieldDescription { pointer, schema, derived, .. } = description;
         let derived = *derived;
         let default = if derived.is_some() { String::new() } else { text(&schema["default"]) };
@@ -72,7 +72,7 @@ impl Field {
             None if schema["description"].as_str().is_some_and(|help| help.contains("when null")) => "derived",
             None => "",
         };
-        Some(Field {
+        Some(FormField {
             id: format!("field{}", pointer.replace('/', "-")),
             pointer: pointer.to_owned(),
             label: label(pointer, unit),

@@ -3,7 +3,7 @@
 mod field;
 mod groups;
 
-pub(super) use field::{Control, Field};
+pub(super) use field::{Control, FormField};
 
 use groups::{BlockPlan, GroupPlan, LayoutPlan};
 use herringbone_job::schema::{FieldDescription, field_descriptions};
@@ -31,19 +31,19 @@ pub(super) struct Block {
 }
 
 pub(super) enum Layout {
-    Fields(Vec<Field>),
+    Fields(Vec<FormField>),
     Table { columns: Vec<&'static str>, rows: Vec<Row> },
 }
 
 /// The same field of several objects, with what it has in common.
 pub(super) struct Row {
     pub label: String,
-    pub cells: Vec<Field>,
+    pub cells: Vec<FormField>,
 }
 
 impl Row {
     /// The cells have the same declaration: the first speaks for all.
-    pub(super) fn first(&self) -> Option<&Field> {
+    pub(super) fn first(&self) -> Option<&FormField> {
         self.cells.first()
     }
 }
@@ -51,7 +51,7 @@ impl Row {
 impl Block {
     /// All fields of the block.
     #[cfg(test)]
-    fn fields(&self) -> Vec<&Field> {
+    fn fields(&self) -> Vec<&FormField> {
         match &self.layout {
             Layout::Fields(fields) => fields.iter().collect(),
             Layout::Table { rows, .. } => rows.iter().flat_map(|row| &row.cells).collect(),
@@ -65,8 +65,8 @@ const EXAMPLE: &str = include_str!("../../../examples/contact.json");
 static GROUPS: LazyLock<Vec<Group>> = LazyLock::new(|| plan(all_fields()));
 
 static SWEEPABLE: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let numeric = |field: &&Field| matches!(field.control, Control::Number | Control::Integer);
-    let fixed = |field: &&Field| !field.pointer.starts_with("/axes") && !field.pointer.starts_with("/analysis");
+    let numeric = |field: &&FormField| matches!(field.control, Control::Number | Control::Integer);
+    let fixed = |field: &&FormField| !field.pointer.starts_with("/axes") && !field.pointer.starts_with("/analysis");
     all_fields().iter().filter(numeric).filter(fixed).map(|field| field.pointer.clone()).collect()
 });
 
@@ -81,7 +81,7 @@ pub(super) fn sweepable_pointers() -> &'static [String] {
 }
 
 /// Every field that can be filled in, in the order declared.
-fn all_fields() -> Vec<Field> {
+fn all_fields() -> Vec<FormField> {
     let example: Value = serde_json::from_str(EXAMPLE).unwrap_or_default();
     let mut fields = Vec::new();
     for description in field_descriptions() {
@@ -93,16 +93,16 @@ fn all_fields() -> Vec<Field> {
                 ..description.clone()
             };
             let axes = (0..groups::AXES).map(of_axis);
-            fields.extend(axes.filter_map(|axis| Field::new(&axis, example.pointer(&axis.pointer))));
+            fields.extend(axes.filter_map(|axis| FormField::new(&axis, example.pointer(&axis.pointer))));
         } else if description.pointer != "/axes" && !description.pointer.contains("/*") {
-            fields.extend(Field::new(&description, example.pointer(&description.pointer)));
+            fields.extend(FormField::new(&description, example.pointer(&description.pointer)));
         }
     }
     fields
 }
 
 /// Puts each field in the section of its declaration; a section that is not known here stands at the end.
-fn plan(mut fields: Vec<Field>) -> Vec<Group> {
+fn plan(mut fields: Vec<FormField>) -> Vec<Group> {
     let mut planned: Vec<Group> = groups::GROUPS.iter().map(|group| section(group, &mut fields)).collect();
     if !fields.is_empty() {
         let blocks = vec![Block { title: "", folded: false, layout: Layout::Fields(fields) }];
@@ -112,12 +112,12 @@ fn plan(mut fields: Vec<Field>) -> Vec<Group> {
 }
 
 /// A section with its fields taken out of `fields`: each stands in the block whose object is nearest around it.
-fn section(group: &GroupPlan, fields: &mut Vec<Field>) -> Group {
+fn section(group: &GroupPlan, fields: &mut Vec<FormField>) -> Group {
     let mut objects: Vec<&str> = group.blocks.iter().flat_map(BlockPlan::objects).collect();
     objects.sort_by_key(|object| std::cmp::Reverse(object.len()));
-    let nearest = |field: &Field| objects.iter().find(|object| is_at_or_in(&field.pointer, object)).copied();
+    let nearest = |field: &FormField| objects.iter().find(|object| is_at_or_in(&field.pointer, object)).copied();
     let mut take = |object: &str| {
-        let mut taken: Vec<Field> =
+        let mut taken: Vec<FormField> =
             fields.extract_if(.., |field| field.group == group.id && nearest(field) == Some(object)).collect();
         taken.sort_by_key(|field| field.order);
         taken
@@ -145,17 +145,17 @@ fn section(group: &GroupPlan, fields: &mut Vec<Field>) -> Group {
 }
 
 /// A row for each field of the first column's object.
-fn rows(mut taken: Vec<Vec<Field>>, columns: &[(&'static str, &str)]) -> Vec<Row> {
+fn rows(mut taken: Vec<Vec<FormField>>, columns: &[(&'static str, &str)]) -> Vec<Row> {
     let count = taken.first().map_or(0, Vec::len);
     let mut rows = Vec::with_capacity(count);
     for _ in 0..count {
-        let cells: Vec<Field> =
+        let cells: Vec<FormField> =
             taken.iter_mut().filter(|column| !column.is_empty()).map(|column| column.remove(0)).collect();
         let label = cells.first().map(|field| field.label.clone()).unwrap_or_default();
         let cells = cells
             .into_iter()
             .zip(columns)
-            .map(|(cell, (column, _))| Field {
+            .map(|(cell, (column, _))| FormField {
                 label: format!("{label}, {}", column.to_lowercase()),
                 row: label.clone(),
                 ..cell
@@ -191,7 +191,7 @@ mod tests {
         assert_eq!(placed, fields.len());
         for condition in fields.iter().filter_map(|field| field.condition.as_ref()) {
             let other = fields.iter().find(|field| field.pointer == condition.on);
-            let Some(Field { control: Control::Choice(choices), .. }) = other else { panic!("{}", condition.on) };
+            let Some(FormField { control: Control::Choice(choices), .. }) = other else { panic!("{}", condition.on) };
             for word in condition.values.split(' ') {
                 assert!(choices.iter().any(|choice| choice.word == word), "{word} of {}", condition.on);
             }
@@ -206,7 +206,7 @@ mod tests {
             let Layout::Table { columns, rows } = &block.layout else { continue };
             for row in rows {
                 assert_eq!(row.cells.len(), columns.len(), "{}", row.label);
-                let name = |field: &Field| field.pointer.rsplit('/').next().unwrap().to_owned();
+                let name = |field: &FormField| field.pointer.rsplit('/').next().unwrap().to_owned();
                 assert!(row.cells.iter().all(|cell| name(cell) == name(&row.cells[0])), "{}", row.label);
                 seen += 1;
             }

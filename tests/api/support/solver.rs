@@ -5,7 +5,7 @@ use herringbone::work::Solver;
 use herringbone_job::DocumentError;
 use herringbone_job::document::{JobDocument, JobKind};
 use herringbone_job::result::{JobResult, ReusedStage, SweepPoint, SweepResult};
-use herringbone_job::study::{self, Channel, CheckedJob, Outcome, SolveContext, SolveError, Stage};
+use herringbone_job::study::{self, CheckedJob, Outcome, RecordedChannel, SolveContext, SolveError, Stage};
 use herringbone_physics::watch::Canceled;
 
 /// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every
@@ -114,7 +114,7 @@ fn with_stage(context: &SolveContext) -> Outcome {
 fn outcome() -> Outcome {
     let mut values: Vec<f64> = (0..10_000).map(|index| (f64::from(index) * 0.01).sin()).collect();
     values[7_777] = 50.0;
-    let channel = Channel {
+    let channel = RecordedChannel {
         name: "a_x_left".into(),
         quantity: "acceleration".into(),
         unit: "m/s2".into(),

@@ -5,7 +5,7 @@
 use std::sync::Mutex;
 use std::time::Instant;
 
-use herringbone_physics::fe::{FlankFlexibility, FlankInput};
+use herringbone_physics::fe::{FlankFlexibility, FlankFlexibilityInput};
 use herringbone_physics::gear::MemberId;
 use herringbone_physics::watch::Watch;
 use herringbone_tools::arguments::{Arguments, RESOLUTIONS};
@@ -76,7 +76,7 @@ fn main() -> Result<(), Failure> {
             continue;
         }
         for (member, side, hold) in [("pinion", MemberId::Pinion, 25e-3), ("gear", MemberId::Gear, 60e-3)] {
-            let input = FlankInput::new(&pair, side, hold, 4, resolution);
+            let input = FlankFlexibilityInput::new(&pair, side, hold, 4, resolution);
             let start = Instant::now();
             let last = Mutex::new((start, 0.0_f64));
             let progress = |_: f64| {

@@ -1,6 +1,6 @@
 //! Accuracy and method of the analysis.
 
-use crate::reader::Place;
+use crate::reader::ObjectPlace;
 use herringbone_macros::{Input, Words};
 use serde::Serialize;
 
@@ -38,7 +38,7 @@ pub struct AnalysisInput {
     pub initial_state: Option<Vec<f64>>,
 }
 
-fn analysis_rules(analysis: &mut AnalysisInput, place: &Place) {
+fn analysis_rules(analysis: &mut AnalysisInput, place: &ObjectPlace) {
     let recorded = analysis.record_mesh_periods;
     if recorded > analysis.mesh_periods && place.gives("record_mesh_periods") {
         let detail = format!("is {recorded}; permitted: 1 to mesh_periods, which is {}", analysis.mesh_periods);

@@ -1,7 +1,7 @@
 //! The gear pair: teeth, flanks, supports, assembly errors.
 
 use crate::field::Input;
-use crate::reader::Place;
+use crate::reader::ObjectPlace;
 use herringbone_macros::{Input, Words};
 use serde::Serialize;
 use std::sync::LazyLock;
@@ -60,7 +60,7 @@ pub struct DesignInput {
     pub assembly: AssemblyInput,
 }
 
-fn design_rules(design: &mut DesignInput, place: &Place) {
+fn design_rules(design: &mut DesignInput, place: &ObjectPlace) {
     if design.pinion.left_half_hand == design.gear.left_half_hand {
         place.conflict(
             "gear/left_half_hand",
@@ -247,7 +247,7 @@ pub struct TipReliefInput {
     pub shape: ReliefShapeInput,
 }
 
-fn tip_relief_rules(relief: &mut TipReliefInput, place: &Place) {
+fn tip_relief_rules(relief: &mut TipReliefInput, place: &ObjectPlace) {
     if relief.amount_um > 0.0 && relief.length_mm == 0.0 {
         place.conflict("length_mm", "is 0 mm while amount_um is above 0; a relief needs a roll length above 0 mm");
     }
@@ -272,7 +272,7 @@ pub struct EndReliefInput {
     pub length_mm: f64,
 }
 
-fn end_relief_rules(relief: &mut EndReliefInput, place: &Place) {
+fn end_relief_rules(relief: &mut EndReliefInput, place: &ObjectPlace) {
     if relief.amount_um > 0.0 && relief.length_mm == 0.0 {
         place.conflict("length_mm", "is 0 mm while amount_um is above 0; a relief needs a length above 0 mm");
     }

@@ -22,7 +22,7 @@ pub use sweep::{Axis, AxisPoints, Continuation, MAX_SWEEP_POINTS, Recorded, Spac
 
 use super::field::{Input, Slot};
 use super::json;
-use super::reader::{Place, Reading};
+use super::reader::{ObjectPlace, Reading};
 use super::violation::{DocumentError, Violation};
 use herringbone_macros::{Input, Words};
 use serde::Serialize;
@@ -154,7 +154,7 @@ impl JobDocument {
     /// [`DocumentError::Invalid`] with `violations` (those of the numbers) and all that were found.
     pub(crate) fn checked(mut self, mut violations: Vec<Violation>) -> Result<Self, DocumentError> {
         let reading = Reading::read();
-        Input::check(&mut self, &Place::root(&reading));
+        Input::check(&mut self, &ObjectPlace::root(&reading));
         violations.extend(reading.violations());
         if violations.is_empty() { Ok(self) } else { Err(DocumentError::Invalid(violations)) }
     }

@@ -5,7 +5,7 @@
 
 use crate::field::{Field, Input, Slot, number_slot};
 use crate::path::split_first;
-use crate::reader::{Object, Place};
+use crate::reader::{Object, ObjectPlace};
 use herringbone_macros::{Input, Words};
 use serde::Serialize;
 
@@ -34,7 +34,7 @@ pub struct ModelInput {
     pub impact: ImpactInput,
 }
 
-fn model_rules(model: &mut ModelInput, place: &Place) {
+fn model_rules(model: &mut ModelInput, place: &ObjectPlace) {
     if model.mesh_force == MeshForce::Contact && !matches!(model.mesh_stiffness, MeshStiffness::Ltca(_)) {
         place.conflict(
             "mesh_force",
@@ -118,7 +118,7 @@ impl Input for MeshStiffness {
         }
     }
 
-    fn check(&mut self, place: &Place) {
+    fn check(&mut self, place: &ObjectPlace) {
         if let MeshStiffness::Given(GivenStiffness::Harmonics { harmonics, .. }) = self {
             stays_positive(harmonics, place);
         }
@@ -247,7 +247,7 @@ struct GivenStiffnessMembers {
 
 impl GivenStiffnessMembers {
     /// The stiffness that is given, with the rules that hold where it has to be.
-    fn given(self, place: &Place) -> GivenStiffness {
+    fn given(self, place: &ObjectPlace) -> GivenStiffness {
         let Self { mean_n_per_um, harmonics, samples_n_per_um } = self;
         match (mean_n_per_um, &samples_n_per_um) {
             (None, None) => place.missing(
@@ -270,7 +270,7 @@ impl GivenStiffnessMembers {
 }
 
 /// The rule that a stiffness of these harmonics is above zero everywhere.
-fn stays_positive(harmonics: &[HarmonicInput], place: &Place) {
+fn stays_positive(harmonics: &[HarmonicInput], place: &ObjectPlace) {
     if place.is_read() && lowest_of(harmonics) <= 0.0 {
         let total: f64 = harmonics.iter().map(|harmonic| harmonic.amplitude).sum();
         let detail = format!(
@@ -396,7 +396,7 @@ impl Input for ImpactInput {
         }
     }
 
-    fn check(&mut self, _place: &Place) {}
+    fn check(&mut self, _place: &ObjectPlace) {}
 
     fn slot(&mut self, pointer: &str) -> Option<Slot<'_>> {
         type Members = ImpactMembers;

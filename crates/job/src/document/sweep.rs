@@ -3,7 +3,7 @@
 use super::{JobDocument, JobKind};
 use crate::field::{Input, Slot};
 use crate::grid;
-use crate::reader::{Object, Place};
+use crate::reader::{Object, ObjectPlace};
 use herringbone_macros::{Input, Words};
 use serde::Serialize;
 
@@ -15,7 +15,7 @@ const MAX_RECORDED_POINTS: usize = 5_000;
 const MAX_ALSO: usize = 16;
 
 /// The rules about the fields that only sweeps have.
-pub(super) fn of_sweeps_only(document: &mut JobDocument, place: &Place) {
+pub(super) fn of_sweeps_only(document: &mut JobDocument, place: &ObjectPlace) {
     let is_sweep = document.kind == JobKind::Sweep;
     let not_here = |name| place.conflict(name, "is given, but kind is not \"sweep\"");
     if document.axes.is_empty() {
@@ -124,7 +124,7 @@ impl Input for Axis {
         Axis { pointer, also, points }
     }
 
-    fn check(&mut self, _place: &Place) {}
+    fn check(&mut self, _place: &ObjectPlace) {}
 
     /// None: what varies is set in a document without axes.
     fn slot(&mut self, _pointer: &str) -> Option<Slot<'_>> {

@@ -5,7 +5,7 @@ use super::mesh::ContactCase;
 use super::{SolveContext, SolveError, Stage};
 use crate::document::Fidelity;
 use herringbone_physics::compliance::Compliance;
-use herringbone_physics::fe::{FeError, FlankFlexibility, FlankInput};
+use herringbone_physics::fe::{FeError, FlankFlexibility, FlankFlexibilityInput};
 use herringbone_physics::gear::{FlankModification, Pair, Rotation};
 use herringbone_physics::watch::Watch;
 use std::collections::HashMap;
@@ -66,7 +66,7 @@ pub fn find(
 /// Finite elements of one gear, from the store or solved (over the given part of the stage's progress); and whether
 /// they were stored.
 fn flank(
-    input: &FlankInput,
+    input: &FlankFlexibilityInput,
     context: &SolveContext,
     (from, to): (f64, f64),
 ) -> Result<(FlankFlexibility, bool), SolveError> {

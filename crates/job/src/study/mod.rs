@@ -112,7 +112,7 @@ impl SolveContext<'static> {
 
 /// A recorded, uniformly sampled channel.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Channel {
+pub struct RecordedChannel {
     pub name: String,
     pub quantity: String,
     pub unit: String,
@@ -127,7 +127,7 @@ pub struct Channel {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     pub result: JobResult,
-    pub series: Vec<Channel>,
+    pub series: Vec<RecordedChannel>,
 }
 
 /// Why a valid job has no result.

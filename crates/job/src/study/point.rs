@@ -4,7 +4,7 @@ use super::check::CheckedJob;
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
 use super::prepare::geometry;
-use super::{Channel, SolveContext, SolveError, Stage, accuracy, bounds, impact, vibration};
+use super::{RecordedChannel, SolveContext, SolveError, Stage, accuracy, bounds, impact, vibration};
 use crate::document::{JobDocument, JobKind, Recorded};
 use crate::result::{JobResult, NumericsResult, Poincare};
 use herringbone_physics::dynamics::{DynamicsError, Parameters};
@@ -13,7 +13,7 @@ use herringbone_physics::response::Response;
 /// A solved point.
 pub struct Point {
     pub result: JobResult,
-    pub series: Vec<Channel>,
+    pub series: Vec<RecordedChannel>,
     /// State at the end (24 numbers in the source's order), to continue a neighbouring point from.
     pub end_state: Option<Vec<f64>>,
     /// What the row of a sweep carries beside its numbers.

@@ -1,7 +1,7 @@
 //! The response stage: the steady vibration of the pair and its statistics.
 
 use super::point::PointOptions;
-use super::{Channel, SolveContext, SolveError, Stage, bounds, response_result};
+use super::{RecordedChannel, SolveContext, SolveError, Stage, bounds, response_result};
 use crate::document::{IntegratorInput, JobDocument, MethodInput, Recorded};
 use crate::result::{NumericsResult, Poincare, ResponseResult};
 use crate::warning::Warning;
@@ -13,7 +13,7 @@ use herringbone_physics::watch::Watch;
 /// Outcome of the response stage.
 pub struct Vibration {
     pub summary: ResponseResult,
-    pub series: Vec<Channel>,
+    pub series: Vec<RecordedChannel>,
     pub warnings: Vec<Warning>,
     pub end_state: Option<Vec<f64>>,
     /// Records for the row of a sweep, where the document asks for them.
@@ -102,7 +102,7 @@ pub fn to_result(
         options.records(Recorded::Spectrum).then(|| response_result::bands(&response, parameters.mesh_frequency_hz));
     // Moved, not copied: a long record is most of what a job holds.
     let channels = std::mem::take(&mut response.channels);
-    let channel = |channel: response::Channel| Channel {
+    let channel = |channel: response::Channel| RecordedChannel {
         rms: response.summary.rms.channels.get(&channel.name).copied().unwrap_or(0.0),
         quantity: word(&channel.quantity),
         name: channel.name,

@@ -42,7 +42,7 @@ pub(crate) use local::{Indentation, LocalModel, line_contact};
 
 use self::influence::stencil;
 use self::member::MemberCompliance;
-use crate::fe::{FlankFlexibility, FlankInput, Resolution};
+use crate::fe::{FlankFlexibility, FlankFlexibilityInput, Resolution};
 use crate::gear::{MemberId, Pair};
 
 /// Corner contact is looked for this far beyond the path, in base pitches: gaps there are beyond any deflection that a
@@ -101,11 +101,15 @@ impl Compliance {
     }
 
     /// Inputs of the finite elements whose flexibilities [`Compliance::finite_elements`] takes: pinion and gear.
-    pub fn finite_element_inputs(pair: &Pair, settings: &Settings, resolution: Resolution) -> [FlankInput; 2] {
+    pub fn finite_element_inputs(
+        pair: &Pair,
+        settings: &Settings,
+        resolution: Resolution,
+    ) -> [FlankFlexibilityInput; 2] {
         let offsets = pair_offsets(pair, settings.corner_contact);
         [(MemberId::Pinion, &pair.pinion), (MemberId::Gear, &pair.gear)].map(|(side, member)| {
             let hold_m = hold_radius_m(member, settings.body, pair.spec.normal_module_m);
-            FlankInput::new(pair, side, hold_m, offsets, resolution)
+            FlankFlexibilityInput::new(pair, side, hold_m, offsets, resolution)
         })
     }
 

@@ -9,7 +9,7 @@
 //! local approach within an active set, all changes of the set at once and warm-started; when that cycles, a careful
 //! active-set method that never leaves f >= 0.
 
-use super::system::{ContactSystem, LEAST_FORCE, LocalApproach, Workspace};
+use super::system::{ContactSystem, LEAST_FORCE, LocalApproach, SystemWorkspace};
 
 /// A converged distribution.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +53,7 @@ pub(super) fn distribute<L: LocalApproach>(
     system: &ContactSystem<'_, L>,
     prescribed: Prescribed,
     start: &[f64],
-    work: &mut Workspace,
+    work: &mut SystemWorkspace,
 ) -> Result<Distribution, NotConverged> {
     let n = system.gaps.len();
     let total = match prescribed {
@@ -221,7 +221,7 @@ mod tests {
                     coupling: &coupling,
                     local: &local,
                 };
-                let got = distribute(&system, Prescribed::Force(total), &[], &mut Workspace::default()).unwrap();
+                let got = distribute(&system, Prescribed::Force(total), &[], &mut SystemWorkspace::default()).unwrap();
                 let mean = total / width;
                 // The largest load at the very edge, from the approach there.
                 let factor = got.approach * c / mean;

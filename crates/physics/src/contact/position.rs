@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::distribution::{Distribution, NotConverged, Prescribed, distribute};
 use super::lines::{ContactPoint, CornerGaps, PairRange, collect, reference_roll_m};
 use super::point_contacts::PointContacts;
-use super::system::{ContactSystem, Workspace};
+use super::system::{ContactSystem, SystemWorkspace};
 use crate::compliance::{CORNER_REACH, Compliance, LineWeights, Stencil};
 use crate::gear::{Half, Pair};
 
@@ -70,7 +70,7 @@ pub(super) struct PositionSolver<'a> {
     scratch: Vec<f64>,
     local: PointContacts,
     coupling: Vec<Vec<f64>>,
-    work: Workspace,
+    work: SystemWorkspace,
     /// Largest corner gap that was worth looking at so far.
     corner_gap_m: f64,
     /// Axial width of a corner contact under the force it was found for.
@@ -113,7 +113,7 @@ impl<'a> PositionSolver<'a> {
             scratch: Vec::new(),
             local: PointContacts::default(),
             coupling: Vec::new(),
-            work: Workspace::default(),
+            work: SystemWorkspace::default(),
             corner_gap_m: 0.0,
             corner_width: None,
         }

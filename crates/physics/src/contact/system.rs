@@ -35,7 +35,7 @@ pub(super) struct ContactSystem<'a, L: LocalApproach> {
 
 /// Reused memory of the solver.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Workspace {
+pub(super) struct SystemWorkspace {
     slope: Vec<f64>,
     target: Vec<f64>,
     /// Forces after the step.
@@ -68,7 +68,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         datum: f64,
         forces: &[f64],
         active: &[bool],
-        work: &mut Workspace,
+        work: &mut SystemWorkspace,
     ) -> Option<(f64, f64)> {
         let (n, r) = (self.gaps.len(), self.stations);
         let floor = LEAST_FORCE * total / n as f64;
@@ -119,7 +119,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
     }
 
     /// I + B W and the right-hand sides when D is diagonal: W is banded.
-    fn add_points(&self, active: &[bool], work: &mut Workspace) {
+    fn add_points(&self, active: &[bool], work: &mut SystemWorkspace) {
         let r = self.stations;
         work.weight.clear();
         work.weight.resize(BAND * r, 0.0);
@@ -168,7 +168,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         }
     }
 
-    fn forces_of_points(&self, active: &[bool], work: &mut Workspace) -> (f64, f64) {
+    fn forces_of_points(&self, active: &[bool], work: &mut SystemWorkspace) -> (f64, f64) {
         let r = self.stations;
         let (mut stiffness, mut rest) = (0.0, 0.0);
         for (i, stencil) in self.stencils.iter().enumerate() {
@@ -187,7 +187,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
 
     /// The same when the points of a line are coupled: D is a full block per line, factored in `work.block`;
     /// `work.columns` keeps L⁻¹ [1, c, P].
-    fn add_lines(&self, active: &[bool], work: &mut Workspace) -> Option<()> {
+    fn add_lines(&self, active: &[bool], work: &mut SystemWorkspace) -> Option<()> {
         let r = self.stations;
         work.matrix.clear();
         work.matrix.resize(r * r, 0.0);
@@ -261,7 +261,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         Some(())
     }
 
-    fn forces_of_lines(&self, active: &[bool], work: &mut Workspace) -> (f64, f64) {
+    fn forces_of_lines(&self, active: &[bool], work: &mut SystemWorkspace) -> (f64, f64) {
         let r = self.stations;
         let (mut stiffness, mut rest) = (0.0, 0.0);
         let mut block_start = 0;
@@ -299,7 +299,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
     }
 
     /// Bulk displacement of the stations under `forces`, into `work.station_shift`.
-    pub(super) fn station_shifts(&self, forces: &[f64], work: &mut Workspace) {
+    pub(super) fn station_shifts(&self, forces: &[f64], work: &mut SystemWorkspace) {
         work.station_force.clear();
         work.station_force.resize(self.stations, 0.0);
         for (stencil, f) in self.stencils.iter().zip(forces) {
@@ -313,7 +313,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
     }
 
     /// Displacement of point `j` of `line` by the forces of all other points.
-    pub(super) fn deflection(&self, line: usize, j: usize, forces: &[f64], work: &Workspace) -> f64 {
+    pub(super) fn deflection(&self, line: usize, j: usize, forces: &[f64], work: &SystemWorkspace) -> f64 {
         let mut sum = self.stencils[j].at(&work.station_shift);
         if let Some(coupling) = self.coupling.get(line) {
             let range = &self.lines[line];

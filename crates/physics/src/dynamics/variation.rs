@@ -33,11 +33,11 @@ pub(crate) struct Variation<'m, const D: usize> {
     tolerance: f64,
     last_contact: Option<[ContactSide; 2]>,
     /// `None` only during [`Observer::segment`].
-    workspace: Option<Box<Workspace<D>>>,
+    workspace: Option<Box<PerturbationWorkspace<D>>>,
 }
 
 /// Working memory for one perturbation and for several.
-struct Workspace<const D: usize> {
+struct PerturbationWorkspace<const D: usize> {
     one: Box<TaylorWork<D, f64>>,
     several: Box<TaylorWork<D, Lanes<PERTURBATION_LANES>>>,
     equations: Equations<D, Lanes<PERTURBATION_LANES>>,
@@ -46,7 +46,7 @@ struct Workspace<const D: usize> {
 
 impl<'m, const D: usize> Variation<'m, D> {
     pub(crate) fn new(model: &'m DynamicModel<D>, columns: Vec<Perturbation<D>>, tolerance: f64) -> Self {
-        let workspace = Workspace {
+        let workspace = PerturbationWorkspace {
             one: TaylorWork::new(),
             several: TaylorWork::new(),
             equations: model.broadcast(),
@@ -146,7 +146,7 @@ impl<const D: usize> Observer<D> for Variation<'_, D> {
         }
         self.last_contact = Some(segment.contact);
         let Some(mut workspace) = self.workspace.take() else { return };
-        let Workspace { one, several, equations, terms } = &mut *workspace;
+        let PerturbationWorkspace { one, several, equations, terms } = &mut *workspace;
         vectorised(
             #[inline(always)]
             || {

@@ -2,7 +2,7 @@
 
 use super::cyclic::expand;
 use super::half_space::half_space;
-use super::input::{FeError, FlankInput};
+use super::input::{FeError, FlankFlexibilityInput};
 use super::loads::LoadGrid;
 use super::operator::ElasticBody;
 use super::section::{Border, SectionMesh};
@@ -36,11 +36,11 @@ impl FlankFlexibility {
     ///
     /// # Errors
     /// [`FeError::Canceled`] when the watch says so; a tooth form that cannot be meshed; a singular matrix.
-    pub fn new(input: &FlankInput, watch: Watch) -> Result<FlankFlexibility, FeError> {
+    pub fn new(input: &FlankFlexibilityInput, watch: Watch) -> Result<FlankFlexibility, FeError> {
         FlankFlexibility::with_sizes(input, &Sizes::new(input.key().resolution), watch)
     }
 
-    fn with_sizes(input: &FlankInput, sizes: &Sizes, watch: Watch) -> Result<FlankFlexibility, FeError> {
+    fn with_sizes(input: &FlankFlexibilityInput, sizes: &Sizes, watch: Watch) -> Result<FlankFlexibility, FeError> {
         watch.checkpoint(0.0)?;
         let key = input.key();
         let involute = InvoluteFlank::new(input.member())?;

@@ -61,16 +61,22 @@ pub struct FlankKey {
 
 /// One member of a pair, ready for the elements.
 #[derive(Debug, Clone)]
-pub struct FlankInput {
+pub struct FlankFlexibilityInput {
     key: FlankKey,
     member: Member,
     base_helix_angle_rad: f64,
 }
 
-impl FlankInput {
+impl FlankFlexibilityInput {
     /// The flank of one helix half of `side`, held at `hold_radius_m` (all displacements zero over the face width, end
     /// faces free), with displacements of the teeth up to `offsets` pitches ahead.
-    pub fn new(pair: &Pair, side: MemberId, hold_radius_m: f64, offsets: usize, resolution: Resolution) -> FlankInput {
+    pub fn new(
+        pair: &Pair,
+        side: MemberId,
+        hold_radius_m: f64,
+        offsets: usize,
+        resolution: Resolution,
+    ) -> FlankFlexibilityInput {
         let (member, spec) = match side {
             MemberId::Pinion => (&pair.pinion, &pair.spec.pinion),
             MemberId::Gear => (&pair.gear, &pair.spec.gear),
@@ -93,7 +99,7 @@ impl FlankInput {
             poissons_ratio: member.material.poissons_ratio,
             offsets,
         };
-        FlankInput { key, member: member.clone(), base_helix_angle_rad: pair.base_helix_angle_rad }
+        FlankFlexibilityInput { key, member: member.clone(), base_helix_angle_rad: pair.base_helix_angle_rad }
     }
 
     /// All that the result depends on.

@@ -28,7 +28,7 @@ mod stored;
 mod surface;
 
 pub use flexibility::FlankFlexibility;
-pub use input::{FeError, FlankInput, FlankKey, MESH_VERSION, Resolution};
+pub use input::{FeError, FlankFlexibilityInput, FlankKey, MESH_VERSION, Resolution};
 
 #[cfg(test)]
 mod tests;

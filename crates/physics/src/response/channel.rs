@@ -7,7 +7,7 @@ use crate::dynamics::{DynamicModel, MAX_ORDER, PER_HALF, Segment, U, W, YG, YP, 
 /// Physical quantity of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Quantity {
+pub enum ChannelQuantity {
     /// m.
     Displacement,
     /// m/s.
@@ -24,17 +24,17 @@ pub enum Quantity {
     Force,
 }
 
-impl Quantity {
+impl ChannelQuantity {
     /// Unit of the channel's values.
     pub fn unit(self) -> &'static str {
         match self {
-            Quantity::Displacement => "m",
-            Quantity::Velocity => "m/s",
-            Quantity::Acceleration => "m/s2",
-            Quantity::Rotation => "rad",
-            Quantity::AngularVelocity => "rad/s",
-            Quantity::AngularAcceleration => "rad/s2",
-            Quantity::Force => "N",
+            ChannelQuantity::Displacement => "m",
+            ChannelQuantity::Velocity => "m/s",
+            ChannelQuantity::Acceleration => "m/s2",
+            ChannelQuantity::Rotation => "rad",
+            ChannelQuantity::AngularVelocity => "rad/s",
+            ChannelQuantity::AngularAcceleration => "rad/s2",
+            ChannelQuantity::Force => "N",
         }
     }
 }
@@ -45,7 +45,7 @@ pub struct Channel {
     /// Name of the channel, see [`ChannelId`].
     pub name: String,
     /// Physical quantity.
-    pub quantity: Quantity,
+    pub quantity: ChannelQuantity,
     /// Unit of the values.
     pub unit: String,
     /// Time of the first value from the start of the integration, s (0 for a periodic solution: phase 0).
@@ -161,11 +161,12 @@ impl ChannelId {
     }
 
     /// Physical quantity of the channel.
-    pub fn quantity(self) -> Quantity {
-        let linear = [Quantity::Displacement, Quantity::Velocity, Quantity::Acceleration];
-        let angular = [Quantity::Rotation, Quantity::AngularVelocity, Quantity::AngularAcceleration];
+    pub fn quantity(self) -> ChannelQuantity {
+        let linear = [ChannelQuantity::Displacement, ChannelQuantity::Velocity, ChannelQuantity::Acceleration];
+        let angular =
+            [ChannelQuantity::Rotation, ChannelQuantity::AngularVelocity, ChannelQuantity::AngularAcceleration];
         match self.kind {
-            kind if kind.is_force() => Quantity::Force,
+            kind if kind.is_force() => ChannelQuantity::Force,
             ChannelKind::ThetaP | ChannelKind::ThetaG => angular[usize::from(self.derivative)],
             _ => linear[usize::from(self.derivative)],
         }

@@ -11,7 +11,7 @@ use super::poincare::PoincareSection;
 use super::recorder::ChannelRecorder;
 use super::recording::FinishedRun;
 use super::report::{MotionAssessment, assemble_response, solved_halves};
-use super::solve::{OperatingPoint, REPEATS};
+use super::solve::{REPEATS, ResponseProblem};
 use crate::dynamics::{
     DynamicModel, DynamicsError, IntegrationLimits, Integrator, Motion, MotionState, Shooting, StepCounts,
 };
@@ -47,7 +47,7 @@ struct ContinuedMotion {
     counts: StepCounts,
 }
 
-impl OperatingPoint<'_> {
+impl ResponseProblem<'_> {
     /// Classifies a motion whose record did not repeat. `known`: its largest Lyapunov exponent, if computed already.
     ///
     /// # Errors

@@ -29,7 +29,7 @@ pub use analysis::{
     Analysis, ContactState, Halves, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals, SolutionMethod,
     Summary, ToothForce,
 };
-pub use channel::{Channel, ChannelId, Quantity};
+pub use channel::{Channel, ChannelId, ChannelQuantity};
 pub use confidence::ConfidenceInterval;
 pub use solve::{solve, solve_many};
 pub use spectrum::Spectrum;

@@ -3,13 +3,13 @@
 use super::analysis::{ContactState, Halves, Regime, Response, SolutionMethod};
 use super::recording::RecordedRun;
 use super::report::{MotionAssessment, assemble_response};
-use super::solve::OperatingPoint;
+use super::solve::ResponseProblem;
 use crate::dynamics::{
     DynamicModel, DynamicsError, ImpactExcitation, Integrator, MotionState, PER_HALF, Spring, StepCounts, U,
     integrate_trajectory,
 };
 
-impl OperatingPoint<'_> {
+impl ResponseProblem<'_> {
     /// Whether the pair stays at its start: without load and impact, at rest in the middle of its backlash (initial
     /// state zero) or, without an initial state, with the driving flanks in contact without force, the limit of
     /// vanishing load.

@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// [`DynamicsError`] for invalid parameters or settings, a missing steady state, and integrations that fail.
 pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<Response, DynamicsError> {
     let modes = validated_modes(p, analysis)?;
-    let point = OperatingPoint { p, analysis, modes: &modes, watch };
+    let point = ResponseProblem { p, analysis, modes: &modes, watch };
     if point.stays_at_rest() {
         return point.rest_response();
     }
@@ -90,11 +90,11 @@ fn solve_group(
     let modes: Vec<_> = group.iter().map(|p| validated_modes(p, analysis)).collect();
     let mut out = vec![Err(DynamicsError::Canceled(Canceled)); group.len()];
     // Indices and points in six coordinates, and in twelve.
-    let mut sides: [(Vec<usize>, Vec<OperatingPoint<'_>>); 2] = Default::default();
+    let mut sides: [(Vec<usize>, Vec<ResponseProblem<'_>>); 2] = Default::default();
     for (i, (p, modes)) in group.iter().zip(&modes).enumerate() {
         match modes {
             Ok(modes) => {
-                let point = OperatingPoint { p, analysis, modes, watch };
+                let point = ResponseProblem { p, analysis, modes, watch };
                 if point.stays_at_rest() {
                     out[i] = point.rest_response();
                     continue;
@@ -133,7 +133,7 @@ fn validated_modes(p: &Parameters, analysis: &Analysis) -> Result<NaturalModes, 
 }
 
 /// One operating point with the settings of the analysis.
-pub(super) struct OperatingPoint<'a> {
+pub(super) struct ResponseProblem<'a> {
     pub p: &'a Parameters,
     pub analysis: &'a Analysis,
     pub modes: &'a NaturalModes,
@@ -143,7 +143,7 @@ pub(super) struct OperatingPoint<'a> {
 /// Relative size of the perturbation out of the mirror symmetry: about the manufacturing difference of the halves.
 const OFF_SYMMETRY: f64 = 1e-3;
 
-impl OperatingPoint<'_> {
+impl ResponseProblem<'_> {
     /// Initial state: as given, or at rest under the mean load.
     fn start(&self) -> [f64; 24] {
         self.analysis.initial_state.unwrap_or_else(|| {
@@ -408,10 +408,10 @@ impl LaneUse {
 /// Integrates operating points with the same settings and estimates their errors by comparison with more accurate
 /// integrations of the last part of each.
 fn integrate<const D: usize>(
-    points: &[OperatingPoint<'_>],
+    points: &[ResponseProblem<'_>],
     lane_use: LaneUse,
 ) -> Result<Vec<Result<Response, DynamicsError>>, Canceled> {
-    let Some(OperatingPoint { analysis, watch, .. }) = points.first() else { return Ok(Vec::new()) };
+    let Some(ResponseProblem { analysis, watch, .. }) = points.first() else { return Ok(Vec::new()) };
     let SolutionMethod::Integrate { mesh_periods, record_mesh_periods } = analysis.method else {
         return Ok(Vec::new());
     };

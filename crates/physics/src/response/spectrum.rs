@@ -64,7 +64,7 @@ impl Spectrum {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::response::Quantity;
+    use crate::response::ChannelQuantity;
 
     #[test]
     fn a_sine_shows_as_its_amplitude() {
@@ -73,7 +73,7 @@ mod tests {
             (0..n).map(|i| 3.0 + 2.5 * (std::f64::consts::TAU * 4.0 * f64::from(i) / f64::from(n)).sin()).collect();
         let channel = Channel {
             name: "x_left".into(),
-            quantity: Quantity::Displacement,
+            quantity: ChannelQuantity::Displacement,
             unit: "m".into(),
             t0_s: 0.0,
             dt_s: 1.0 / 480.0,

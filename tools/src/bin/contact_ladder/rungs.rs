@@ -6,7 +6,7 @@ use std::path::Path;
 
 use herringbone_physics::compliance::{Compliance, Settings};
 use herringbone_physics::contact::{HalfCycle, harmonics, solve_half};
-use herringbone_physics::fe::{FlankFlexibility, FlankInput, Resolution};
+use herringbone_physics::fe::{FlankFlexibility, FlankFlexibilityInput, Resolution};
 use herringbone_physics::gear::Half;
 use herringbone_physics::iso6336::{Blank, MethodB, course};
 use herringbone_physics::watch::Watch;
@@ -157,7 +157,7 @@ fn solved<'a>(
 ) -> Result<&'a Solved, Failure> {
     let settings = Settings { corner_contact: true, ..settings(case) };
     let inputs = Compliance::finite_element_inputs(&case.pair, &settings, resolution);
-    match elements.entry(serde_json::to_string(&inputs.each_ref().map(FlankInput::key))?) {
+    match elements.entry(serde_json::to_string(&inputs.each_ref().map(FlankFlexibilityInput::key))?) {
         Entry::Occupied(found) => Ok(found.into_mut()),
         Entry::Vacant(vacant) => {
             let watch = Stopwatch::start();
@@ -170,7 +170,7 @@ fn solved<'a>(
 }
 
 /// One gear, from the folder if it is there.
-fn flank(input: &FlankInput, keep: Option<&Path>) -> Result<FlankFlexibility, Failure> {
+fn flank(input: &FlankFlexibilityInput, keep: Option<&Path>) -> Result<FlankFlexibility, Failure> {
     let Some(folder) = keep else { return Ok(FlankFlexibility::new(input, Watch::none())?) };
     let mut hasher = DefaultHasher::new();
     serde_json::to_string(input.key())?.hash(&mut hasher);

@@ -7,7 +7,7 @@ use crate::compliance::Stencil;
 use crate::compliance::{BodyHold, Compliance, Settings};
 use crate::contact::distribution::{Prescribed, distribute};
 use crate::contact::lines::{CornerGaps, PairRange, collect, reference_roll_m};
-use crate::contact::system::{ContactSystem, LocalApproach, Workspace};
+use crate::contact::system::{ContactSystem, LocalApproach, SystemWorkspace};
 use crate::contact::{HalfContact, solve_half, solve_pair_of_halves};
 use crate::gear::{Half, ReliefShape, TipRelief};
 use crate::watch::Watch;
@@ -196,7 +196,7 @@ fn a_constant_foundation_gives_the_length_of_the_lines_and_relief_unloads_it() {
                 local: &local,
             };
             let total = 4e3;
-            let found = distribute(&system, Prescribed::Force(total), &[], &mut Workspace::default()).unwrap();
+            let found = distribute(&system, Prescribed::Force(total), &[], &mut SystemWorkspace::default()).unwrap();
             if relief_m == 0.0 {
                 let length: f64 = pair.contact_lines(reference_roll_m(&pair, phase)).iter().map(|l| l.width_m()).sum();
                 lengths.push(found.stiffness / (STIFFNESS * length) - 1.0);

@@ -3,18 +3,18 @@
 use std::sync::Mutex;
 
 use crate::fe::condense::factor_partly;
-use crate::fe::{FeError, FlankFlexibility, FlankInput, Resolution};
+use crate::fe::{FeError, FlankFlexibility, FlankFlexibilityInput, Resolution};
 use crate::gear::{MemberId, Pair, fixtures};
 use crate::watch::{Canceled, Watch};
 
-fn small(teeth: u32, beta_deg: f64, side: MemberId, offsets: usize) -> FlankInput {
+fn small(teeth: u32, beta_deg: f64, side: MemberId, offsets: usize) -> FlankFlexibilityInput {
     let gear = fixtures::gear(teeth, 0.3);
     let (pair, _) = Pair::new(&fixtures::spec(3.0, 20.0, beta_deg, 24.0, gear, gear)).unwrap();
     let hold = pair.pinion.root_radius_m - 6e-3;
-    FlankInput::new(&pair, side, hold, offsets, Resolution::Coarse)
+    FlankFlexibilityInput::new(&pair, side, hold, offsets, Resolution::Coarse)
 }
 
-fn solved(input: &FlankInput) -> FlankFlexibility {
+fn solved(input: &FlankFlexibilityInput) -> FlankFlexibility {
     FlankFlexibility::new(input, Watch::none()).unwrap()
 }
 
@@ -118,7 +118,7 @@ fn a_finer_mesh_changes_little() {
         let gear = fixtures::gear(20, 0.0);
         let (pair, _) = Pair::new(&fixtures::spec(3.0, 20.0, 20.0, 24.0, gear, gear)).unwrap();
         let hold = pair.pinion.root_radius_m - 9e-3;
-        let flank = solved(&FlankInput::new(&pair, MemberId::Pinion, hold, 1, resolution));
+        let flank = solved(&FlankFlexibilityInput::new(&pair, MemberId::Pinion, hold, 1, resolution));
         let n = flank.nodes();
         let stations = flank.stations_m();
         let last = stations.len() - 1;

@@ -4,7 +4,7 @@
 
 use serde_json::Value;
 
-use crate::fe::{FlankFlexibility, FlankInput, Resolution};
+use crate::fe::{FlankFlexibility, FlankFlexibilityInput, Resolution};
 use crate::gear::{MemberId, Pair, fixtures};
 use crate::watch::Watch;
 use herringbone_oracle::check_worst;
@@ -33,7 +33,7 @@ fn member(name: &str, side: MemberId, hold_radius_m: f64) {
     let reference = &reference[name];
     let (pinion, gear) = (fixtures::gear(29, 0.0), fixtures::gear(67, 0.0));
     let (pair, _) = Pair::new(&fixtures::spec(4.0, 20.0, 30.0, 45.0, pinion, gear)).unwrap();
-    let input = FlankInput::new(&pair, side, hold_radius_m, 2, Resolution::Medium);
+    let input = FlankFlexibilityInput::new(&pair, side, hold_radius_m, 2, Resolution::Medium);
     let flank = FlankFlexibility::new(&input, Watch::none()).unwrap();
     let nodes = flank.nodes();
     let stations = flank.stations_m().len();

@@ -3,7 +3,7 @@
 use crate::fe::section::SectionMesh;
 use crate::fe::sizes::Sizes;
 use crate::fe::surface::InvoluteFlank;
-use crate::fe::{FeError, FlankFlexibility, FlankInput, Resolution};
+use crate::fe::{FeError, FlankFlexibility, FlankFlexibilityInput, Resolution};
 use crate::gear::{GearSpec, MemberId, Pair, fixtures};
 use crate::watch::Watch;
 
@@ -60,7 +60,7 @@ fn extreme_gears_are_solved() {
         let (pair, _) = Pair::new(&spec).unwrap();
         let hold = pair.pinion.root_radius_m - rim * 2e-3;
         let flank = FlankFlexibility::new(
-            &FlankInput::new(&pair, MemberId::Pinion, hold, 1, Resolution::Coarse),
+            &FlankFlexibilityInput::new(&pair, MemberId::Pinion, hold, 1, Resolution::Coarse),
             Watch::none(),
         )
         .unwrap();
@@ -79,7 +79,7 @@ fn a_body_without_rim_is_refused() {
     let gear = fixtures::gear(20, 0.0);
     let (pair, _) = Pair::new(&fixtures::spec(3.0, 20.0, 20.0, 24.0, gear, gear)).unwrap();
     for hold in [0.0, -1.0, f64::NAN, pair.pinion.root_radius_m, 1.0] {
-        let input = FlankInput::new(&pair, MemberId::Pinion, hold, 0, Resolution::Coarse);
+        let input = FlankFlexibilityInput::new(&pair, MemberId::Pinion, hold, 0, Resolution::Coarse);
         assert!(matches!(FlankFlexibility::new(&input, Watch::none()), Err(FeError::NoRim { .. })), "{hold}");
     }
 }
