@@ -288,7 +288,7 @@ pub fn derive_input(item: DeriveInput) -> Result<TokenStream> {
                 __value
             }
 
-            fn check(&mut self, __place: &crate::reader::Place) {
+            fn check(&mut self, __place: &crate::reader::ObjectPlace) {
                 #(#checks)*
                 #(#rules_when_checked)*
             }

@@ -1,8 +1,6 @@
 //! Errors of a result: of the solution of the equations, and of the model of the mesh.
 
-use crate::document::{
-    BodyInput, DesignInput, Elements, Fidelity, FlankFlexibilityInput, JobDocument, Ltca, MeshStiffness,
-};
+use crate::document::{BodyInput, DesignInput, Elements, Fidelity, FlankInput, JobDocument, Ltca, MeshStiffness};
 use crate::result::{Accuracy, JobResult, Mesh, ModelError, SweepResult};
 
 /// Largest differences in the comparisons with references, in per cent.
@@ -181,7 +179,7 @@ fn tip_relief_um(design: &DesignInput) -> f64 {
         let both = [Some(&gear.flank), gear.left.as_ref(), gear.right.as_ref()];
         both.into_iter().flatten()
     });
-    flanks.map(|flank: &FlankFlexibilityInput| flank.tip_relief.amount_um).fold(0.0, f64::max)
+    flanks.map(|flank: &FlankInput| flank.tip_relief.amount_um).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -139,7 +139,7 @@ fn gear_spec(
         });
         assumed_mm
     });
-    let flanks = |both: &doc::FlankFlexibilityInput, [left, right]: [&Option<doc::FlankFlexibilityInput>; 2]| {
+    let flanks = |both: &doc::FlankInput, [left, right]: [&Option<doc::FlankInput>; 2]| {
         [left.as_ref().unwrap_or(both), right.as_ref().unwrap_or(both)].map(flank)
     };
     gear::GearSpec {
@@ -165,7 +165,7 @@ fn material(material: &doc::MaterialInput) -> gear::Material {
     }
 }
 
-fn flank(flank: &doc::FlankFlexibilityInput) -> gear::FlankModification {
+fn flank(flank: &doc::FlankInput) -> gear::FlankModification {
     gear::FlankModification {
         tip_relief: gear::TipRelief {
             amount_m: flank.tip_relief.amount_um * 1e-6,
