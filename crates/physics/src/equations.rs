@@ -1,6 +1,5 @@
 //! Parameters of the equations of motion of a pair in its base plane, from its geometry and its loaded contact.
 
-#![warn(missing_docs, unreachable_pub)]
 
 use crate::contact::{HalfCycle, LoadedContact, equivalent_stiffness};
 use crate::dynamics::{

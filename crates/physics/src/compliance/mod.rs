@@ -11,7 +11,6 @@
 //!
 //! Everything is SI; coordinates are those of [`crate::gear`].
 
-#![warn(missing_docs, unreachable_pub)]
 
 mod annulus;
 mod bulk;

@@ -10,7 +10,6 @@
 //!
 //! Everything is SI. Coordinates along the face are entry coordinates of [`crate::gear`].
 
-#![warn(missing_docs, unreachable_pub)]
 
 mod condense;
 mod cyclic;

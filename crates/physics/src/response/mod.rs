@@ -6,7 +6,6 @@
 
 // Loops over coordinates and Taylor orders are written with an index, as the formulas are.
 #![allow(clippy::needless_range_loop)]
-#![warn(missing_docs, unreachable_pub)]
 
 mod analysis;
 mod budget;
