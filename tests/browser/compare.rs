@@ -172,7 +172,8 @@ async fn what_has_no_result_is_said_in_words_and_what_ends_appears() {
         browser.driver.execute_async(script, vec![json!(long)]).await.unwrap();
         browser.until(&format!("document.querySelector(\"[data-id='{long}']\").textContent.includes('It has no result')")).await;
         browser.until("document.querySelector('#sweeps').dataset.ready").await;
-        // The plot is drawn when it comes near the window. The canceled one has a curve as well when it had solved points.
+        // The plot is drawn when it comes near the window. The canceled one has a curve as well when it had solved
+        // points.
         browser.value("(document.querySelector('#sweep').scrollIntoView(), true)").await;
         let named = "(name) => document.querySelector('#sweep .plot').data?.some((trace) => trace.name?.includes(name))";
         browser.until(&format!("['short', 'same axis'].every({named})")).await;

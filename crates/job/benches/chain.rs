@@ -26,7 +26,7 @@ fn documents(criterion: &mut Criterion) {
     criterion.bench_function("document: parse", |b| b.iter(|| herringbone_job::parse(black_box(bytes))));
     let document = example(|_| {}).into_document();
     criterion.bench_function("document: geometry and warnings", |b| {
-        b.iter(|| CheckedJob::new(black_box(&document).clone()).map(|job| job.report()))
+        b.iter(|| CheckedJob::new(black_box(&document).clone()).map(|job| job.report()));
     });
 }
 

@@ -7,7 +7,7 @@ use proptest::sample::select;
 use serde_json::{Map, Value, json};
 
 /// JSON of a valid job document. Whether the gear can exist is another matter.
-pub fn documents() -> BoxedStrategy<Value> {
+pub(crate) fn documents() -> BoxedStrategy<Value> {
     let any = of_schema(&job_document_schema()).prop_map(|mut document| {
         reconcile(&mut document);
         document
@@ -191,7 +191,7 @@ fn pointers(document: &Value) -> Vec<(String, Value)> {
     while let Some((pointer, value)) = open.pop() {
         match value {
             Value::Object(members) => {
-                open.extend(members.iter().map(|(name, value)| (format!("{pointer}/{name}"), value)))
+                open.extend(members.iter().map(|(name, value)| (format!("{pointer}/{name}"), value)));
             }
             Value::Array(items) => {
                 open.extend(items.iter().enumerate().map(|(index, value)| (format!("{pointer}/{index}"), value)));
@@ -264,7 +264,7 @@ proptest! {
         let refused = refused.map(|violation| super::Violation { pointer: pointer.clone(), ..*violation });
         let is_refused = refused.is_some();
         let set = changed.checked(refused.into_iter().collect());
-        let mut value = written.clone();
+        let mut value = written;
         *value.pointer_mut(pointer).unwrap() = json!(number);
         match (set, super::parse_value(&value)) {
             (Ok(set), Ok(read)) => prop_assert_eq!(set, read, "{} = {}", pointer, number),

@@ -13,7 +13,7 @@ use serde_json::{Map, Value};
 
 /// What the declaration of a field says, its type and its default apart.
 #[derive(Debug)]
-pub struct Declared {
+pub(crate) struct Declared {
     pub name: &'static str,
     /// A line for people: the first paragraph of the field's doc comment.
     pub help: &'static str,
@@ -35,7 +35,7 @@ pub struct Declared {
 
 /// Where the form shows a field, as far as the declaration says it. An object's holds for the fields in it.
 #[derive(Debug)]
-pub struct FormPlace {
+pub(crate) struct FormPlace {
     /// Section; empty: that of the object.
     pub group: &'static str,
     /// Place among the fields that stand together.
@@ -53,7 +53,7 @@ pub struct FormPlace {
 
 impl Declared {
     /// A declaration that says nothing.
-    pub const NOTHING: Declared = Declared {
+    pub(crate) const NOTHING: Declared = Declared {
         name: "",
         help: "",
         required: false,
@@ -69,7 +69,7 @@ impl Declared {
 }
 
 /// An object of the document.
-pub trait Input: Sized {
+pub(crate) trait Input: Sized {
     /// Reads the members of `object`, and checks the rules between them. A member that is left out takes its value in
     /// `base`, without a base its declared default. Members that are not declared are not reported.
     fn read(object: &Object, base: Option<&Self>) -> Self;
@@ -87,7 +87,7 @@ pub trait Input: Sized {
 }
 
 /// A type that a field can have.
-pub trait Field: Sized {
+pub(crate) trait Field: Sized {
     /// Reads the field `declared` of `object`. `default`: the value where it is left out; none: it is required.
     fn read(object: &Object, declared: &'static Declared, default: Option<&Self>) -> Self;
 
@@ -99,7 +99,7 @@ pub trait Field: Sized {
 }
 
 /// A closed list of words, as an enum. `#[derive(Words)]` implements it.
-pub trait Words: Copy + PartialEq + 'static {
+pub(crate) trait Words: Copy + PartialEq + 'static {
     /// Every word with its value.
     const WORDS: &'static [(&'static str, Self)];
     /// Labels for people, of the words that have one.
@@ -117,7 +117,7 @@ pub trait Words: Copy + PartialEq + 'static {
 }
 
 /// A place in a document where a value stands.
-pub enum Slot<'a> {
+pub(crate) enum Slot<'a> {
     Number(&'a mut f64, &'static Declared),
     OptionalNumber(&'a mut Option<f64>, &'static Declared),
     Whole(&'a mut u32, &'static Declared),
@@ -127,11 +127,11 @@ pub enum Slot<'a> {
 }
 
 impl Slot<'_> {
-    pub fn is_number(&self) -> bool {
+    pub(crate) fn is_number(&self) -> bool {
         !matches!(self, Slot::Other)
     }
 
-    pub fn is_whole_number(&self) -> bool {
+    pub(crate) fn is_whole_number(&self) -> bool {
         matches!(self, Slot::Whole(..) | Slot::OptionalWhole(..))
     }
 
@@ -140,7 +140,7 @@ impl Slot<'_> {
     /// # Errors
     /// The violation, without its pointer, of a number that is out of range or has to be whole; nothing is changed
     /// then.
-    pub fn set(self, number: f64) -> Result<(), Box<Violation>> {
+    pub(crate) fn set(self, number: f64) -> Result<(), Box<Violation>> {
         let declared = match &self {
             Slot::Number(_, declared) | Slot::OptionalNumber(_, declared) => declared,
             Slot::Whole(_, declared) | Slot::OptionalWhole(_, declared) => {
@@ -284,7 +284,7 @@ impl Field for Option<Vec<f64>> {
 }
 
 /// A list of numbers, or a number of it.
-pub fn number_slot<'a>(numbers: &'a mut [f64], declared: &'static Declared, pointer: &str) -> Option<Slot<'a>> {
+pub(crate) fn number_slot<'a>(numbers: &'a mut [f64], declared: &'static Declared, pointer: &str) -> Option<Slot<'a>> {
     match split_first(pointer) {
         None => leaf(pointer, Slot::Other),
         Some((item, rest)) => leaf(rest, Slot::Number(numbers.get_mut(index(item)?)?, declared)),

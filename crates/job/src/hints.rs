@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 /// A member of the document that no declaration knows.
-pub struct Unknown<'a> {
+pub(crate) struct Unknown<'a> {
     /// The whole document.
     pub document: &'a Value,
     /// Pointer of the object that has the member.
@@ -20,7 +20,7 @@ pub struct Unknown<'a> {
 }
 
 /// What to say beside "is not a field of this object"; nothing where no field is meant for certain.
-pub fn hint(unknown: &Unknown) -> Option<String> {
+pub(crate) fn hint(unknown: &Unknown) -> Option<String> {
     if unknown.name.len() > 60 {
         return None;
     }

@@ -8,7 +8,7 @@ use std::fmt;
 
 /// Why bytes are not JSON that can be read, and where (counted from 1).
 #[derive(Debug, Clone, PartialEq)]
-pub struct NotJson {
+pub(crate) struct NotJson {
     pub detail: String,
     pub line: usize,
     pub column: usize,
@@ -19,7 +19,7 @@ pub struct NotJson {
 /// # Errors
 /// What is not JSON, is encoded otherwise, is nested deeper than 127 levels, has numbers that 64-bit floats cannot
 /// hold, or repeats a member; each with line and column.
-pub fn read(bytes: &[u8]) -> Result<Value, NotJson> {
+pub(crate) fn read(bytes: &[u8]) -> Result<Value, NotJson> {
     let text = utf8_text(bytes).map_err(|error| {
         let (line, column) = match error {
             EncodingError::Other(_) => (1, 1),

@@ -5,7 +5,7 @@ use std::fmt;
 
 /// The place of a value in a document, as a chain up to the root: nothing is written until a pointer is asked for.
 #[derive(Debug, Clone, Copy)]
-pub struct Path<'a> {
+pub(crate) struct Path<'a> {
     parent: Option<&'a Path<'a>>,
     step: Step<'a>,
 }
@@ -19,14 +19,14 @@ enum Step<'a> {
 }
 
 impl<'a> Path<'a> {
-    pub const ROOT: Path<'static> = Path { parent: None, step: Step::Root };
+    pub(crate) const ROOT: Path<'static> = Path { parent: None, step: Step::Root };
 
-    pub fn member(&'a self, name: &'a str) -> Path<'a> {
+    pub(crate) fn member(&'a self, name: &'a str) -> Path<'a> {
         Path { parent: Some(self), step: Step::Member(name) }
     }
 
     /// An item of the list `name`; without an index what stands for all items, `*`.
-    pub fn item(&'a self, name: &'a str, index: Option<usize>) -> Path<'a> {
+    pub(crate) fn item(&'a self, name: &'a str, index: Option<usize>) -> Path<'a> {
         Path { parent: Some(self), step: Step::Item(name, index) }
     }
 }
@@ -47,13 +47,13 @@ impl fmt::Display for Path<'_> {
 
 /// First member and rest of a pointer; none of one that is empty or does not begin with a slash. Names of fields need
 /// no escapes.
-pub fn split_first(pointer: &str) -> Option<(&str, &str)> {
+pub(crate) fn split_first(pointer: &str) -> Option<(&str, &str)> {
     let rest = pointer.strip_prefix('/')?;
     Some(rest.find('/').map_or((rest, ""), |end| rest.split_at(end)))
 }
 
 /// The index of an item as a pointer writes it: digits without a sign or leading zeros.
-pub fn index(text: &str) -> Option<usize> {
+pub(crate) fn index(text: &str) -> Option<usize> {
     let written_so = text == "0" || text.starts_with(|first: char| ('1'..='9').contains(&first));
     text.parse().ok().filter(|_| written_so)
 }

@@ -43,7 +43,7 @@ pub struct Condition {
 }
 
 /// Violations listed at most; further ones are counted. A megabyte can hold a hundred thousand.
-pub const MAX_VIOLATIONS: usize = 1000;
+pub(crate) const MAX_VIOLATIONS: usize = 1000;
 
 #[derive(Default)]
 struct Collected {
@@ -62,24 +62,24 @@ enum Purpose {
 }
 
 /// One pass over a document: the violations that were found, and (when describing) the fields that are declared.
-pub struct Reading {
+pub(crate) struct Reading {
     collected: RefCell<Collected>,
     purpose: Purpose,
 }
 
 impl Reading {
     /// A pass that reads.
-    pub fn read() -> Self {
+    pub(crate) fn read() -> Self {
         Self { collected: RefCell::default(), purpose: Purpose::Read }
     }
 
     /// A pass that lists the declared fields; nothing is missing or invalid in it.
-    pub fn describe() -> Self {
+    pub(crate) fn describe() -> Self {
         Self { collected: RefCell::default(), purpose: Purpose::Describe }
     }
 
     /// A pass over no document, for the defaults.
-    pub fn fill() -> Self {
+    pub(crate) fn fill() -> Self {
         Self { collected: RefCell::default(), purpose: Purpose::Fill }
     }
 
@@ -88,7 +88,7 @@ impl Reading {
     }
 
     /// The document's root object.
-    pub fn root<'a>(&'a self, value: &'a Value) -> Object<'a> {
+    pub(crate) fn root<'a>(&'a self, value: &'a Value) -> Object<'a> {
         let map = match value {
             Value::Object(map) => Some(map),
             other => {
@@ -107,7 +107,7 @@ impl Reading {
         }
     }
 
-    pub fn violate(&self, violation: Violation) {
+    pub(crate) fn violate(&self, violation: Violation) {
         if self.purpose != Purpose::Read {
             return;
         }
@@ -124,7 +124,7 @@ impl Reading {
     }
 
     /// The violations that were found; the last entry says how many more there are than [`MAX_VIOLATIONS`].
-    pub fn violations(self) -> Vec<Violation> {
+    pub(crate) fn violations(self) -> Vec<Violation> {
         let Collected { mut violations, further, .. } = self.collected.into_inner();
         if further > 0 {
             violations.push(Violation::new(
@@ -136,7 +136,7 @@ impl Reading {
         violations
     }
 
-    pub fn fields(self) -> Vec<FieldDescription> {
+    pub(crate) fn fields(self) -> Vec<FieldDescription> {
         self.collected.into_inner().fields
     }
 }
@@ -153,7 +153,7 @@ struct Inherited {
 }
 
 /// An object of the document (or its absence, in which case every field takes its default or is missing).
-pub struct Object<'a> {
+pub(crate) struct Object<'a> {
     reading: &'a Reading,
     /// The whole document.
     document: &'a Value,
@@ -166,7 +166,7 @@ pub struct Object<'a> {
 
 impl<'a> Object<'a> {
     /// Where the rules between the fields of this object find what they need.
-    pub fn place(&self) -> ObjectPlace<'_> {
+    pub(crate) fn place(&self) -> ObjectPlace<'_> {
         ObjectPlace { reading: self.reading, path: self.path, object: Some(self) }
     }
 
@@ -236,7 +236,7 @@ impl<'a> Object<'a> {
     }
 
     /// A nested object. Left out, it is an object with every field left out; `required` makes that a violation.
-    pub fn object<'b>(&'b self, declared: &'static Declared) -> Object<'b> {
+    pub(crate) fn object<'b>(&'b self, declared: &'static Declared) -> Object<'b> {
         let Declared { name, required, help, .. } = *declared;
         self.declare(declared, required, || json!({"type": "object", "description": help}));
         let value = self.value(name);
@@ -267,14 +267,14 @@ impl<'a> Object<'a> {
     }
 
     /// A nested object that stays absent when left out: `None` unless given (or describing).
-    pub fn optional_object<'b>(&'b self, declared: &'static Declared) -> Option<Object<'b>> {
+    pub(crate) fn optional_object<'b>(&'b self, declared: &'static Declared) -> Option<Object<'b>> {
         let given = self.has(declared.name);
         let object = self.object(declared);
         (given && object.map.is_some() || self.reading.is_describing()).then_some(object)
     }
 
     /// A number with its range; the default when left out, required without one.
-    pub fn number(&self, declared: &Declared, default: Option<f64>) -> f64 {
+    pub(crate) fn number(&self, declared: &Declared, default: Option<f64>) -> f64 {
         self.number_or(declared, default, default.is_none()).unwrap_or_else(|| {
             if default.is_none() {
                 self.missing(declared.name, &range_text(declared));
@@ -284,7 +284,7 @@ impl<'a> Object<'a> {
     }
 
     /// A number that may be left out or null; the default is only published.
-    pub fn optional_number(&self, declared: &Declared, default: Option<f64>) -> Option<f64> {
+    pub(crate) fn optional_number(&self, declared: &Declared, default: Option<f64>) -> Option<f64> {
         self.number_or(declared, default, false)
     }
 
@@ -320,7 +320,7 @@ impl<'a> Object<'a> {
     }
 
     /// A whole number; the default when left out, required without one.
-    pub fn integer(&self, declared: &Declared, default: Option<u32>) -> u32 {
+    pub(crate) fn integer(&self, declared: &Declared, default: Option<u32>) -> u32 {
         self.integer_or(declared, default, default.is_none()).unwrap_or_else(|| {
             if default.is_none() {
                 self.missing(declared.name, &format!("a whole number, {} to {}", declared.min, declared.max));
@@ -330,7 +330,7 @@ impl<'a> Object<'a> {
     }
 
     /// A whole number that may be left out or null; the default is only published.
-    pub fn optional_integer(&self, declared: &Declared, default: Option<u32>) -> Option<u32> {
+    pub(crate) fn optional_integer(&self, declared: &Declared, default: Option<u32>) -> Option<u32> {
         self.integer_or(declared, default, false)
     }
 
@@ -356,7 +356,7 @@ impl<'a> Object<'a> {
         Some(number.map_or(fallback, |number| number as u32))
     }
 
-    pub fn boolean(&self, declared: &Declared, default: bool) -> bool {
+    pub(crate) fn boolean(&self, declared: &Declared, default: bool) -> bool {
         let Declared { name, help, .. } = *declared;
         self.declare(declared, false, || json!({"type": "boolean", "default": default, "description": help}));
         match self.value(name) {
@@ -370,7 +370,7 @@ impl<'a> Object<'a> {
     }
 
     /// One of a closed list of words; none when left out.
-    pub fn choice<W: Words>(&self, declared: &Declared, default: Option<W>, required: bool) -> Option<W> {
+    pub(crate) fn choice<W: Words>(&self, declared: &Declared, default: Option<W>, required: bool) -> Option<W> {
         let Declared { name, help, .. } = *declared;
         self.declare_words(declared, required, W::LABELS, || {
             let mut schema = json!({"type": "string", "enum": W::words()});
@@ -404,7 +404,7 @@ impl<'a> Object<'a> {
     }
 
     /// A list of words of a closed list, each once; empty when left out.
-    pub fn choices<W: Words>(&self, declared: &Declared) -> Vec<W> {
+    pub(crate) fn choices<W: Words>(&self, declared: &Declared) -> Vec<W> {
         let most = W::WORDS.len();
         self.declare_words(declared, false, W::LABELS, || {
             json!({"type": "array", "maxItems": most, "items": {"type": "string", "enum": W::words()}, "description": declared.help})
@@ -425,12 +425,12 @@ impl<'a> Object<'a> {
     }
 
     /// A text of at most `max_chars` characters without control characters; `None` when left out.
-    pub fn text(&self, declared: &Declared) -> Option<String> {
+    pub(crate) fn text(&self, declared: &Declared) -> Option<String> {
         self.text_or(declared, false)
     }
 
     /// A text that has to be given.
-    pub fn required_text(&self, declared: &Declared) -> String {
+    pub(crate) fn required_text(&self, declared: &Declared) -> String {
         self.text_or(declared, true).unwrap_or_else(|| {
             if !self.has(declared.name) {
                 self.missing(declared.name, "a string");
@@ -475,7 +475,7 @@ impl<'a> Object<'a> {
     }
 
     /// A list of numbers, each within the declared range; `None` when left out.
-    pub fn numbers(&self, declared: &Declared) -> Option<Vec<f64>> {
+    pub(crate) fn numbers(&self, declared: &Declared) -> Option<Vec<f64>> {
         let Declared { name, min_items, max_items, .. } = *declared;
         self.declare(declared, false, || {
             json!({"type": "array", "minItems": min_items, "maxItems": max_items, "description": declared.help,
@@ -488,7 +488,7 @@ impl<'a> Object<'a> {
     }
 
     /// A list of texts; `None` when left out.
-    pub fn texts(&self, declared: &Declared) -> Option<Vec<String>> {
+    pub(crate) fn texts(&self, declared: &Declared) -> Option<Vec<String>> {
         let Declared { name, max_items, .. } = *declared;
         self.declare(declared, false, || {
             json!({"type": "array", "maxItems": max_items, "items": {"type": "string"}, "description": declared.help})
@@ -514,7 +514,7 @@ impl<'a> Object<'a> {
     }
 
     /// A list of objects; `None` when left out. When describing: one object that stands for all.
-    pub fn objects<'b>(&'b self, declared: &'static Declared) -> Option<Vec<Object<'b>>> {
+    pub(crate) fn objects<'b>(&'b self, declared: &'static Declared) -> Option<Vec<Object<'b>>> {
         let Declared { name, min_items, max_items, help, .. } = *declared;
         self.declare(declared, false, || {
             json!({"type": "array", "minItems": min_items, "maxItems": max_items, "items": {"type": "object"},
@@ -573,7 +573,7 @@ impl<'a> Object<'a> {
     }
 
     /// Reports every field of the object that was not declared. Call last.
-    pub fn finish(self) {
+    pub(crate) fn finish(self) {
         let Some(map) = self.map else { return };
         let seen = self.seen.borrow();
         for (name, value) in map {
@@ -598,7 +598,7 @@ impl<'a> Object<'a> {
 }
 
 /// Where a rule between the fields of an object reports what breaks it.
-pub struct ObjectPlace<'a> {
+pub(crate) struct ObjectPlace<'a> {
     reading: &'a Reading,
     path: Path<'a>,
     /// None where the object is not read but was there: then everything in it counts as given.
@@ -607,37 +607,37 @@ pub struct ObjectPlace<'a> {
 
 impl<'a> ObjectPlace<'a> {
     /// The root of a document that is not read.
-    pub fn root(reading: &'a Reading) -> Self {
+    pub(crate) fn root(reading: &'a Reading) -> Self {
         Self { reading, path: Path::ROOT, object: None }
     }
 
     /// The nested object `name`.
-    pub fn member<'b>(&'b self, name: &'b str) -> ObjectPlace<'b> {
+    pub(crate) fn member<'b>(&'b self, name: &'b str) -> ObjectPlace<'b> {
         ObjectPlace { reading: self.reading, path: self.path.member(name), object: None }
     }
 
     /// An item of the list `name`.
-    pub fn item<'b>(&'b self, name: &'b str, index: usize) -> ObjectPlace<'b> {
+    pub(crate) fn item<'b>(&'b self, name: &'b str, index: usize) -> ObjectPlace<'b> {
         ObjectPlace { reading: self.reading, path: self.path.item(name, Some(index)), object: None }
     }
 
     /// Whether the document gives this field (and not null), be it rightly or wrongly.
-    pub fn gives(&self, name: &str) -> bool {
+    pub(crate) fn gives(&self, name: &str) -> bool {
         self.object.is_none_or(|object| object.has(name))
     }
 
     /// Whether there is a document that can break rules.
-    pub fn is_read(&self) -> bool {
+    pub(crate) fn is_read(&self) -> bool {
         self.reading.purpose == Purpose::Read
     }
 
     /// Reports that the field `name` does not go together with others.
-    pub fn conflict(&self, name: &str, detail: impl Into<String>) {
+    pub(crate) fn conflict(&self, name: &str, detail: impl Into<String>) {
         self.violate(name, "conflict", detail);
     }
 
     /// Reports that the field `name` is needed here.
-    pub fn missing(&self, name: &str, detail: impl Into<String>) {
+    pub(crate) fn missing(&self, name: &str, detail: impl Into<String>) {
         self.violate(name, "missing", detail);
     }
 
@@ -649,7 +649,7 @@ impl<'a> ObjectPlace<'a> {
 }
 
 /// The violation of a number that is out of its range, without its pointer.
-pub fn out_of_range(number: f64, declared: &Declared) -> Option<Violation> {
+pub(crate) fn out_of_range(number: f64, declared: &Declared) -> Option<Violation> {
     if number.is_finite() && (declared.min..=declared.max).contains(&number) {
         return None;
     }
@@ -658,7 +658,7 @@ pub fn out_of_range(number: f64, declared: &Declared) -> Option<Violation> {
 }
 
 /// The violation of a number that is not whole where it has to be, without its pointer.
-pub fn not_whole(number: &serde_json::Number, declared: &Declared) -> Violation {
+pub(crate) fn not_whole(number: &serde_json::Number, declared: &Declared) -> Violation {
     let detail = format!("is {number}; a whole number is needed, {}", range_text(declared));
     bounded(Violation::new("", "wrong-type", detail), declared)
 }

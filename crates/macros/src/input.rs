@@ -244,7 +244,7 @@ impl Declaration {
     }
 }
 
-pub fn derive_input(item: DeriveInput) -> Result<TokenStream> {
+pub(crate) fn derive_input(item: DeriveInput) -> Result<TokenStream> {
     let StructAttributes { group, rules } = StructAttributes::of(&item.attrs)?;
     let Data::Struct(data) = item.data else {
         return Err(Error::new_spanned(item.ident, "only a struct has input fields"));
@@ -337,7 +337,7 @@ impl Word {
     }
 }
 
-pub fn derive_words(item: DeriveInput) -> Result<TokenStream> {
+pub(crate) fn derive_words(item: DeriveInput) -> Result<TokenStream> {
     let Data::Enum(DataEnum { variants, .. }) = item.data else {
         return Err(Error::new_spanned(item.ident, "a list of words is an enum"));
     };

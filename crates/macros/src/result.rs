@@ -8,7 +8,7 @@ use syn::spanned::Spanned;
 use syn::{Attribute, Data, DeriveInput, Error, Expr, ExprLit, Field, Fields, Lit, LitInt, LitStr, Meta, Result};
 
 /// See [`crate::result_fields`].
-pub fn result_fields(input: &DeriveInput) -> Result<TokenStream> {
+pub(crate) fn result_fields(input: &DeriveInput) -> Result<TokenStream> {
     let name = &input.ident;
     let mut halves = false;
     for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("scalar")) {
@@ -128,7 +128,7 @@ impl ScalarAttributes {
 }
 
 /// See [`crate::sweep_columns`].
-pub fn sweep_columns(input: &DeriveInput) -> Result<TokenStream> {
+pub(crate) fn sweep_columns(input: &DeriveInput) -> Result<TokenStream> {
     let row = &input.ident;
     let mut columns = TokenStream::new();
     let mut values = TokenStream::new();

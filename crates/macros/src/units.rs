@@ -34,12 +34,12 @@ const UNITS: [(&str, &str); 28] = [
 ];
 
 /// A name without its unit, the ending of the unit (empty where there is none) and the unit.
-pub fn split(name: &str) -> (&str, &'static str, &'static str) {
+pub(crate) fn split(name: &str) -> (&str, &'static str, &'static str) {
     UNITS.iter().find_map(|(ending, unit)| Some((name.strip_suffix(ending)?, *ending, *unit))).unwrap_or((name, "", ""))
 }
 
 /// A name as words: `center_distance` is "centre distance".
-pub fn words(name: &str) -> String {
+pub(crate) fn words(name: &str) -> String {
     name.replace('_', " ").replace("center", "centre")
 }
 

@@ -42,23 +42,23 @@ fn analytic(criterion: &mut Criterion) {
     let equal = Settings { positions: Some(64), ..adaptive };
     let mut group = criterion.benchmark_group("analytic");
     group.bench_function("cold, 64 positions", |b| {
-        b.iter(|| solve(&pair, &Compliance::analytic(black_box(&pair), &equal), &equal))
+        b.iter(|| solve(&pair, &Compliance::analytic(black_box(&pair), &equal), &equal));
     });
     group.bench_function("cold, positions by accuracy", |b| {
-        b.iter(|| solve(&pair, &Compliance::analytic(black_box(&pair), &adaptive), &adaptive))
+        b.iter(|| solve(&pair, &Compliance::analytic(black_box(&pair), &adaptive), &adaptive));
     });
     group.bench_function("compliance alone", |b| b.iter(|| Compliance::analytic(black_box(&pair), &adaptive)));
     let compliance = Compliance::analytic(&pair, &adaptive);
     group.bench_function("contact alone, 64 positions", |b| b.iter(|| solve(black_box(&pair), &compliance, &equal)));
     group.bench_function("contact alone, positions by accuracy", |b| {
-        b.iter(|| solve(black_box(&pair), &compliance, &adaptive))
+        b.iter(|| solve(black_box(&pair), &compliance, &adaptive));
     });
     let force_n = TORQUE_NM / pair.pinion.base_radius_m;
     group.bench_function("one position alone", |b| {
         b.iter(|| {
             let mut contact = HalfContact::new(black_box(&pair), Half::Left, &compliance, &adaptive);
             contact.at(0.3, force_n).expect("the example solves")
-        })
+        });
     });
     group.finish();
 }
@@ -73,10 +73,10 @@ fn finite_elements(criterion: &mut Criterion) {
         b.iter(|| {
             let compliance = Compliance::finite_elements(black_box(&pair), &settings, flanks.each_ref());
             solve(&pair, &compliance, &settings)
-        })
+        });
     });
     group.bench_function("coarse, elements of both gears", |b| {
-        b.iter(|| elements(black_box(&pair), &settings, Resolution::Coarse))
+        b.iter(|| elements(black_box(&pair), &settings, Resolution::Coarse));
     });
     group.finish();
 }

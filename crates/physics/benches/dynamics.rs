@@ -49,13 +49,13 @@ fn trajectories(c: &mut Criterion) {
             let starts = vec![from; POINTS];
             for (tolerance, label) in TOLERANCES {
                 c.bench_function(&format!("{name}, {what}: 100 mesh periods alone{label}"), |b| {
-                    b.iter(|| advance(black_box(p), &from, PERIODS, Integrator::Taylor, tolerance, &Watch::none()))
+                    b.iter(|| advance(black_box(p), &from, PERIODS, Integrator::Taylor, tolerance, &Watch::none()));
                 });
                 let id = format!("{name}, {what}: 100 mesh periods of 32 points in lanes, one thread{label}");
                 c.bench_function(&id, |b| {
                     b.iter(|| {
                         pool.install(|| advance_many(black_box(&points), &starts, PERIODS, tolerance, &Watch::none()))
-                    })
+                    });
                 });
             }
         }
@@ -68,12 +68,12 @@ fn points(c: &mut Criterion) {
         let p = cases::case(name);
         let auto = Analysis { energy_balance: false, ..Analysis::default() };
         c.bench_function(&format!("{name}: steady state of one point"), |b| {
-            b.iter(|| solve(black_box(&p), &auto, &Watch::none()).map(|r| r.summary.error_estimate))
+            b.iter(|| solve(black_box(&p), &auto, &Watch::none()).map(|r| r.summary.error_estimate));
         });
         let recorded = SolutionMethod::Integrate { mesh_periods: PERIODS, record_mesh_periods: PERIODS };
         let recorded = Analysis { method: recorded, ..auto.clone() };
         c.bench_function(&format!("{name}: 100 mesh periods recorded, with their error"), |b| {
-            b.iter(|| solve(black_box(&p), &recorded, &Watch::none()).map(|r| r.summary.error_estimate))
+            b.iter(|| solve(black_box(&p), &recorded, &Watch::none()).map(|r| r.summary.error_estimate));
         });
     }
 }
@@ -89,7 +89,7 @@ fn sweeps(c: &mut Criterion) {
     let integrate = Analysis { method, ..auto };
     let separating = speeds(&cases::case("C"), 1000);
     group.bench_function("C: 300 mesh periods each, 100 recorded", |b| {
-        b.iter(|| solve_many(black_box(&separating), &integrate, &Watch::none()))
+        b.iter(|| solve_many(black_box(&separating), &integrate, &Watch::none()));
     });
 }
 

@@ -6,7 +6,7 @@ use herringbone_physics::dynamics::{
 };
 
 /// Reference case A (linear), B (chaotic) or C (period 2).
-pub fn case(name: &str) -> Parameters {
+pub(crate) fn case(name: &str) -> Parameters {
     match name {
         "A" => parameters(400.0, 1e-6, 0.1, 0.12),
         "B" => parameters(20.0, 2e-5, 0.03, 0.24),

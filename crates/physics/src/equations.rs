@@ -1,6 +1,5 @@
 //! Parameters of the equations of motion of a pair in its base plane, from its geometry and its loaded contact.
 
-
 use crate::contact::{HalfCycle, LoadedContact, equivalent_stiffness};
 use crate::dynamics::{
     Couplings, HalfParameters, ImpactActsOn, Parameters, Spring, Stiffness, equivalent_mass_kg, mesh_damping_n_s_per_m,

@@ -3,7 +3,6 @@
 //! Stiffness per width is in N/m² (1 N/(mm um) = 1e9 N/m²) and acts in the transverse plane along the base tangent, as
 //! the standard's mesh stiffness does; times the face width of one half it is the stiffness of that half.
 
-
 use crate::gear::Pair;
 use serde::{Deserialize, Serialize};
 

@@ -3,7 +3,6 @@
 //! A [`Watch`] is the only connection of a calculation to its caller. Invariant: a calculation calls
 //! [`Watch::checkpoint`] at least every 50 ms of work.
 
-
 /// Error of a calculation that was canceled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the calculation was canceled")]

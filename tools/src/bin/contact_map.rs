@@ -82,8 +82,8 @@ fn report(name: &str, points: &[SweepPoint], torques: usize, speeds: usize, seco
     }
     let mut regimes: BTreeMap<String, usize> = BTreeMap::new();
     for p in &grid {
-        let regime = p.regime.map(|regime| regime.as_str()).unwrap_or_default();
-        let contact = p.contact.map(|contact| contact.as_str()).unwrap_or_default();
+        let regime = p.regime.map(herringbone_job::result::RegimeResult::as_str).unwrap_or_default();
+        let contact = p.contact.map(herringbone_job::result::ContactStateResult::as_str).unwrap_or_default();
         *regimes.entry(format!("{regime}, {contact}{}", p.error.as_deref().unwrap_or_default())).or_default() += 1;
     }
     println!("motions: {regimes:?}");

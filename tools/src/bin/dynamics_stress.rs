@@ -374,7 +374,7 @@ fn main() -> Result<(), Failure> {
             Err(DynamicsError::Canceled(_)) => remarks.push("DID NOT END".into()),
             Err(error) if requested == 1 => println!("{error}"),
             Err(error @ DynamicsError::StepSizeTooSmall { .. } | error @ DynamicsError::Diverged { .. }) => {
-                remarks.push(error.to_string())
+                remarks.push(error.to_string());
             }
             Err(_) => {}
         }

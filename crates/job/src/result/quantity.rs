@@ -83,7 +83,7 @@ impl Quantity {
 
 /// What a struct of the result says of a field, by `#[derive(ResultFields)]`.
 #[derive(Debug)]
-pub struct Declaration {
+pub(crate) struct Declaration {
     /// Name in JSON.
     pub name: &'static str,
     pub label: &'static str,
@@ -103,7 +103,7 @@ pub struct Declaration {
 
 /// A place in the result with the declaration that holds there.
 #[derive(Debug, Clone)]
-pub struct Place {
+pub(crate) struct Place {
     pointer: String,
     declaration: Option<&'static Declaration>,
     /// Labels of the fields above, inner ones first.
@@ -114,7 +114,7 @@ impl Place {
     const ROOT: Self = Self { pointer: String::new(), declaration: None, qualifiers: Vec::new() };
 
     /// The place of a field of the struct that stands here.
-    pub fn field(&self, declaration: &'static Declaration) -> Self {
+    pub(crate) fn field(&self, declaration: &'static Declaration) -> Self {
         let pointer = format!("{}/{}", self.pointer, declaration.name);
         if declaration.inherits {
             return Self { pointer, ..self.clone() };
@@ -126,12 +126,12 @@ impl Place {
 
     /// The place of a value of each half: `{half}` stands for both, under the declaration of the field that holds
     /// them.
-    pub fn half(&self) -> Self {
+    pub(crate) fn half(&self) -> Self {
         Self { pointer: format!("{}/{}", self.pointer, Quantity::HALF), ..self.clone() }
     }
 
     /// The scalar that stands here; none at the root.
-    pub fn scalar(&self, kind: QuantityKind) -> Option<Quantity> {
+    pub(crate) fn scalar(&self, kind: QuantityKind) -> Option<Quantity> {
         let declaration = self.declaration?;
         let unit = if declaration.percent { "%" } else { declaration.unit };
         let change = declaration.change.unwrap_or(match (kind, unit) {
@@ -157,13 +157,13 @@ impl Place {
 }
 
 /// A type in a result: a scalar, a struct of them (by the derive), or what holds none (lists and maps).
-pub trait ResultFields {
+pub(crate) trait ResultFields {
     /// Adds the scalars at and below `place`.
     fn declare(place: &Place, quantities: &mut Vec<Quantity>);
 }
 
 /// A value that may be there or not: what an option holds, and anything else itself.
-pub trait Optional {
+pub(crate) trait Optional {
     type Value;
 
     fn value(&self) -> Option<&Self::Value>;

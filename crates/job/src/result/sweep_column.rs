@@ -35,7 +35,7 @@ pub enum Cell<'a> {
 }
 
 /// A field of a row that is a column.
-pub trait ToCell {
+pub(crate) trait ToCell {
     const KIND: CellKind;
 
     fn to_cell(&self) -> Cell<'_>;

@@ -21,62 +21,62 @@ mod measured {
         Bound { stiffness, harmonic, basis }
     }
 
-    pub const ISO_6336: Bound = bound(
+    pub(super) const ISO_6336: Bound = bound(
         70.0,
         120.0,
         "closed form of ISO 6336-1 method B, which knows neither hold nor modifications: worst of 16 cases (docs/BENCHMARKS.md, Contact: time against error)",
     );
-    pub const FE_COARSE: Bound = bound(
+    pub(super) const FE_COARSE: Bound = bound(
         1.5,
         4.5,
         "coarse finite elements: worst of 16 cases (docs/BENCHMARKS.md, Contact: time against error), references uncertain by 1.5 % and 3 %",
     );
-    pub const FE: Bound = bound(
+    pub(super) const FE: Bound = bound(
         1.5,
         3.0,
         "finite elements: the references' own uncertainty; differences to them are within 0.5 % and 1.5 % (docs/BENCHMARKS.md, Contact: time against error)",
     );
-    pub const SPUR_RIM: Bound = bound(
+    pub(super) const SPUR_RIM: Bound = bound(
         3.0,
         4.0,
         "analytic compliance, spur pairs held at the rim (docs/BENCHMARKS.md, Contact: time against error)",
     );
-    pub const SPUR_BORE: Bound = bound(
+    pub(super) const SPUR_BORE: Bound = bound(
         2.0,
         4.0,
         "analytic compliance, spur pairs held at the bore (docs/BENCHMARKS.md, Contact: time against error)",
     );
-    pub const HELICAL_RIM: Bound = bound(
+    pub(super) const HELICAL_RIM: Bound = bound(
         3.0,
         20.0,
         "analytic compliance, helical pairs held at the rim (docs/BENCHMARKS.md, Contact: time against error; docs/VALIDATION.md, Not reached or doubtful: helical and short faces)",
     );
-    pub const HELICAL_BORE: Bound = bound(
+    pub(super) const HELICAL_BORE: Bound = bound(
         2.0,
         20.0,
         "analytic compliance, helical pairs held at the bore (docs/VALIDATION.md, Loaded pair 29/67 against finite elements; Not reached or doubtful: helical and short faces)",
     );
     /// Above this helix angle the next row holds.
-    pub const STEEP_HELIX_DEG: f64 = 35.0;
-    pub const STEEP: Bound = bound(
+    pub(super) const STEEP_HELIX_DEG: f64 = 35.0;
+    pub(super) const STEEP: Bound = bound(
         4.0,
         25.0,
         "analytic compliance, helix angles above 35° (docs/VALIDATION.md, Not reached or doubtful: helical and short faces)",
     );
     /// Below so many teeth of either gear the first harmonic of helical pairs is that of the next row.
-    pub const FEW_TEETH: u32 = 17;
-    pub const FEW_TEETH_HARMONIC: (f64, &str) = (35.0, "; fewer than 17 teeth (the same section)");
+    pub(super) const FEW_TEETH: u32 = 17;
+    pub(super) const FEW_TEETH_HARMONIC: (f64, &str) = (35.0, "; fewer than 17 teeth (the same section)");
     /// First harmonic where tips are relieved.
-    pub const RELIEVED_HARMONIC: (f64, &str) =
+    pub(super) const RELIEVED_HARMONIC: (f64, &str) =
         (15.0, "; with tip relief at working load (docs/BENCHMARKS.md, Contact: time against error)");
-    pub const LIGHTLY_LOADED_HARMONIC: (f64, &str) = (
+    pub(super) const LIGHTLY_LOADED_HARMONIC: (f64, &str) = (
         23.0,
         "; with tip relief of more than three times the deflection (docs/VALIDATION.md, Not reached or doubtful: amplitude of the transmission error)",
     );
     /// Error of the stiffness of short helical faces, over (m_n/b) tan β: it is proportional to that, and envelops all
     /// cases of the section; from 17 teeth on, and below.
-    pub const SHORT_FACE: [f64; 2] = [23.5, 40.5];
-    pub const SHORT_FACE_BASIS: &str = "; a face this short for its helix angle is too stiff (docs/VALIDATION.md, Not reached or doubtful: helical and short faces)";
+    pub(super) const SHORT_FACE: [f64; 2] = [23.5, 40.5];
+    pub(super) const SHORT_FACE_BASIS: &str = "; a face this short for its helix angle is too stiff (docs/VALIDATION.md, Not reached or doubtful: helical and short faces)";
 }
 
 /// Tip relief over the elastic deflection from which on the load counts as light: the reference with 10 and 15 % had
@@ -84,7 +84,7 @@ mod measured {
 const LIGHT_LOAD: f64 = 3.0;
 
 /// The accuracy of a point whose other stages are in `result`.
-pub fn of(document: &JobDocument, result: &JobResult) -> Accuracy {
+pub(super) fn of(document: &JobDocument, result: &JobResult) -> Accuracy {
     let mesh = result.mesh.as_ref();
     let numerical = match &result.response {
         Some(response) => Some(response.error_estimate),
@@ -94,7 +94,7 @@ pub fn of(document: &JobDocument, result: &JobResult) -> Accuracy {
 }
 
 /// The accuracy of a sweep: the largest numerical error of its points, and the model's for its base document.
-pub fn of_sweep(document: &JobDocument, sweep: &SweepResult) -> Accuracy {
+pub(super) fn of_sweep(document: &JobDocument, sweep: &SweepResult) -> Accuracy {
     let errors = sweep.points.iter().filter_map(|point| point.error_estimate).filter(|error| error.is_finite());
     Accuracy { numerical: errors.reduce(f64::max), model: model(document, None) }
 }

@@ -7,7 +7,7 @@ use crate::{DocumentError, Violation};
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] with pointers into `/axes`.
-pub fn check_axes(document: &JobDocument) -> Result<(), DocumentError> {
+pub(super) fn check_axes(document: &JobDocument) -> Result<(), DocumentError> {
     let mut base = base(document);
     let mut violations = Vec::new();
     let mut taken: Vec<(&str, usize)> = Vec::new();
@@ -60,7 +60,7 @@ fn place<'a>(axis: &'a Axis, pointer: &str) -> &'a str {
 }
 
 /// The document of one point, before the swept values are put in.
-pub fn base(document: &JobDocument) -> JobDocument {
+pub(super) fn base(document: &JobDocument) -> JobDocument {
     let mut base = document.without_sweep();
     // Series are not kept for the points of a sweep.
     base.analysis.channels = Some(Vec::new());
@@ -71,7 +71,7 @@ pub fn base(document: &JobDocument) -> JobDocument {
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for values out of range, and where they do not go together.
-pub fn at<'a>(
+pub(super) fn at<'a>(
     mut base: JobDocument,
     values: impl IntoIterator<Item = (&'a Axis, f64)>,
 ) -> Result<JobDocument, DocumentError> {

@@ -35,13 +35,13 @@ fn warning(code: &str, pointer: impl Into<String>, detail: String) -> Warning {
 }
 
 /// The play along s, µm: as given, or the default.
-pub fn backlash_um(document: &JobDocument) -> f64 {
+pub(crate) fn backlash_um(document: &JobDocument) -> f64 {
     document.design.backlash_um.unwrap_or(DEFAULT_BACKLASH_UM)
 }
 
 /// Warnings of a document before anything is solved: masses and inertias, with those of solid discs by the geometry
 /// (`discs`, kg and kg m²), and backlash.
-pub fn of_document(document: &JobDocument, prepared: &Prepared, discs: [(f64, f64); 2]) -> Vec<Warning> {
+pub(crate) fn of_document(document: &JobDocument, prepared: &Prepared, discs: [(f64, f64); 2]) -> Vec<Warning> {
     let vibrates = document.kind != JobKind::Mesh;
     let strikes = matches!(document.model.impact, ImpactInput::CornerContact(_) | ImpactInput::Zhou2008(_));
     let mut warnings = Vec::new();
@@ -97,7 +97,7 @@ fn implausible(code: &str, pointer: String, given: f64, geometry: f64, unit: &st
 
 /// Least normal backlash of industrial drives with steel housings, mm: (2/3)(0.06 + 0.0005 a + 0.03 m_n), a and m_n in
 /// mm (ISO/TR 10064-2:1996, table A.1 and its formula).
-pub fn least_backlash_mm(center_distance_mm: f64, normal_module_mm: f64) -> f64 {
+pub(crate) fn least_backlash_mm(center_distance_mm: f64, normal_module_mm: f64) -> f64 {
     2.0 / 3.0 * (0.06 + 0.0005 * center_distance_mm + 0.03 * normal_module_mm)
 }
 
@@ -123,7 +123,7 @@ fn backlash(document: &JobDocument, prepared: &Prepared) -> Vec<Warning> {
 }
 
 /// Warnings of the mesh stage.
-pub fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
+pub(crate) fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let design = &document.design;
     let members = [&design.pinion, &design.gear].map(|gear| gear.material.as_ref().unwrap_or(&design.material));
@@ -156,7 +156,7 @@ pub fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
 }
 
 /// Warnings of pulses longer than the mesh period, or with a mean above the load.
-pub fn of_pulses(
+pub(crate) fn of_pulses(
     document: &JobDocument,
     plane: &MotionPlane,
     pulses: &[Option<dynamics::ImpactExcitation>; 2],
@@ -196,7 +196,7 @@ pub fn of_pulses(
 }
 
 /// Warnings of the motion.
-pub fn of_motion(document: &JobDocument, summary: &Summary) -> Vec<Warning> {
+pub(crate) fn of_motion(document: &JobDocument, summary: &Summary) -> Vec<Warning> {
     let rate = summary.lyapunov_per_mesh_period.filter(|rate| rate.is_finite());
     match summary.regime {
         Regime::Unstable => {

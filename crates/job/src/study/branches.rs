@@ -16,7 +16,7 @@ const ERRORS: f64 = 3.0;
 const STILL_M_S2: f64 = 1e-9;
 
 /// Positions on an axis from its least value up, or from its greatest down.
-pub fn order(axis: &Axis, direction: BranchDirection) -> Vec<usize> {
+pub(super) fn order(axis: &Axis, direction: BranchDirection) -> Vec<usize> {
     let values: Vec<f64> = (0..axis.len()).map(|index| axis.value(index)).collect();
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
@@ -27,7 +27,7 @@ pub fn order(axis: &Axis, direction: BranchDirection) -> Vec<usize> {
 }
 
 /// The jumps of a branch between neighbours; `line` in the order of the axis.
-pub fn jumps(
+pub(super) fn jumps(
     axis: &Axis,
     direction: BranchDirection,
     second_axis_value: Option<f64>,
@@ -58,7 +58,7 @@ pub fn jumps(
 }
 
 /// The intervals in which the branches of a line differ; both in the order of the axis.
-pub fn hysteresis(
+pub(super) fn hysteresis(
     axis: &Axis,
     second_axis_value: Option<f64>,
     up: &[SweepPoint],

@@ -15,7 +15,7 @@ const ORDERS: u32 = 10;
 ///
 /// # Errors
 /// [`SolveError::Canceled`].
-pub fn run(
+pub(super) fn run(
     base: &JobDocument,
     sweep: &JobDocument,
     context: &SolveContext,

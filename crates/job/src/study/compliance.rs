@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Compliances of one job, so that the points of a sweep share them.
 #[derive(Default)]
-pub struct ComplianceMemo(Mutex<HashMap<String, Arc<Compliance>>>);
+pub(super) struct ComplianceMemo(Mutex<HashMap<String, Arc<Compliance>>>);
 
 /// Most compliances kept at a time: a sweep over the teeth has no use for old ones.
 const KEPT: usize = 8;
@@ -22,7 +22,7 @@ const KEPT: usize = 8;
 const ELEMENTS_PART: f64 = 0.95;
 
 /// A compliance and where it came from.
-pub struct Found {
+pub(super) struct Found {
     pub compliance: Arc<Compliance>,
     /// Whether finite elements of both gears came from the store.
     pub elements_reused: bool,
@@ -31,7 +31,7 @@ pub struct Found {
 }
 
 /// The compliance of `case`, from the job's memory, from stored finite elements or computed.
-pub fn find(
+pub(super) fn find(
     case: &ContactCase,
     pair: &Pair,
     context: &SolveContext,
@@ -85,7 +85,7 @@ fn flank(
 }
 
 /// What the compliance depends on of a pair: not its modifications and misalignments.
-pub fn bare(case: &ContactCase) -> herringbone_physics::gear::PairSpec {
+pub(super) fn bare(case: &ContactCase) -> herringbone_physics::gear::PairSpec {
     let mut spec = *case.spec;
     for gear in [&mut spec.pinion, &mut spec.gear] {
         gear.flanks = [FlankModification::NONE; 2];

@@ -29,7 +29,7 @@ fn motions_agree_with_a_model_that_keeps_every_slice() {
         let (mesh, response) = (outcome.result.mesh.expect("mesh"), outcome.result.response.expect("response"));
         let expected = |pointer: &str| case["expected"].pointer(pointer).and_then(Value::as_f64).expect("a number");
         let agrees = |what: &str, got: f64, pointer: &str, within| {
-            check(TOPIC, &format!("{name}: {what}"), got, expected(pointer), within)
+            check(TOPIC, &format!("{name}: {what}"), got, expected(pointer), within);
         };
         let rms = response.rms.mesh_circumferential_acceleration_m_s2.left;
         let peak = outcome.series[0].values.iter().fold(0.0f64, |m, v| m.max(v.abs()));

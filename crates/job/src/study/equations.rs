@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// The plane in which the equations are written: radii of both gears and helix angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MotionPlane {
+pub(crate) struct MotionPlane {
     pub pinion_radius_m: f64,
     pub gear_radius_m: f64,
     pub helix_angle_rad: f64,
@@ -25,7 +25,7 @@ pub struct MotionPlane {
 impl MotionPlane {
     /// Base plane: base radii and β_b, k_m = k_bt / cos²β_b. Pitch plane: working pitch radii and helix angle there,
     /// with k_m R² cos²β equal to k_bt r_b² (physics of the mesh unchanged, only written elsewhere).
-    pub fn new(plane: Plane, prepared: &Prepared) -> Self {
+    pub(crate) fn new(plane: Plane, prepared: &Prepared) -> Self {
         let pair = &prepared.pair;
         let base = [pair.pinion.base_radius_m, pair.gear.base_radius_m];
         match plane {
@@ -52,7 +52,7 @@ impl MotionPlane {
 }
 
 /// A given stiffness as the document has it: it refers to s of the plane in use.
-pub fn given_stiffness(given: &GivenStiffness) -> Stiffness {
+pub(super) fn given_stiffness(given: &GivenStiffness) -> Stiffness {
     match given {
         GivenStiffness::Harmonics { mean_n_per_um, harmonics } => Stiffness::Fourier {
             mean_n_per_m: mean_n_per_um * 1e6,
@@ -69,7 +69,7 @@ pub fn given_stiffness(given: &GivenStiffness) -> Stiffness {
 /// The mesh damper then has the damping ratio along the transverse direction of the mesh, c = 2 ζ √(k m_e) there with k
 /// the mean tangent stiffness at the working load, so that ζ is the damping ratio of the two bodies turning on their
 /// mesh: along s that is 1/cosβ times the source's c_m.
-pub fn with_contact_forces(mut parameters: Parameters, forces: &[Arc<ContactForce>; 2]) -> Parameters {
+pub(super) fn with_contact_forces(mut parameters: Parameters, forces: &[Arc<ContactForce>; 2]) -> Parameters {
     let cos = parameters.helix_angle_rad.cos();
     for (half, force) in parameters.halves.iter_mut().zip(forces) {
         half.contact_force = Some(force.clone());
@@ -80,7 +80,7 @@ pub fn with_contact_forces(mut parameters: Parameters, forces: &[Arc<ContactForc
 
 /// Assembles the parameters. `stiffness` (along s) and `impact` are those of the left and the right half; the
 /// excitations of the right half come `right_lead_mesh_periods` earlier than written (stagger).
-pub fn parameters(
+pub(super) fn parameters(
     document: &JobDocument,
     prepared: &Prepared,
     plane: &MotionPlane,

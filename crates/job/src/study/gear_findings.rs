@@ -14,7 +14,7 @@ const MM: f64 = 1e3;
 const UM: f64 = 1e6;
 
 /// A reason why the pair cannot be solved.
-pub fn violation(found: &Infeasibility) -> Violation {
+pub(super) fn violation(found: &Infeasibility) -> Violation {
     let (code, unit) = code_and_unit(found);
     Violation {
         pointer: pointer(found.field),
@@ -27,7 +27,7 @@ pub fn violation(found: &Infeasibility) -> Violation {
 }
 
 /// A warning of a pair that is solved.
-pub fn warning(found: &gear::Warning) -> Warning {
+pub(super) fn warning(found: &gear::Warning) -> Warning {
     let side = side(found.field);
     let (code, detail) = match &found.reason {
         WarningReason::Undercut { profile_shift, limit, form_radius_m } => (

@@ -16,23 +16,23 @@ pub fn input_hash(document: &JobDocument) -> String {
 
 /// Hash of a contact analysis: the teeth with their errors, the torque and the choices of the model; not speed,
 /// supports, inertias or the analysis of the response.
-pub fn mesh_hash(case: &ContactCase) -> String {
+pub(super) fn mesh_hash(case: &ContactCase) -> String {
     hash("mesh", case)
 }
 
 /// Hash of the contact's force over approach and phase, on the flanks that carry the torque or on the `idle` ones: of
 /// the same things as [`mesh_hash`].
-pub fn force_hash(case: &ContactCase, idle: bool) -> String {
+pub(super) fn force_hash(case: &ContactCase, idle: bool) -> String {
     hash("mesh-force", &(case, idle))
 }
 
 /// Hash of the teeth's compliance: what [`mesh_hash`] depends on without load, modifications and misalignments.
-pub fn compliance_hash(case: &ContactCase) -> String {
+pub(super) fn compliance_hash(case: &ContactCase) -> String {
     hash("compliance", &(bare(case), &case.settings, case.fidelity, case.line_stiffness_n_per_m2, case.resolution))
 }
 
 /// Hash of the finite elements of one gear.
-pub fn flank_hash(key: &FlankKey) -> String {
+pub(super) fn flank_hash(key: &FlankKey) -> String {
     hash("flank", key)
 }
 

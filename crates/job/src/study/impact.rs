@@ -12,20 +12,20 @@ use herringbone_physics::gear::Half;
 use herringbone_physics::impact::{self, Inertia, MeshInConditions};
 
 /// Outcome of the impact stage: its block of the result, and the pulse of each half.
-pub struct ImpactStage {
+pub(super) struct ImpactStage {
     pub summary: Option<result::ImpactResult>,
     pub pulses: [Option<dynamics::ImpactExcitation>; 2],
 }
 
 /// True where the impact of a document acts in the equations of motion; else it is only reported.
-pub fn applied(document: &JobDocument) -> bool {
+pub(super) fn applied(document: &JobDocument) -> bool {
     // A mesh force by stiffness alone knows nothing of early contact; the loaded contact's contains it.
     document.model.mesh_force == MeshForce::Stiffness && !matches!(document.model.impact, ImpactInput::None)
 }
 
 /// Runs the impact stage: an impact that is not applied has no pulses. Warns of pulses outside the range of their
 /// model.
-pub fn run(
+pub(super) fn run(
     document: &JobDocument,
     prepared: &Prepared,
     plane: &MotionPlane,

@@ -26,7 +26,7 @@ const CLOSED_FORM_POSITIONS: usize = 128;
 
 /// Outcome of the mesh stage for the later stages.
 #[derive(Debug, Clone)]
-pub struct MeshStage {
+pub(super) struct MeshStage {
     pub summary: Mesh,
     /// Stiffness along s of the plane in use, left and right.
     pub stiffness: [Stiffness; 2],
@@ -39,7 +39,7 @@ pub struct MeshStage {
 
 /// The mesh of one half when a pair enters. Stiffness and deflection along the transverse base tangent.
 #[derive(Debug, Clone)]
-pub struct EntryState {
+pub(super) struct EntryState {
     /// Stiffness of the whole half, and the entering pair's load share, one twentieth of a base pitch after its start.
     pub stiffness_n_per_m: f64,
     pub load_share: f64,
@@ -54,7 +54,7 @@ enum Deflection {
 
 impl EntryState {
     /// Deflection of the pairs already in mesh when the entering pair stands `overrun_m` before its start.
-    pub fn deflection_m(&self, overrun_m: f64) -> f64 {
+    pub(super) fn deflection_m(&self, overrun_m: f64) -> f64 {
         match &self.deflection {
             Deflection::Constant(deflection_m) => *deflection_m,
             Deflection::Loaded(entry) => entry.deflection_before_entry_m(overrun_m),
@@ -64,7 +64,7 @@ impl EntryState {
 
 /// Everything the contact analysis depends on: what is solved is what is hashed.
 #[derive(Debug, Serialize)]
-pub struct ContactCase<'a> {
+pub(super) struct ContactCase<'a> {
     pub spec: &'a PairSpec,
     pub torque_nm: f64,
     half_stagger: f64,
@@ -76,11 +76,11 @@ pub struct ContactCase<'a> {
 
 impl<'a> ContactCase<'a> {
     /// F_bt of one half.
-    pub fn half_force_n(&self, pair: &Pair) -> f64 {
+    pub(super) fn half_force_n(&self, pair: &Pair) -> f64 {
         0.5 * self.torque_nm / pair.pinion.base_radius_m
     }
 
-    pub fn new(document: &JobDocument, ltca: &Ltca, prepared: &'a Prepared) -> Self {
+    pub(super) fn new(document: &JobDocument, ltca: &Ltca, prepared: &'a Prepared) -> Self {
         Self {
             spec: &prepared.pair.spec,
             torque_nm: prepared.contact_torque_nm,
@@ -113,14 +113,14 @@ impl<'a> ContactCase<'a> {
 
 /// Contact analyses of one job and the compliances under them, so that the points of a sweep share them.
 #[derive(Default)]
-pub struct MeshMemo {
+pub(super) struct MeshMemo {
     contacts: Memo<LoadedContact>,
     pub(super) forces: Memo<Vec<ForceTable>>,
     pub(super) compliances: ComplianceMemo,
 }
 
 /// Outcomes by the hash of their inputs.
-pub struct Memo<T>(Mutex<HashMap<String, Arc<T>>>);
+pub(super) struct Memo<T>(Mutex<HashMap<String, Arc<T>>>);
 
 impl<T> Default for Memo<T> {
     fn default() -> Self {
@@ -129,11 +129,11 @@ impl<T> Default for Memo<T> {
 }
 
 impl<T> Memo<T> {
-    pub fn get(&self, key: &str) -> Option<Arc<T>> {
+    pub(super) fn get(&self, key: &str) -> Option<Arc<T>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(key).cloned()
     }
 
-    pub fn put(&self, key: String, outcome: Arc<T>) {
+    pub(super) fn put(&self, key: String, outcome: Arc<T>) {
         let mut map = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         // A sweep over the teeth has no use for old entries; one over speed has one.
         if map.len() >= 64 {
@@ -147,7 +147,7 @@ impl<T> Memo<T> {
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn run(
+pub(super) fn run(
     document: &JobDocument,
     prepared: &Prepared,
     plane: &MotionPlane,
@@ -218,7 +218,7 @@ fn solve_contact(
     solve(pair, torque_nm.abs(), stagger, &compliances.compliance, &case.settings, watch).map_err(contact_failed)
 }
 
-pub fn contact_failed(error: ContactError) -> SolveError {
+pub(super) fn contact_failed(error: ContactError) -> SolveError {
     match error {
         ContactError::Canceled(canceled) => canceled.into(),
         other => SolveError::failed(Stage::Mesh, contact_code(&other), &other),
@@ -391,8 +391,9 @@ fn closed_form(source: StiffnessSource, prepared: &Prepared, curve: impl Fn(f64)
     let (k, e) = (contact::CurveStatistics::of(&stiffness), contact::CurveStatistics::of(&error));
     let axial = force_n * prepared.pair.base_helix_angle_rad.tan();
     let lines = prepared.pair.contact_lines(foot_m(&prepared.pair, MESH_IN_PHASE));
-    let total: f64 = lines.iter().map(|line| line.width_m()).sum();
-    let entering: f64 = lines.iter().filter(|line| line.pair == 0).map(|line| line.width_m()).sum();
+    let total: f64 = lines.iter().map(herringbone_physics::gear::ContactLine::width_m).sum();
+    let entering: f64 =
+        lines.iter().filter(|line| line.pair == 0).map(herringbone_physics::gear::ContactLine::width_m).sum();
     let entry = EntryState {
         stiffness_n_per_m: curve(MESH_IN_PHASE),
         load_share: entering / total,

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// The contact force of both halves, along s of the plane in use.
 #[derive(Debug, Clone)]
-pub struct MeshForces {
+pub(super) struct MeshForces {
     /// Left, right; the same where the halves are.
     pub forces: [Arc<ContactForce>; 2],
     pub summary: ContactForceTable,
@@ -79,7 +79,7 @@ struct Flanks<'a> {
 ///
 /// # Errors
 /// [`SolveError`] where the contact cannot be solved.
-pub fn run(
+pub(super) fn run(
     case: &ContactCase,
     pair: &Pair,
     plane: &MotionPlane,

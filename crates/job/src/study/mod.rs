@@ -206,11 +206,11 @@ mod unchecked {
     use crate::DocumentError;
     use crate::document::JobDocument;
 
-    pub fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
+    pub(super) fn check(document: &JobDocument) -> Result<CheckReport, DocumentError> {
         CheckedJob::new(document.clone()).map(|job| job.report())
     }
 
-    pub fn solve(document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
+    pub(super) fn solve(document: &JobDocument, context: &SolveContext) -> Result<Outcome, SolveError> {
         super::solve(&CheckedJob::new(document.clone())?, context)
     }
 }

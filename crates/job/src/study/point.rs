@@ -11,7 +11,7 @@ use herringbone_physics::dynamics::{DynamicsError, Parameters};
 use herringbone_physics::response::Response;
 
 /// A solved point.
-pub struct Point {
+pub(super) struct Point {
     pub result: JobResult,
     pub series: Vec<RecordedChannel>,
     /// State at the end (24 numbers in the source's order), to continue a neighbouring point from.
@@ -22,7 +22,7 @@ pub struct Point {
 }
 
 /// Extent of the solution of a point.
-pub struct PointOptions<'a> {
+pub(super) struct PointOptions<'a> {
     /// A neighbour's end state to continue from.
     pub start: Option<&'a [f64]>,
     /// With everything a result has; a point of a sweep leaves out the parts that its row does not hold.
@@ -33,22 +33,22 @@ pub struct PointOptions<'a> {
 
 impl PointOptions<'_> {
     /// A job of its own.
-    pub const WHOLE: Self = Self { start: None, whole: true, record: &[] };
+    pub(super) const WHOLE: Self = Self { start: None, whole: true, record: &[] };
 
-    pub fn records(&self, data: Recorded) -> bool {
+    pub(super) fn records(&self, data: Recorded) -> bool {
         self.record.contains(&data)
     }
 }
 
 /// A point with everything before its response: the equations of motion, where the document asks for a response.
-pub struct Staged<'a> {
+pub(super) struct Staged<'a> {
     result: JobResult,
     parameters: Option<Parameters>,
     stopwatch: Stopwatch<'a>,
 }
 
 impl Staged<'_> {
-    pub fn parameters(&self) -> Option<&Parameters> {
+    pub(super) fn parameters(&self) -> Option<&Parameters> {
         self.parameters.as_ref()
     }
 }
@@ -57,7 +57,7 @@ impl Staged<'_> {
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn solve(
+pub(super) fn solve(
     job: &CheckedJob,
     context: &SolveContext,
     memo: &MeshMemo,
@@ -73,7 +73,11 @@ pub fn solve(
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn stage<'a>(job: &CheckedJob, context: &SolveContext<'a>, memo: &MeshMemo) -> Result<Staged<'a>, SolveError> {
+pub(super) fn stage<'a>(
+    job: &CheckedJob,
+    context: &SolveContext<'a>,
+    memo: &MeshMemo,
+) -> Result<Staged<'a>, SolveError> {
     let (document, prepared) = (job.document(), job.prepared());
     let mut numerics = NumericsResult { solver_version: super::SOLVER_VERSION.to_owned(), ..NumericsResult::default() };
     let mut stopwatch = Stopwatch::new(context);
@@ -115,7 +119,7 @@ pub fn stage<'a>(job: &CheckedJob, context: &SolveContext<'a>, memo: &MeshMemo) 
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn respond(
+pub(super) fn respond(
     document: &JobDocument,
     staged: Staged,
     context: &SolveContext,
@@ -130,7 +134,7 @@ pub fn respond(
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn assemble(
+pub(super) fn assemble(
     document: &JobDocument,
     staged: Staged,
     options: &PointOptions,

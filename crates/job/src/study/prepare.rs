@@ -13,7 +13,7 @@ const DEFAULT_BORE_FRACTION: f64 = 0.4;
 
 /// A document whose gear can exist: geometry, inertias and operating point in SI.
 #[derive(Debug, Clone)]
-pub struct Prepared {
+pub(crate) struct Prepared {
     pub pair: Pair,
     pub warnings: Vec<Warning>,
     /// Whole-gear masses and moments of inertia (both halves), pinion and gear.
@@ -37,7 +37,7 @@ const LIGHT_LINE_LOAD_N_PER_M: f64 = 1e3;
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] with every reason why the gear cannot exist.
-pub fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
+pub(crate) fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
     let mut warnings = Vec::new();
     let spec = pair_spec(document, &mut warnings);
     let (pair, pair_warnings) = Pair::new(&spec)
@@ -229,7 +229,7 @@ fn short_face(document: &JobDocument, pair: &Pair) -> Option<Warning> {
 }
 
 /// The geometry block of the result.
-pub fn geometry(prepared: &Prepared) -> Geometry {
+pub(crate) fn geometry(prepared: &Prepared) -> Geometry {
     let pair = &prepared.pair;
     let member = |member: &gear::Member, index: usize| GearGeometry {
         reference_diameter_mm: member.reference_radius_m * 2e3,

@@ -44,7 +44,7 @@ fn contact(state: ContactState) -> ContactStateResult {
 }
 
 /// The channel that spectra are of.
-pub const SPECTRUM_CHANNEL: &str = "a_x_left";
+pub(super) const SPECTRUM_CHANNEL: &str = "a_x_left";
 
 fn full_spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<response::Spectrum> {
     let channel = response.channels.iter().find(|channel| channel.name == SPECTRUM_CHANNEL)?;
@@ -55,17 +55,17 @@ fn full_spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Optio
 const BANDS_PER_ORDER: usize = 4;
 
 /// Amplitudes around the mesh orders of [`band_orders`].
-pub fn bands(response: &response::Response, mesh_frequency_hz: f64) -> Option<Vec<f64>> {
+pub(super) fn bands(response: &response::Response, mesh_frequency_hz: f64) -> Option<Vec<f64>> {
     Some(full_spectrum(response, mesh_frequency_hz)?.bands(BANDS_PER_ORDER, SPECTRUM_ORDERS as usize))
 }
 
 /// The mesh orders of the spectra in the rows of a sweep: 1/4, 1/2, … 20.
-pub fn band_orders() -> Vec<f64> {
+pub(super) fn band_orders() -> Vec<f64> {
     (1..=BANDS_PER_ORDER * SPECTRUM_ORDERS as usize).map(|band| band as f64 / BANDS_PER_ORDER as f64).collect()
 }
 
 /// The motion at the starts of the last `most` recorded mesh periods.
-pub fn poincare(response: &response::Response, most: usize) -> Poincare {
+pub(super) fn poincare(response: &response::Response, most: usize) -> Poincare {
     let points = &response.poincare[response.poincare.len().saturating_sub(most)..];
     Poincare {
         x_left_m: points.iter().map(|point| point.x_left_m).collect(),
@@ -77,7 +77,7 @@ pub fn poincare(response: &response::Response, most: usize) -> Poincare {
 ///
 /// # Errors
 /// [`DynamicsError`] where the equations are refused.
-pub fn natural_modes(parameters: &Parameters) -> Result<Vec<NaturalMode>, DynamicsError> {
+pub(super) fn natural_modes(parameters: &Parameters) -> Result<Vec<NaturalMode>, DynamicsError> {
     let modes = NaturalModes::new(parameters)?.describe(parameters).into_iter().map(|mode| NaturalMode {
         frequency_hz: mode.frequency_hz,
         name: mode.name,
@@ -95,7 +95,11 @@ fn multipliers(multipliers: &[response::Multiplier]) -> Vec<FloquetMultiplier> {
 }
 
 /// The numbers of the result's response block: without what only a job of its own has (points, spectrum, modes).
-pub fn summary(document: &JobDocument, parameters: &Parameters, response: &response::Response) -> ResponseResult {
+pub(super) fn summary(
+    document: &JobDocument,
+    parameters: &Parameters,
+    response: &response::Response,
+) -> ResponseResult {
     let summary = &response.summary;
     ResponseResult {
         rms: RmsResult {
@@ -148,7 +152,7 @@ const SPECTRUM_LINES: usize = 4000;
 
 /// Spectrum of the left half's circumferential acceleration, where it was recorded. Of more lines than the result
 /// holds, the largest of each group of neighbours stays.
-pub fn spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<SpectrumResult> {
+pub(super) fn spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<SpectrumResult> {
     let full = full_spectrum(response, mesh_frequency_hz)?;
     let lines = full.mesh_order.iter().filter(|order| **order <= SPECTRUM_ORDERS).count();
     let group = lines.div_ceil(SPECTRUM_LINES).max(1);

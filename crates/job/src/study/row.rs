@@ -14,7 +14,7 @@ use herringbone_physics::watch::Watch;
 
 /// A row, and what its neighbours need of it.
 #[derive(Default)]
-pub struct Solved {
+pub(super) struct Solved {
     pub row: SweepPoint,
     /// State to continue a neighbour from.
     pub end_state: Option<Vec<f64>>,
@@ -24,7 +24,7 @@ pub struct Solved {
 ///
 /// # Errors
 /// [`SolveError::Document`] where the values do not go together, or make a gear that cannot exist.
-pub fn job(base: &JobDocument, sweep: &JobDocument, values: &[f64]) -> Result<CheckedJob, SolveError> {
+pub(super) fn job(base: &JobDocument, sweep: &JobDocument, values: &[f64]) -> Result<CheckedJob, SolveError> {
     let document = axes::at(base.clone(), sweep.axes.iter().zip(values.iter().copied()))?;
     Ok(CheckedJob::of_point(document)?)
 }
@@ -33,7 +33,7 @@ pub fn job(base: &JobDocument, sweep: &JobDocument, values: &[f64]) -> Result<Ch
 ///
 /// # Errors
 /// [`SolveError::Canceled`].
-pub fn solve(
+pub(super) fn solve(
     base: &JobDocument,
     sweep: &JobDocument,
     values: Vec<f64>,
@@ -55,7 +55,7 @@ pub fn solve(
 ///
 /// # Errors
 /// [`SolveError::Canceled`].
-pub fn solve_together(
+pub(super) fn solve_together(
     base: &JobDocument,
     sweep: &JobDocument,
     group: Vec<Vec<f64>>,
@@ -104,7 +104,7 @@ pub fn solve_together(
 }
 
 /// The row of a solved point.
-pub fn of_point(values: Vec<f64>, point: Point) -> Solved {
+pub(super) fn of_point(values: Vec<f64>, point: Point) -> Solved {
     let row = SweepPoint {
         poincare: point.poincare,
         acceleration_spectrum_m_s2: point.bands,
@@ -117,7 +117,7 @@ pub fn of_point(values: Vec<f64>, point: Point) -> Solved {
 ///
 /// # Errors
 /// [`SolveError::Canceled`], which is nobody's row.
-pub fn failed(values: Vec<f64>, error: SolveError) -> Result<Solved, SolveError> {
+pub(super) fn failed(values: Vec<f64>, error: SolveError) -> Result<Solved, SolveError> {
     match error {
         SolveError::Canceled(canceled) => Err(canceled.into()),
         error => {

@@ -22,7 +22,7 @@ const LATERAL_PER_MODULUS_AND_DISTANCE: f64 = 0.0145;
 const AXIAL_OVER_LATERAL: f64 = 1.0 / 3.0;
 
 /// The springs in use.
-pub fn used(supports: &doc::SupportsInput, pair: &Pair) -> SupportsResult {
+pub(super) fn used(supports: &doc::SupportsInput, pair: &Pair) -> SupportsResult {
     let lateral = LATERAL_PER_MODULUS_AND_DISTANCE * Material::STEEL.youngs_modulus_pa * pair.center_distance_m * 1e-6;
     let assumed = |given: Option<f64>, n_per_um: f64| value(given, n_per_um, SpringOrigin::Assumed);
     let derived = |given: Option<f64>, derived: f64| value(given, derived, SpringOrigin::Derived);
@@ -58,7 +58,7 @@ fn value(given: Option<f64>, otherwise: f64, origin: SpringOrigin) -> SpringValu
 }
 
 /// Every spring with the name of its field.
-pub fn named(supports: &SupportsResult) -> [(&'static str, &SpringValue); 9] {
+pub(super) fn named(supports: &SupportsResult) -> [(&'static str, &SpringValue); 9] {
     [
         ("pinion_lateral_n_per_um", &supports.pinion_lateral_n_per_um),
         ("gear_lateral_n_per_um", &supports.gear_lateral_n_per_um),
@@ -74,7 +74,7 @@ pub fn named(supports: &SupportsResult) -> [(&'static str, &SpringValue); 9] {
 
 /// Warning of the springs that were not given, with the values used; none without equations of motion. Springs that a
 /// sweep varies are given.
-pub fn assumed(document: &JobDocument, used: &SupportsResult) -> Option<Warning> {
+pub(super) fn assumed(document: &JobDocument, used: &SupportsResult) -> Option<Warning> {
     if document.kind == JobKind::Mesh {
         return None;
     }
@@ -111,7 +111,7 @@ pub fn assumed(document: &JobDocument, used: &SupportsResult) -> Option<Warning>
 }
 
 /// Four significant digits.
-pub fn shown(value: f64) -> String {
+pub(super) fn shown(value: f64) -> String {
     if value != 0.0 && !(1e-3..1e6).contains(&value.abs()) {
         return format!("{value:.3e}");
     }

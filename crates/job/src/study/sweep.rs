@@ -21,7 +21,7 @@ const POINTS_TOGETHER: usize = 32;
 ///
 /// # Errors
 /// [`SolveError::Canceled`]. A point that fails says so in its row.
-pub fn run(
+pub(super) fn run(
     document: &JobDocument,
     stored: StoredPoints,
     context: &SolveContext,

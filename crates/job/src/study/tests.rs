@@ -264,7 +264,7 @@ fn finite_elements_are_solved_once_per_gear() {
     assert_eq!((first.numerics.reused.len(), &second.numerics.reused), (0, &vec![ReusedStage::FiniteElements]));
     value["model"]["mesh_stiffness"] = json!({"source": "ltca"});
     let analytic = solve(&document(&value), &context).expect("solved").result;
-    let mean = |result: &crate::result::JobResult| result.mesh.as_ref().map_or(0.0, |m| m.stiffness_mean_n_per_um);
+    let mean = |result: &JobResult| result.mesh.as_ref().map_or(0.0, |m| m.stiffness_mean_n_per_um);
     let ratio = mean(&analytic) / mean(&second);
     check_value("Job: fidelities", "narrow source pair, mean stiffness, analytic over fe", ratio, 1.0, Absolute(0.05));
 }
@@ -688,7 +688,7 @@ fn without_supports() -> Value {
     value
 }
 
-fn about_supports(result: &crate::result::JobResult) -> Option<&Warning> {
+fn about_supports(result: &JobResult) -> Option<&Warning> {
     result.warnings.iter().find(|warning| warning.code == "assumed-supports")
 }
 
@@ -833,7 +833,7 @@ fn the_model_error_that_is_said_is_not_below_the_error() {
     }
 }
 
-fn warned(result: &crate::result::JobResult, code: &str, pointer: &str) -> bool {
+fn warned(result: &JobResult, code: &str, pointer: &str) -> bool {
     result.warnings.iter().any(|w| w.code == code && w.pointer == pointer)
 }
 

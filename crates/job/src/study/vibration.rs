@@ -11,7 +11,7 @@ use herringbone_physics::response::{self, Analysis, ChannelId, Regime};
 use herringbone_physics::watch::Watch;
 
 /// Outcome of the response stage.
-pub struct Vibration {
+pub(super) struct Vibration {
     pub summary: ResponseResult,
     pub series: Vec<RecordedChannel>,
     pub warnings: Vec<Warning>,
@@ -37,7 +37,7 @@ fn canonical(requested: &str) -> String {
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
-pub fn channels(document: &JobDocument) -> Result<Vec<ChannelId>, DocumentError> {
+pub(super) fn channels(document: &JobDocument) -> Result<Vec<ChannelId>, DocumentError> {
     let Some(requested) = &document.analysis.channels else { return Ok(ChannelId::all()) };
     let mut ids = Vec::with_capacity(requested.len());
     let mut violations = Vec::new();
@@ -62,7 +62,7 @@ const POINCARE_POINTS: usize = 200;
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
-pub fn solve(
+pub(super) fn solve(
     document: &JobDocument,
     parameters: &Parameters,
     options: &PointOptions,
@@ -78,7 +78,7 @@ pub fn solve(
 ///
 /// # Errors
 /// [`SolveError`].
-pub fn to_result(
+pub(super) fn to_result(
     document: &JobDocument,
     parameters: &Parameters,
     options: &PointOptions,
@@ -134,7 +134,7 @@ fn word(value: &impl serde::Serialize) -> String {
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
-pub fn analysis(document: &JobDocument, options: &PointOptions) -> Result<Analysis, DocumentError> {
+pub(super) fn analysis(document: &JobDocument, options: &PointOptions) -> Result<Analysis, DocumentError> {
     let requested = &document.analysis;
     let state = options.start.or(requested.initial_state.as_deref());
     let mut channels = channels(document)?;
@@ -164,7 +164,7 @@ pub fn analysis(document: &JobDocument, options: &PointOptions) -> Result<Analys
 }
 
 /// The error of a stage without a response.
-pub fn failed(error: DynamicsError) -> SolveError {
+pub(super) fn failed(error: DynamicsError) -> SolveError {
     let (code, sim_time_s) = match &error {
         DynamicsError::Canceled(canceled) => return (*canceled).into(),
         DynamicsError::Diverged { time_s } => ("diverged", Some(*time_s)),

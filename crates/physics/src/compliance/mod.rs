@@ -11,7 +11,6 @@
 //!
 //! Everything is SI; coordinates are those of [`crate::gear`].
 
-
 mod annulus;
 mod bulk;
 mod edge;

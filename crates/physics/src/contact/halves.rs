@@ -209,9 +209,9 @@ fn share_torque(
                 break;
             }
             if gap > 0.0 {
-                low = left_part
+                low = left_part;
             } else {
-                high = left_part
+                high = left_part;
             }
             let (kl, kr) = (left.stiffness_n_per_m, right.stiffness_n_per_m);
             let newton = left_part + gap * kl * kr / (kl + kr) / total;

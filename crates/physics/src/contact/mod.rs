@@ -7,7 +7,6 @@
 //! Everything is SI and along the transverse base tangent unless a name says otherwise; coordinates are those of
 //! [`crate::gear`].
 
-
 mod coast;
 mod cycle;
 mod distribution;

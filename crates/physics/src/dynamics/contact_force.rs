@@ -172,9 +172,9 @@ impl ContactForce {
             for _ in 0..200 {
                 let (f, k) = self.at(side, e, phase, phase);
                 if f < load {
-                    low = e
+                    low = e;
                 } else {
-                    high = e
+                    high = e;
                 }
                 let newton = e + (load - f) / k;
                 let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };

@@ -179,9 +179,9 @@ impl FourierSeries<f64> {
             for n in 0..2 * PER_PARITY {
                 let sign = if matches!(n % 4, 0 | 3) { 1.0 } else { -1.0 };
                 if n % 2 == 0 {
-                    even[n / 2] = sign * power
+                    even[n / 2] = sign * power;
                 } else {
-                    odd[n / 2] = sign * power
+                    odd[n / 2] = sign * power;
                 }
                 power *= TAU * order / (period_tau * (n + 1) as f64);
             }

@@ -116,10 +116,10 @@ impl<'a, const D: usize> Motion<'a, D> {
                 let contact = self.state.contact;
                 match &mut self.stepper {
                     Stepper::Taylor(t) => {
-                        t.step(self.model, &mut self.state, end, interior, &mut self.counts, observer)?
+                        t.step(self.model, &mut self.state, end, interior, &mut self.counts, observer)?;
                     }
                     Stepper::RungeKutta(r) => {
-                        r.step(self.model, &mut self.state, end, interior, &mut self.counts, observer)?
+                        r.step(self.model, &mut self.state, end, interior, &mut self.counts, observer)?;
                     }
                 }
                 self.contact_changed |= contact != self.state.contact;

@@ -10,7 +10,6 @@
 //!
 //! Everything is SI. Coordinates along the face are entry coordinates of [`crate::gear`].
 
-
 mod condense;
 mod cyclic;
 mod dissection;

@@ -12,7 +12,6 @@
 //!   y`).
 //! - Tooth pair `k` touches along `x = x0 + k p_bt + entry tan(beta_b)`: pair `k + 1` entered before pair `k`.
 
-
 mod body;
 mod coast;
 mod corner;

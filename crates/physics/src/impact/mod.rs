@@ -4,7 +4,6 @@
 //! Forces, stiffness and displacements are those of **one helix half**, in the base plane along the transverse base
 //! tangent. SI throughout.
 
-
 mod corner;
 mod energy;
 

@@ -1,7 +1,6 @@
 //! Numerical methods that several modules share: Gauss–Legendre rules, interpolation, periodic splines, monotone cubics
 //! and dense linear algebra on flat row-major slices.
 
-
 pub(crate) mod dense;
 pub(crate) mod gauss;
 pub(crate) mod interpolation;

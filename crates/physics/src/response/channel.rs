@@ -196,10 +196,10 @@ impl ChannelId {
             ChannelKind::Yg => row[i + YG] = 1.0,
             ChannelKind::Zg => row[i + ZG] = mirrored,
             ChannelKind::ThetaP => {
-                (row[i + U], row[i + W]) = (h.reduced_g / sum / model.radius_p, 1.0 / model.radius_p)
+                (row[i + U], row[i + W]) = (h.reduced_g / sum / model.radius_p, 1.0 / model.radius_p);
             }
             ChannelKind::ThetaG => {
-                (row[i + U], row[i + W]) = (-h.reduced_p / sum / model.radius_g, 1.0 / model.radius_g)
+                (row[i + U], row[i + W]) = (-h.reduced_p / sum / model.radius_g, 1.0 / model.radius_g);
             }
             ChannelKind::NormalForce => return ChannelEvaluator::Force { half: j, factor: 1.0 },
             ChannelKind::TangentialForce => return ChannelEvaluator::Force { half: j, factor: model.cos },

@@ -284,7 +284,7 @@ impl ResponseProblem<'_> {
             lyapunov: None,
             method: "integrate",
             error_estimate: 0.0,
-            energy_residual: finished.energy.as_ref().and_then(|e| e.residual()),
+            energy_residual: finished.energy.as_ref().and_then(EnergyBalance::residual),
             t0_s: finished.from.period as f64 * self.p.mesh_period_s(),
             counts: record.counts,
         };

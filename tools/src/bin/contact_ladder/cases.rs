@@ -6,7 +6,7 @@ use serde_json::Value;
 
 /// What an answer is compared with.
 #[derive(Debug, Clone)]
-pub struct Reference {
+pub(crate) struct Reference {
     pub tangent_n_per_m: f64,
     pub secant_n_per_m: f64,
     pub first_harmonic_m: f64,
@@ -16,7 +16,7 @@ pub struct Reference {
 
 /// One pair under one load.
 #[derive(Clone)]
-pub struct Case {
+pub(crate) struct Case {
     /// The teeth: cases of the same name and hold share their finite elements.
     pub teeth: &'static str,
     pub variant: &'static str,
@@ -103,10 +103,10 @@ const THIN_RIM: Teeth = Teeth {
 };
 
 /// Place of the source paper's unmodified pair, held at the rim, in [`cases`].
-pub const SOURCE_CASE: usize = 4;
+pub(crate) const SOURCE_CASE: usize = 4;
 
 /// All cases.
-pub fn cases() -> Vec<Case> {
+pub(crate) fn cases() -> Vec<Case> {
     use BodyHold::{Bore, Rim};
     let published = [
         ("unmodified, path only", "nominal_rim_clamped", Rim, Variant::Unmodified),

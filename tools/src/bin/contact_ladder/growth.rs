@@ -14,7 +14,7 @@ use herringbone_tools::stopwatch::median_time;
 type Line = (usize, Settings);
 
 /// Both tables, on one case.
-pub fn tables(case: &Case) -> Result<(), Failure> {
+pub(crate) fn tables(case: &Case) -> Result<(), Failure> {
     let settings = settings(case);
     let slices = [16, 32, 64, 128, 256].map(|n| (n, Settings { slices: Some(n), positions: Some(64), ..settings }));
     table(case, "slices", &slices)?;

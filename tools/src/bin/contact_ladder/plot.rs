@@ -92,7 +92,7 @@ const SERIES: [Series; 9] = [
 ];
 
 /// The figure.
-pub fn draw(answers: &[Answer]) -> String {
+pub(crate) fn draw(answers: &[Answer]) -> String {
     let title = "Run time of one half against the error of its mean mesh stiffness";
     let mut sheet = Sheet::transparent(920.0, 540.0, 13.0, title);
     let decades = |[from, to]: [i32; 2]| Scale::logarithmic(10f64.powi(from), 10f64.powi(to));

@@ -17,7 +17,7 @@ use herringbone_tools::stopwatch::{Stopwatch, median_time};
 
 /// A way to the stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Rung {
+pub(crate) enum Rung {
     Iso6336,
     /// Number among [`ANALYTIC`].
     Analytic(usize),
@@ -25,7 +25,7 @@ pub enum Rung {
 }
 
 /// Analytic rungs: name, slices, positions, accuracy of chosen positions.
-pub const ANALYTIC: [(&str, Option<usize>, Option<usize>, f64); 5] = [
+pub(crate) const ANALYTIC: [(&str, Option<usize>, Option<usize>, f64); 5] = [
     ("analytic, 12 slices, 16 positions", Some(12), Some(16), 2e-3),
     ("analytic, 24 slices, accuracy 1 %", Some(24), None, 1e-2),
     ("analytic, default slices, 64 positions", None, Some(64), 2e-3),
@@ -33,15 +33,15 @@ pub const ANALYTIC: [(&str, Option<usize>, Option<usize>, f64); 5] = [
     ("analytic, 120 slices, accuracy 0.02 %", Some(120), None, 2e-4),
 ];
 
-pub const ELEMENTS: [Resolution; 3] = [Resolution::Coarse, Resolution::Medium, Resolution::Standard];
+pub(crate) const ELEMENTS: [Resolution; 3] = [Resolution::Coarse, Resolution::Medium, Resolution::Standard];
 
 /// Every rung in the order of the tables.
-pub fn all() -> impl Iterator<Item = Rung> {
+pub(crate) fn all() -> impl Iterator<Item = Rung> {
     std::iter::once(Rung::Iso6336).chain((0..ANALYTIC.len()).map(Rung::Analytic)).chain(ELEMENTS.map(Rung::Elements))
 }
 
 impl Rung {
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Rung::Iso6336 => "ISO 6336-1 method B",
             Rung::Analytic(i) => ANALYTIC[i].0,
@@ -54,7 +54,7 @@ impl Rung {
 }
 
 /// What one rung gave on one case.
-pub struct Answer {
+pub(crate) struct Answer {
     pub rung: Rung,
     /// Number of the case.
     pub case: usize,
@@ -74,7 +74,7 @@ pub struct Answer {
 type Solved = ([FlankFlexibility; 2], f64);
 
 /// Times and errors of all rungs on all cases.
-pub fn answers(cases: &[Case], keep: Option<&Path>) -> Result<Vec<Answer>, Failure> {
+pub(crate) fn answers(cases: &[Case], keep: Option<&Path>) -> Result<Vec<Answer>, Failure> {
     let mut elements: HashMap<String, Solved> = HashMap::new();
     let mut answers = Vec::new();
     for (number, case) in cases.iter().enumerate() {
@@ -111,15 +111,15 @@ pub fn answers(cases: &[Case], keep: Option<&Path>) -> Result<Vec<Answer>, Failu
     Ok(answers)
 }
 
-pub fn settings(case: &Case) -> Settings {
+pub(crate) fn settings(case: &Case) -> Settings {
     Settings { body: case.hold, corner_contact: case.corner_contact, ..Settings::default() }
 }
 
-pub fn force_bt_n(case: &Case) -> f64 {
+pub(crate) fn force_bt_n(case: &Case) -> f64 {
     case.torque_nm / case.pair.pinion.base_radius_m
 }
 
-pub fn solve(
+pub(crate) fn solve(
     case: &Case,
     settings: &Settings,
     compliance: &Compliance,

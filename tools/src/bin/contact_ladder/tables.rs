@@ -8,7 +8,7 @@ use crate::cases::Case;
 use crate::rungs::{Answer, Rung, all};
 
 /// One line per rung: median time, and errors over all cases: root mean square and the worst.
-pub fn summary(answers: &[Answer]) {
+pub(crate) fn summary(answers: &[Answer]) {
     println!("| rung | cold | stored | mean stiffness, tangent | secant | first harmonic of the TE | load share |");
     println!("|---|---|---|---|---|---|---|");
     for rung in all() {
@@ -36,7 +36,7 @@ pub fn summary(answers: &[Answer]) {
 }
 
 /// The default analytic rung and `fe` at its default resolution, case by case.
-pub fn analytic_by_case(cases: &[Case], answers: &[Answer]) {
+pub(crate) fn analytic_by_case(cases: &[Case], answers: &[Answer]) {
     println!("| pair | case | held at | reference | tangent | secant | first harmonic | load share |");
     println!("|---|---|---|---|---|---|---|---|");
     for (number, case) in cases.iter().enumerate() {
@@ -62,7 +62,7 @@ pub fn analytic_by_case(cases: &[Case], answers: &[Answer]) {
 }
 
 /// Every rung on every case.
-pub fn by_case(cases: &[Case], answers: &[Answer]) {
+pub(crate) fn by_case(cases: &[Case], answers: &[Answer]) {
     for (number, case) in cases.iter().enumerate() {
         println!("{}, {}, held at the {}:\n", case.teeth, case.variant, hold(case));
         println!("| rung | cold | stored | tangent | secant | first harmonic | load share |");
@@ -96,7 +96,7 @@ fn percent(value: f64, sign: bool) -> String {
     if sign { format!("{value:+.digits$} %") } else { format!("{value:.digits$} %") }
 }
 
-pub fn seconds(value: f64) -> String {
+pub(crate) fn seconds(value: f64) -> String {
     let (value, unit) = match value {
         v if v < 1e-3 => (v * 1e6, "µs"),
         v if v < 1.0 => (v * 1e3, "ms"),

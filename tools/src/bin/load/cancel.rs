@@ -12,7 +12,7 @@ const RUNS: usize = 20;
 /// Name, stage to be in, document.
 type Case = (&'static str, &'static str, fn() -> Value);
 
-pub fn measure() -> Result<(), Failure> {
+pub(crate) fn measure() -> Result<(), Failure> {
     let directory = tempfile::tempdir_in(".")?;
     let service = Service::start(&directory.path().join("cancel.db"), &[])?;
     let mut connection = service.connect()?;

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 const POINTS: u32 = 100_000;
 const CONNECTIONS: usize = 10_000;
 
-pub fn measure() -> Result<(), Failure> {
+pub(crate) fn measure() -> Result<(), Failure> {
     let directory = tempfile::tempdir_in(".")?;
     println!("| memory and large answers | |\n|---|---|");
     many_jobs(&directory.path().join("many.db"))?;

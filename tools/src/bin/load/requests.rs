@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 const EACH: Duration = Duration::from_secs(3);
 
-pub fn measure() -> Result<(), Failure> {
+pub(crate) fn measure() -> Result<(), Failure> {
     let directory = tempfile::tempdir_in(".")?;
     println!("| requests | clients | per second | median | 99 % within | longest |\n|---|---|---|---|---|---|");
     let service = Service::start(&directory.path().join("polls.db"), &[])?;
@@ -42,7 +42,7 @@ fn polls(address: SocketAddr, clients: usize, path: &str) -> std::io::Result<Tim
 }
 
 /// Each of so many clients sends one request after the other on a connection of its own.
-pub fn clients_at(
+pub(crate) fn clients_at(
     address: SocketAddr,
     clients: usize,
     request: impl Fn(&mut Connection) -> std::io::Result<()> + Sync,

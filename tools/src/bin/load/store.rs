@@ -11,11 +11,11 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
-pub const MANY: u32 = 100_000;
+pub(crate) const MANY: u32 = 100_000;
 const CAPACITY: u32 = 1_000_000;
 
 #[tokio::main]
-pub async fn commits() -> Result<(), Failure> {
+pub(crate) async fn commits() -> Result<(), Failure> {
     println!("| submission at the store, one after the other | per second | median / longest |\n|---|---|---|");
     let directory = tempfile::tempdir_in(".")?;
     let database = directory.path().join("store.db");
@@ -85,7 +85,7 @@ async fn submit(store: &Store) {
 }
 
 /// Writes so many jobs that wait; in memory, where a commit costs no wait, and then as a file at the path.
-pub async fn fill(database: &Path, jobs: u32) -> Result<Duration, Failure> {
+pub(crate) async fn fill(database: &Path, jobs: u32) -> Result<Duration, Failure> {
     let fast = tempfile::tempdir_in("/dev/shm")?;
     let file = fast.path().join("fill.db");
     let store = Store::open(&StoreConfig::at(&file)).await?;
@@ -100,7 +100,7 @@ pub async fn fill(database: &Path, jobs: u32) -> Result<Duration, Failure> {
 }
 
 #[tokio::main]
-pub async fn many_jobs() -> Result<(), Failure> {
+pub(crate) async fn many_jobs() -> Result<(), Failure> {
     println!("| with so many jobs waiting (median / longest of 50) | 100 | 100 000 |\n|---|---|---|");
     let directory = tempfile::tempdir_in(".")?;
     let mut columns = Vec::new();

@@ -3,23 +3,23 @@
 use std::time::{Duration, Instant};
 
 #[derive(Default)]
-pub struct Times(Vec<Duration>);
+pub(crate) struct Times(Vec<Duration>);
 
 impl Times {
-    pub fn add(&mut self, time: Duration) {
+    pub(crate) fn add(&mut self, time: Duration) {
         self.0.push(time);
     }
 
-    pub fn append(&mut self, mut other: Times) {
+    pub(crate) fn append(&mut self, mut other: Times) {
         self.0.append(&mut other.0);
     }
 
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
 
     /// So many runs of something.
-    pub async fn of<F: Future>(runs: usize, mut something: impl FnMut() -> F) -> Self {
+    pub(crate) async fn of<F: Future>(runs: usize, mut something: impl FnMut() -> F) -> Self {
         let mut times = Self::default();
         for _ in 0..runs {
             let began = Instant::now();
@@ -30,18 +30,18 @@ impl Times {
     }
 
     /// In milliseconds; `part` 0.5 is the median, 1 the longest.
-    pub fn ms(&mut self, part: f64) -> f64 {
+    pub(crate) fn ms(&mut self, part: f64) -> f64 {
         self.0.sort_unstable();
         let last = self.0.len().saturating_sub(1);
         self.0.get((part * last as f64).round() as usize).map_or(f64::NAN, |time| time.as_secs_f64() * 1e3)
     }
 
-    pub fn mean_ms(&self) -> f64 {
+    pub(crate) fn mean_ms(&self) -> f64 {
         self.0.iter().sum::<Duration>().as_secs_f64() * 1e3 / self.0.len() as f64
     }
 
     /// Median and longest.
-    pub fn told(&mut self) -> String {
+    pub(crate) fn told(&mut self) -> String {
         format!("{:.2} ms / {:.2} ms", self.ms(0.5), self.ms(1.0))
     }
 }

@@ -6,10 +6,10 @@ use serde_json::Value;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-pub type Outcome<T> = Result<T, Failure>;
+pub(crate) type Outcome<T> = Result<T, Failure>;
 
 /// The running service, and how much was asked of it.
-pub struct Bench {
+pub(crate) struct Bench {
     connection: Connection,
     service: Service,
     _directory: TempDir,
@@ -18,7 +18,7 @@ pub struct Bench {
 }
 
 /// An input that a sweep changes, and further ones that take the same values.
-pub struct Axis<'a> {
+pub(crate) struct Axis<'a> {
     pub pointer: &'a str,
     pub also: &'a [&'a str],
     pub values: &'a [f64],
@@ -26,20 +26,20 @@ pub struct Axis<'a> {
 
 /// A sweep's points, in the order of the axes (the first one fastest; those that were not solved have an `error`), and
 /// how long they took.
-pub struct Swept {
+pub(crate) struct Swept {
     pub points: Vec<Value>,
     pub seconds: f64,
 }
 
 impl Bench {
-    pub fn start() -> Outcome<Self> {
+    pub(crate) fn start() -> Outcome<Self> {
         let directory = tempfile::tempdir()?;
         let service = Service::start(&directory.path().join("study.db"), &[])?;
         Ok(Self { connection: service.connect()?, service, _directory: directory, jobs: 0, points: 0 })
     }
 
     /// Processor time that the service has used.
-    pub fn processor_s(&self) -> f64 {
+    pub(crate) fn processor_s(&self) -> f64 {
         self.service.processor_s()
     }
 
@@ -47,13 +47,13 @@ impl Bench {
     ///
     /// # Errors
     /// The service's own words, when it refuses the document or cannot solve it.
-    pub fn result(&mut self, document: &Value) -> Outcome<Value> {
+    pub(crate) fn result(&mut self, document: &Value) -> Outcome<Value> {
         let path = self.solved(document)?;
         Ok(self.connection.json("GET", &format!("{path}/result"), "")?)
     }
 
     /// The result, or why the document is refused: the code of its first violation and the sentence.
-    pub fn result_or_refusal(&mut self, document: &Value) -> Outcome<Result<Value, String>> {
+    pub(crate) fn result_or_refusal(&mut self, document: &Value) -> Outcome<Result<Value, String>> {
         let answer = self.connection.json("POST", "/api/v1/jobs", &document.to_string())?;
         match answer["errors"][0]["code"].as_str() {
             Some(code) => Ok(Err(code.replace('-', " "))),
@@ -62,7 +62,7 @@ impl Bench {
     }
 
     /// The result with recorded channels, each as (time in s, values).
-    pub fn series(&mut self, document: &Value, channels: &[&str]) -> Outcome<(Value, Vec<Vec<f64>>)> {
+    pub(crate) fn series(&mut self, document: &Value, channels: &[&str]) -> Outcome<(Value, Vec<Vec<f64>>)> {
         let mut document = document.clone();
         document["analysis"]["channels"] = channels.into();
         document["analysis"]["samples_per_mesh_period"] = 1024.into();
@@ -78,7 +78,7 @@ impl Bench {
     }
 
     /// A sweep of a document over one or two axes.
-    pub fn sweep(&mut self, document: &Value, axes: &[Axis]) -> Outcome<Swept> {
+    pub(crate) fn sweep(&mut self, document: &Value, axes: &[Axis]) -> Outcome<Swept> {
         let mut document = document.clone();
         document["kind"] = "sweep".into();
         let axis = |Axis { pointer, also, values }: &Axis| serde_json::json!({"pointer": pointer, "also": also, "values": values});
@@ -108,6 +108,6 @@ impl Bench {
 ///
 /// # Errors
 /// When there is none.
-pub fn number(value: &Value, pointer: &str) -> Outcome<f64> {
+pub(crate) fn number(value: &Value, pointer: &str) -> Outcome<f64> {
     value.pointer(pointer).and_then(Value::as_f64).ok_or_else(|| format!("no number at {pointer}").into())
 }

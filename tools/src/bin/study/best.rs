@@ -26,7 +26,7 @@ struct Curves {
     unquiet: usize,
 }
 
-pub fn write(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write(study: &mut Study) -> Outcome<()> {
     study.page.say("### Is there a best contact ratio?\n\nThe same three ways as above, contact in the equations: halves of one body (`examples/contact.json`), the source's free halves, and one body whose tip corners do not touch.");
     let steps: [Vec<f64>; 3] = [
         (0..=12).map(|step| 0.70 + 0.04 * f64::from(step)).chain([1.2, 1.21, 1.22, 1.24, 1.265]).collect(),

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 /// What one document answers.
 #[derive(Clone)]
-pub struct Answer {
+pub(crate) struct Answer {
     /// RMS accelerations, m/s²: mesh circumferential, pinion axial.
     pub rms: [f64; 2],
     pub factor: f64,
@@ -22,7 +22,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    pub fn of(result: &Value) -> Outcome<Self> {
+    pub(crate) fn of(result: &Value) -> Outcome<Self> {
         let word = |name: &str| result["response"][name].as_str().unwrap_or_default().to_owned();
         Ok(Self {
             rms: rms(result)?,
@@ -34,13 +34,13 @@ impl Answer {
     }
 
     /// Teeth stay in contact, and every mesh period is like the one before.
-    pub fn is_quiet(&self) -> bool {
+    pub(crate) fn is_quiet(&self) -> bool {
         self.contact == "continuous" && self.regime == "period-1"
     }
 }
 
 /// One document by all models.
-pub struct Models {
+pub(crate) struct Models {
     /// The source's: stiffness and impact.
     pub source: Answer,
     /// The source's without its impact.
@@ -54,7 +54,7 @@ pub struct Models {
 }
 
 impl Models {
-    pub fn of(study: &mut Study, document: &Value) -> Outcome<Self> {
+    pub(crate) fn of(study: &mut Study, document: &Value) -> Outcome<Self> {
         let mut ask = |document: &Value| Answer::of(&study.bench.result(document)?);
         let one_body = on_one_body(document);
         Ok(Self {
@@ -67,7 +67,7 @@ impl Models {
     }
 }
 
-pub fn write(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write(study: &mut Study) -> Outcome<()> {
     study.page.say("## The same tables with the contact in the equations\n\nThe loaded contact already holds what an impact force describes: tip corners touch before the theoretical start, and the pair takes up its load over the approach. A pulse on top of it counts the entry a second time. \
         `model.mesh_force: \"contact\"`, the service's default, puts that contact into the equations as it is, a force over approach and phase for each half, and no pulse (docs/DESIGN.md). Table 2's impacts are then numbers that are reported, not forces that act.");
     ladder(study)?;

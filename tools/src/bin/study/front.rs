@@ -10,7 +10,7 @@ use crate::table3::rms;
 
 /// One claim of the source, and what became of it. What the contact answers is filled in by its own chapter.
 #[derive(Default)]
-pub struct Verdict {
+pub(crate) struct Verdict {
     pub source: &'static str,
     /// What the source's model answers here.
     pub here: String,
@@ -23,7 +23,7 @@ pub struct Verdict {
 }
 
 /// The differences above 10 %, with their explanation or without.
-pub fn differences(study: &mut Study) -> Outcome<()> {
+pub(crate) fn differences(study: &mut Study) -> Outcome<()> {
     let (mut impacts, mut levels) = (Vec::new(), Vec::new());
     for printed in &PRINTED {
         let result = study.bench.result(&load(printed.document)?)?;
@@ -84,7 +84,7 @@ pub fn differences(study: &mut Study) -> Outcome<()> {
 }
 
 /// What it took, without times that differ from run to run by more than the machine.
-pub fn cost(study: &mut Study, seconds: f64) {
+pub(crate) fn cost(study: &mut Study, seconds: f64) {
     study.page.say("## What it took");
     let mut rows: Vec<Vec<String>> = study
         .maps
@@ -105,7 +105,7 @@ pub fn cost(study: &mut Study, seconds: f64) {
 }
 
 /// The page's beginning, before what the chapters wrote.
-pub fn beginning(verdicts: &[Verdict]) -> String {
+pub(crate) fn beginning(verdicts: &[Verdict]) -> String {
     let mut page = Page::default();
     page.say(
         "# The source paper's results, side by side, and a design guide\n\nWhat *Effect of Contact Ratio on Dynamic Behavior of a Herringbone Gear Nonlinear System* reports, beside what this service answers to the same questions, by the source's model and with the contact in the equations; why they differ; and the design guide that the paper leaves as \

@@ -8,7 +8,7 @@ use crate::maps::{Map, Solved, Upwards, spaced};
 use crate::page::sig;
 use serde_json::{Value, json};
 
-pub fn write(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write(study: &mut Study) -> Outcome<()> {
     study.page.say("## Design guide: maps\n\nContact in the equations, halves of one body. Contact ratio by face width (50 to 120 mm per half) to the right, one other input upwards; everything else as `examples/contact.json` (800 N·m, 2000 r/min) unless said. Each map is one sweep (`kind: \"sweep\"`, two axes). White dots: the lowest RMS of each row.");
     let base = contact()?;
     torque(study, &base)?;
@@ -30,12 +30,12 @@ fn relieved(base: &Value) -> Value {
     with(base, &[("/design/pinion/tip_relief", relief()), ("/design/gear/tip_relief", relief())])
 }
 
-pub fn map([name, title]: [&'static str; 2], document: Value, columns: usize, upwards: Upwards) -> Map {
+pub(crate) fn map([name, title]: [&'static str; 2], document: Value, columns: usize, upwards: Upwards) -> Map {
     Map { name, title, document, widths_mm: spaced(50.0, 120.0, columns, false), upwards }
 }
 
 /// Draws a map and says what can be said of each.
-pub fn show(study: &mut Study, map: Map) -> Outcome<Solved> {
+pub(crate) fn show(study: &mut Study, map: Map) -> Outcome<Solved> {
     let solved = map.solve(study)?;
     eprintln!("{}: {:.1} s", solved.map.name, solved.seconds);
     solved.draw(study);

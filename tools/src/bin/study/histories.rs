@@ -35,7 +35,7 @@ impl History {
     }
 }
 
-pub fn write(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write(study: &mut Study) -> Outcome<()> {
     study.page.say("## Histories, phase planes, spectra\n\nAs the source's Figures 3 to 10, for the contact ratios it shows, steady state. The motion repeats every mesh period, so two equal periods are drawn and the \
         Poincaré points (once per mesh period, orange) fall on one.");
     for (name, channels, quantity) in [
@@ -68,7 +68,7 @@ fn history(study: &mut Study, ratio: f64, document: &Value, channels: &[&str]) -
 }
 
 /// The circumferential vibration of the same documents with the contact in the equations, on one body.
-pub fn write_contact(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write_contact(study: &mut Study) -> Outcome<()> {
     let mut histories = Vec::new();
     for printed in PRINTED.iter().filter(|printed| printed.rms.is_some()) {
         let document = on_one_body(&load(printed.document)?);

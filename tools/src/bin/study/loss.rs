@@ -10,7 +10,7 @@ use crate::page::sig;
 use crate::source::PRINTED;
 use serde_json::json;
 
-pub fn write(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write(study: &mut Study) -> Outcome<()> {
     study.page.say("## Light loads, by the source's model\n\nContact ratio by face width (50 to 120 mm per half) to the right, the torque upwards, everything else as `examples/table1.json` (2000 r/min). Each map is one sweep (`kind: \"sweep\"`, two axes). White dots: the lowest RMS of each row.");
     let base = &table1()?;
     let upwards = Upwards {

@@ -12,7 +12,7 @@ use std::fmt::Write;
 
 /// The input of a map that goes upwards.
 #[derive(Clone)]
-pub struct Upwards {
+pub(crate) struct Upwards {
     pub pointer: &'static str,
     /// Inputs that go with it.
     pub also: &'static [&'static str],
@@ -22,7 +22,7 @@ pub struct Upwards {
 }
 
 /// One map: the contact ratio (by face width) to the right, another input upwards.
-pub struct Map {
+pub(crate) struct Map {
     pub name: &'static str,
     pub title: &'static str,
     pub document: Value,
@@ -31,7 +31,7 @@ pub struct Map {
 }
 
 /// A solved map: points by column (width), then row (value).
-pub struct Solved {
+pub(crate) struct Solved {
     pub map: Map,
     pub ratios: Vec<f64>,
     /// RMS of the circumferential acceleration, the larger of both halves.
@@ -46,12 +46,12 @@ pub struct Solved {
 }
 
 /// So many values from one to another, in equal steps or equal ratios.
-pub fn spaced(from: f64, to: f64, count: usize, logarithmic: bool) -> Vec<f64> {
+pub(crate) fn spaced(from: f64, to: f64, count: usize, logarithmic: bool) -> Vec<f64> {
     grid::values(from, to, count, if logarithmic { Spacing::Logarithmic } else { Spacing::Linear })
 }
 
 impl Map {
-    pub fn solve(self, study: &mut Study) -> Outcome<Solved> {
+    pub(crate) fn solve(self, study: &mut Study) -> Outcome<Solved> {
         let Swept { points, seconds } = study.bench.sweep(
             &self.document,
             &[
@@ -97,12 +97,12 @@ fn known(column: &[Value], name: &str) -> Outcome<f64> {
 }
 
 impl Solved {
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.rms.iter().map(Vec::len).sum()
     }
 
     /// For every value of the other input, the column with the lowest RMS.
-    pub fn ridge(&self) -> Vec<usize> {
+    pub(crate) fn ridge(&self) -> Vec<usize> {
         let best = |row: usize| {
             (0..self.rms.len()).min_by(|a, b| self.rms[*a][row].total_cmp(&self.rms[*b][row])).unwrap_or(0)
         };
@@ -110,7 +110,7 @@ impl Solved {
     }
 
     /// The ridge in words.
-    pub fn ridge_words(&self) -> String {
+    pub(crate) fn ridge_words(&self) -> String {
         let ridge = self.ridge();
         let last = self.ratios.len() - 1;
         let near = ridge.iter().filter(|column| **column + 2 >= last).count();
@@ -128,19 +128,19 @@ impl Solved {
         }
     }
 
-    pub fn extremes(table: &[Vec<f64>]) -> (f64, f64) {
+    pub(crate) fn extremes(table: &[Vec<f64>]) -> (f64, f64) {
         let all = || table.iter().flatten().copied();
         (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max))
     }
 
     /// The column whose contact ratio is nearest.
-    pub fn nearest(&self, ratio: f64) -> usize {
+    pub(crate) fn nearest(&self, ratio: f64) -> usize {
         let distance = |column: &usize| (self.ratios[*column] - ratio).abs();
         (0..self.ratios.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
     }
 
     /// Difference between the greatest and the least dynamic factor of a column, the largest of all columns.
-    pub fn factor_swing(&self) -> f64 {
+    pub(crate) fn factor_swing(&self) -> f64 {
         let swing = |column: &Vec<f64>| {
             let (least, most) = column.iter().fold((f64::INFINITY, 0f64), |(a, b), v| (a.min(*v), b.max(*v)));
             most - least
@@ -149,34 +149,34 @@ impl Solved {
     }
 
     /// Points that the solver gave up.
-    pub fn unsolved(&self) -> usize {
+    pub(crate) fn unsolved(&self) -> usize {
         self.contact.iter().flatten().filter(|contact| *contact == UNKNOWN).count()
     }
 
-    pub fn is_separated(&self, column: usize, row: usize) -> bool {
+    pub(crate) fn is_separated(&self, column: usize, row: usize) -> bool {
         !matches!(self.contact[column][row].as_str(), "continuous" | UNKNOWN)
     }
 
     /// Points without continuous contact.
-    pub fn separated(&self) -> usize {
+    pub(crate) fn separated(&self) -> usize {
         let column =
             |column: usize| (0..self.map.upwards.values.len()).filter(|row| self.is_separated(column, *row)).count();
         (0..self.ratios.len()).map(column).sum()
     }
 
     /// Points that rest on their back flanks all the time.
-    pub fn on_back_flanks(&self) -> usize {
+    pub(crate) fn on_back_flanks(&self) -> usize {
         let column =
             |column: usize| (0..self.map.upwards.values.len()).filter(|row| self.state(column, *row) == 7).count();
         (0..self.ratios.len()).map(column).sum()
     }
 
     /// Points that do not repeat every mesh period.
-    pub fn other_regimes(&self) -> usize {
+    pub(crate) fn other_regimes(&self) -> usize {
         self.regime.iter().flatten().filter(|regime| !matches!(regime.as_str(), "period-1" | UNKNOWN)).count()
     }
 
-    pub fn draw(&self, study: &mut Study) {
+    pub(crate) fn draw(&self, study: &mut Study) {
         let lines = self.present().len() as f64;
         let mut sheet = Sheet::white(970.0, f64::max(430.0, 374.0 + 16.0 * lines));
         let scale = |values: &[f64]| {

@@ -11,10 +11,10 @@ use crate::ways::WAYS;
 use herringbone_tools::plot::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
 use serde_json::{Value, json};
 
-pub type Curve = Vec<(f64, f64)>;
+pub(crate) type Curve = Vec<(f64, f64)>;
 
 /// Where a curve is lowest, and whether that is at neither of its ends.
-pub fn lowest(curve: &Curve) -> ((f64, f64), bool) {
+pub(crate) fn lowest(curve: &Curve) -> ((f64, f64), bool) {
     let best = (0..curve.len()).min_by(|a, b| curve[*a].1.total_cmp(&curve[*b].1)).unwrap_or(0);
     (curve[best], best > 0 && best + 1 < curve.len())
 }
@@ -32,7 +32,7 @@ struct Switched {
     pulse: Curve,
 }
 
-pub fn write(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write(study: &mut Study) -> Outcome<()> {
     study.page.say("## Is there a best contact ratio, and by which mechanism?\n\nTable 1's pair at 800 N·m and 2000 r/min, its contact ratio changed by tooth height, face width and helix angle alone. Switched off in turn: the impact (`impact.source: \"none\"`); the fluctuation of the \
         stiffness (a given constant stiffness of the same mean, with the same impact); the backlash (0 instead of 2 µm).");
     let base = table1()?;

@@ -5,26 +5,26 @@ use crate::ask::Outcome;
 use std::fmt::Write;
 
 #[derive(Default)]
-pub struct Page {
+pub(crate) struct Page {
     text: String,
     failed: Vec<String>,
 }
 
 impl Page {
     /// A paragraph, heading or list as it stands.
-    pub fn say(&mut self, text: impl AsRef<str>) {
+    pub(crate) fn say(&mut self, text: impl AsRef<str>) {
         let _ = writeln!(self.text, "{}\n", text.as_ref());
     }
 
     /// A conclusion, and whether the numbers bear it out: the page is not written when they do not.
-    pub fn claim(&mut self, holds: bool, text: impl AsRef<str>) {
+    pub(crate) fn claim(&mut self, holds: bool, text: impl AsRef<str>) {
         if !holds {
             self.failed.push(text.as_ref().to_owned());
         }
         self.say(text);
     }
 
-    pub fn table(&mut self, header: &str, rows: &[Vec<String>]) {
+    pub(crate) fn table(&mut self, header: &str, rows: &[Vec<String>]) {
         let columns = header.matches('|').count() + 1;
         let _ = writeln!(self.text, "| {header} |\n|{}", "---|".repeat(columns));
         for row in rows {
@@ -33,7 +33,7 @@ impl Page {
         self.text.push('\n');
     }
 
-    pub fn figure(&mut self, name: &str, caption: &str) {
+    pub(crate) fn figure(&mut self, name: &str, caption: &str) {
         self.say(format!(
             "![{}](study/{name}.svg)\n\n*{caption}*",
             caption.split(['.', ':']).next().unwrap_or_default()
@@ -41,7 +41,7 @@ impl Page {
     }
 
     /// The text so far, whether its sentences hold or not.
-    pub fn draft(&self) -> &str {
+    pub(crate) fn draft(&self) -> &str {
         &self.text
     }
 
@@ -49,7 +49,7 @@ impl Page {
     ///
     /// # Errors
     /// Every sentence that does not hold any more.
-    pub fn finish(self) -> Outcome<String> {
+    pub(crate) fn finish(self) -> Outcome<String> {
         if self.failed.is_empty() {
             return Ok(format!("{}\n", self.text.trim_end()));
         }
@@ -58,7 +58,7 @@ impl Page {
 }
 
 /// Significant digits as an engineer writes them.
-pub fn sig(value: f64, digits: i32) -> String {
+pub(crate) fn sig(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 { "0".into() } else { "–".into() };
     }
@@ -68,7 +68,7 @@ pub fn sig(value: f64, digits: i32) -> String {
 }
 
 /// A change in per cent, with its sign.
-pub fn change(value: f64, from: f64) -> String {
+pub(crate) fn change(value: f64, from: f64) -> String {
     let percent = 100.0 * (value / from - 1.0);
     if percent.abs() < 0.05 {
         "0".into()

@@ -192,7 +192,7 @@ fn rules() -> Vec<Rule> {
     ]
 }
 
-pub fn write(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write(study: &mut Study) -> Outcome<()> {
     study.page.say(format!(
         "## Design guide: rules\n\nEach with the document that shows it (`{FOLDER}/`; before: `examples/contact.json` unless another is named), and the same change on a second, quite different gear: a high-speed pair of 7.5 MW, z 43/128, m_n 5 mm, β 30°, 2 × 150 mm, 9000 r/min (`turbo.json`: \
          ε 6.2, tip relief there 25 µm over 5 mm). *Carries*: the second gear changes in the same way, within the range that the rule expects."

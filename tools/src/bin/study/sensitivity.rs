@@ -175,7 +175,7 @@ fn headline(result: &Value) -> Outcome<[Option<f64>; 4]> {
     Ok([number(result, force).ok(), Some(x), Some(z), Some(number(result, "/response/dynamic_factor")?)])
 }
 
-pub fn write(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write(study: &mut Study) -> Outcome<()> {
     let document = table1()?;
     let base = study.bench.result(&document)?;
     let [force, x, z, factor] = headline(&base)?;
@@ -320,7 +320,7 @@ fn assumptions_of_contact(base: &Value) -> Outcome<Vec<Assumption>> {
 }
 
 /// The same question with the contact in the equations.
-pub fn write_contact(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write_contact(study: &mut Study) -> Outcome<()> {
     let document = contact()?;
     let base = study.bench.result(&document)?;
     let [_, x, z, factor] = headline(&base)?.map(|value| value.unwrap_or(0.0));

@@ -1,7 +1,7 @@
 //! What the source paper prints in its Tables 2 and 3.
 
 /// One row of both tables.
-pub struct Printed {
+pub(crate) struct Printed {
     pub ratio: f64,
     /// "Pinion modification coefficient".
     pub coefficient: f64,
@@ -15,7 +15,7 @@ pub struct Printed {
     pub document: &'static str,
 }
 
-pub const PRINTED: [Printed; 5] = [
+pub(crate) const PRINTED: [Printed; 5] = [
     Printed {
         ratio: 2.72,
         coefficient: 0.25,
@@ -60,13 +60,13 @@ pub const PRINTED: [Printed; 5] = [
 
 impl Printed {
     /// Reduction by the pairs in mesh, %.
-    pub fn reduction(&self) -> f64 {
+    pub(crate) fn reduction(&self) -> f64 {
         100.0 * (1.0 - self.buffered_kn / self.zhou_kn)
     }
 
     /// The load share of the entering pair that the two forces imply: (F_Zhou/F)² = 1 + L/(1 − L) for a small
     /// inclination.
-    pub fn share(&self) -> f64 {
+    pub(crate) fn share(&self) -> f64 {
         1.0 - (self.buffered_kn / self.zhou_kn).powi(2)
     }
 }

@@ -11,7 +11,7 @@ use herringbone_tools::plot::{BLACK, BLUE, Field, GREEN, ORANGE, Scale, Sheet, S
 use serde_json::{Value, json};
 
 /// What Table 2 asks of one design.
-pub struct Impact {
+pub(crate) struct Impact {
     pub ratio: f64,
     pub transverse: f64,
     pub overlap: f64,
@@ -26,7 +26,7 @@ pub struct Impact {
 }
 
 impl Impact {
-    pub fn of(result: &Value) -> Outcome<Self> {
+    pub(crate) fn of(result: &Value) -> Outcome<Self> {
         let n = |pointer| number(result, pointer);
         Ok(Self {
             ratio: n("/geometry/total_contact_ratio")?,
@@ -43,7 +43,7 @@ impl Impact {
     }
 }
 
-pub fn write(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write(study: &mut Study) -> Outcome<()> {
     study.page.say("## Table 2: mesh-in impact\n\nPrinted values in brackets; the printed load shares are those that the two printed forces imply, L = 1 − (F/F_Zhou)². \
         The documents are `examples/table2_*.json`: equal addenda of both gears up to 3.30 (0.686, 0.825, 1.123 m_n), beyond that a wider face (92.3, 110.1 mm), because no tooth \
         height reaches 3.68. Held fixed: module, teeth, helix, centre distance, torque (800 N·m on the pinion), speed, the printed inertias.");
@@ -209,9 +209,9 @@ fn readings(study: &mut Study) -> Outcome<()> {
                 Ok(result) => {
                     let own = Impact::of(&result)?;
                     if reading < 3 {
-                        ratios.push(own.ratio)
+                        ratios.push(own.ratio);
                     } else {
-                        mirrored.push(own.zhou_kn / printed.zhou_kn)
+                        mirrored.push(own.zhou_kn / printed.zhou_kn);
                     }
                     format!("{}; {} kN", sig(own.ratio, 3), sig(own.zhou_kn, 3))
                 }

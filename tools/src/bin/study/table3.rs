@@ -14,7 +14,7 @@ const CIRCUMFERENTIAL: &str = "/response/rms/mesh_circumferential_acceleration_m
 const AXIAL: &str = "/response/rms/pinion_axial_acceleration_m_s2/left";
 
 /// Both RMS accelerations, m/s².
-pub fn rms(result: &Value) -> Outcome<[f64; 2]> {
+pub(crate) fn rms(result: &Value) -> Outcome<[f64; 2]> {
     Ok([number(result, CIRCUMFERENTIAL)?, number(result, AXIAL)?])
 }
 
@@ -26,7 +26,7 @@ struct Row {
     contact: String,
 }
 
-pub fn write(study: &mut Study) -> Outcome<()> {
+pub(crate) fn write(study: &mut Study) -> Outcome<()> {
     study.page.say("## Table 3: vibration\n\nThe same five documents at 800 N·m and 2000 r/min, printed values in brackets, the source's two blank rows predicted. *Pulse alone*: the RMS that the impact's half sine gives a free pair of \
         the equations' inertias, F/m √(τ f_m/2), τ the pulse's length: nothing rings. *Without impact*: the same document with the impact switched off.");
     let mut ours = Vec::new();

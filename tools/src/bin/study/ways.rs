@@ -6,7 +6,7 @@ use crate::documents::with;
 use serde_json::{Value, json};
 
 /// One input, or two that go together.
-pub struct Way {
+pub(crate) struct Way {
     pub name: &'static str,
     pub unit: &'static str,
     /// Where it is searched.
@@ -16,7 +16,7 @@ pub struct Way {
     pub make: fn(&Value, f64) -> Value,
 }
 
-pub const WAYS: [Way; 3] = [
+pub(crate) const WAYS: [Way; 3] = [
     Way {
         name: "tooth height",
         unit: "m_n",
@@ -55,7 +55,7 @@ fn height(base: &Value, addendum: f64) -> Value {
 }
 
 /// The value with which a way reaches a total contact ratio; none where its range ends before.
-pub fn reach(study: &mut Study, base: &Value, way: &Way, target: f64) -> Outcome<Option<f64>> {
+pub(crate) fn reach(study: &mut Study, base: &Value, way: &Way, target: f64) -> Outcome<Option<f64>> {
     let mut ratio = |value: f64| -> Outcome<f64> {
         let document = with(&(way.make)(base, value), &[("/kind", json!("mesh"))]);
         Ok(number(&study.bench.result(&document)?, "/geometry/total_contact_ratio")? - target)

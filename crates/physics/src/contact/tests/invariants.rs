@@ -108,7 +108,7 @@ fn shares_of_all_pairs_make_one() {
 fn integer_overlap_gives_a_nearly_constant_stiffness() {
     // b tanβ_b = 2 p_bt: the length of the contact lines does not vary.
     let helix = 25f64;
-    let width = 2.0 * std::f64::consts::PI * 4e-3 / helix.to_radians().sin();
+    let width = 2.0 * PI * 4e-3 / helix.to_radians().sin();
     let constant = pair(&spec([40, 60], helix, width));
     let other = pair(&spec([40, 60], helix, 0.8 * width));
     let spread = |pair| {
