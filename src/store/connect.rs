@@ -113,8 +113,8 @@ impl Store {
         }
         let options = options.busy_timeout(BUSY_WAIT);
         let permanent = || SqlitePoolOptions::new().idle_timeout(None).max_lifetime(None);
-        // Where SQLite rolls back by itself (a full disk at the commit), the driver still counts the transaction; such
-        // a connection could not write again and is not reused.
+        // After a rollback by SQLite itself (a full disk at the commit), the driver still counts the transaction as
+        // open; such a connection cannot write again and is not reused.
         let writer = permanent()
             .max_connections(1)
             .acquire_timeout(WRITER_WAIT)

@@ -77,7 +77,7 @@ pub(super) async fn jobs(Extension(HasLogin(has_login)): Site) -> Response {
     page(StatusCode::OK, &JobsPage { has_login })
 }
 
-/// `/jobs/{id}`: one job. The page's script asks the API whether it exists.
+/// `/jobs/{id}`: one job. The page's script requests it from the API, also to find out whether it exists.
 pub(super) async fn job(Extension(HasLogin(has_login)): Site, Path(id): Path<String>) -> Response {
     page(StatusCode::OK, &JobPage { has_login, id, plotly_script: plotly::script_url() })
 }
@@ -97,7 +97,7 @@ pub async fn not_found() -> Response {
     page(StatusCode::NOT_FOUND, &NotFoundPage { has_login: false })
 }
 
-/// The page that asks for the token. It works without scripts and shows no data of the service.
+/// The login page, with an input for the token. It works without scripts and shows no data of the service.
 pub fn login(status: StatusCode, next: &str, error: Option<&str>) -> Response {
     page(status, &LoginPage { next, error: error.unwrap_or_default() })
 }

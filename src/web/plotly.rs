@@ -97,7 +97,7 @@ fn style_rules(script: &str) -> Option<String> {
     }
 }
 
-/// A string literal without escapes, or a bare name, at the start of `text`; and what follows it.
+/// A string literal without escapes, or a bare name, at the start of `text`; and the rest of `text`.
 fn literal(text: &str) -> Option<(&str, &str)> {
     let quote = text.chars().next()?;
     if quote == '"' || quote == '\'' {

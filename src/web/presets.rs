@@ -87,7 +87,7 @@ pub(super) const GROUPS: &[PresetGroup] = &[
     },
 ];
 
-/// A preset as the page's script gets it.
+/// A preset in the response to the page's script.
 #[derive(Serialize)]
 struct Entry {
     id: &'static str,

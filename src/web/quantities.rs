@@ -5,12 +5,12 @@ use herringbone_job::result::{CellKind, Column, SweepPoint, quantities};
 use serde::Serialize;
 use std::sync::LazyLock;
 
-/// A column as the module has it.
+/// A column in the module.
 #[derive(Serialize)]
 struct ColumnEntry {
     name: &'static str,
     group: &'static str,
-    /// Pointer of its quantity; null where the sweep itself makes the value.
+    /// Pointer of its quantity; null for a value made by the sweep itself.
     quantity: Option<&'static str>,
     half: Option<&'static str>,
     kind: &'static str,

@@ -54,7 +54,7 @@ impl Hub {
         self.broadcast(|| JobEvent::Deleted(id));
     }
 
-    /// Tells listeners to read the list of jobs again.
+    /// Publishes [`JobEvent::Resync`]: listeners read the list of jobs again.
     pub(super) fn publish_resync(&self) {
         self.broadcast(|| JobEvent::Resync);
     }

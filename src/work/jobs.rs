@@ -260,7 +260,7 @@ impl Jobs {
         self.0.recorder.delete(id).await
     }
 
-    /// Tells listeners to read the list of jobs again.
+    /// Notifies listeners that the list of jobs is to be read again.
     pub(super) fn publish_resync(&self) {
         self.0.recorder.publish_resync();
     }

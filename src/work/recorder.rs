@@ -61,7 +61,7 @@ impl JobRecorder {
         Ok(deletion)
     }
 
-    /// Tells listeners to read the list of jobs again.
+    /// Notifies listeners that the list of jobs is to be read again.
     pub fn publish_resync(&self) {
         self.hub.publish_resync();
     }

@@ -1,4 +1,5 @@
-//! What the programs of this package share: a plotter, stopwatches, repeatable random numbers, arguments, and (feature
+//! Common parts of the programs of this package: a plotter, stopwatches, repeatable random numbers, arguments, and
+//! (feature
 //! `service`) the running service as a process with a connection to it.
 
 pub mod arguments;

@@ -1,5 +1,5 @@
-//! Tests only: random documents that are valid, over the full range of every field, out of the declarations themselves:
-//! a new field needs an entry here only where a rule between fields could refuse it.
+//! Random valid job documents for tests, over the full range of every field. They are generated from the declarations
+//! of the fields: a new field needs an entry here only if a rule between fields could refuse its values.
 
 use super::schema::job_document_schema;
 use proptest::prelude::*;
@@ -15,7 +15,7 @@ pub(crate) fn documents() -> BoxedStrategy<Value> {
     any.boxed()
 }
 
-/// What fits a schema, field by field: the ends of a range as often as what lies between.
+/// Strategy for the values that a JSON Schema permits. The ends of a range are as frequent as the values between them.
 fn of_schema(schema: &Value) -> BoxedStrategy<Value> {
     let word = schema["type"].as_str().or_else(|| schema["type"][0].as_str()).unwrap_or_default();
     let bound = |name: &str| schema[name].as_f64().unwrap_or_default();
@@ -56,7 +56,7 @@ fn of_schema(schema: &Value) -> BoxedStrategy<Value> {
     }
 }
 
-/// Fields that have to be there are there; of the others half, and a few of those are null.
+/// Objects with every required member and about half of the optional ones, a few of which are null.
 fn of_object(schema: &Value) -> BoxedStrategy<Value> {
     let required = schema["required"].as_array().cloned().unwrap_or_default();
     let fields = schema["properties"].as_object().into_iter().flatten().map(|(name, field)| {
@@ -75,11 +75,11 @@ fn of_object(schema: &Value) -> BoxedStrategy<Value> {
         .boxed()
 }
 
-/// Settles what rules between fields forbid.
+/// Changes the values that the rules between fields forbid.
 fn reconcile(document: &mut Value) {
     let is_sweep = document["kind"] == "sweep";
     axes(document, is_sweep);
-    // What a gear is wider than the design finds room in the gap.
+    // The excess of a gear's face width over that of the design has to fit into the gap.
     let of = |name: &str, default: f64| document["design"][name].as_f64().unwrap_or(default);
     let widest_mm = of("face_width_mm", 0.5) + of("gap_width_mm", 30.0);
     for gear in ["pinion", "gear"] {
@@ -125,7 +125,7 @@ fn axes(document: &mut Value, is_sweep: bool) {
         *axes = one;
     }
     for axis in axes.as_array_mut().into_iter().flatten() {
-        // Few enough for two axes and for rows that carry more than numbers.
+        // Within the point limits of two axes and of rows with Poincaré points or spectra.
         axis["points"] = json!(axis["points"].as_u64().unwrap_or(50).min(70));
         if axis["values"].is_array() {
             axis["from"] = Value::Null;
@@ -140,7 +140,7 @@ fn axes(document: &mut Value, is_sweep: bool) {
     }
 }
 
-/// A relief has a length.
+/// Gives every relief a positive length.
 fn reliefs(flank: &mut Value) {
     for name in ["tip_relief", "end_relief"] {
         if flank[name].is_object() {
@@ -184,7 +184,7 @@ fn given(model: &mut Value) {
     }
 }
 
-/// Every place of a document with its value.
+/// JSON pointer and value of every member of a document.
 fn pointers(document: &Value) -> Vec<(String, Value)> {
     let mut places = Vec::new();
     let mut open = vec![(String::new(), document)];
@@ -224,7 +224,7 @@ proptest! {
         prop_assert_eq!(serde_json::to_string(&again).expect("numbers and texts"), written);
     }
 
-    /// Reading fills in; it does not change what is given.
+    /// Reading fills in defaults and changes no given value.
     #[test]
     fn what_is_given_is_kept(value in documents()) {
         let written = serde_json::to_value(super::parse_value(&value).expect("valid")).expect("numbers and texts");
@@ -236,8 +236,8 @@ proptest! {
         }
     }
 
-    /// A number set in a document is what reading the document with that number gives, or is refused with the same
-    /// violations; and every place has a slot exactly where the written document has a value.
+    /// Assigning a number by its slot is equivalent to reading the document with that number: the same document, or the
+    /// same violations. Slots exist exactly for the values of the serialized document.
     #[test]
     fn what_is_set_is_what_would_be_read(value in documents(), place in any::<prop::sample::Index>(), part in 0.0..=1.0f64, whole: bool) {
         let document = super::parse_value(&value).expect("valid").without_sweep();

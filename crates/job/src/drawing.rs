@@ -1,4 +1,4 @@
-//! What a true-to-scale drawing of a pair is made from: outlines, circles, path of contact, lines of contact.
+//! Data of a true-to-scale drawing of a pair: tooth outlines, circles, path of contact, lines of contact.
 
 use super::document::Hand;
 use herringbone_physics::gear::Half;

@@ -13,13 +13,13 @@ const OTHER_MARKS: [(&[u8], &str); 4] = [
     (b"\xfe\xff", "UTF-16 (big-endian)"),
 ];
 
-/// Why bytes are not UTF-8 text.
+/// Failure to decode bytes as UTF-8 text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum EncodingError {
-    /// Another Unicode encoding, by its byte order mark or by where its zero bytes stand.
+    /// Another Unicode encoding, detected by its byte order mark or by the positions of its zero bytes.
     #[error("the text is encoded in {0}; needed: UTF-8")]
     Other(&'static str),
-    /// A byte that no UTF-8 text has there.
+    /// A byte that is invalid in UTF-8 at its offset.
     #[error(
         "the text is not encoded in UTF-8: byte 0x{byte:02x} at offset {offset} (perhaps it is in Windows-1252 or ISO 8859-1); \
          needed: UTF-8"
@@ -30,8 +30,8 @@ pub enum EncodingError {
 /// The text without its byte order mark. Checks the first bytes only: see [`utf8_text`].
 ///
 /// # Errors
-/// When the first bytes are those of UTF-16 or UTF-32. Without a mark they are told by the zero bytes of ASCII
-/// characters (RFC 4627, section 3), which no text in UTF-8 needs.
+/// [`EncodingError::Other`] if the first bytes are those of UTF-16 or UTF-32. Without a byte order mark these are
+/// detected by the zero bytes of ASCII characters (RFC 4627, section 3).
 pub fn without_mark(bytes: &[u8]) -> Result<&[u8], EncodingError> {
     if let Some((_, name)) = OTHER_MARKS.iter().find(|(mark, _)| bytes.starts_with(mark)) {
         return Err(EncodingError::Other(name));
@@ -48,7 +48,7 @@ pub fn without_mark(bytes: &[u8]) -> Result<&[u8], EncodingError> {
 /// The whole text, without its byte order mark.
 ///
 /// # Errors
-/// When it is not UTF-8; the error names the encoding that it seems to have.
+/// [`EncodingError`] if the text is not UTF-8, with the detected encoding or the first invalid byte.
 pub fn utf8_text(bytes: &[u8]) -> Result<&str, EncodingError> {
     let text = without_mark(bytes)?;
     std::str::from_utf8(text).map_err(|error| {

@@ -1,4 +1,4 @@
-//! Fields of the job document: what a declaration says, and the types that a field can have.
+//! Fields of the job document: their declarations, and the types that a field can have.
 //!
 //! A field is declared once, as a field of a struct with `#[derive(Input)]`; `herringbone_macros::Input` lists the
 //! attributes. The reader, the JSON Schema, the form, the hints, the axes of sweeps and the random documents of tests
@@ -11,40 +11,41 @@ use super::unit::Unit;
 use super::violation::Violation;
 use serde_json::{Map, Value};
 
-/// What the declaration of a field says, its type and its default apart.
+/// Declaration of a field of the job document, without its type and its default.
 #[derive(Debug)]
 pub(crate) struct Declared {
     pub name: &'static str,
-    /// A line for people: the first paragraph of the field's doc comment.
+    /// Help text: the first paragraph of the field's doc comment.
     pub help: &'static str,
-    /// Whether an object has to be given. Values are required where they have no default.
+    /// Whether an object is required. Values are required if they have no default.
     pub required: bool,
-    /// Range of a number, or of the numbers of a list.
+    /// Permitted range of a number, or of the numbers of a list, in `unit`.
     pub min: f64,
     pub max: f64,
     pub unit: &'static Unit,
-    /// Lengths of a list.
+    /// Permitted number of items of a list.
     pub min_items: usize,
     pub max_items: usize,
-    /// Longest text.
+    /// Largest number of characters of a text.
     pub max_chars: usize,
-    /// Whether the document is written without the field where it is empty.
+    /// Whether an empty field is omitted when the document is serialized.
     pub omitted: bool,
     pub form: FormPlace,
 }
 
-/// Where the form shows a field, as far as the declaration says it. An object's holds for the fields in it.
+/// Position of a field in the form. The position of an object applies to the fields in it, unless they declare their
+/// own.
 #[derive(Debug)]
 pub(crate) struct FormPlace {
-    /// Section; empty: that of the object.
+    /// Section of the form; empty: that of the object.
     pub group: &'static str,
-    /// Place among the fields that stand together.
+    /// Rank among the fields of a block, ascending.
     pub order: i32,
-    /// Letter and subscript of the quantity.
+    /// Symbol of the quantity: letter and subscript.
     pub symbol: (&'static str, &'static str),
-    /// The default in words, where it depends on other fields.
+    /// Description of a default that depends on other fields.
     pub derived: Option<&'static str>,
-    /// The same of single fields of an object.
+    /// Descriptions of such defaults of single fields of an object: name and text.
     pub derived_in: &'static [(&'static str, &'static str)],
     /// A field of the same object (or, with a slash, of an object in it) and its values, separated by spaces, for which
     /// this one matters.
@@ -52,7 +53,7 @@ pub(crate) struct FormPlace {
 }
 
 impl Declared {
-    /// A declaration that says nothing.
+    /// A position with nothing declared.
     pub(crate) const NOTHING: Declared = Declared {
         name: "",
         help: "",
@@ -77,10 +78,10 @@ pub(crate) trait Input: Sized {
     /// Checks the rules between fields, of this object and of those in it.
     fn check(&mut self, place: &ObjectPlace);
 
-    /// The field at `pointer`, from this object on; none where the document has none there.
+    /// The slot at `pointer` relative to this object; `None` if the document has no field there.
     fn slot(&mut self, pointer: &str) -> Option<Slot<'_>>;
 
-    /// The value of an object with every field left out; required numbers are the least that is permitted.
+    /// The value of an object with every field left out; required numbers take their smallest permitted value.
     fn defaults() -> Self {
         Self::read(&Reading::fill().root(&Value::Object(Map::new())), None)
     }
@@ -88,13 +89,13 @@ pub(crate) trait Input: Sized {
 
 /// A type that a field can have.
 pub(crate) trait Field: Sized {
-    /// Reads the field `declared` of `object`. `default`: the value where it is left out; none: it is required.
+    /// Reads the field `declared` of `object`. `default`: the value of an absent field; `None`: the field is required.
     fn read(object: &Object, declared: &'static Declared, default: Option<&Self>) -> Self;
 
     /// Checks the rules between fields inside this one.
     fn check(&mut self, _declared: &'static Declared, _place: &ObjectPlace) {}
 
-    /// The field at `pointer`, from this one on.
+    /// The slot at `pointer` relative to this field.
     fn slot(&mut self, declared: &'static Declared, pointer: &str) -> Option<Slot<'_>>;
 }
 
@@ -102,7 +103,7 @@ pub(crate) trait Field: Sized {
 pub(crate) trait Words: Copy + PartialEq + 'static {
     /// Every word with its value.
     const WORDS: &'static [(&'static str, Self)];
-    /// Labels for people, of the words that have one.
+    /// Labels shown in the form, for the words that have one.
     const LABELS: &'static [(&'static str, &'static str)];
 
     fn as_word(self) -> &'static str;
@@ -116,13 +117,13 @@ pub(crate) trait Words: Copy + PartialEq + 'static {
     }
 }
 
-/// A place in a document where a value stands.
+/// Typed access to the value at a JSON pointer of a document.
 pub(crate) enum Slot<'a> {
     Number(&'a mut f64, &'static Declared),
     OptionalNumber(&'a mut Option<f64>, &'static Declared),
     Whole(&'a mut u32, &'static Declared),
     OptionalWhole(&'a mut Option<u32>, &'static Declared),
-    /// Something else than a number.
+    /// A value that is not a number.
     Other,
 }
 
@@ -135,11 +136,11 @@ impl Slot<'_> {
         matches!(self, Slot::Whole(..) | Slot::OptionalWhole(..))
     }
 
-    /// Puts a number in.
+    /// Assigns a number.
     ///
     /// # Errors
-    /// The violation, without its pointer, of a number that is out of range or has to be whole; nothing is changed
-    /// then.
+    /// The violation, without its pointer, if the number is out of range or is not an integer where one is required.
+    /// The document is then unchanged.
     pub(crate) fn set(self, number: f64) -> Result<(), Box<Violation>> {
         let declared = match &self {
             Slot::Number(_, declared) | Slot::OptionalNumber(_, declared) => declared,

@@ -1,13 +1,14 @@
-//! Numbers that are not finite: JSON has none, so they leave as null, and the result says where and why.
+//! Numbers that are not finite. JSON cannot represent them: they are serialized as null, and `numerics.not_finite` of
+//! the result lists their pointers and reasons.
 
 use super::result::{JobResult, NotFinite};
 use ciborium::Value;
 use serde::Serialize;
 
-/// Pointers to every number of `value` that is not finite, each with what it is. They are null in JSON.
+/// JSON pointer and value (NaN, infinity) of every number of `value` that is not finite and so null in JSON.
 pub fn not_finite(value: &impl Serialize) -> Vec<NotFinite> {
     let mut found = Vec::new();
-    // Everything a result holds can be written; what cannot has no numbers either.
+    // Results are always serializable; a value that is not contains no numbers.
     if let Ok(value) = Value::serialized(value) {
         walk(&value, &mut String::new(), &mut found);
     }

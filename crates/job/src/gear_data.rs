@@ -301,7 +301,8 @@ mod tests {
             let (start, end) = (found.path_points[0].roll_mm, found.path_points.last().unwrap().roll_mm);
             let (inner, outer) = (0.5 * found.gap_width_mm, 0.5 * found.gap_width_mm + found.face_width_mm);
             let slope = found.base_helix_angle_deg.to_radians().tan();
-            // Where the line through an end meets the inner end of the faces, in base pitches from a line that begins.
+            // Intersection of the line through an end with the inner end of the faces, in base pitches from a line that
+            // begins.
             let inner_is_first = (rotation == "apex_leading") == (torque_nm > 0.0);
             let sense = if inner_is_first { -1.0 } else { 1.0 };
             let corner_roll = if torque_nm > 0.0 { start } else { end };

@@ -1,5 +1,5 @@
-//! Values from one end of a range to the other. Both ends are met exactly, and so are the round values between them: a
-//! grid from 1 to 1000 in decades has 10 and 100, one from 0.1 to 1 in tenths has 0.3.
+//! Linear and logarithmic grids. Both ends and the round values between them are exact: a grid from 1 to 1000 in
+//! decades contains 10 and 100, one from 0.1 to 1 in tenths contains 0.3.
 
 use super::document::Spacing;
 
@@ -29,8 +29,8 @@ pub fn value(from: f64, to: f64, count: usize, spacing: Spacing, index: usize) -
 }
 
 /// With both ends as whole multiples of the same power of ten, as they are written, the value is a quotient of two
-/// whole numbers: one division, so the nearest float to what the decimals say. Where they have too many digits for
-/// that, as floats give it.
+/// whole numbers: one division, so the float nearest to the decimal value. Ends with too many digits for that are
+/// interpolated in floating point.
 fn linear(from: f64, to: f64, index: f64, last: f64) -> f64 {
     exact_linear(from, to, index, last).unwrap_or_else(|| from + (to - from) * (index / last))
 }
@@ -79,7 +79,7 @@ mod tests {
     use proptest::prelude::*;
     use rstest::rstest;
 
-    /// `0.1 0.2 0.3`: the numbers as they are read.
+    /// `0.1 0.2 0.3`: the numbers parsed from text.
     fn numbers(text: &str) -> Vec<f64> {
         text.split_whitespace().map(|word| word.parse().unwrap()).collect()
     }
@@ -132,7 +132,7 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever the ends: finite, between them, in order, and where plain arithmetic puts them.
+        /// For any ends, the values are finite, between the ends, ordered, and close to plain interpolation.
         #[test]
         fn a_grid_runs_from_end_to_end(
             from in prop_oneof![-1e12f64..1e12, -10.0f64..10.0, Just(0.0)],

@@ -1,5 +1,5 @@
-//! What to write instead of a name that is not a field: names and units that people bring from standards and from other
-//! programs, with the value worked out for the document at hand where it says enough for that.
+//! Hints for unknown members of a document: the field to use instead of a name or unit from a standard or another
+//! program, with the converted value if the document determines it.
 
 use super::schema::field_descriptions;
 use super::unit::{Unit, UnitQuantity};
@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-/// A member of the document that no declaration knows.
+/// A member of the document that is not a declared field.
 pub(crate) struct Unknown<'a> {
     /// The whole document.
     pub document: &'a Value,
@@ -15,11 +15,11 @@ pub(crate) struct Unknown<'a> {
     pub object: &'a str,
     pub name: &'a str,
     pub value: &'a Value,
-    /// Names that the object may have.
+    /// Names of the declared fields of the object.
     pub known: &'a [&'static str],
 }
 
-/// What to say beside "is not a field of this object"; nothing where no field is meant for certain.
+/// The hint that follows "is not a field of this object"; `None` if the intended field is uncertain.
 pub(crate) fn hint(unknown: &Unknown) -> Option<String> {
     if unknown.name.len() > 60 {
         return None;
@@ -54,7 +54,7 @@ fn split(name: &str) -> (&str, Option<&'static Unit>) {
     if stem.len() > 1 { (stem, unit) } else { (name, None) }
 }
 
-/// An unknown name, taken apart.
+/// An unknown name, split into stem and unit.
 struct ForeignName<'a> {
     unknown: &'a Unknown<'a>,
     stem: &'a str,
@@ -67,7 +67,8 @@ impl ForeignName<'_> {
         self.unknown.document.pointer(pointer)?.as_f64()
     }
 
-    /// The unknown member's value in SI, taken to be in `default` (its size in SI) where its name states no unit.
+    /// The unknown member's value in SI. Without a unit in its name it is taken to be in the unit of size `default`
+    /// (SI).
     fn si(&self, quantity: UnitQuantity, default: f64) -> Option<f64> {
         let size = match self.unit {
             None => default,
@@ -85,7 +86,7 @@ impl ForeignName<'_> {
         Some(self.number("/design/helix_angle_deg")?.to_radians().cos())
     }
 
-    /// The gear that the member is about, by the object it stands in or by its name.
+    /// The gear that the member describes, by its object or by its name.
     fn member(&self) -> &'static str {
         let of_gear = self.unknown.object.starts_with("/design/gear") || is_of_gear(self.stem);
         if of_gear { "/design/gear" } else { "/design/pinion" }
@@ -100,12 +101,12 @@ impl ForeignName<'_> {
         Some((self.number("/design/pinion/teeth")?, self.number("/design/gear/teeth")?))
     }
 
-    /// Reference diameter of the gear that the name is about, mm: d = z m_n / cos β.
+    /// Reference diameter of the gear that the member describes, mm: d = z m_n / cos β.
     fn reference_diameter(&self) -> Option<f64> {
         Some(self.of_member("teeth", None)? * self.number("/design/normal_module_mm")? / self.cos_beta()?)
     }
 
-    /// Quantities under other names, by formulas of ISO 21771 where they differ from what the document has.
+    /// Hints for quantities under other names, converted by the formulas of ISO 21771 if they differ from the field's.
     fn by_meaning(&self) -> Option<String> {
         let object = self.unknown.object;
         if object.starts_with("/axes/") {
@@ -358,7 +359,7 @@ impl ForeignName<'_> {
         }
     }
 
-    /// The same name with another unit: the value in that of the field.
+    /// Hint for a field's name with another unit: the value in the unit of the field.
     fn in_another_unit(&self) -> Option<String> {
         let unit = self.unit?;
         let (name, field) = self.unknown.known.iter().find_map(|name| match split(name) {
@@ -376,7 +377,7 @@ impl ForeignName<'_> {
         })
     }
 
-    /// A field of another object that has this name.
+    /// Hint for a name that is a field of another object.
     fn elsewhere(&self, name: &str) -> Option<String> {
         static POINTERS: LazyLock<Vec<String>> =
             LazyLock::new(|| field_descriptions().into_iter().map(|field| field.pointer).collect());
@@ -386,7 +387,7 @@ impl ForeignName<'_> {
             [] => None,
             [one] => Some(format!("it stands at {one}")),
             [first, second] => Some(format!("it stands at {first} and {second}")),
-            // Flank modifications stand at each gear and half: those nearest to the root.
+            // Flank modifications are fields of each gear and half: the ones nearest to the root are named.
             _ => {
                 let depth = |pointer: &str| pointer.matches('/').count();
                 let least = found.iter().map(|pointer| depth(pointer)).min()?;
@@ -404,7 +405,7 @@ impl ForeignName<'_> {
         self.unknown.object.starts_with("/design/gear") || is_of_gear(self.stem)
     }
 
-    /// " = 20 deg" where the angle was given in another unit.
+    /// Text such as " = 20 deg" for an angle that was given in another unit.
     fn in_degrees(&self) -> String {
         let angle = self.si(UnitQuantity::Angle, PI / 180.0).filter(|_| self.unit.is_some());
         shown(angle.map(f64::to_degrees), "deg")
@@ -433,7 +434,7 @@ fn is_of_gear(stem: &str) -> bool {
     ["gear_", "wheel_", "output_"].iter().any(|prefix| stem.starts_with(prefix)) || stem.ends_with('2')
 }
 
-/// " = 5.4628 mm", or nothing where the document does not say enough.
+/// Text such as " = 5.4628 mm"; empty if the document does not determine the value.
 fn shown(value: Option<f64>, unit: &str) -> String {
     match value.filter(|value| value.is_finite()) {
         Some(value) => format!(" = {} {unit}", significant(value)).trim_end().to_owned(),

@@ -1,12 +1,11 @@
-//! JSON in which no object says a thing twice. RFC 8259 leaves open what a repeated member means; a document that could
-//! be read in two ways is refused instead.
+//! JSON parser that refuses repeated members of an object, whose meaning RFC 8259 leaves open.
 
 use super::encoding::{EncodingError, utf8_text};
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 use std::fmt;
 
-/// Why bytes are not JSON that can be read, and where (counted from 1).
+/// Syntax error in a JSON text, with its line and column (counted from 1).
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct NotJson {
     pub detail: String,
@@ -17,8 +16,8 @@ pub(crate) struct NotJson {
 /// Reads JSON text in UTF-8, with or without a byte order mark.
 ///
 /// # Errors
-/// What is not JSON, is encoded otherwise, is nested deeper than 127 levels, has numbers that 64-bit floats cannot
-/// hold, or repeats a member; each with line and column.
+/// [`NotJson`] if the text is not JSON in UTF-8, is nested deeper than 127 levels, contains a number out of the range
+/// of 64-bit floats, or repeats a member.
 pub(crate) fn read(bytes: &[u8]) -> Result<Value, NotJson> {
     let text = utf8_text(bytes).map_err(|error| {
         let (line, column) = match error {
@@ -32,7 +31,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Value, NotJson> {
     value.map_err(|error| NotJson { detail: without_place(&error), line: error.line(), column: error.column() })
 }
 
-/// Line and column of what follows, the column in bytes as the parser counts it.
+/// Line and column (counted from 1) of the end of a text, the column in bytes as the parser counts it.
 fn place(before: &[u8]) -> (usize, usize) {
     let start = before.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1);
     let mark = if start == 0 && before.starts_with("\u{feff}".as_bytes()) { 3 } else { 0 };
@@ -47,7 +46,7 @@ fn without_place(error: &serde_json::Error) -> String {
     }
 }
 
-/// Builds a value, looking at each member's name.
+/// Deserializes a value and checks the names of its members.
 struct Unambiguous;
 
 impl<'de> DeserializeSeed<'de> for Unambiguous {

@@ -1,4 +1,4 @@
-//! A job: the document that goes in, and the result that comes out. No physics, no I/O.
+//! Job documents, their results, and the stages of a calculation between them. No physics, no I/O.
 
 #[cfg(test)]
 pub(crate) mod arbitrary;

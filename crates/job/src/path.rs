@@ -1,9 +1,8 @@
-//! JSON pointers (RFC 6901) into a document: written from the place where a reader stands, and taken apart to find a
-//! field.
+//! JSON pointers (RFC 6901) into a document: composed while a document is read, and parsed to find a field.
 
 use std::fmt;
 
-/// The place of a value in a document, as a chain up to the root: nothing is written until a pointer is asked for.
+/// The path of a value in a document, as a linked list up to the root; the pointer's text is composed on demand.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Path<'a> {
     parent: Option<&'a Path<'a>>,
@@ -14,7 +13,7 @@ pub(crate) struct Path<'a> {
 enum Step<'a> {
     Root,
     Member(&'a str),
-    /// An item of a list: the list's name and the index; none for all items.
+    /// An item of a list: the list's name and the index; `None`: all items.
     Item(&'a str, Option<usize>),
 }
 
@@ -25,7 +24,7 @@ impl<'a> Path<'a> {
         Path { parent: Some(self), step: Step::Member(name) }
     }
 
-    /// An item of the list `name`; without an index what stands for all items, `*`.
+    /// An item of the list `name`; without an index `*`, for all items.
     pub(crate) fn item(&'a self, name: &'a str, index: Option<usize>) -> Path<'a> {
         Path { parent: Some(self), step: Step::Item(name, index) }
     }
@@ -45,14 +44,14 @@ impl fmt::Display for Path<'_> {
     }
 }
 
-/// First member and rest of a pointer; none of one that is empty or does not begin with a slash. Names of fields need
-/// no escapes.
+/// First member and rest of a pointer; `None` if it is empty or does not begin with a slash. Names of fields need no
+/// escapes.
 pub(crate) fn split_first(pointer: &str) -> Option<(&str, &str)> {
     let rest = pointer.strip_prefix('/')?;
     Some(rest.find('/').map_or((rest, ""), |end| rest.split_at(end)))
 }
 
-/// The index of an item as a pointer writes it: digits without a sign or leading zeros.
+/// The index of an item in a pointer: digits without a sign or leading zeros.
 pub(crate) fn index(text: &str) -> Option<usize> {
     let written_so = text == "0" || text.starts_with(|first: char| ('1'..='9').contains(&first));
     text.parse().ok().filter(|_| written_so)

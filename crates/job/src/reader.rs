@@ -20,20 +20,20 @@ pub struct FieldDescription {
     pub pointer: String,
     pub schema: Value,
     pub required: bool,
-    /// Words of a choice with the labels that people read, where they differ from the words.
+    /// Words of a choice with the labels shown for them, if these differ from the words.
     pub labels: &'static [(&'static str, &'static str)],
     /// Section of the form.
     pub group: &'static str,
-    /// Place among the fields that stand together; fields of one place stand in the order of declaration.
+    /// Rank among the fields of a block, ascending; fields of equal rank keep the order of declaration.
     pub order: i32,
-    /// Letter and subscript of the quantity, or empty.
+    /// Symbol of the quantity (letter and subscript), or empty.
     pub symbol: (&'static str, &'static str),
-    /// The default in words where it depends on other fields.
+    /// Description of a default that depends on other fields.
     pub derived: Option<&'static str>,
     pub condition: Option<Condition>,
 }
 
-/// A field that matters only while another field has one of some values.
+/// Condition for a field to be in use: another field has one of the listed values.
 #[derive(Debug, Clone)]
 pub struct Condition {
     /// Pointer of the other field.
@@ -42,7 +42,7 @@ pub struct Condition {
     pub values: &'static str,
 }
 
-/// Violations listed at most; further ones are counted. A megabyte can hold a hundred thousand.
+/// Largest number of violations listed; further ones are only counted. A document of 1 MB can have 100 000.
 pub(crate) const MAX_VIOLATIONS: usize = 1000;
 
 #[derive(Default)]
@@ -123,7 +123,7 @@ impl Reading {
         self.collected.borrow().violations.len() >= MAX_VIOLATIONS
     }
 
-    /// The violations that were found; the last entry says how many more there are than [`MAX_VIOLATIONS`].
+    /// The violations found; beyond [`MAX_VIOLATIONS`] the last entry states the number of further ones.
     pub(crate) fn violations(self) -> Vec<Violation> {
         let Collected { mut violations, further, .. } = self.collected.into_inner();
         if further > 0 {
@@ -141,13 +141,13 @@ impl Reading {
     }
 }
 
-/// What the fields of an object have from the declaration of the object, as long as they do not declare it themselves.
+/// Properties that the fields of an object inherit from the declaration of the object, unless they declare their own.
 #[derive(Default, Clone)]
 struct Inherited {
     group: &'static str,
     order: i32,
     derived: Option<&'static str>,
-    /// Defaults in words of single fields of the object.
+    /// Descriptions of the defaults of single fields of the object.
     derived_in: &'static [(&'static str, &'static str)],
     condition: Option<Condition>,
 }
@@ -165,7 +165,7 @@ pub(crate) struct Object<'a> {
 }
 
 impl<'a> Object<'a> {
-    /// Where the rules between the fields of this object find what they need.
+    /// This object as the rules between its fields see it.
     pub(crate) fn place(&self) -> ObjectPlace<'_> {
         ObjectPlace { reading: self.reading, path: self.path, object: Some(self) }
     }
@@ -202,7 +202,7 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// What holds for a field, and for the fields in it: its own declaration's, else this object's.
+    /// The properties of a field and of the fields in it: from its own declaration, else from this object.
     fn inherited(&self, declared: &Declared) -> Inherited {
         if !self.reading.is_describing() {
             return Inherited::default();
@@ -266,7 +266,7 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// A nested object that stays absent when left out: `None` unless given (or describing).
+    /// An optional nested object: `None` unless it is given (or the fields are described).
     pub(crate) fn optional_object<'b>(&'b self, declared: &'static Declared) -> Option<Object<'b>> {
         let given = self.has(declared.name);
         let object = self.object(declared);
@@ -303,7 +303,7 @@ impl<'a> Object<'a> {
         )
     }
 
-    /// The number at `path`; none, and a violation, where it is none or out of range.
+    /// The number at `path`; `None`, and a violation, if the value is not a number or out of range.
     fn in_range(&self, path: &Path, value: &Value, declared: &Declared) -> Option<f64> {
         let violation = match value.as_f64() {
             Some(number) => match out_of_range(number, declared) {
@@ -369,7 +369,7 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// One of a closed list of words; none when left out.
+    /// One of a closed list of words; `None` when left out.
     pub(crate) fn choice<W: Words>(&self, declared: &Declared, default: Option<W>, required: bool) -> Option<W> {
         let Declared { name, help, .. } = *declared;
         self.declare_words(declared, required, W::LABELS, || {
@@ -429,7 +429,7 @@ impl<'a> Object<'a> {
         self.text_or(declared, false)
     }
 
-    /// A text that has to be given.
+    /// A required text.
     pub(crate) fn required_text(&self, declared: &Declared) -> String {
         self.text_or(declared, true).unwrap_or_else(|| {
             if !self.has(declared.name) {
@@ -497,7 +497,7 @@ impl<'a> Object<'a> {
         Some(strings.into_iter().map(|(_, text)| text.to_owned()).collect())
     }
 
-    /// The texts of a list with their places.
+    /// The texts of a list with their paths.
     fn strings(&self, name: &str, max_items: usize) -> Option<Vec<(usize, &'a str)>> {
         let values = self.array(name, 0, max_items)?;
         let mut strings = Vec::with_capacity(values.len());
@@ -513,7 +513,7 @@ impl<'a> Object<'a> {
         Some(strings)
     }
 
-    /// A list of objects; `None` when left out. When describing: one object that stands for all.
+    /// A list of objects; `None` when left out. When the fields are described: one object that represents all items.
     pub(crate) fn objects<'b>(&'b self, declared: &'static Declared) -> Option<Vec<Object<'b>>> {
         let Declared { name, min_items, max_items, help, .. } = *declared;
         self.declare(declared, false, || {
@@ -589,7 +589,7 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// A line on an unknown name: the quantity it stands for, else the field that is spelt alike.
+    /// Hint for an unknown name: the quantity it denotes, else the field with a similar spelling.
     fn hint(&self, name: &str, value: &Value, known: &[&'static str]) -> Option<String> {
         let object = self.path.to_string();
         let unknown = Unknown { document: self.document, object: &object, name, value, known };
@@ -597,11 +597,11 @@ impl<'a> Object<'a> {
     }
 }
 
-/// Where a rule between the fields of an object reports what breaks it.
+/// Object at which the rules between its fields are checked: states which fields are given, and collects violations.
 pub(crate) struct ObjectPlace<'a> {
     reading: &'a Reading,
     path: Path<'a>,
-    /// None where the object is not read but was there: then everything in it counts as given.
+    /// `None` for an object that was read before: all of its fields then count as given.
     object: Option<&'a Object<'a>>,
 }
 
@@ -621,22 +621,22 @@ impl<'a> ObjectPlace<'a> {
         ObjectPlace { reading: self.reading, path: self.path.item(name, Some(index)), object: None }
     }
 
-    /// Whether the document gives this field (and not null), be it rightly or wrongly.
+    /// Whether the document gives this field (and not null), validly or not.
     pub(crate) fn gives(&self, name: &str) -> bool {
         self.object.is_none_or(|object| object.has(name))
     }
 
-    /// Whether there is a document that can break rules.
+    /// Whether a document is read, so that rules can be violated.
     pub(crate) fn is_read(&self) -> bool {
         self.reading.purpose == Purpose::Read
     }
 
-    /// Reports that the field `name` does not go together with others.
+    /// Reports that the field `name` contradicts other fields.
     pub(crate) fn conflict(&self, name: &str, detail: impl Into<String>) {
         self.violate(name, "conflict", detail);
     }
 
-    /// Reports that the field `name` is needed here.
+    /// Reports that the field `name` is required by other fields.
     pub(crate) fn missing(&self, name: &str, detail: impl Into<String>) {
         self.violate(name, "missing", detail);
     }
@@ -673,7 +673,7 @@ fn range_text(declared: &Declared) -> String {
     format!("{} to {}{unit}", shown(declared.min), shown(declared.max))
 }
 
-/// A number as a person writes it: very large and very small ones with a power of ten.
+/// A number as text for messages: very large and very small ones with a power of ten.
 fn shown(number: f64) -> String {
     let size = number.abs();
     if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{number:e}") } else { format!("{number}") }
@@ -700,7 +700,7 @@ fn clip(text: &str) -> String {
     if text.chars().count() <= 60 { text.to_owned() } else { text.chars().take(60).chain(['…']).collect() }
 }
 
-/// The declared name that differs least from an unknown one, if it differs little.
+/// The declared name with the smallest edit distance from an unknown one, if the distance is small.
 fn nearest<'n>(name: &str, known: &[&'n str]) -> Option<&'n str> {
     if name.len() > 60 {
         return None;

@@ -29,7 +29,7 @@ pub fn job_document_schema() -> Value {
     root
 }
 
-/// The same for one kind of job: `kind` fixed, and without the fields that only other kinds have.
+/// JSON Schema of the documents of one kind of job: `kind` is fixed, fields of other kinds only are left out.
 pub fn job_document_schema_of(kind: JobKind) -> Value {
     let mut schema = job_document_schema();
     schema["title"] = json!(format!("JobDocument ({})", kind.as_str()));
@@ -45,12 +45,12 @@ pub fn job_document_schema_of(kind: JobKind) -> Value {
         let help = properties.get("kind").and_then(|field| field.get("description")).cloned();
         let mut field = json!({"const": kind.as_str(), "description": help});
         if kind == JobKind::Response {
-            // What a document without a kind means.
+            // The kind of a document without `kind`.
             field = json!({"enum": [kind.as_str(), null], "default": kind.as_str(), "description": help});
         }
         properties.insert("kind".to_owned(), field);
         if let Some(axes) = properties.get_mut("axes") {
-            // What is required is not null.
+            // Required members cannot be null.
             axes["type"] = json!("array");
         }
     }

@@ -1,12 +1,11 @@
-//! What sweeps consist of: the axes and rows of a stored one without reading the rest of its document, and the document
-//! of a row.
+//! Axes and rows of a sweep: read from a stored document without the rest of it, and the job document of a single row.
 
 use super::document::{JobDocument, JobKind};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 impl JobDocument {
-    /// A response with the inputs of this sweep as they stand, without axes.
+    /// The document of a response with the inputs of this sweep, without axes.
     pub fn without_sweep(&self) -> JobDocument {
         JobDocument {
             kind: JobKind::Response,
@@ -35,7 +34,7 @@ impl JobDocument {
     }
 }
 
-/// What a document as it was accepted says of its rows.
+/// The members of a stored document that determine the rows of a sweep.
 #[derive(Debug, Clone, Deserialize)]
 pub struct SweepShape {
     #[serde(default)]
@@ -55,7 +54,7 @@ impl SweepShape {
     /// Reads a document that was accepted before.
     ///
     /// # Errors
-    /// What is wrong with the text.
+    /// The error of the parser, if the text is not such a document.
     pub fn of_stored(text: &str) -> Result<Self, serde_json::Error> {
         serde_json::from_str(text)
     }

@@ -1,4 +1,4 @@
-//! Documents in, violations out.
+//! Tests of the reader: job documents and their violations.
 
 use super::document::*;
 use super::{DocumentError, Violation, parse, parse_value, schema};

@@ -1,4 +1,4 @@
-//! Units: those that fields of the document are declared in, and others that people write in the names of fields.
+//! Units: those in which fields of the document are declared, and others that occur in names of unknown fields.
 
 use std::f64::consts::PI;
 
@@ -9,19 +9,19 @@ pub struct Unit {
     pub text: &'static str,
     /// Ending of the names of fields in this unit; empty where names do not state it.
     pub suffix: &'static str,
-    /// The unit as people write it; empty for none, and for units that no field is declared in.
+    /// The unit with typographic symbols; empty for none, and for units in which no field is declared.
     pub symbol: &'static str,
-    /// Its size in the SI unit of its quantity.
+    /// Value of one unit in the SI unit of its quantity.
     pub size: f64,
     pub quantity: UnitQuantity,
     /// Whether fields may be declared in it.
     declared: bool,
 }
 
-/// What a unit measures.
+/// Physical quantity of a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UnitQuantity {
-    /// None in particular: plain numbers, and numbers in the unit of something else.
+    /// No physical quantity: plain numbers, and numbers in the unit of another field.
     Number,
     Length,
     Angle,

@@ -1,4 +1,4 @@
-//! What is wrong with a document, field by field.
+//! Violations: the errors of a document, each with the field it is about.
 
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +37,7 @@ impl Violation {
     }
 }
 
-/// Why bytes are not a job document.
+/// Refusal of bytes or a document: not JSON, invalid fields, or an unsupported calculation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DocumentError {
     /// The bytes are not JSON.
@@ -46,7 +46,7 @@ pub enum DocumentError {
     /// JSON, but fields are missing, unknown, of the wrong type or out of range, or the gear cannot exist.
     #[error("the document has {} invalid field(s)", .0.len())]
     Invalid(Vec<Violation>),
-    /// A valid document that asks for something this version does not compute.
+    /// A valid document that requests a calculation not supported by this version.
     #[error("the document asks for something that is not supported")]
     Unsupported(Vec<Violation>),
 }

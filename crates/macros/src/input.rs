@@ -7,7 +7,7 @@ use syn::{
     Attribute, Data, DataEnum, DeriveInput, Error, Expr, Fields, LitInt, LitStr, Meta, Path, Result, Token, Type,
 };
 
-/// The attributes of a field, as they are written.
+/// The parsed `#[input(…)]` attributes of a field.
 #[derive(Default)]
 struct Attributes {
     min: Option<Expr>,
@@ -70,7 +70,7 @@ impl Attributes {
     }
 }
 
-/// The attributes of a struct.
+/// The parsed `#[input(…)]` attributes of a struct.
 #[derive(Default)]
 struct StructAttributes {
     group: Option<LitStr>,
@@ -99,7 +99,7 @@ impl StructAttributes {
 /// A declared field.
 struct Declaration {
     name: Ident,
-    /// Name of the constant with what the declaration says.
+    /// Name of the constant with the declaration.
     constant: Ident,
     ty: Type,
     help: String,
@@ -122,7 +122,7 @@ impl Declaration {
         Ok(declaration)
     }
 
-    /// Refuses what does not fit the type.
+    /// Refuses attributes that do not apply to the type of the field.
     fn check(&self) -> Result<()> {
         let attributes = &self.attributes;
         let kind = innermost(&self.ty);
@@ -151,7 +151,7 @@ impl Declaration {
         matches!(innermost(&self.ty).as_str(), "f64" | "u32" | "bool" | "String")
     }
 
-    /// The constant with what the declaration says.
+    /// The constant with the declaration.
     fn declared(&self, group: Option<&LitStr>) -> Result<TokenStream> {
         let Self { constant, help, omitted, attributes, .. } = self;
         let name = self.name.to_string();
@@ -426,7 +426,7 @@ fn help(attributes: &[Attribute]) -> String {
     lines.take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
-/// Whether the document is written without the field where it is empty (`#[serde(skip_serializing_if = …)]`).
+/// Whether an empty field is omitted when the document is serialized (`#[serde(skip_serializing_if = …)]`).
 fn is_omitted(attributes: &[Attribute]) -> bool {
     let serde = attributes.iter().filter(|attribute| attribute.path().is_ident("serde"));
     serde

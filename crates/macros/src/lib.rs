@@ -7,8 +7,8 @@ mod units;
 use proc_macro::TokenStream;
 use syn::{DeriveInput, parse_macro_input};
 
-/// Declares the fields of an object of the job document: each field of the struct is one, its doc comment's first
-/// paragraph the help that people read. Implements `crate::field::Input`; see there what follows from it.
+/// Declares the fields of an object of the job document: one for each field of the struct, with the first paragraph of
+/// its doc comment as the help text. Implements `crate::field::Input`.
 ///
 /// Types: `f64`, `u32`, `bool`, enums with `Words`, `String`, structs with `Input`; `Option` of them (may be left out
 /// or null; the default, if there is one, is then only published), `Vec` of structs, texts and words,
@@ -18,14 +18,14 @@ use syn::{DeriveInput, parse_macro_input};
 /// - `min`, `max`, `unit = "mm"`: range and unit of a number, or of the numbers of a list. The name has to end in the
 ///   unit.
 /// - `default = …`: an expression; the fields read before are variables in it. A value without a default is required.
-/// - `required`: an object that has to be given.
-/// - `base = …`: where the fields of an object have their defaults from; an expression like that of `default`.
+/// - `required`: the object has to be given.
+/// - `base = …`: the object whose values are the defaults of the fields; an expression like that of `default`.
 /// - `min_items`, `max_items`, `max_chars`: lengths of lists and texts.
 /// - `flatten`: the struct's fields stand among this object's.
 /// - `first` (or `first = 1`, after those): read and published before the fields that are not.
 /// - `group = "…"`, `order = …`, `symbol = "m_n"`, `when = "source = given"`, `derived = "…"` (or `derived(field =
-///   "…")` for a field of an object): section of the form, place in it, symbol, the values of another field for which
-///   this one matters, the default in words.
+///   "…")` for a field of an object): section of the form, rank in it, symbol, the values of another field for which
+///   this one is in use, the description of the default.
 ///
 /// On the struct: `group = "…"` for all fields, and `rules = path`, a function `fn(&mut Self, &ObjectPlace)` that checks
 /// the rules between the fields and settles those that follow from others.
@@ -34,10 +34,10 @@ pub fn derive_input(item: TokenStream) -> TokenStream {
     input::derive_input(parse_macro_input!(item as DeriveInput)).unwrap_or_else(|error| error.to_compile_error()).into()
 }
 
-/// Declares a closed list of words as an enum: the variants in snake case, or as `#[words(rename = "…")]` says.
+/// Declares a closed list of words as an enum: the variants in snake case, or renamed by `#[words(rename = "…")]`.
 /// Implements `crate::field::Words`, `crate::field::Field` for the enum, `Option` and `Vec` of it, `serde::Serialize`,
-/// and gives the enum `ALL` (word and value of each) and `as_str`. `#[words(label = "…")]` is what people read where it
-/// is not the word.
+/// and adds to the enum `ALL` (word and value of each) and `as_str`. `#[words(label = "…")]` is the label shown in
+/// place of the word.
 #[proc_macro_derive(Words, attributes(words))]
 pub fn derive_words(item: TokenStream) -> TokenStream {
     input::derive_words(parse_macro_input!(item as DeriveInput)).unwrap_or_else(|error| error.to_compile_error()).into()
@@ -46,18 +46,16 @@ pub fn derive_words(item: TokenStream) -> TokenStream {
 /// Declares the scalars of a struct of the result: numbers, words and flags, in nested structs too. A field with its
 /// name and its doc comment is the declaration; `#[scalar(…)]` adds to it:
 ///
-/// - `label = "…"`: its name for people, in lower case; else the words of its name. On a nested struct: what is added
-///   to the labels of its fields.
-/// - `symbol = "…"`: its symbol, that of ISO 21771 where there is one; what follows an underscore is the index.
-/// - `unit = "…"`: else by the ending of its name.
-/// - `help = "…"`: what it means, for people; else the doc comment.
-/// - `headline`, `headline = N`: it stands among the few numbers that people look for first; N > 0 after those of its
-///   block with a smaller N.
-/// - `change = …`: how two results are compared, a `result::Change`.
-/// - `percent`: a share of 1 that people read in per cent.
-/// - `lower_is_better`: less of it is what a designer looks for.
-/// - `inherits`: the scalar that its struct stands for; label, unit and help are those of the field that holds the
-///   struct.
+/// - `label = "…"`: its label, in lower case; else the words of its name. On a nested struct: an addition to the labels
+///   of its fields.
+/// - `symbol = "…"`: its symbol, that of ISO 21771 if there is one; an underscore begins the index.
+/// - `unit = "…"`: its unit; else the unit in the ending of its name.
+/// - `help = "…"`: its meaning; else the doc comment.
+/// - `headline`, `headline = N`: it is one of the headline numbers; N > 0: after those of its block with a smaller N.
+/// - `change = …`: form of the difference between two results, a `result::Change`.
+/// - `percent`: a share of 1 that is displayed in per cent.
+/// - `lower_is_better`: smaller values are better designs.
+/// - `inherits`: the scalar that represents its struct; label, unit and help are those of the field with the struct.
 ///
 /// `#[scalar(halves)]` on a struct: its fields are the values of the left and the right half.
 #[proc_macro_derive(ResultFields, attributes(scalar))]

@@ -42,7 +42,7 @@ pub(crate) fn result_fields(input: &DeriveInput) -> Result<TokenStream> {
     })
 }
 
-/// The call by which a field declares its scalars.
+/// The generated call that declares the scalars of a field.
 fn declaration(field: &Field) -> Result<TokenStream> {
     let ty = &field.ty;
     let name = serialized_name(field)?;
@@ -87,7 +87,7 @@ fn declaration(field: &Field) -> Result<TokenStream> {
     })
 }
 
-/// What `#[scalar(…)]` says of a field.
+/// The parsed `#[scalar(…)]` attributes of a field.
 #[derive(Default)]
 struct ScalarAttributes {
     label: Option<String>,
@@ -151,7 +151,7 @@ pub(crate) fn sweep_columns(input: &DeriveInput) -> Result<TokenStream> {
             /// Every column of the rows, in the order of the fields.
             pub const COLUMNS: &'static [crate::result::Column] = &[#columns];
 
-            /// The row of a solved point: `values` of the axes, and of the result what has a column.
+            /// The row of a solved point: `values` of the axes, and the values of the result that have a column.
             pub fn of_result(values: Vec<f64>, result: &crate::result::JobResult) -> Self {
                 Self { values, #values ..Self::default() }
             }
@@ -159,7 +159,7 @@ pub(crate) fn sweep_columns(input: &DeriveInput) -> Result<TokenStream> {
     })
 }
 
-/// What `#[column(…)]` says of a field.
+/// The parsed `#[column(…)]` attributes of a field.
 #[derive(Default)]
 struct ColumnAttributes {
     /// Pointer of the quantity in the result.

@@ -1,6 +1,6 @@
 //! The unit at the end of a field's name.
 
-/// Ending of a name and the unit it stands for, in ASCII as the API writes units; longer endings before those they
+/// Ending of a name and its unit, in the ASCII form of the API; longer endings stand before the shorter ones that they
 /// end with.
 const UNITS: [(&str, &str); 28] = [
     ("_nm_per_rad", "N m/rad"),

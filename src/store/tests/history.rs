@@ -50,7 +50,7 @@ fn is_permitted(from: JobState, to: JobState) -> bool {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// Whatever is tried in whatever order: only permitted transitions happen, and what is stored fits the state.
+    /// Random operations in random order cause permitted transitions only, and the stored data match the state.
     #[test]
     fn only_permitted_transitions(steps in prop::collection::vec(step(), 1..12)) {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();

@@ -139,7 +139,7 @@ async fn a_file_cut_off_is_damaged() {
 async fn an_overwritten_page_is_reported_after_an_unclean_end() {
     let (directory, path) = closed().await;
     let whole = fs::read(&path).unwrap();
-    // A log that holds nothing valid: what a process that died may leave.
+    // A log without valid content, as a killed process may leave it.
     let log = directory.path().join("jobs.db-wal");
     let mut noticed = 0;
     for page in 1..whole.len() / 4096 {

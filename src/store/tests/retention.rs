@@ -128,7 +128,7 @@ async fn the_file_never_outgrows_its_limit_by_more_than_a_tenth() {
     assert_eq!(error.unavailable(), Some(Unavailable::Full), "{error}");
     let usage = store.usage().await.unwrap();
     assert!(usage.used_bytes > 8_000_000 && usage.file_bytes <= 8_800_000, "{usage:?}");
-    // Nothing has ended: what is kept for reuse goes, so that live jobs can go on.
+    // No job has ended: the stage cache is deleted, so that live jobs can continue.
     assert_eq!(store.delete_for_size(false, 8).await.unwrap(), 0);
     assert!(store.stage("a").await.unwrap().is_none());
     let waiting = store.claim_next(WorkClass::Single, at(1)).await.unwrap().expect("a job waits").job;
@@ -175,7 +175,7 @@ async fn deleting_works_in_a_full_database() {
     while store.delete_for_size(true, 8).await.unwrap() > 0 {}
     store.admit().await.unwrap();
     store.release_space().await.unwrap();
-    // What could not be written is written now.
+    // The write that failed before succeeds now.
     let left = store.claim_next(WorkClass::Single, at(second)).await.unwrap();
     if left.is_none() {
         ended(store, second + 1, 100_000).await.unwrap();

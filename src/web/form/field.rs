@@ -4,7 +4,7 @@ use herringbone_job::schema::{Condition, FieldDescription};
 use herringbone_job::unit::Unit;
 use serde_json::Value;
 
-/// What kind of input a field has; the page's script reads its value back accordingly.
+/// Kind of input control of a field, by which the page's script reads its value.
 pub(crate) enum Control {
     Number,
     Integer,
@@ -28,24 +28,24 @@ pub(crate) struct Choice {
     pub chosen: bool,
 }
 
-/// A field: all its texts as they stand on the page.
+/// A field of the form with all its displayed texts.
 pub(crate) struct FormField {
     pub id: String,
     pub pointer: String,
     pub label: String,
-    /// Label of the row that the field shares with others; empty where it stands alone.
+    /// Label of the row that the field shares with others; empty for a field in a row of its own.
     pub row: String,
-    /// Letter and subscript of the quantity, or empty.
+    /// Symbol of the quantity (letter and subscript), or empty.
     pub symbol: (&'static str, &'static str),
     pub help: String,
     /// Permitted range with unit, or empty.
     pub range: String,
-    /// Unit for people, or empty.
+    /// Displayed unit, or empty.
     pub unit: &'static str,
     pub control: Control,
     /// First contents of the input.
     pub value: String,
-    /// What leaving the field out means; empty when it has no fixed default.
+    /// Default value as text; empty when there is no fixed default.
     pub default: String,
     /// Shown in an empty input.
     pub placeholder: &'static str,
@@ -54,12 +54,12 @@ pub(crate) struct FormField {
     pub condition: Option<Condition>,
     /// Section of the form.
     pub group: &'static str,
-    /// Place among the fields that stand together.
+    /// Rank among the fields of a block, ascending.
     pub order: i32,
 }
 
 impl FormField {
-    /// A field from its declaration; nothing for objects, whose fields are declared on their own.
+    /// A field from its declaration; `None` for objects, whose fields have declarations of their own.
     pub(crate) fn new(description: &FieldDescription, example: Option<&Value>) -> Option<FormField> {
         let FieldDescription { pointer, schema, derived, .. } = description;
         let derived = *derived;
@@ -106,7 +106,7 @@ impl FormField {
         }
     }
 
-    /// Where a field differs from this, the page offers to put it back; in words for people.
+    /// The default as displayed text, with its unit; the page offers to restore it in a field that differs.
     pub(crate) fn default_text(&self) -> String {
         let default = match (&self.control, self.default.as_str()) {
             (Control::Choice(choices), word) => {
@@ -148,13 +148,13 @@ fn control(description: &FieldDescription, value: &str) -> Option<Control> {
     })
 }
 
-/// The label of a word: its own, or the word.
+/// The label of a word; the word itself if it has none.
 fn choice_label(labels: &[(&str, &str)], word: &str) -> String {
     let own = labels.iter().find(|(name, _)| *name == word);
     own.map_or_else(|| word.replace('_', " "), |(_, label)| (*label).to_owned())
 }
 
-/// The text of a value as it stands in an input: numbers as people write them, nothing for null.
+/// The text of a value in an input: numbers in their shortest form, empty for null.
 fn text(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
@@ -172,7 +172,7 @@ fn number_text(number: f64) -> String {
 
 fn range(schema: &Value, unit: &Unit) -> String {
     let bounds = if schema["items"].is_object() { &schema["items"] } else { schema };
-    // The axes of a sweep take what the swept field takes, which the server says.
+    // The range of an axis is that of the swept field, which the server checks.
     if unit.text == "unit of the input" {
         return String::new();
     }
@@ -182,12 +182,12 @@ fn range(schema: &Value, unit: &Unit) -> String {
     format!("{} to {} {}", number_text(minimum), number_text(maximum), unit.symbol).trim_end().to_owned()
 }
 
-/// The field's help; what the document calls null is an empty input here.
+/// The field's help, with "empty" in place of the document's "null".
 fn help(schema: &Value) -> String {
     schema["description"].as_str().unwrap_or_default().replace("when null", "when empty").replace("if null", "if empty")
 }
 
-/// Names of objects that the section or block already says.
+/// Names of objects that are already part of the title of the section or block.
 const SAID_BY_THE_SECTION: [&str; 14] = [
     "axes",
     "0",
@@ -205,7 +205,7 @@ const SAID_BY_THE_SECTION: [&str; 14] = [
     "analysis",
 ];
 
-/// Words that field names cannot spell.
+/// Corrected spelling of words in field names, which are ASCII in lower case.
 const SPELLINGS: [(&str, &str); 3] = [("youngs", "Young's"), ("poissons", "Poisson's"), ("center", "centre")];
 
 /// "/design/pinion/tip_relief/amount_um" becomes "Tip relief, amount".

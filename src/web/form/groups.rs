@@ -1,5 +1,5 @@
-//! The sections of the form, in the order in which an engineer thinks of them, and the blocks in them. Which section a
-//! field stands in, its name, range, unit, default and help come from its declaration in the job document.
+//! The sections of the form, in the order of the design process, and their blocks. The section of a field, its name,
+//! range, unit, default and help come from its declaration in the job document.
 
 /// A section of the form.
 pub(super) struct GroupPlan {
@@ -9,16 +9,16 @@ pub(super) struct GroupPlan {
     pub short: &'static str,
     pub help: &'static str,
     pub open: bool,
-    /// What the heading says while nothing is set.
+    /// Summary in the heading while all fields have their defaults.
     pub nothing: &'static str,
     pub blocks: &'static [BlockPlan],
 }
 
-/// Fields that stand together under a common (perhaps empty) title: those of the section in one object (or several side
-/// by side) and in the objects in it that have no block of their own.
+/// Block of fields under a common (perhaps empty) title: the fields of the section in one object (or in several side by
+/// side), and in the objects in it that have no block of their own.
 pub(super) struct BlockPlan {
     pub title: &'static str,
-    /// Folded away until it is opened.
+    /// Whether the block is collapsed at first.
     pub folded: bool,
     pub layout: LayoutPlan,
 }
@@ -74,7 +74,7 @@ const COAST_FLANKS: &[(&str, &str)] = &[
 
 const DEFAULTS: &str = "as by default";
 
-/// A section whose heading says nothing more.
+/// A section without a help text, with the default summary in its heading.
 const fn section(id: &'static str, title: &'static str, open: bool, blocks: &'static [BlockPlan]) -> GroupPlan {
     GroupPlan { id, title, short: title, help: "", open, nothing: DEFAULTS, blocks }
 }

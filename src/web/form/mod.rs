@@ -18,12 +18,12 @@ pub(super) struct Group {
     pub short: &'static str,
     pub help: &'static str,
     pub open: bool,
-    /// What the heading says while nothing is set.
+    /// Summary in the heading while all fields have their defaults.
     pub nothing: &'static str,
     pub blocks: Vec<Block>,
 }
 
-/// Fields that stand together under a common (perhaps empty) title.
+/// Block of fields under a common (perhaps empty) title.
 pub(super) struct Block {
     pub title: &'static str,
     pub folded: bool,
@@ -35,14 +35,14 @@ pub(super) enum Layout {
     Table { columns: Vec<&'static str>, rows: Vec<Row> },
 }
 
-/// The same field of several objects, with what it has in common.
+/// Row of the form: the same field of several objects, with their common texts.
 pub(super) struct Row {
     pub label: String,
     pub cells: Vec<FormField>,
 }
 
 impl Row {
-    /// The cells have the same declaration: the first speaks for all.
+    /// The first cell; its declaration is that of all cells.
     pub(super) fn first(&self) -> Option<&FormField> {
         self.cells.first()
     }
@@ -101,7 +101,7 @@ fn all_fields() -> Vec<FormField> {
     fields
 }
 
-/// Puts each field in the section of its declaration; a section that is not known here stands at the end.
+/// Assigns each field to the section of its declaration; unknown sections are appended at the end.
 fn plan(mut fields: Vec<FormField>) -> Vec<Group> {
     let mut planned: Vec<Group> = groups::GROUPS.iter().map(|group| section(group, &mut fields)).collect();
     if !fields.is_empty() {

@@ -1,4 +1,4 @@
-//! An SVG document, and how curves look. Lengths are in the units of its view box.
+//! An SVG document, and the styles of curves. Lengths are in the units of its view box.
 
 /// Colours of Okabe and Ito, distinct for all kinds of colour vision, and greys.
 pub const BLACK: &str = "#222222";
@@ -103,7 +103,7 @@ impl Sheet {
     }
 }
 
-/// How a curve or its points look.
+/// Style of a curve or its points.
 #[derive(Debug, Clone, Copy)]
 pub struct Style {
     /// Of line and points.

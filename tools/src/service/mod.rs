@@ -14,7 +14,7 @@ use std::process::{Child, Command, Stdio};
 #[derive(Debug)]
 pub struct Service {
     process: Child,
-    /// Where it listens.
+    /// Listen address of the service.
     pub address: SocketAddr,
 }
 

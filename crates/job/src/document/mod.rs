@@ -1,5 +1,5 @@
-//! The job document: what goes in. Names and units are the public contract; every default is filled in, so that a
-//! document written out again says everything that was used.
+//! The job document: the input of a job. Names and units are the public contract. Every default is filled in, so that a
+//! serialized document states all inputs of the calculation.
 //!
 //! Each field is declared here, once: see [`crate::field`]. The doc comments' first paragraphs are the help texts of
 //! schema and form.

@@ -1,5 +1,5 @@
-//! The scalars of a result as a table: what each is called, its unit and its meaning, from the declarations of the
-//! result's structs. The headline table of the command line, the pages and the comparison of jobs are made from it.
+//! The scalars of a result as a table: name, unit and meaning of each, from the declarations of the result's structs.
+//! The headline table of the command line, the pages and the comparison of jobs are made from it.
 
 use super::JobResult;
 use serde::Serialize;
@@ -37,7 +37,7 @@ pub enum QuantityKind {
     Flag,
 }
 
-/// How the difference of two values is written.
+/// Form in which the difference of two values is displayed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Change {
@@ -81,7 +81,7 @@ impl Quantity {
     }
 }
 
-/// What a struct of the result says of a field, by `#[derive(ResultFields)]`.
+/// Declaration of a scalar field of the result, made by `#[derive(ResultFields)]`.
 #[derive(Debug)]
 pub(crate) struct Declaration {
     /// Name in JSON.

@@ -56,7 +56,7 @@ mod measured {
         20.0,
         "analytic compliance, helical pairs held at the bore (docs/VALIDATION.md, Loaded pair 29/67 against finite elements; Not reached or doubtful: helical and short faces)",
     );
-    /// Above this helix angle the next row holds.
+    /// Helix angle above which the next row applies.
     pub(super) const STEEP_HELIX_DEG: f64 = 35.0;
     pub(super) const STEEP: Bound = bound(
         4.0,
@@ -66,7 +66,7 @@ mod measured {
     /// Below so many teeth of either gear the first harmonic of helical pairs is that of the next row.
     pub(super) const FEW_TEETH: u32 = 17;
     pub(super) const FEW_TEETH_HARMONIC: (f64, &str) = (35.0, "; fewer than 17 teeth (the same section)");
-    /// First harmonic where tips are relieved.
+    /// Error of the first harmonic with tip relief.
     pub(super) const RELIEVED_HARMONIC: (f64, &str) =
         (15.0, "; with tip relief at working load (docs/BENCHMARKS.md, Contact: time against error)");
     pub(super) const LIGHTLY_LOADED_HARMONIC: (f64, &str) = (
@@ -83,7 +83,7 @@ mod measured {
 /// 1.2 and 2.8, that with 23 % 14.
 const LIGHT_LOAD: f64 = 3.0;
 
-/// The accuracy of a point whose other stages are in `result`.
+/// The accuracy of a point; `result` has the results of its other stages.
 pub(super) fn of(document: &JobDocument, result: &JobResult) -> Accuracy {
     let mesh = result.mesh.as_ref();
     let numerical = match &result.response {
@@ -156,7 +156,7 @@ fn analytic(design: &DesignInput, ltca: &Ltca, mesh: Option<&Mesh>) -> ModelErro
         notes += measured::SHORT_FACE_BASIS;
     }
     let relief_um = tip_relief_um(design);
-    // Without a contact analysis at hand (a sweep) any load may be meant.
+    // Without a contact analysis (a sweep) the load is unknown, and the error of light loads applies.
     let deflection_um = mesh.map_or(0.0, |mesh| mesh.force_n / mesh.stiffness_mean_n_per_um);
     let lightly_loaded = relief_um > LIGHT_LOAD * deflection_um;
     let relief = if lightly_loaded { measured::LIGHTLY_LOADED_HARMONIC } else { measured::RELIEVED_HARMONIC };
@@ -220,7 +220,7 @@ mod tests {
             assert!(worse.transmission_error_harmonic_percent > better.transmission_error_harmonic_percent);
         }
         assert_eq!(numbers(&analytic), (Some(3.0), Some(20.0)));
-        // Finite elements cannot be claimed better than what they were compared with.
+        // The error of the finite elements is not below the uncertainty of their reference.
         assert!(medium.mesh_stiffness_percent >= Some(1.5) && medium.transmission_error_harmonic_percent >= Some(3.0));
     }
 
@@ -265,7 +265,7 @@ mod tests {
                     }
                 };
                 let at = |deflection_um| model_of(deflection_um, relieve).transmission_error_harmonic_percent;
-                // Covered by what helical pairs have anyway.
+                // Covered by the bound of all helical pairs.
                 assert_eq!((at(Some(13.0)), at(Some(5.4))), (Some(20.0), Some(20.0)), "{place} {half:?}");
                 assert_eq!((at(Some(1.1)), at(None)), (Some(23.0), Some(23.0)), "{place} {half:?}");
             }

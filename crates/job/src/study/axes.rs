@@ -1,9 +1,9 @@
-//! The inputs of a sweep: which may vary, and the documents of its points.
+//! The inputs varied by a sweep, and the documents of its points.
 
 use crate::document::{Axis, JobDocument};
 use crate::{DocumentError, Violation};
 
-/// Refuses axes that point at nothing, at something that is not a number, or at values out of range.
+/// Checks the axes: each pointer must be that of a number of the document, and each value within its range.
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] with pointers into `/axes`.
@@ -54,12 +54,13 @@ pub(super) fn check_axes(document: &JobDocument) -> Result<(), DocumentError> {
     if violations.is_empty() { Ok(()) } else { Err(DocumentError::Invalid(violations)) }
 }
 
-/// Which of the inputs of an axis a violation at `pointer` is about: the first, where none of them.
+/// JSON pointer of the input of an axis to which a violation at `pointer` belongs; the first input if it belongs to
+/// none.
 fn place<'a>(axis: &'a Axis, pointer: &str) -> &'a str {
     axis.pointers().find(|own| *own == pointer).unwrap_or(&axis.pointer)
 }
 
-/// The document of one point, before the swept values are put in.
+/// The document of one point, before the values of the axes are assigned.
 pub(super) fn base(document: &JobDocument) -> JobDocument {
     let mut base = document.without_sweep();
     // Series are not kept for the points of a sweep.
@@ -67,10 +68,10 @@ pub(super) fn base(document: &JobDocument) -> JobDocument {
     base
 }
 
-/// `base` with the values of some axes put in.
+/// `base` with the values of some axes assigned.
 ///
 /// # Errors
-/// [`DocumentError::Invalid`] for values out of range, and where they do not go together.
+/// [`DocumentError::Invalid`] for values out of range or in contradiction with each other.
 pub(super) fn at<'a>(
     mut base: JobDocument,
     values: impl IntoIterator<Item = (&'a Axis, f64)>,

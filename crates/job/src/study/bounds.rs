@@ -17,24 +17,24 @@ use herringbone_physics::response::{Regime, Summary};
 /// shaft, hub or web outweighs the gear, or a unit is wrong.
 const IMPLAUSIBLE_RATIO: f64 = 2.0;
 
-/// Part of the least backlash of practice below which there is a warning.
+/// Fraction of the least normal backlash below which there is a warning.
 const SMALL_BACKLASH: f64 = 0.25;
 
 /// Allowable contact stress number of case-hardened wrought steel, grade ME, MPa (ISO 6336-5:2016, figure 13): the
-/// highest of the standard. What lies above no steel bears for long.
+/// highest of the standard, above which no steel has a long life.
 const ALLOWABLE_PRESSURE_MPA: f64 = 1650.0;
 /// Young's modulus of steel, GPa: the limit of a softer material is taken in proportion to its modulus.
 const STEEL_GPA: f64 = 206.0;
 
-/// Secant over tangent stiffness below which the secant says more of flank modifications than of the teeth. Hertzian
-/// contact alone keeps it above 0.8.
+/// Ratio of secant to tangent stiffness below which flank modifications dominate the secant. With Hertzian contact
+/// alone the ratio is above 0.8.
 const SECANT_OF_TANGENT: f64 = 0.7;
 
 fn warning(code: &str, pointer: impl Into<String>, detail: String) -> Warning {
     Warning { code: code.to_owned(), pointer: pointer.into(), detail }
 }
 
-/// The play along s, µm: as given, or the default.
+/// Backlash along s, µm: as given, or the default.
 pub(crate) fn backlash_um(document: &JobDocument) -> f64 {
     document.design.backlash_um.unwrap_or(DEFAULT_BACKLASH_UM)
 }
@@ -277,7 +277,7 @@ mod tests {
                 "{}",
                 warned.detail
             );
-            // A document that is stored with its defaults filled in says the same.
+            // A stored document with its defaults filled in has the same warnings.
             let stored = serde_json::to_value(parse_value(&value).expect("valid")).expect("JSON");
             assert_eq!(checked(&stored), warnings, "{pointer}");
             set(&mut value, pointer, given);

@@ -1,18 +1,19 @@
-//! Branches of a continuation: where they jump, and where up and down lead to different motions.
+//! Branches of a continuation: jumps along a branch, and intervals in which the two directions find different motions.
 
 use crate::document::Axis;
 use crate::result::{BranchDifference, BranchDirection, Hysteresis, Jump, SweepPoint};
 
 /// Relative difference of two RMS values above which two motions are different ones.
 const DIFFERENT: f64 = 0.01;
-/// The same where regime or contact differ already: below it the words differ by what lies on their edge.
+/// The same if regime or contact differ too: smaller differences are those of motions on the border between two
+/// regimes.
 const DIFFERENT_WORDS: f64 = 1e-3;
-/// Relative change between neighbours that can be a jump, and how much larger than the changes beside it a jump is.
+/// Least relative change between neighbours that counts as a jump, and its least ratio to the adjacent changes.
 const JUMP: f64 = 0.1;
 const STANDS_OUT: f64 = 3.0;
-/// Differences within this many times the sum of both errors are none.
+/// Multiple of the sum of both errors below which a difference is not significant.
 const ERRORS: f64 = 3.0;
-/// Accelerations below this do not count as motion, m/s².
+/// RMS acceleration below which a motion counts as rest, m/s².
 const STILL_M_S2: f64 = 1e-9;
 
 /// Positions on an axis from its least value up, or from its greatest down.
@@ -120,7 +121,7 @@ fn uncertainty(a: &SweepPoint, b: &SweepPoint) -> f64 {
     ERRORS * (a.error_estimate.unwrap_or(0.0) + b.error_estimate.unwrap_or(0.0))
 }
 
-/// |ln| of the ratio of the mesh accelerations; None where one is not known.
+/// |ln| of the ratio of the mesh accelerations; `None` if one is unknown.
 fn change(a: &SweepPoint, b: &SweepPoint) -> Option<f64> {
     let (a, b) = (rms(a)?, rms(b)?);
     Some(if a.max(b) < STILL_M_S2 { 0.0 } else { (a.max(STILL_M_S2) / b.max(STILL_M_S2)).ln().abs() })

@@ -1,17 +1,18 @@
-//! Campbell data of a sweep over the speed: at which speeds an order of the mesh frequency meets a natural frequency.
+//! Campbell data of a sweep over the speed: the speeds at which an order of the mesh frequency equals a natural
+//! frequency.
 
 use super::mesh::MeshMemo;
 use super::{SolveContext, SolveError, point, response_result, row};
 use crate::document::{Axis, JobDocument};
 use crate::result::{Campbell, CampbellCrossing, NaturalMode};
 
-/// The swept input that makes a Campbell diagram.
+/// The input whose sweep has a Campbell diagram.
 const SPEED: &str = "/operation/pinion_speed_rpm";
-/// Highest mesh order whose line is drawn.
+/// Highest mesh order in the diagram.
 const ORDERS: u32 = 10;
 
-/// One diagram for every value of the other axis (one where there is none); nothing when no axis is the speed. Values
-/// at which the stages before the response fail have none.
+/// One diagram for every value of the other axis (one diagram without a second axis); empty if no axis is the speed.
+/// Values at which a stage before the response fails have no diagram.
 ///
 /// # Errors
 /// [`SolveError::Canceled`].
@@ -46,7 +47,7 @@ pub(super) fn run(
             Ok((Some(modes), teeth)) => diagrams.push(diagram(speed, other_axis_value, f64::from(teeth), modes)),
             Ok((None, _)) => {}
             Err(SolveError::Canceled(canceled)) => return Err(canceled.into()),
-            // The rows say why.
+            // The rows of the sweep contain the error.
             Err(_) => {}
         }
     }

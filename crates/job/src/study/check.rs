@@ -1,4 +1,4 @@
-//! Documents that can be solved, and what can be said of them without solving.
+//! Checked jobs: documents that can be solved, with the geometry, supports and warnings known without solving.
 
 mod drawing;
 
@@ -8,8 +8,8 @@ use super::{CheckReport, demand, vibration};
 use crate::DocumentError;
 use crate::document::{JobDocument, JobKind};
 
-/// A job document that can be solved: its gear can exist, and everything it asks for can be computed. The pair and all
-/// that follows from it without solving is derived once, here.
+/// A job document that can be solved: its pair is feasible and every requested calculation is supported. The pair and
+/// the quantities that follow from it without solving are derived once, here.
 #[derive(Debug, Clone)]
 pub struct CheckedJob {
     document: JobDocument,
@@ -20,8 +20,8 @@ impl CheckedJob {
     /// Checks a document.
     ///
     /// # Errors
-    /// [`DocumentError::Invalid`] with every reason why it cannot be solved; [`DocumentError::Unsupported`] for what
-    /// this version does not compute.
+    /// [`DocumentError::Invalid`] with every infeasibility and contradiction; [`DocumentError::Unsupported`] for a
+    /// calculation that this version does not support.
     pub fn new(document: JobDocument) -> Result<Self, DocumentError> {
         let job = Self::of_point(document)?;
         vibration::channels(&job.document)?;
@@ -31,10 +31,10 @@ impl CheckedJob {
         Ok(job)
     }
 
-    /// A point of a sweep that was checked: only the gear may be another one.
+    /// Checks a point of a checked sweep: only the feasibility of the pair.
     ///
     /// # Errors
-    /// [`DocumentError::Invalid`] with every reason why the gear cannot exist.
+    /// [`DocumentError::Invalid`] with every infeasibility of the pair.
     pub(super) fn of_point(document: JobDocument) -> Result<Self, DocumentError> {
         let prepared = prepare(&document)?;
         Ok(Self { document, prepared })
@@ -72,7 +72,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 100, ..ProptestConfig::default() })]
 
-        /// Values at the ends of every range together: a gear that can exist, or reasons why not.
+        /// Values at the ends of every range in combination: a feasible pair, or its infeasibilities.
         #[test]
         fn any_valid_document_is_answered(value in arbitrary::documents()) {
             match CheckedJob::new(parse_value(&value).expect("valid")) {

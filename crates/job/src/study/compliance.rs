@@ -15,16 +15,16 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[derive(Default)]
 pub(super) struct ComplianceMemo(Mutex<HashMap<String, Arc<Compliance>>>);
 
-/// Most compliances kept at a time: a sweep over the teeth has no use for old ones.
+/// Largest number of compliances kept: a sweep over the teeth does not use old ones again.
 const KEPT: usize = 8;
 
-/// Part of the mesh stage that finite elements take when they have to be solved.
+/// Fraction of the progress of the mesh stage assigned to the solution of the finite elements.
 const ELEMENTS_PART: f64 = 0.95;
 
-/// A compliance and where it came from.
+/// A compliance and its origin.
 pub(super) struct Found {
     pub compliance: Arc<Compliance>,
-    /// Whether finite elements of both gears came from the store.
+    /// Whether the finite elements of both gears were read from the store.
     pub elements_reused: bool,
     /// Fraction of the mesh stage that is done.
     pub done: f64,
@@ -63,8 +63,8 @@ pub(super) fn find(
     Ok(Found { compliance, elements_reused, done })
 }
 
-/// Finite elements of one gear, from the store or solved (over the given part of the stage's progress); and whether
-/// they were stored.
+/// Finite elements of one gear, read from the store or solved (over the given part of the stage's progress), and
+/// whether they were read from the store.
 fn flank(
     input: &FlankFlexibilityInput,
     context: &SolveContext,
@@ -84,7 +84,7 @@ fn flank(
     Ok((flank, false))
 }
 
-/// What the compliance depends on of a pair: not its modifications and misalignments.
+/// The specification on which the compliance depends: that of `case` without flank modifications and misalignments.
 pub(super) fn bare(case: &ContactCase) -> herringbone_physics::gear::PairSpec {
     let mut spec = *case.spec;
     for gear in [&mut spec.pinion, &mut spec.gear] {

@@ -62,7 +62,7 @@ fn table1(change: impl FnOnce(&mut Value)) -> Value {
     value
 }
 
-/// Whatever the motion, its mean tooth force is the static one.
+/// The mean tooth force of any steady motion is the static force.
 #[test]
 fn the_mean_tooth_force_is_the_static_one() {
     let errors = [(800.0, 2000.0), (800.0, 6500.0), (40.0, 9000.0), (3000.0, 1200.0)].map(|(torque_nm, rpm)| {
@@ -79,7 +79,7 @@ fn the_mean_tooth_force_is_the_static_one() {
     check_worst(TOPIC, "mean tooth force over the static one", errors, 1e-9);
 }
 
-/// With supports that do not give the twelve equations are m_e x'' + c x' + F(x, φ) = F_bt: solved here by fixed steps.
+/// With rigid supports the twelve equations reduce to m_e x'' + c x' + F(x, φ) = F_bt, solved here by fixed steps.
 #[test]
 fn rigid_supports_leave_one_degree_of_freedom() {
     let errors = [2000.0, 5200.0].map(|rpm| {

@@ -1,23 +1,23 @@
-//! How much memory a document's calculation takes, known before it starts.
+//! Estimate of the peak memory of a document's calculation, made before it starts.
 //!
-//! Upper estimates from the sizes that grow with the input; what is the same for every job (a few tens of MiB) is left
-//! out. `scripts/memory` holds them against the peak of real runs.
+//! Upper estimates from the sizes that grow with the input, without the constant part of every job (a few tens of MiB).
+//! `scripts/memory` compares them with the measured peak of runs.
 
 use crate::document::{Axis, Elements, Fidelity, JobDocument, JobKind, MeshStiffness};
 
 const MIB: f64 = 1_048_576.0;
-/// A sample of a channel.
+/// Size of a sample of a channel.
 const SAMPLE_BYTES: f64 = 8.0;
-/// Each channel is held as it is, and once more while it is packed.
+/// Copies of each channel in memory: the samples, and their copy during compression.
 const PER_CHANNEL: f64 = 2.0;
-/// The spectrum's channel, its window, its transform and the plan of that, as so many channels.
+/// Memory of a spectrum in channels: the channel, its window, its transform and the plan of the transform.
 const SPECTRUM_CHANNELS: f64 = 5.0;
-/// Held by a row of a sweep, as numbers and as the text to be written.
+/// Memory of a row of a sweep: its numbers and its JSON text.
 const ROW_BYTES: f64 = 2048.0;
-/// The same of a row that carries Poincaré points or a spectrum.
+/// Memory of a row with Poincaré points or a spectrum.
 const RECORDED_ROW_BYTES: f64 = 32_768.0;
 
-/// What a calculation holds at its peak, by what asks for it.
+/// Peak memory of a calculation, MiB, by its cause.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Demand {
     /// Recorded channels.
@@ -33,7 +33,7 @@ impl Demand {
         self.series_mib + self.finite_elements_mib + self.rows_mib
     }
 
-    /// Where the document asks for most of it (JSON pointer).
+    /// JSON pointer of the field of the document that causes the largest part.
     pub fn largest(&self) -> &'static str {
         let parts = [
             (self.series_mib, "/analysis/samples_per_mesh_period"),
@@ -44,7 +44,7 @@ impl Demand {
     }
 }
 
-/// The demand of a document that was checked, solved on so many threads.
+/// Peak memory of a checked document solved on `threads` threads.
 pub fn demand(document: &JobDocument, threads: usize) -> Demand {
     let is_sweep = document.kind == JobKind::Sweep;
     let series_mib = match document.kind {

@@ -51,7 +51,7 @@ impl MotionPlane {
     }
 }
 
-/// A given stiffness as the document has it: it refers to s of the plane in use.
+/// A given stiffness, unchanged: it refers to s of the plane in use.
 pub(super) fn given_stiffness(given: &GivenStiffness) -> Stiffness {
     match given {
         GivenStiffness::Harmonics { mean_n_per_um, harmonics } => Stiffness::Fourier {

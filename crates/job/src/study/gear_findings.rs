@@ -1,5 +1,5 @@
-//! Reasons and warnings of a gear pair as the service answers them: code, pointer to the field of the document, one
-//! sentence.
+//! Infeasibilities and warnings of a gear pair as violations and warnings of a job: code, pointer to the field of the
+//! document, one sentence.
 
 use crate::Violation;
 use crate::warning::Warning;
@@ -13,7 +13,7 @@ const MM: f64 = 1e3;
 /// Micrometres per metre.
 const UM: f64 = 1e6;
 
-/// A reason why the pair cannot be solved.
+/// Violation of an infeasibility.
 pub(super) fn violation(found: &Infeasibility) -> Violation {
     let (code, unit) = code_and_unit(found);
     Violation {
@@ -101,7 +101,7 @@ pub(super) fn warning(found: &gear::Warning) -> Warning {
     Warning { code: code.to_owned(), pointer: pointer(found.field), detail }
 }
 
-/// Stable code of a reason, and the unit of its numbers.
+/// Stable code of an infeasibility, and the unit of its numbers.
 fn code_and_unit(found: &Infeasibility) -> (&'static str, &'static str) {
     match &found.reason {
         InfeasibilityReason::ValueOutOfRange { .. } => ("value-out-of-range", field_unit(found.field).0),
@@ -217,7 +217,7 @@ fn undercut_included(undercut: bool) -> &'static str {
     if undercut { ", undercut included" } else { "" }
 }
 
-/// The centre distance of the given profile shifts, and the profile shifts of the given centre distance.
+/// Text with the centre distance of the given profile shifts and the profile shifts of the given centre distance.
 fn fitting(fit: &CenterDistanceFit) -> String {
     let sum = fit.shift_sum;
     let distance = match fit.fitting_center_distance_m {
@@ -239,7 +239,7 @@ fn mate(field: SpecField) -> &'static str {
     field.member().map_or("pair", |member| member.mate().as_str())
 }
 
-/// JSON pointer to the field of the document that a field of the pair is made of.
+/// JSON pointer to the field of the document from which a field of the specification is derived.
 fn pointer(field: SpecField) -> String {
     match field {
         SpecField::NormalModule => "/design/normal_module_mm".to_owned(),

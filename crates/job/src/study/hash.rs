@@ -1,4 +1,4 @@
-//! Content hashes: what a result, or a stage, depends on, and nothing else.
+//! Content hashes of exactly those inputs on which a result or a stage depends.
 
 use super::SOLVER_VERSION;
 use super::compliance::bare;
@@ -8,7 +8,7 @@ use herringbone_physics::fe::FlankKey;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-/// Hash of everything that decides a document's result (name and label do not), with the solver's version.
+/// Hash of all inputs of a document's result (not name and label) and of the solver's version.
 pub fn input_hash(document: &JobDocument) -> String {
     let unnamed = JobDocument { name: None, label: None, ..document.clone() };
     hash("result", &unnamed)
@@ -20,13 +20,13 @@ pub(super) fn mesh_hash(case: &ContactCase) -> String {
     hash("mesh", case)
 }
 
-/// Hash of the contact's force over approach and phase, on the flanks that carry the torque or on the `idle` ones: of
-/// the same things as [`mesh_hash`].
+/// Hash of the contact force over approach and phase, on the flanks that carry the torque or on the `idle` ones: of the
+/// same inputs as [`mesh_hash`].
 pub(super) fn force_hash(case: &ContactCase, idle: bool) -> String {
     hash("mesh-force", &(case, idle))
 }
 
-/// Hash of the teeth's compliance: what [`mesh_hash`] depends on without load, modifications and misalignments.
+/// Hash of the inputs of the teeth's compliance: those of [`mesh_hash`] without load, modifications and misalignments.
 pub(super) fn compliance_hash(case: &ContactCase) -> String {
     hash("compliance", &(bare(case), &case.settings, case.fidelity, case.line_stiffness_n_per_m2, case.resolution))
 }

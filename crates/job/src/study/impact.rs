@@ -19,7 +19,7 @@ pub(super) struct ImpactStage {
 
 /// True where the impact of a document acts in the equations of motion; else it is only reported.
 pub(super) fn applied(document: &JobDocument) -> bool {
-    // A mesh force by stiffness alone knows nothing of early contact; the loaded contact's contains it.
+    // The force of a mesh stiffness has no early contact; that of the loaded contact contains it.
     document.model.mesh_force == MeshForce::Stiffness && !matches!(document.model.impact, ImpactInput::None)
 }
 
@@ -48,7 +48,7 @@ pub(super) fn run(
     stage
 }
 
-/// The impact, applied or not. Without a corner contact there is none, and a warning gives the reason.
+/// The impact, applied or not; `None`, with a warning of the reason, without a corner contact.
 fn calculate(
     document: &JobDocument,
     prepared: &Prepared,
@@ -122,7 +122,7 @@ fn calculated(
     let (left, right) = match (solve(Half::Left), solve(Half::Right)) {
         (Ok(left), Ok(right)) => (left, right),
         (Err(error), _) | (_, Err(error)) => {
-            // The contact itself is solved: it is not thrown away for an impact that its model does not cover.
+            // The contact is solved: its result is kept although the impact is outside the range of its model.
             warnings.push(not_calculated(&error));
             return ImpactStage { summary: None, pulses: [None, None] };
         }

@@ -1,4 +1,4 @@
-//! Documents at the limits of what geometry and compliance can do, through all stages.
+//! Tests of documents at the limits of geometry and compliance, through all stages.
 
 use super::unchecked::{check, solve};
 use super::{CheckedJob, Outcome, SolveContext};
@@ -73,7 +73,7 @@ fn codes(result: &JobResult) -> Vec<&str> {
     result.warnings.iter().map(|warning| warning.code.as_str()).collect()
 }
 
-/// Every stage gave numbers that can be: stiffness and shares positive, the loaded contact at least as long as the
+/// Every stage has plausible numbers: stiffness and shares are positive, the loaded contact is at least as long as the
 /// unloaded one.
 fn plausible(value: &Value) -> JobResult {
     let result = solved(value);
@@ -157,7 +157,7 @@ fn undercut_gears_are_solved() {
     }
 }
 
-/// A centre distance that does not belong to the profile shifts is refused at its own field, with what fits.
+/// A centre distance in contradiction with the profile shifts is refused at its own field, with the distance that fits.
 #[test]
 fn a_foreign_centre_distance_is_named() {
     for (center_distance_mm, sum) in [(861.0, "20.3552"), (720.0, "4.6583"), (640.0, "-1.1327"), (600.0, "no sum fits")]
@@ -172,7 +172,7 @@ fn a_foreign_centre_distance_is_named() {
     assert!(check(&parse_value(&large(680.5)).expect("valid")).is_ok());
 }
 
-/// The analytic compliance says how wrong it is on short faces, and only there.
+/// The analytic compliance reports its error on short faces, and only there.
 #[test]
 fn short_faces_are_warned_of_with_the_size_of_the_error() {
     let ten = |helix_deg: f64, width_mm: f64| {

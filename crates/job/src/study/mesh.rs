@@ -1,4 +1,4 @@
-//! The mesh stage: stiffness of both halves over the mesh period, and what the impact needs to know of it.
+//! The mesh stage: stiffness of both halves over the mesh period, and the quantities of the mesh used by the impact.
 
 use super::compliance::{self, ComplianceMemo};
 use super::equations::{MotionPlane, given_stiffness};
@@ -33,11 +33,11 @@ pub(super) struct MeshStage {
     /// Whether the right half's stiffness is already shifted by the stagger.
     pub stagger_included: bool,
     pub entry: [EntryState; 2],
-    /// The mesh force over approach and phase, where the equations contain that.
+    /// The mesh force over approach and phase, if the equations contain it.
     pub forces: Option<MeshForces>,
 }
 
-/// The mesh of one half when a pair enters. Stiffness and deflection along the transverse base tangent.
+/// The mesh of one half at the entry of a pair. Stiffness and deflection along the transverse base tangent.
 #[derive(Debug, Clone)]
 pub(super) struct EntryState {
     /// Stiffness of the whole half, and the entering pair's load share, one twentieth of a base pitch after its start.
@@ -62,7 +62,7 @@ impl EntryState {
     }
 }
 
-/// Everything the contact analysis depends on: what is solved is what is hashed.
+/// All inputs of the contact analysis; their hash identifies its result.
 #[derive(Debug, Serialize)]
 pub(super) struct ContactCase<'a> {
     pub spec: &'a PairSpec,
@@ -135,7 +135,7 @@ impl<T> Memo<T> {
 
     pub(super) fn put(&self, key: String, outcome: Arc<T>) {
         let mut map = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        // A sweep over the teeth has no use for old entries; one over speed has one.
+        // A sweep over the teeth does not use old entries again; one over the speed has a single entry.
         if map.len() >= 64 {
             map.clear();
         }
@@ -143,7 +143,7 @@ impl<T> Memo<T> {
     }
 }
 
-/// Runs the mesh stage; also what of it came from the store.
+/// Runs the mesh stage. Also returns the parts that were read from the store.
 ///
 /// # Errors
 /// [`SolveError`].

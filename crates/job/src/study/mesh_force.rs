@@ -1,4 +1,4 @@
-//! The mesh force of the equations as the loaded contact gives it, from the contact analysis of both halves.
+//! The mesh force of the equations of motion by the loaded contact, from the contact analysis of both halves.
 
 use super::compliance;
 use super::equations::MotionPlane;
@@ -16,18 +16,18 @@ use std::sync::Arc;
 /// The contact force of both halves, along s of the plane in use.
 #[derive(Debug, Clone)]
 pub(super) struct MeshForces {
-    /// Left, right; the same where the halves are.
+    /// Left, right; identical if the halves are.
     pub forces: [Arc<ContactForce>; 2],
     pub summary: ContactForceTable,
 }
 
-/// Accuracy of the table of the flanks without load over that of the loaded ones: the teeth reach them only across the
-/// whole backlash.
+/// Accuracy of the table of the unloaded flanks over that of the loaded ones: the unloaded flanks touch only after the
+/// whole backlash is crossed.
 const IDLE_FLANKS: f64 = 10.0;
-/// The loosest accuracy of a table.
+/// The coarsest accuracy of a table.
 const LOOSEST: f64 = 0.05;
 
-/// Tables of one half, or of both where they differ, of the flanks that carry the torque or of the others; from the
+/// Force tables of one half, or of both if they differ, of the flanks that carry the torque or of the others; from the
 /// job's memo or the store, else solved.
 fn tables(
     case: &ContactCase,
@@ -71,14 +71,14 @@ fn tables(
 #[derive(Clone, Copy)]
 struct Flanks<'a> {
     pair: &'a Pair,
-    /// They do not carry the torque.
+    /// Whether these are the flanks that do not carry the torque.
     are_idle: bool,
 }
 
 /// The forces of both halves in the equations' coordinates.
 ///
 /// # Errors
-/// [`SolveError`] where the contact cannot be solved.
+/// [`SolveError`] if the contact cannot be solved.
 pub(super) fn run(
     case: &ContactCase,
     pair: &Pair,

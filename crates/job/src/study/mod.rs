@@ -1,5 +1,5 @@
-//! What a job needs: which stages run, what can be reused, in which order; and the only place where documents
-//! meet physics.
+//! The calculation of a job: the stages and their order, and the reuse of stored stages. The only module that converts
+//! between documents and physics.
 
 mod accuracy;
 mod axes;
@@ -66,13 +66,13 @@ impl Stage {
     }
 }
 
-/// Where finished stages are kept for reuse. Keys are content hashes that include [`SOLVER_VERSION`].
+/// Store of finished stages for reuse. Keys are content hashes that include [`SOLVER_VERSION`].
 pub trait StageStore: Sync {
     fn load(&self, key: &str) -> Option<Vec<u8>>;
     fn save(&self, key: &str, stage: Stage, bytes: &[u8]);
 }
 
-/// Keeps nothing.
+/// A store that keeps nothing.
 pub struct NoStageStore;
 
 impl StageStore for NoStageStore {
@@ -91,14 +91,14 @@ pub struct SolveContext<'a> {
     pub points: &'a dyn PointStore,
     /// Receives (stage, fraction of the whole job done).
     pub progress: &'a (dyn Fn(Stage, f64) + Sync),
-    /// Whether the solve is to stop; asked at every checkpoint.
+    /// Whether the solve is to stop; called at every checkpoint.
     pub canceled: &'a (dyn Fn() -> bool + Sync),
     /// Milliseconds since an arbitrary start; the physics itself has no clock.
     pub clock_ms: &'a (dyn Fn() -> f64 + Sync),
 }
 
 impl SolveContext<'static> {
-    /// A context that stores nothing, reports nothing, never cancels, and whose clock stands still.
+    /// A context without storage, progress reports and cancellation, with a constant clock.
     pub fn none() -> Self {
         Self {
             stages: &NoStageStore,
@@ -123,22 +123,22 @@ pub struct RecordedChannel {
     pub values: Vec<f64>,
 }
 
-/// What a solved job leaves behind.
+/// Result and recorded channels of a solved job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     pub result: JobResult,
     pub series: Vec<RecordedChannel>,
 }
 
-/// Why a valid job has no result.
+/// Failure to solve a valid job.
 #[derive(Debug, thiserror::Error)]
 pub enum SolveError {
     #[error(transparent)]
     Canceled(#[from] Canceled),
-    /// A point of a sweep whose values do not go together, or make a gear that cannot exist.
+    /// A point of a sweep whose values contradict each other, or whose pair is infeasible.
     #[error(transparent)]
     Document(#[from] DocumentError),
-    /// A stage failed: deterministic, so it is not tried again.
+    /// A stage failed. Failures are deterministic and not retried.
     #[error("{stage:?}: {detail}")]
     Failed {
         stage: Stage,
@@ -169,7 +169,7 @@ impl SolveError {
     }
 }
 
-/// Solves a job: the stages its kind asks for, or every point of a sweep.
+/// Solves a job: the stages of its kind, or every point of a sweep.
 ///
 /// # Errors
 /// [`SolveError`].

@@ -1,4 +1,4 @@
-//! One operating point: the stages a document needs, in their order.
+//! One operating point: the stages of a document, in their order.
 
 use super::check::CheckedJob;
 use super::equations::{self, MotionPlane};
@@ -16,7 +16,7 @@ pub(super) struct Point {
     pub series: Vec<RecordedChannel>,
     /// State at the end (24 numbers in the source's order), to continue a neighbouring point from.
     pub end_state: Option<Vec<f64>>,
-    /// What the row of a sweep carries beside its numbers.
+    /// Poincaré points and spectrum for the row of a sweep, if requested.
     pub poincare: Option<Poincare>,
     pub bands: Option<Vec<f64>>,
 }
@@ -25,14 +25,14 @@ pub(super) struct Point {
 pub(super) struct PointOptions<'a> {
     /// A neighbour's end state to continue from.
     pub start: Option<&'a [f64]>,
-    /// With everything a result has; a point of a sweep leaves out the parts that its row does not hold.
+    /// Whether the whole result is made; a point of a sweep leaves out the parts that its row does not contain.
     pub whole: bool,
-    /// Data that the row of a sweep carries beside its numbers.
+    /// Requested data of the row of a sweep beside its numbers.
     pub record: &'a [Recorded],
 }
 
 impl PointOptions<'_> {
-    /// A job of its own.
+    /// The options of a single response.
     pub(super) const WHOLE: Self = Self { start: None, whole: true, record: &[] };
 
     pub(super) fn records(&self, data: Recorded) -> bool {
@@ -40,7 +40,7 @@ impl PointOptions<'_> {
     }
 }
 
-/// A point with everything before its response: the equations of motion, where the document asks for a response.
+/// A point with the stages before its response, and the equations of motion if the document requests a response.
 pub(super) struct Staged<'a> {
     result: JobResult,
     parameters: Option<Parameters>,
@@ -159,7 +159,7 @@ pub(super) fn assemble(
     })
 }
 
-/// Fraction of the whole point at a fraction of one of its stages, by what the stages usually cost.
+/// Progress of the whole point, 0 to 1, at a fraction of one of its stages, by the usual computing times of the stages.
 fn of_whole(kind: JobKind, stage: Stage, fraction: f64) -> f64 {
     let mesh_ends = if kind == JobKind::Mesh { 0.98 } else { 0.6 };
     let (start, end) = match stage {

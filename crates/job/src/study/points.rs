@@ -5,21 +5,21 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Store of the points of one sweep while it runs. Positions are those in the result's `sweep.points`.
 ///
-/// What is loaded must have been saved by a sweep over the same document under the same solver version.
+/// Loaded points must have been saved by a sweep over the same document under the same solver version.
 pub trait PointStore: Sync {
-    /// What an earlier run of the same sweep left.
+    /// The points of an earlier run of the same sweep.
     fn load(&self) -> StoredPoints;
 
-    /// Keeps a point that was just solved. `end`, with continuation: how far its line is followed with it.
+    /// Stores a solved point. `end`, with continuation: the point up to which its line has been followed.
     fn save(&self, position: usize, row: &SweepPoint, end: Option<&LineEnd>);
 }
 
-/// Points of an earlier run.
+/// Rows and line ends of an earlier run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StoredPoints {
     /// By position.
     pub rows: HashMap<usize, SweepPoint>,
-    /// By line of a continuation: up to where it was followed.
+    /// Ends of the lines of a continuation, by the number of the line.
     pub ends: BTreeMap<usize, LineEnd>,
 }
 
@@ -30,11 +30,11 @@ pub struct LineEnd {
     pub line: usize,
     /// Position of the point.
     pub position: usize,
-    /// Its state (24 numbers in the source's order); none when it has no motion to continue from.
+    /// State of the motion (24 numbers in the source's order); `None` if there is no motion to continue from.
     pub state: Option<Vec<f64>>,
 }
 
-/// Keeps nothing.
+/// A store that keeps nothing.
 pub struct NoPointStore;
 
 impl PointStore for NoPointStore {

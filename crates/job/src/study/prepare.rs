@@ -1,4 +1,4 @@
-//! From a document to physics in SI: the pair, its inertias, its operating point, and whether all of it can exist.
+//! Conversion of a document to physics in SI: the pair, its inertias and its operating point, with their feasibility.
 
 use super::{bounds, gear_findings, supports};
 use crate::DocumentError;
@@ -11,7 +11,7 @@ use herringbone_physics::{compliance, contact};
 /// Default bore as a fraction of the reference diameter, where none is given.
 const DEFAULT_BORE_FRACTION: f64 = 0.4;
 
-/// A document whose gear can exist: geometry, inertias and operating point in SI.
+/// A document with a feasible pair: geometry, inertias and operating point in SI.
 #[derive(Debug, Clone)]
 pub(crate) struct Prepared {
     pub pair: Pair,
@@ -33,10 +33,10 @@ pub(crate) struct Prepared {
 /// a micrometre to a tenth of deflection.
 const LIGHT_LINE_LOAD_N_PER_M: f64 = 1e3;
 
-/// Derives everything about the gear that costs no solving.
+/// Derives all quantities of the pair that are known without solving.
 ///
 /// # Errors
-/// [`DocumentError::Invalid`] with every reason why the gear cannot exist.
+/// [`DocumentError::Invalid`] with every infeasibility of the pair.
 pub(crate) fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
     let mut warnings = Vec::new();
     let spec = pair_spec(document, &mut warnings);
@@ -85,7 +85,7 @@ fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
     let design = &document.design;
     let helix_angle_rad = design.helix_angle_deg.to_radians();
     let pressure_angle_rad = design.pressure_angle_deg.to_radians();
-    // The common part of both faces bears; the halves' middles stand where the design puts them.
+    // The common part of both face widths is in contact; the middles of the halves are those of the design.
     let common_mm = [&design.pinion, &design.gear]
         .map(|gear| gear.face_width_mm.unwrap_or(design.face_width_mm))
         .into_iter()
@@ -184,7 +184,7 @@ fn flank(flank: &doc::FlankInput) -> gear::FlankModification {
     }
 }
 
-/// A bore much smaller than the gear is not where its body is held: said where the bore was asked for.
+/// Warning of a bore that is too small against the root circle to be the fixed surface of the body.
 fn held_elsewhere(document: &JobDocument, pair: &Pair) -> Vec<Warning> {
     let doc::MeshStiffness::Ltca(doc::Ltca { body: doc::BodyInput::Bore, .. }) = &document.model.mesh_stiffness else {
         return Vec::new();
@@ -206,7 +206,7 @@ fn held_elsewhere(document: &JobDocument, pair: &Pair) -> Vec<Warning> {
         .collect()
 }
 
-/// The analytic compliance is wrong for short faces, by a known amount.
+/// Warning of the known error of the analytic compliance on short faces.
 fn short_face(document: &JobDocument, pair: &Pair) -> Option<Warning> {
     let doc::MeshStiffness::Ltca(doc::Ltca { fidelity: doc::Fidelity::Analytic, .. }) = &document.model.mesh_stiffness
     else {

@@ -1,4 +1,4 @@
-//! From a solved response to the result's `response` block.
+//! The `response` block of the result, made from a solved response.
 
 use super::bounds::backlash_um;
 use crate::document::{JobDocument, Plane};
@@ -43,7 +43,7 @@ fn contact(state: ContactState) -> ContactStateResult {
     }
 }
 
-/// The channel that spectra are of.
+/// The channel of the spectra.
 pub(super) const SPECTRUM_CHANNEL: &str = "a_x_left";
 
 fn full_spectrum(response: &response::Response, mesh_frequency_hz: f64) -> Option<response::Spectrum> {
@@ -73,10 +73,10 @@ pub(super) fn poincare(response: &response::Response, most: usize) -> Poincare {
     }
 }
 
-/// The natural modes of the equations, with what they are made of.
+/// The natural modes of the equations, with names, shapes and shares of energy.
 ///
 /// # Errors
-/// [`DynamicsError`] where the equations are refused.
+/// [`DynamicsError`] if the equations are refused.
 pub(super) fn natural_modes(parameters: &Parameters) -> Result<Vec<NaturalMode>, DynamicsError> {
     let modes = NaturalModes::new(parameters)?.describe(parameters).into_iter().map(|mode| NaturalMode {
         frequency_hz: mode.frequency_hz,
@@ -94,7 +94,8 @@ fn multipliers(multipliers: &[response::Multiplier]) -> Vec<FloquetMultiplier> {
     multipliers.iter().map(|m| FloquetMultiplier { modulus: m.modulus, angle_rad: m.angle_rad }).collect()
 }
 
-/// The numbers of the result's response block: without what only a job of its own has (points, spectrum, modes).
+/// The numbers of the result's response block, without the parts that only a single response has (points, spectrum,
+/// modes).
 pub(super) fn summary(
     document: &JobDocument,
     parameters: &Parameters,

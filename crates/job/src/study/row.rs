@@ -1,4 +1,4 @@
-//! One row of a sweep: the job of a point, and the part of its solution that the row has.
+//! One row of a sweep: the job of a point, and the part of its solution that is stored in the row.
 
 use super::axes;
 use super::check::CheckedJob;
@@ -12,7 +12,7 @@ use herringbone_physics::dynamics::{DynamicsError, Parameters};
 use herringbone_physics::response::{self, Analysis, Response};
 use herringbone_physics::watch::Watch;
 
-/// A row, and what its neighbours need of it.
+/// A row with the state from which its neighbour continues.
 #[derive(Default)]
 pub(super) struct Solved {
     pub row: SweepPoint,
@@ -20,16 +20,16 @@ pub(super) struct Solved {
     pub end_state: Option<Vec<f64>>,
 }
 
-/// The job of one point: `base` with the values of the axes put in.
+/// The job of one point: `base` with the values of the axes assigned.
 ///
 /// # Errors
-/// [`SolveError::Document`] where the values do not go together, or make a gear that cannot exist.
+/// [`SolveError::Document`] if the values contradict each other, or the pair is infeasible.
 pub(super) fn job(base: &JobDocument, sweep: &JobDocument, values: &[f64]) -> Result<CheckedJob, SolveError> {
     let document = axes::at(base.clone(), sweep.axes.iter().zip(values.iter().copied()))?;
     Ok(CheckedJob::of_point(document)?)
 }
 
-/// Solves one point. `start`: a neighbour's end state. A point that fails says so in its row.
+/// Solves one point. `start`: a neighbour's end state. The row of a point that fails contains the error.
 ///
 /// # Errors
 /// [`SolveError::Canceled`].
@@ -116,7 +116,7 @@ pub(super) fn of_point(values: Vec<f64>, point: Point) -> Solved {
 /// The row of a point without a response.
 ///
 /// # Errors
-/// [`SolveError::Canceled`], which is nobody's row.
+/// [`SolveError::Canceled`], which belongs to no row.
 pub(super) fn failed(values: Vec<f64>, error: SolveError) -> Result<Solved, SolveError> {
     match error {
         SolveError::Canceled(canceled) => Err(canceled.into()),

@@ -9,13 +9,13 @@ use herringbone_physics::gear::{BodyStiffness, Material, Pair};
 /// Lateral support of a half over E a, E that of steel (bearings are steel whatever the gears are of) and a the centre
 /// distance.
 ///
-/// Why E a: bearings of similar shape, loaded in proportion to what similar gears carry, are as stiff as they are large
-/// (a stiffness is a modulus times a length, and the only length that both shafts share, and that bounds the bearings
-/// beside each other, is the centre distance). Rolling bearings with line contact do this by themselves: δ = 7.68e-5
-/// Q^0.9 / l^0.8 (mm, N; T. A. Harris, Rolling Bearing Analysis), so F/δ grows with F^0.1 l^0.8, that is with the
-/// length at equal stress. Why this number: a cylindrical roller bearing of 50 mm bore (16 rollers, 13 mm long, Q =
-/// 4.08 F/16) has 850 N/µm under the force of the source's pair, shaft and housing behind it leave about 600, the value
-/// of the dynamic reference cases; a = 201 mm there.
+/// Reason for E a: bearings of similar shape, loaded in proportion to what similar gears carry, are as stiff as they
+/// are large (a stiffness is a modulus times a length, and the only length that both shafts share, and that bounds the
+/// bearings beside each other, is the centre distance). Rolling bearings with line contact do this by themselves: δ =
+/// 7.68e-5 Q^0.9 / l^0.8 (mm, N; T. A. Harris, Rolling Bearing Analysis), so F/δ grows with F^0.1 l^0.8, that is with
+/// the length at equal stress. Reason for the factor: a cylindrical roller bearing of 50 mm bore (16 rollers, 13 mm
+/// long, Q = 4.08 F/16) has 850 N/µm under the force of the source's pair, shaft and housing behind it leave about
+/// 600, the value of the dynamic reference cases; a = 201 mm there.
 const LATERAL_PER_MODULUS_AND_DISTANCE: f64 = 0.0145;
 
 /// Axial over lateral stiffness of a support: 200 to 600 N/µm in the dynamic reference cases.
@@ -143,7 +143,7 @@ mod tests {
         PairSpec { gap_width_m: 0.03, ..PairSpec::plain(6e-3, [alpha_n, beta], 75e-3, teeth) }
     }
 
-    /// Supports of which nothing is given.
+    /// Supports without given springs.
     fn nothing() -> doc::SupportsInput {
         doc::SupportsInput::defaults()
     }

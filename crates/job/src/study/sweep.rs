@@ -20,7 +20,7 @@ const POINTS_TOGETHER: usize = 32;
 /// beside downwards.
 ///
 /// # Errors
-/// [`SolveError::Canceled`]. A point that fails says so in its row.
+/// [`SolveError::Canceled`]. The row of a point that fails contains the error.
 pub(super) fn run(
     document: &JobDocument,
     stored: StoredPoints,
@@ -95,7 +95,7 @@ pub(super) fn run(
             rows.sort_by_key(|(index, _)| *index);
             Ok(rows.into_iter().map(|(_, row)| row).collect())
         };
-        // The first line leaves to the others what they share (compliance, contact).
+        // The first line computes the parts that the others share (compliance, contact).
         let mut rows = vec![follow(0)?];
         let others: Result<Vec<_>, _> = (1..ways.len() * lines).into_par_iter().map(follow).collect();
         rows.extend(others?);
@@ -137,7 +137,7 @@ fn independent(
     Ok((0..lines * length).map(|position| rows.remove(&position).unwrap_or_default()).collect())
 }
 
-/// What an earlier run followed of a line, in the order in which it is followed, and the state to go on from.
+/// Rows of a line solved by an earlier run, in the order of the continuation, and the state from which it resumes.
 fn followed(stored: &StoredPoints, line: usize, length: usize, order: &[usize]) -> (Vec<SweepPoint>, Option<Vec<f64>>) {
     let Some(end) = stored.ends.get(&line) else { return Default::default() };
     let upto = order.iter().position(|index| line * length + index == end.position).map_or(0, |last| last + 1);

@@ -1,4 +1,4 @@
-//! Documents through the stages.
+//! Tests of documents through all stages.
 
 mod members;
 mod sides;
@@ -54,8 +54,8 @@ fn the_variants_of_table2_reach_their_contact_ratios() {
     }
 }
 
-/// What the pairs in mesh take off the impact force, beside the two columns of the source's Table 2 (9.255 and 8.896
-/// kN, …): less for every higher contact ratio. The bound is what is reached, 2 percentage points.
+/// Reduction of the impact force by the pairs in mesh against the two columns of the source's Table 2 (9.255 and 8.896
+/// kN, …): it decreases with the contact ratio. The bound is the difference reached, 2 percentage points.
 #[test]
 fn the_buffering_of_table2_falls_with_the_contact_ratio() {
     let printed = [
@@ -116,7 +116,7 @@ fn solved(value: &Value) -> Outcome {
     solve(&document(value), &context).expect("solved")
 }
 
-/// Table 1 without what makes it vibrate.
+/// Table 1 without excitation.
 fn still() -> Value {
     let mut value = example("table1");
     value["model"]["impact"] = json!({"source": "none"});
@@ -146,7 +146,7 @@ fn both_planes_have_the_same_torsional_stiffness() {
         value["kind"] = json!("response");
         value["model"]["plane"] = json!(plane);
         value["model"]["mesh_stiffness"] = json!({"source": "iso6336"});
-        // Rigid supports leave torsion alone.
+        // With rigid supports only torsion is free.
         for (name, stiffness) in value["design"]["supports"].as_object_mut().expect("supports") {
             if name != "damping_ratio" {
                 *stiffness = json!(1e7);
@@ -179,7 +179,7 @@ fn a_sweep_over_speed_equals_its_points_and_shares_the_contact() {
     assert_eq!(row.mesh_circumferential_acceleration_rms_m_s2, Some(single.rms.mesh_circumferential_acceleration_m_s2));
 }
 
-/// Integrated points of a sweep go side by side in lanes: their rows are what each point says alone, to the last bit.
+/// Points of a sweep integrated side by side in lanes have the same rows, bit by bit, as points solved one by one.
 #[test]
 fn integrated_points_of_a_sweep_are_the_points_alone() {
     let mut value = example("given_stiffness");
@@ -342,8 +342,8 @@ fn a_chaotic_response_has_an_interval_and_no_multipliers() {
     assert!(response.energy_balance_residual.is_some_and(|residual| residual < 1e-8));
 }
 
-/// A motion that comes near to itself after many periods, again and again, uses up what Newton's method may cost: it is
-/// then a motion that does not repeat, not an error.
+/// A motion that repeatedly returns close to an earlier state exhausts the limit of Newton's method: it is then
+/// classified as a motion that does not repeat, not as an error.
 #[test]
 fn a_motion_that_is_too_dear_to_close_is_told_as_one_that_does_not_repeat() {
     let mut value = example("table1");
@@ -526,17 +526,20 @@ fn progress_is_that_of_the_whole_job_and_never_goes_back() {
     for kind in ["mesh", "response"] {
         let mut value = example("table1");
         value["kind"] = json!(kind);
-        let told = Mutex::new(Vec::new());
-        let progress = |_: Stage, fraction: f64| told.lock().expect("unpoisoned").push(fraction);
+        let reported = Mutex::new(Vec::new());
+        let progress = |_: Stage, fraction: f64| reported.lock().expect("unpoisoned").push(fraction);
         let context = SolveContext { progress: &progress, ..SolveContext::none() };
         solve(&document(&value), &context).expect("solved");
-        let told = told.into_inner().expect("unpoisoned");
-        assert!(told.windows(2).all(|pair| pair[0] <= pair[1]), "{kind}: {told:?}");
-        assert!(told[0] < 0.05 && told.iter().all(|fraction| (0.0..=1.0).contains(fraction)), "{kind}: {told:?}");
+        let reported = reported.into_inner().expect("unpoisoned");
+        assert!(reported.windows(2).all(|pair| pair[0] <= pair[1]), "{kind}: {reported:?}");
+        assert!(
+            reported[0] < 0.05 && reported.iter().all(|fraction| (0.0..=1.0).contains(fraction)),
+            "{kind}: {reported:?}"
+        );
     }
 }
 
-/// Keeps points as a store does, and lets the calculation go on for so many of them.
+/// Store of points that cancels the calculation after a number of them.
 #[derive(Default)]
 struct Points {
     kept: Mutex<StoredPoints>,
@@ -604,7 +607,7 @@ fn a_sweep_that_was_stopped_goes_on_where_it_was() {
     }
 }
 
-/// The source pair with a given stiffness of one harmonic and no impact. `supports`: what the document says of them.
+/// The source's pair with a given stiffness of one harmonic and no impact. `supports`: the member of the document.
 fn one_harmonic(supports: Value, rpm: f64, stagger: f64) -> Value {
     let mut value = example("table1");
     value["design"]["supports"] = supports;
@@ -672,7 +675,7 @@ fn stagger_on_one_body_moves_the_first_order_from_torsion_to_the_axis() {
         [staggered / aligned],
         0.01,
     );
-    // Free halves: what fails above if there were no body.
+    // Free halves: the opposite of the result with a common body.
     let free = example("table1")["design"]["supports"].clone();
     for rpm in [1000.0, RESONANCE_RPM] {
         let [aligned, staggered] = orders(&free, rpm, &[("a_x_left", 1.0)]);
@@ -680,7 +683,7 @@ fn stagger_on_one_body_moves_the_first_order_from_torsion_to_the_axis() {
     }
 }
 
-/// ISO stiffness, so that nothing takes time.
+/// A document with the ISO stiffness, which is fast to compute.
 fn without_supports() -> Value {
     let mut value = example("table1");
     value["design"]["supports"] = Value::Null;
@@ -708,11 +711,11 @@ fn supports_that_were_not_given_are_said_with_their_values() {
         (used.gear_axial_n_per_um.origin, used.gear_halves_axial_n_per_um.origin),
         (SpringOrigin::Assumed, SpringOrigin::Derived)
     );
-    // The document as accepted does not pretend that they were given.
+    // The accepted document keeps them as null.
     let accepted = serde_json::to_value(document(&value)).expect("JSON");
     assert!(accepted["design"]["supports"]["gear_halves_axial_n_per_um"].is_null());
     assert_eq!(accepted["design"]["supports"]["damping_ratio"], json!(0.03));
-    // The values used, given: the same motion, and nothing to say.
+    // With the same values given: the same motion, and no warning.
     let mut given = value.clone();
     given["design"]["supports"] = json!({});
     for (name, spring) in supports::named(&used) {
@@ -726,7 +729,7 @@ fn supports_that_were_not_given_are_said_with_their_values() {
             .iter()
             .all(|(_, spring)| spring.origin == SpringOrigin::Given)
     );
-    // One of them given: the others are said.
+    // With one of them given the warning lists the others.
     let mut some = value.clone();
     some["design"]["supports"] = json!({"gear_axial_n_per_um": 0.0});
     let some = solved(&some).result;
@@ -783,8 +786,8 @@ fn a_result_says_both_its_errors() {
     assert!(written["accuracy"]["model"]["basis"].as_str().is_some_and(|basis| basis.contains("given")));
 }
 
-/// What a result says of the model's error is not below what finite elements find, on short and steep faces and on few
-/// teeth too.
+/// The model error in a result is at least the difference from finite elements, also on short and steep faces and with
+/// few teeth.
 #[test]
 fn the_model_error_that_is_said_is_not_below_the_error() {
     let pairs = [
@@ -925,8 +928,8 @@ fn an_unloaded_pair_is_at_rest_without_an_alarm() {
     }
 }
 
-/// Twice the frequency of the mesh mode, hardly damped, no play: the growth is told, with its rate, by every method and
-/// in a sweep's row.
+/// Parametric instability at a mesh frequency of twice the mesh mode, with low damping and no backlash: the growth is
+/// reported, with its rate, by every method and in the row of a sweep.
 #[test]
 fn parametric_instability_is_told() {
     let mut value = example("given_stiffness");
@@ -944,8 +947,11 @@ fn parametric_instability_is_told() {
         let response = result.response.as_ref().expect("a response");
         assert_eq!(response.regime, RegimeResult::Unstable);
         assert!(response.lyapunov_per_mesh_period.expect("a rate") > 0.0 && response.confidence_interval_95.is_none());
-        let told = result.warnings.iter().find(|w| w.code == "unstable").expect("a warning");
-        assert!(told.pointer == "/operation/pinion_speed_rpm" && told.detail.contains("growth rate"), "{told:?}");
+        let warning = result.warnings.iter().find(|w| w.code == "unstable").expect("a warning");
+        assert!(
+            warning.pointer == "/operation/pinion_speed_rpm" && warning.detail.contains("growth rate"),
+            "{warning:?}"
+        );
         assert!(!warned(&result, "accuracy-not-reached", "/analysis/accuracy"));
     }
     value["analysis"] = json!({});

@@ -16,7 +16,7 @@ pub(super) struct Vibration {
     pub series: Vec<RecordedChannel>,
     pub warnings: Vec<Warning>,
     pub end_state: Option<Vec<f64>>,
-    /// Records for the row of a sweep, where the document asks for them.
+    /// Poincaré points and spectrum for the row of a sweep, if the document requests them.
     pub poincare: Option<Poincare>,
     pub bands: Option<Vec<f64>>,
 }
@@ -33,7 +33,7 @@ fn canonical(requested: &str) -> String {
     }
 }
 
-/// The channels a document asks for: all where it does not say.
+/// The channels requested by a document; all if it names none.
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
@@ -100,7 +100,7 @@ pub(super) fn to_result(
     let poincare = options.records(Recorded::Poincare).then(|| response_result::poincare(&response, POINCARE_POINTS));
     let bands =
         options.records(Recorded::Spectrum).then(|| response_result::bands(&response, parameters.mesh_frequency_hz));
-    // Moved, not copied: a long record is most of what a job holds.
+    // Moved, not copied: a long record is most of the memory of a job.
     let channels = std::mem::take(&mut response.channels);
     let channel = |channel: response::Channel| RecordedChannel {
         rms: response.summary.rms.channels.get(&channel.name).copied().unwrap_or(0.0),
@@ -117,7 +117,7 @@ pub(super) fn to_result(
         bands: bands.flatten(),
         series: if options.whole { channels.into_iter().map(channel).collect() } else { Vec::new() },
         warnings: warnings(document, &response.summary),
-        // From a motion that grows for ever there is nothing to go on.
+        // A motion that grows without bound has no end state to continue from.
         end_state: (response.summary.regime != Regime::Unstable).then(|| response.final_state.to_vec()),
     })
 }

@@ -65,7 +65,7 @@ function query(parameters) {
 }
 
 /**
- * Checks a document; with `drawing` the answer has what a drawing of the pair needs.
+ * Checks a document; with `drawing` the answer contains the data of a drawing of the pair.
  * @type {(document: JobInput, options?: { drawing?: boolean, signal?: AbortSignal }) => Promise<CheckedDocument>}
  */
 export const validate = (document, { drawing, signal } = {}) =>

@@ -3,7 +3,7 @@
 
 const KEY = "herringbone.csv-decimal";
 const COMMA = "comma";
-/** U+FEFF at the start tells spreadsheets that the text is UTF-8. */
+/** U+FEFF at the start marks the text as UTF-8 for spreadsheets. */
 const MARK = "\ufeff";
 
 let chosen = stored();
@@ -29,7 +29,7 @@ export function csvOf(rows, sign = chosen) {
 function field(value, sign) {
   const text = value === null || value === undefined ? "" : String(value);
   if (typeof value === "number") return !Number.isFinite(value) && sign === COMMA ? "" : sign === COMMA ? text.replace(".", ",") : text;
-  // A text that a spreadsheet would take for a formula is told to be a text.
+  // The apostrophe keeps a spreadsheet from evaluating a text as a formula.
   const safe = typeof value === "string" && /^[=+\-@\t\r]/.test(text) ? `'${text}` : text;
   const special = sign === COMMA ? /[";\r\n]/ : /[",\r\n]/;
   return special.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;

@@ -1,6 +1,6 @@
 // Follows all jobs: one stream of server-sent events (a stream per job would soon use up the few connections that a
 // browser opens to one host), and reading again and again where that is refused or does not come through. Nothing is
-// followed while nobody looks.
+// followed while the page is hidden.
 
 const POLL_MS = 2000;
 /** A stream without its first event for this long is taken to be blocked on the way. */

@@ -69,7 +69,7 @@ const MEMBERS = [
 ];
 
 /**
- * Rows of the pair's data; what it does not have is left out.
+ * Rows of the pair's data; members without a value are left out.
  * @param {GearData} data
  * @returns {{ symbol: [string, string], name: string, value: number, unit: string }[]}
  */

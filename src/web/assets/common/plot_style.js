@@ -1,14 +1,14 @@
-// How plots look: colours of the stylesheet, layout, what hovering shows.
+// Style of plots: colours of the stylesheet, layout, hover texts.
 
 import { el } from "./dom.js";
 import { shownUnit } from "./format.js";
 
-/** Plots below this are on a telephone, px. */
+/** Width below which a plot has the layout for telephones, px. */
 const NARROW = 480;
 const DASHES = ["solid", "dash", "dot", "dashdot", "longdash"];
 const UNITS = ["N/µm", "N/mm", "kg·m²", "m/s²", "m/s", "µm", "mm", "m", "N", "N·m", "MPa", "Hz", "s", "ms", "%", "°", "rad", "rad/s", "rad/s²", "r/min", "dB", "W", "kg"];
 
-/** Colours that plots have asked for by name. */
+/** Names of the further colours that plots have used. */
 const NAMED = new Set();
 
 /** Colours of the page, or those of paper. @param {boolean} [paper] */
@@ -23,7 +23,8 @@ export function palette(paper = false) {
    *   string }}
    */
   const colours = { of: value, text: value("--text"), muted: value("--muted"), grid: value("--line"), surface: value("--surface"), lines };
-  // Any other colour of the stylesheets by its name. What is read from paper is read now.
+  // Any other colour of the stylesheets by its name. Those of paper are read here,
+  // before its element is removed.
   const known = paper ? new Map([...NAMED].map((name) => [name, value(name)])) : null;
   colours.of = (name) => {
     NAMED.add(name);
@@ -49,7 +50,7 @@ const titleOf = (axis) => {
 };
 
 /**
- * The traces in the page's colours and dashes, with what hovering shows; bands first, so that lines lie above them.
+ * The traces in the page's colours and dashes, with hover texts; bands first, so that lines lie above them.
  * @param {Trace[]} traces
  * @param {PlotAxes} axes
  * @param {ReturnType<typeof palette>} colours
@@ -80,7 +81,7 @@ const fillOf = (colour) => ({ fillcolor: colour.replace("rgb(", "rgba(").replace
 
 function inColour(trace, colour, dash, colours, below) {
   if (trace.type === "heatmap") {
-    // What is true to scale needs the width.
+    // A plot true to scale needs the whole width.
     const place = below ? { orientation: "h", x: 0.5, y: -0.55, yanchor: "top", thickness: 10, title: { ...trace.colorbar.title, side: "top" } } : {};
     return { ...trace, colorbar: { ...trace.colorbar, ...place, tickfont: { color: colours.text } } };
   }

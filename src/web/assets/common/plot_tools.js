@@ -1,4 +1,4 @@
-// What stands below a plot: its data in words and as a table, and as files.
+// Tools below a plot: its data as text, as a table and as files.
 
 import { csvOf } from "./csv.js";
 import { download, el, fillRows } from "./dom.js";
@@ -8,7 +8,7 @@ import { parts } from "./plot_style.js";
 /** Rows of the table below a plot; the file has all. */
 const MAX_ROWS = 500;
 
-/** Puts the tools below the box. `current` tells what is drawn, `picture` makes an image of it. */
+/** Puts the tools below the box. `current` returns the plot's data, `picture` makes an image of it. */
 export function toolsOf(node, current, picture) {
   const head = el("thead");
   const table = el("table", { class: "numbers" }, el("caption", { class: "visually-hidden" }), head, el("tbody"));

@@ -12,7 +12,7 @@ export { bars, heatMap, line, points, stems } from "./plot_traces.js";
 const CONFIG = { displaylogo: false, displayModeBar: true, doubleClick: "autosize", modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "toImage"] };
 /** Distance from the window below which a plot is drawn, px. */
 const NEAR = 400;
-/** The figure of every box: what is to be drawn, and whether it was. @type {Map<Element, any>} */
+/** The figure of every box: its data, and whether it is drawn. @type {Map<Element, any>} */
 const figures = new Map();
 /** @type {Promise<any> | null} */
 let loading = null;

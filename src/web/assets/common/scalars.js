@@ -1,4 +1,4 @@
-// The scalars of a result: what each is called, its unit and meaning, and its values in a result.
+// The scalars of a result: name, unit and meaning of each, and its values in a result.
 
 import { number, sentence, shownUnit } from "./format.js";
 import { QUANTITIES } from "./quantities.js";

@@ -8,7 +8,7 @@ const OTHER_MARKS = [
   [[0xfe, 0xff], "UTF-16 (big-endian)"],
 ];
 /**
- * Where the zero bytes of ASCII characters stand among the first four (RFC 4627, section 3).
+ * Positions of the zero bytes of ASCII characters among the first four bytes, with the encoding (RFC 4627, section 3).
  * @type {[RegExp, string][]}
  */
 const ZEROS = [

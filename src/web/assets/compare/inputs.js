@@ -2,7 +2,7 @@
 
 import { number, pointerLabel } from "../common/format.js";
 
-/** What names a job and decides nothing. */
+/** JSON pointers of the names of a job, which do not affect its result. */
 const NAMES = ["/name", "/label"];
 const PER_HALF = ["tip_relief", "lead_crowning_um", "helix_slope_um", "end_relief"];
 
@@ -16,7 +16,7 @@ export function differing(documents) {
   const merged = pointers.filter((pointer) => !isHalf(pointer) || flat.some((leaf) => !same(leaf.get(pointer), leaf.get(otherHalf(pointer)))));
   const kept = merged.concat(bothHalves(pointers.filter((pointer) => !merged.includes(pointer))));
   const valueOf = (leaf, pointer) => (leaf.has(pointer) ? leaf.get(pointer) : leaf.get(pointer.replace(...BOTH)));
-  // What follows from the rest, and what this kind of job does not have: no difference between these two.
+  // A derived input (null) and one that this kind of job does not have (absent) count as equal.
   const given = (value) => value ?? null;
   const rows = kept
     .map((pointer) => ({ pointer, values: flat.map((leaf) => valueOf(leaf, pointer)) }))
@@ -25,7 +25,7 @@ export function differing(documents) {
   return { rows, total: kept.length };
 }
 
-/** Flank modifications as each half has them: what a half does not say is what the member says. */
+/** Flank modifications of each half: those that a half does not state are those of its gear. */
 function withHalves(document) {
   const design = { ...document.design };
   for (const member of ["pinion", "gear"]) {
@@ -63,7 +63,7 @@ function labelOf(pointer) {
   return axis ? { label: `Varied input ${Number(axis[1]) + 1}`, unit: "" } : pointerLabel(pointer);
 }
 
-/** An input as text; null stands for what follows from the rest, nothing at all for what the document does not have. */
+/** An input as text; null is a derived input, undefined one that the document does not have. */
 export function shown(value) {
   if (value === undefined) return "–";
   if (value === null) return "auto";

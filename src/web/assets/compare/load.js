@@ -6,7 +6,7 @@ import { SweepData } from "../sweep/data.js";
 import { columnsOf, QUANTITIES } from "../sweep/quantities.js";
 
 /**
- * Reads everything about a job as it stands; `known` is what was read before.
+ * Reads everything about a job as it stands; `known` is an earlier result of this function.
  * @param {string} id
  * @param {LoadedJob} [known]
  * @returns {Promise<LoadedJob>}
@@ -24,7 +24,7 @@ export async function load(id, known) {
   const same = known?.job && known.job.revision === job.revision ? known : null;
   if (same) return same;
   const input = known?.input ?? (await api.input(id));
-  // What a sweep has solved is kept when it fails or is canceled.
+  // The solved points of a sweep are kept when it fails or is canceled.
   if (job.kind === "sweep" && api.isEnded(job)) return { id, job, input, ...(await sweepOf(id, input)) };
   if (job.state !== "succeeded") return { id, job, input };
   const [result, channels] = await Promise.all([api.result(id), job.kind === "response" ? api.catalogue(id).then(({ items }) => items) : []]);

@@ -53,7 +53,7 @@ function entries() {
   });
 }
 
-/** Reads what is not known yet, and shows everything. */
+/** Reads the jobs that are not read yet, and shows all. */
 async function refresh() {
   const mine = ++turn;
   try {

@@ -97,7 +97,7 @@ function numberRow({ name, label, unit, change, cells }, jobs, at) {
   );
 }
 
-/** Symbols as ISO 21771 writes them: what follows an underscore stands low. */
+/** Symbols as in ISO 21771: an underscore begins a subscript. */
 function withSubscripts(label) {
   return label.split(/(_[^\s,]+)/).map((part) => (part.startsWith("_") ? el("sub", {}, part.slice(1)) : part));
 }

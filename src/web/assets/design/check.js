@@ -99,7 +99,7 @@ function showReport({ geometry, drawing, memory_mib: memory, warnings }) {
   const count = warnings.length;
   setState(count ? "good warned" : "good", count ? `Can be solved, ${count} ${count === 1 ? "warning" : "warnings"}` : "Can be solved");
   byId("checked").classList.remove("stale");
-  // On a narrow screen the way to the results says what matters most of them.
+  // On a narrow screen the link to the results contains the most important of them.
   byId("to-results").textContent = HEADLINE.map(([name, , symbol]) => `${symbol} ${fixed(geometry[name], 2)}`).join("  ");
   byId("check-geometry").replaceChildren(
     ...HEADLINE.map(([name, label, symbol]) =>

@@ -102,7 +102,7 @@ export function chooser({ id, entries, chosen }) {
       close();
     }
   });
-  // What was typed but not taken is not a choice.
+  // Text that was typed but not selected is not a choice.
   input.addEventListener("blur", () => {
     close();
     if (input.value.trim() === "" && value !== "") {

@@ -28,7 +28,7 @@ export function fieldsOf(form) {
 }
 
 /**
- * The text in a field as a JSON value; unreadable text is passed on, so that the server says what is wrong.
+ * The text in a field as a JSON value; unreadable text is passed on, so that the server reports the violation.
  * @param {Field} field
  */
 function valueOf(field) {
@@ -69,7 +69,7 @@ function unitOf(field) {
 }
 
 /**
- * The numbers typed into a field, or why they are refused.
+ * The numbers typed into a field, or the reason why they are refused.
  * @param {Field} field
  * @returns {{ value?: number, values?: (number | string)[], refused?: string }}
  */
@@ -81,10 +81,10 @@ function readTyped(field) {
   return {};
 }
 
-/** Why the numbers typed into a field are refused, if they are. @param {Field} field */
+/** Reason why the numbers typed into a field are refused; null if they are accepted. @param {Field} field */
 export const refusalOf = (field) => readTyped(field).refused ?? null;
 
-/** How the numbers typed into a field are read, where that differs from the text. @param {Field} field */
+/** Interpretation of the numbers typed into a field as text; empty if it equals the text. @param {Field} field */
 export function readingOf(field) {
   const text = field.input.value.trim();
   const { value, values } = readTyped(field);
@@ -102,10 +102,10 @@ export function isDefault(field) {
   return text === field.default;
 }
 
-/** Members of documents without a field in the form: kept, so that the server says what is wrong with them. */
+/** Members of documents without a field in the form: kept, so that the server reports the violations. */
 const extras = new Map();
 
-/** The job document of the form; what has its default is left out. @param {HTMLElement} form */
+/** The job document of the form; fields with their default are left out. @param {HTMLElement} form */
 export function readDocument(form) {
   /** @type {JobInput} */
   const root = {};

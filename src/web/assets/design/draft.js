@@ -28,7 +28,7 @@ export const draft = () => read(DRAFT);
 export const keepDraft = (document) => write(DRAFT, document);
 export const submitted = () => read(SUBMITTED);
 
-/** Keeps what was submitted and removes the draft. @param {JobInput} document */
+/** Stores the submitted document and removes the draft. @param {JobInput} document */
 export function keepSubmitted(document) {
   write(SUBMITTED, document);
   dropDraft();

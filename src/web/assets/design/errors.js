@@ -44,7 +44,7 @@ export function showErrors(form, error, { summary }) {
   const violations = error.errors ?? [];
   const entries = violations.map((entry) => {
     const field = fieldAt(fields, entry.pointer ?? "");
-    // What was not taken for a number went in as text; why says the form itself.
+    // Refused numbers were sent as text; the form's own message states the reason.
     const refused = field?.pointer === entry.pointer ? refusalOf(field) : null;
     return { ...entry, field, detail: refused ?? entry.detail };
   });

@@ -1,4 +1,4 @@
-// What the form starts from: an example, the document submitted last, a file, a draft of this browser, a job.
+// Initial document of the form: an example, the document submitted last, a file, a draft of this browser, a job.
 
 import * as api from "../common/api.js";
 import { byId, el } from "../common/dom.js";

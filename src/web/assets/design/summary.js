@@ -18,7 +18,7 @@ export function initResets(form, changed) {
   });
 }
 
-/** Marks what differs from its default, and lists it in the headings. @param {HTMLElement} form */
+/** Marks the fields that differ from their default, and lists them in the headings. @param {HTMLElement} form */
 export function showWhatIsSet(form) {
   const fields = fieldsOf(form);
   const visible = new Map();

@@ -5,7 +5,7 @@ import { number } from "../common/format.js";
 /** The service's limits: points of a sweep, and of one whose rows record more. */
 const MOST_POINTS = 100_000;
 const MOST_RECORDED = 5_000;
-/** Size of a row, and what recording adds to it at most, kB. */
+/** Size of a row, and largest sizes of the recorded data in it, kB. */
 const ROW_KB = 0.55;
 /** @type {Record<string, number>} */
 const RECORD_KB = { poincare: 8, spectrum: 1.6 };

@@ -1,5 +1,5 @@
-// Numbers as people type them: a decimal point or one decimal comma, spaces between thousands, a minus of any kind,
-// powers of ten, and the field's unit behind. What could be read in two ways is refused; the job document itself has
+// Parser of typed numbers: a decimal point or one decimal comma, spaces between thousands, a minus of any kind,
+// powers of ten, and the field's unit behind. Ambiguous numbers are refused; the job document itself has
 // decimal points only.
 
 const POINT = "write decimals with a decimal point";
@@ -40,8 +40,8 @@ function plain(text) {
 }
 
 /**
- * One number. Gives { value }; or { refused }, why it is not taken although it looks like a number; or nothing of
- * both. `comma` says whether a comma in it is "clear"ly a decimal one, or "maybe" one between thousands.
+ * Parses one number. Returns { value }; or { refused }, the reason why a text that looks like a number is refused; or
+ * neither. `comma`: "clear" if a comma in it is a decimal one, "maybe" if it may separate thousands.
  */
 function readNumber(text, unit = "") {
   const typed = plain(text).replace(THIN, " ").trim();
@@ -95,8 +95,8 @@ export function readField(text, unit) {
 }
 
 /**
- * A list of numbers. Gives { values } (a text in it is what cannot be read at all), or { refused }. Semicolons, tabs
- * and lines separate; without them commas with a space, or spaces. A comma without a space behind it is a decimal one
+ * Parses a list of numbers. Returns { values } (with unreadable items as text), or { refused }. Semicolons, tabs and
+ * lines separate; without them commas with a space, or spaces. A comma without a space behind it is a decimal one
  * when something else separates.
  */
 export function readList(text, unit = "") {

@@ -1,4 +1,4 @@
-// The few numbers that people look for first, each with what it means.
+// The headline numbers of a result, each with its meaning.
 
 import { byId, el, show } from "../common/dom.js";
 import { number } from "../common/format.js";
@@ -10,7 +10,7 @@ import { IMPACTS, STIFFNESS, contactWords, regimeWords } from "./words.js";
 const GRAVITY = 9.80665;
 
 /**
- * Name, number, unit, note and explanation of each headline; what a result does not have is left out.
+ * Name, number, unit, note and explanation of each headline; those without a value in the result are left out.
  * @param {JobResult} result
  */
 export function headlines({ geometry, mesh, impact, response, numerics, accuracy }) {

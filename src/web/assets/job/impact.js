@@ -1,4 +1,4 @@
-// The mesh-in impact: the forces beside each other, the pulse, what they come from.
+// The mesh-in impact: the forces beside each other, the pulse, and the quantities from which they are calculated.
 
 import { byId, fillRows, fillValues, show, showFigureOf } from "../common/dom.js";
 import { number } from "../common/format.js";

@@ -1,4 +1,4 @@
-// The state of a job: its stages, why it failed, and its actions.
+// The state of a job: its stages, its failure, and its actions.
 
 import * as api from "../common/api.js";
 import { byAnyId, byId, el, fillValues, notify, show } from "../common/dom.js";
@@ -85,7 +85,7 @@ export class Life {
     );
   }
 
-  /** How long it has been going on. */
+  /** Shows the time since the start of the job, or since its submission. */
   tick() {
     const { job } = this;
     if (!job || api.isEnded(job)) {
@@ -108,7 +108,7 @@ export class Life {
       byId("stage").textContent = before ? `${before === 1 ? "1 job is" : `${before} jobs are`} before this one` : "next in the queue";
       setTimeout(() => this.job?.state === "queued" && this.askPlace(), 3000);
     } catch {
-      // It is only said where it is known.
+      // The place is optional: a failure is not shown.
     }
   }
 
@@ -177,6 +177,6 @@ async function explain({ type }) {
     const text = explanation.replace("Error of a failed job: ", "").replace("`sim_time_s`", "the time below").replaceAll("`", "");
     byId("failure-advice").textContent = sentence(text);
   } catch {
-    // The title and the detail stand for themselves.
+    // Title and detail need no explanation.
   }
 }

@@ -22,7 +22,7 @@ export function stiffnessPlot(mesh) {
   if (!mesh?.curve?.stiffness_n_per_um?.length) return null;
   const solved = mesh.source === "ltca";
   const traces = halves(mesh).map(([half, curve]) => line(phaseOf(curve), closed(curve.stiffness_n_per_um), [solved ? "tangent dF/dδ" : "", half].filter(Boolean).join(", ")));
-  // Where both halves carry half of the load, the secant follows from the deflection.
+  // With equal load of both halves the secant follows from the deflection.
   const secant = mesh.right_curve ? [] : mesh.curve.transmission_error_um.map((error) => mesh.force_n / error);
   if (solved && secant.length && Math.abs(mean(secant) / mesh.secant_stiffness_mean_n_per_um - 1) < 0.01) traces.push(line(phaseOf(mesh.curve), closed(secant), `secant F/δ, mean ${number(mesh.secant_stiffness_mean_n_per_um, 4)}`));
   const levels = [{ y: mesh.stiffness_mean_n_per_um, text: `mean ${number(mesh.stiffness_mean_n_per_um, 4)}` }];
@@ -41,8 +41,8 @@ export function errorPlot(mesh) {
 }
 
 /**
- * Where an assembly error separates the halves by much more than they vary, each has an axis of its own, of the same
- * length.
+ * Separate axes of equal length for the halves, if an assembly error separates their curves by much more than the
+ * curves vary.
  * @param {MeshResult} mesh
  * @param {Trace[]} traces
  * @param {PlotAxes} axes

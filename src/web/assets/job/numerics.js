@@ -1,4 +1,4 @@
-// How the result was computed: method, accuracy reached, time of the stages, what was reused.
+// Numerics of the result: method, accuracy reached, time of the stages, reused stages.
 
 import { byId, el, fillValues, show } from "../common/dom.js";
 import { number } from "../common/format.js";

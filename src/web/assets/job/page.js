@@ -26,7 +26,7 @@ let revision = -1;
 
 /** @param {Job} job */
 function follow(job) {
-  // Events and answers may overtake each other; what is older than what is shown does not count.
+  // Events and answers may overtake each other; states older than the one shown are ignored.
   if (job.revision < revision) return;
   revision = job.revision;
   life.show(job);

@@ -61,7 +61,7 @@ async function path(id, response, { t0, t_end: end, n, dt }, plane, half) {
 }
 
 /**
- * Values of a series times a factor; what is not finite stands as 0.
+ * Values of a series times a factor; values that are not finite become 0.
  * @param {SeriesData} series
  * @param {number} factor
  */

@@ -1,4 +1,4 @@
-// RMS tables and what the response is like.
+// RMS tables, and the character of the response.
 
 import { byId, fillRows, fillValues, show } from "../common/dom.js";
 import { number, sentence, shownUnit } from "../common/format.js";

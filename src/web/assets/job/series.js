@@ -55,7 +55,7 @@ class SeriesPanel {
     const { n, dt, t0 } = catalogue[0];
     this.start = t0;
     this.length = n * dt;
-    // What repeats is shown often enough to see how it goes on.
+    // A periodic record is repeated, so that its continuation is visible.
     const repeats = response?.method === "periodic" && this.meshPeriod;
     this.copies = repeats ? Math.max(1, Math.ceil(PERIODS / Math.max(1, response.period_mesh_periods ?? 1))) : 1;
     /** @type {Span} */

@@ -2,7 +2,7 @@
 
 import { number } from "../common/format.js";
 
-/** How the motion repeats: name and sentence. @param {ResponseResult} response @returns {[string, string]} */
+/** Regime of the motion: name and sentence. @param {ResponseResult} response @returns {[string, string]} */
 export function regimeWords({ regime, period_mesh_periods: periods, lyapunov_per_mesh_period: lyapunov }) {
   if (regime === "period-1") return ["Period 1", "The motion repeats every mesh period: its spectrum has mesh orders only."];
   if (periods && periods > 1) return [`Period ${periods}`, `The motion repeats every ${periods} mesh periods: subharmonics at multiples of 1/${periods} of the mesh frequency.`];
@@ -14,7 +14,7 @@ export function regimeWords({ regime, period_mesh_periods: periods, lyapunov_per
 }
 
 /**
- * How the teeth touch: name and sentence; `table` is the mesh's contact force, where the equations contain that.
+ * Contact state: name and sentence; `table` is the mesh's contact force, where the equations contain that.
  * @param {ResponseResult} response
  * @param {MeshResult["contact_force"]} [table]
  * @returns {[string, string]}
@@ -34,7 +34,7 @@ const sentenceOf = (word) => (word ? `${word.charAt(0).toUpperCase()}${word.slic
 
 export const METHODS = { periodic: "periodic solution, solved for directly", integrate: "integrated in time", "integrate (event-exact)": "integrated in time" };
 export const STIFFNESS = { ltca: "loaded tooth contact analysis", iso6336: "ISO 6336-1, method B", given: "given" };
-/** What an impact moves. */
+/** Motions that an impact acts on. */
 export const ACTS_ON = { torsion: "rotations only (the source's law)", all: "rotations, bending and axial motion" };
 export const IMPACTS = { corner_contact: "corner contact, buffered by the pairs in mesh", zhou2008: "Zhou 2008, unbuffered", given: "given", none: "none" };
 

@@ -28,7 +28,7 @@ let nextCursor = null;
 let newer = new Set();
 /** The request under way. @type {AbortController | null} */
 let request = null;
-/** Whether its answer will be outdated when it comes. */
+/** Whether the list changed after the request in progress was sent. */
 let isOutdated = false;
 /** Whether the rows are those of this view. */
 let isFilled = false;
@@ -64,7 +64,7 @@ async function refresh() {
     for (const job of changed.values()) onJob(job);
   } catch (error) {
     if (signal.aborted) return;
-    // A cursor that came with a shared address may belong to other filters: the first page is what is left.
+    // A cursor that came with a shared address may belong to other filters: the first page is shown then.
     if (error instanceof api.Problem && error.problem.code === "invalid-cursor") return navigate({ ...view, cursor: "", trail: [] }, false);
     notify(notice, error);
   }
@@ -149,7 +149,7 @@ function add(job) {
   const present = shown();
   const isFirst = view.cursor === "";
   if (!isFirst && (present.length === 0 || job.id > present[0].job.id)) {
-    // Those on the pages before this one change, too: new is what has just been submitted.
+    // Jobs on the pages before this one change, too: only a job that was just submitted is new.
     const endedAtOnce = job.ended_at === job.submitted_at;
     if (endedAtOnce || (job.state === "queued" && job.attempt === 0)) newer.add(job.id);
     return;

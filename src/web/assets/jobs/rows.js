@@ -90,7 +90,7 @@ export class Row {
     return ended;
   }
 
-  /** Updates what changes with time alone. */
+  /** Updates the texts that depend on the present time. */
   tick(now = Date.now()) {
     const { job } = this;
     write(this.age, age(job.submitted_at, now));
@@ -104,7 +104,11 @@ export class Row {
   }
 }
 
-/** What a live job does or how it ended, and the full text. @param {Job} job @returns {[string, string]} */
+/**
+ * Stage of a live job or outcome of an ended one as short text, and the full text.
+ * @param {Job} job
+ * @returns {[string, string]}
+ */
 function stageOf(job) {
   if (!api.isEnded(job) && job.cancel_requested_at) return ["canceling …", ""];
   if (job.state === "running") return [[percent(job.progress ?? 0), job.stage].filter(Boolean).join(" · "), ""];

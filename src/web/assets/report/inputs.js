@@ -1,4 +1,4 @@
-// The inputs of a job by groups, with what differs from the defaults.
+// The inputs of a job by groups, with those that differ from the defaults.
 
 import { labelOf, number, sentence, shownUnit, unitOf } from "../common/format.js";
 
@@ -8,7 +8,7 @@ const GROUPS = [
 ];
 
 /**
- * Groups of rows; what is null is derived and left out.
+ * Groups of rows; null inputs are derived and left out.
  * @typedef {{ label: string, value: string, unit: string, differs: boolean, usual: string | null, help: string }}
  * InputRow
  * @param {JobInput} input

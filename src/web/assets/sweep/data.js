@@ -3,12 +3,12 @@
 import * as api from "../common/api.js";
 import { SWEEP_COLUMNS } from "../common/quantities.js";
 
-/** Rows asked for at once; fewer where a row carries a list. */
+/** Rows per request; fewer when rows contain lists. */
 const PAGE = 10_000;
 /** The first page is small, so that something shows soon. */
 const FIRST_PAGE = 2000;
 const PAGE_OF_LISTS = 500;
-/** Ranges of missing rows that are fetched one by one; more than these are joined over what lies between. */
+/** Ranges of missing rows that are fetched one by one; more than these are joined over the rows between them. */
 const MOST_GAPS = 8;
 
 /** @param {string} kind */

@@ -1,4 +1,4 @@
-// Where a sweep over the speed meets resonances, and the Campbell diagram.
+// Resonances in a sweep over the speed, and the Campbell diagram.
 
 import { number } from "../common/format.js";
 

@@ -4,7 +4,7 @@ use herringbone_physics::compliance::BodyHold;
 use herringbone_physics::gear::{GearSpec, Pair, PairSpec, ReliefShape, TipRelief};
 use serde_json::Value;
 
-/// What an answer is compared with.
+/// Reference values of a case.
 #[derive(Debug, Clone)]
 pub(crate) struct Reference {
     pub tangent_n_per_m: f64,

@@ -1,4 +1,4 @@
-//! How the cost grows with slices and positions.
+//! Growth of the computing time with the numbers of slices and positions.
 
 use herringbone_physics::compliance::{Compliance, Settings};
 use herringbone_physics::contact::HalfContact;

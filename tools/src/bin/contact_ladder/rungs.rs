@@ -53,16 +53,16 @@ impl Rung {
     }
 }
 
-/// What one rung gave on one case.
+/// Times and errors of one rung on one case.
 pub(crate) struct Answer {
     pub rung: Rung,
     /// Number of the case.
     pub case: usize,
-    /// Time of one half with nothing known, and with the compliance of the teeth (of finite elements: of both gears)
-    /// already there.
+    /// Computing time of one half without and with a stored compliance of the teeth (with finite elements: of both
+    /// gears).
     pub cold_s: f64,
     pub stored_s: f64,
-    /// Relative errors.
+    /// Errors relative to the reference.
     pub tangent: f64,
     pub secant: f64,
     pub first_harmonic: f64,
@@ -127,9 +127,9 @@ pub(crate) fn solve(
     solve_half(&case.pair, Half::Left, force_bt_n(case), compliance, settings, Watch::none())
 }
 
-/// Fine finite elements at 128 positions. The slices are the default ones: elements tell the half-space of a segment
-/// from its neighbours, which segments as short as the band of contact is wide do less well. The tangent is the
-/// difference quotient over 2 % of load.
+/// Reference by fine finite elements at 128 positions, with the default slices: the separation of a segment's
+/// half-space from its neighbours' is less accurate for segments as short as the width of the contact band. The tangent
+/// stiffness is the difference quotient over 2 % of load.
 fn reference(case: &Case, elements: &mut HashMap<String, Solved>, keep: Option<&Path>) -> Result<Reference, Failure> {
     let (flanks, _) = solved(case, Resolution::Fine, elements, keep)?;
     let settings = Settings { positions: Some(128), ..settings(case) };
@@ -184,7 +184,8 @@ fn flank(input: &FlankFlexibilityInput, keep: Option<&Path>) -> Result<FlankFlex
     Ok(flank)
 }
 
-/// Method B with its course over the mesh period; it knows neither modifications nor the place of the hold.
+/// ISO 6336-1 method B with its stiffness over the mesh period; it considers neither modifications nor the fixed
+/// surface.
 fn iso6336(number: usize, case: &Case, reference: &Reference) -> Result<Answer, Failure> {
     const POSITIONS: usize = 64;
     let pair = &case.pair;

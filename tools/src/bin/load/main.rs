@@ -1,5 +1,5 @@
-//! The service under load: what it answers in a second, how it grows with the jobs it holds, how soon a cancel is done,
-//! what memory it takes. Drives the release program over loopback and prints the tables of docs/BENCHMARKS.md; see
+//! The service under load: requests per second, growth of the times with the number of jobs, delay of a cancellation,
+//! memory. Drives the release program over loopback and prints the tables of docs/BENCHMARKS.md; see
 //! `scripts/load`.
 
 mod cancel;

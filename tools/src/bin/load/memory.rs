@@ -1,4 +1,4 @@
-//! What the process takes: idle, with many jobs, during a large sweep, with many connections.
+//! Memory of the process: idle, with many jobs, during a large sweep, with many connections.
 
 use crate::requests::clients_at;
 use crate::store::{MANY, fill};

@@ -1,4 +1,5 @@
-//! The database by itself: what a commit costs, and how claims, lists and submissions grow with the jobs that wait.
+//! The database alone: time of a commit, and growth of the times of claims, lists and submissions with the number of
+//! queued jobs.
 
 use crate::documents;
 use crate::times::Times;
@@ -39,7 +40,7 @@ pub(crate) async fn commits() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The two rows of a submission, without what `Store::submit` does around them.
+/// The two rows of a submission, without the checks of `Store::submit`.
 async fn insert(connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
     let job = new_job();
     let mut transaction = connection.begin_with("BEGIN IMMEDIATE").await?;

@@ -1,4 +1,4 @@
-//! Durations that were measured, and what is said of them.
+//! Measured durations and their statistics.
 
 use std::time::{Duration, Instant};
 
@@ -18,7 +18,7 @@ impl Times {
         self.0.len()
     }
 
-    /// So many runs of something.
+    /// Durations of `runs` runs of an operation.
     pub(crate) async fn of<F: Future>(runs: usize, mut something: impl FnMut() -> F) -> Self {
         let mut times = Self::default();
         for _ in 0..runs {

@@ -1,4 +1,4 @@
-//! Documents in, results out, through the service's HTTP interface.
+//! Client of the service's HTTP interface: submits documents and returns results.
 
 use herringbone_tools::Failure;
 use herringbone_tools::service::{Connection, Service};
@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 pub(crate) type Outcome<T> = Result<T, Failure>;
 
-/// The running service, and how much was asked of it.
+/// The running service, with the numbers of jobs and operating points requested so far.
 pub(crate) struct Bench {
     connection: Connection,
     service: Service,
@@ -17,7 +17,7 @@ pub(crate) struct Bench {
     pub points: usize,
 }
 
-/// An input that a sweep changes, and further ones that take the same values.
+/// An input varied by a sweep, and further inputs that take the same values.
 pub(crate) struct Axis<'a> {
     pub pointer: &'a str,
     pub also: &'a [&'a str],
@@ -25,7 +25,7 @@ pub(crate) struct Axis<'a> {
 }
 
 /// A sweep's points, in the order of the axes (the first one fastest; those that were not solved have an `error`), and
-/// how long they took.
+/// the time they took, s.
 pub(crate) struct Swept {
     pub points: Vec<Value>,
     pub seconds: f64,
@@ -46,13 +46,13 @@ impl Bench {
     /// The result of a document.
     ///
     /// # Errors
-    /// The service's own words, when it refuses the document or cannot solve it.
+    /// The message of the service, if it refuses the document or cannot solve it.
     pub(crate) fn result(&mut self, document: &Value) -> Outcome<Value> {
         let path = self.solved(document)?;
         Ok(self.connection.json("GET", &format!("{path}/result"), "")?)
     }
 
-    /// The result, or why the document is refused: the code of its first violation and the sentence.
+    /// The result, or the code and the message of the first violation of a refused document.
     pub(crate) fn result_or_refusal(&mut self, document: &Value) -> Outcome<Result<Value, String>> {
         let answer = self.connection.json("POST", "/api/v1/jobs", &document.to_string())?;
         match answer["errors"][0]["code"].as_str() {
@@ -107,7 +107,7 @@ impl Bench {
 /// The number at a JSON pointer.
 ///
 /// # Errors
-/// When there is none.
+/// If there is no number at the pointer.
 pub(crate) fn number(value: &Value, pointer: &str) -> Outcome<f64> {
     value.pointer(pointer).and_then(Value::as_f64).ok_or_else(|| format!("no number at {pointer}").into())
 }

@@ -20,7 +20,7 @@ struct Curves {
     source: Curve,
     /// First harmonic of the transmission error, µm.
     error: Curve,
-    /// Largest relative change of the RMS that a missing backlash makes.
+    /// Largest relative change of the RMS without backlash.
     without_play: f64,
     /// Motions that do not repeat every mesh period or lose contact.
     unquiet: usize,

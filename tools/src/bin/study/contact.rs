@@ -9,7 +9,7 @@ use crate::table3::rms;
 use herringbone_tools::plot::{BLACK, BLUE, Field, GREEN, GREY, ORANGE, Scale, Sheet, Style};
 use serde_json::Value;
 
-/// What one document answers.
+/// Headline numbers of the result of one document.
 #[derive(Clone)]
 pub(crate) struct Answer {
     /// RMS accelerations, m/s²: mesh circumferential, pinion axial.

@@ -1,4 +1,4 @@
-//! The page's first and last parts: what was found in short, the differences from the source, how long it took.
+//! The page's first and last parts: summary of the findings, differences from the source, computing times.
 
 use crate::Study;
 use crate::ask::Outcome;
@@ -8,15 +8,15 @@ use crate::source::PRINTED;
 use crate::table2::Impact;
 use crate::table3::rms;
 
-/// One claim of the source, and what became of it. What the contact answers is filled in by its own chapter.
+/// One claim of the source with its verification. `contact` and `survives` are filled in by the chapter on the contact.
 #[derive(Default)]
 pub(crate) struct Verdict {
     pub source: &'static str,
-    /// What the source's model answers here.
+    /// Finding by the source's model.
     pub here: String,
-    /// Whether the claim holds in it.
+    /// Whether the claim holds by the source's model.
     pub holds: &'static str,
-    /// What the contact in the equations answers, on halves of one body.
+    /// Finding with the contact in the equations, on halves of one body.
     pub contact: String,
     pub survives: &'static str,
     pub why: &'static str,
@@ -83,7 +83,7 @@ pub(crate) fn differences(study: &mut Study) -> Outcome<()> {
     Ok(())
 }
 
-/// What it took, without times that differ from run to run by more than the machine.
+/// Writes the section on computing times, without times that vary between runs for reasons other than the machine.
 pub(crate) fn cost(study: &mut Study, seconds: f64) {
     study.page.say("## What it took");
     let mut rows: Vec<Vec<String>> = study
@@ -104,7 +104,7 @@ pub(crate) fn cost(study: &mut Study, seconds: f64) {
     ));
 }
 
-/// The page's beginning, before what the chapters wrote.
+/// The page's beginning, before the chapters.
 pub(crate) fn beginning(verdicts: &[Verdict]) -> String {
     let mut page = Page::default();
     page.say(

@@ -1,4 +1,4 @@
-//! The design guide: maps of the source's pair, and where contact is lost.
+//! The design guide: maps of the source's pair, and the regions in which contact is lost.
 
 use crate::Study;
 use crate::ask::{Outcome, number};
@@ -34,7 +34,7 @@ pub(crate) fn map([name, title]: [&'static str; 2], document: Value, columns: us
     Map { name, title, document, widths_mm: spaced(50.0, 120.0, columns, false), upwards }
 }
 
-/// Draws a map and says what can be said of each.
+/// Draws a map and writes the sentences about it.
 pub(crate) fn show(study: &mut Study, map: Map) -> Outcome<Solved> {
     let solved = map.solve(study)?;
     eprintln!("{}: {:.1} s", solved.map.name, solved.seconds);

@@ -1,4 +1,4 @@
-//! Where contact is lost by the source's model: its claim about light loads.
+//! Loss of contact by the source's model: its claim about light loads.
 
 use crate::Study;
 use crate::ask::Outcome;

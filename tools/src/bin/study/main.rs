@@ -1,5 +1,6 @@
-//! What the source paper reports, beside what the service answers, and the design guide that it left as future work.
-//! Drives the release program over loopback, documents in, results out, and writes docs/STUDY.md with its figures; see
+//! Comparison of the source paper's results with those of the service, and the design guide that it left as future
+//! work. Drives the release program over loopback, documents in, results out, and writes docs/STUDY.md with its
+//! figures; see
 //! `scripts/study`. With names of chapters as arguments, only these are run: their figures are written, their text
 //! printed.
 
@@ -27,19 +28,19 @@ use herringbone_tools::plot::Sheet;
 use page::Page;
 use std::time::Instant;
 
-/// The service that is asked, the page that is written, the figures that are drawn.
+/// The service under study, the page and its figures.
 pub struct Study {
     bench: Bench,
     page: Page,
     figures: Vec<(String, String)>,
     /// Title, points and seconds of each map.
     maps: Vec<(String, usize, f64)>,
-    /// What became of the source's claims.
+    /// The source's claims with their verification.
     verdicts: Vec<front::Verdict>,
 }
 
 impl Study {
-    /// What the contact in the equations answers to a claim of the source, where the claim's chapter was run.
+    /// Sets the finding with the contact in the equations of a claim of the source, if the claim's chapter was run.
     fn under_contact(&mut self, claim: &str, contact: String, survives: &'static str) {
         for verdict in self.verdicts.iter_mut().filter(|verdict| verdict.source.starts_with(claim)) {
             (verdict.contact, verdict.survives) = (contact.clone(), survives);
@@ -90,7 +91,7 @@ fn main() -> Outcome<()> {
     }
     front::cost(&mut study, began.elapsed().as_secs_f64());
     if !arguments.is_empty() {
-        // Also what does not hold any more, to be read beside its numbers.
+        // Includes the sentences that no longer hold, to be read beside their numbers.
         println!("{}\n{}", front::beginning(&study.verdicts), study.page.draft());
     }
     let text = format!("{}\n{}", front::beginning(&study.verdicts), study.page.finish()?);

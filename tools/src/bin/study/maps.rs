@@ -273,7 +273,7 @@ fn shade(part: f64) -> [u8; 3] {
 /// Contact and regime of a point without a result.
 const UNKNOWN: &str = "unknown";
 
-/// What the third panel tells apart.
+/// States distinguished in the third panel, with their colours (RGB).
 const STATES: [(&str, [u8; 3]); 8] = [
     ("contact kept, repeats every mesh period", [214, 231, 242]),
     ("teeth separate, every mesh period", [230, 159, 0]),

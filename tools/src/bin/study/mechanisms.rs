@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 pub(crate) type Curve = Vec<(f64, f64)>;
 
-/// Where a curve is lowest, and whether that is at neither of its ends.
+/// The minimum of a curve (contact ratio, value), and whether it is an interior one.
 pub(crate) fn lowest(curve: &Curve) -> ((f64, f64), bool) {
     let best = (0..curve.len()).min_by(|a, b| curve[*a].1.total_cmp(&curve[*b].1)).unwrap_or(0);
     (curve[best], best > 0 && best + 1 < curve.len())
@@ -101,7 +101,7 @@ fn one(study: &mut Study, document: &Value, curves: &mut Switched) -> Outcome<()
     Ok(())
 }
 
-/// What is left of the RMS without the impact: the least or the greatest part over all curves.
+/// Ratio of the RMS without the impact to the RMS with it: the smallest or the largest over all curves, by `pick`.
 fn remaining(switched: &[Switched], from: f64, pick: fn(f64, f64) -> f64) -> f64 {
     let parts =
         |curves: &Switched| curves.quiet.iter().zip(&curves.all).map(|(quiet, all)| quiet.1 / all.1).fold(from, pick);

@@ -8,7 +8,7 @@ use crate::page::sig;
 use crate::table3::rms;
 use serde_json::{Value, json};
 
-/// What a rule looks at.
+/// Number of the result that a rule compares.
 #[derive(Clone, Copy)]
 enum Number {
     /// Circumferential RMS, the larger of both halves.
@@ -45,7 +45,7 @@ impl Number {
 }
 
 /// A rule: its sentence, the documents before and after (of `documents/`; none: the gear as it is), the same changes of
-/// the second gear, what it looks at, and what it expects of after over before.
+/// the second gear, the compared number, and the expected ratio of after to before.
 struct Rule {
     text: &'static str,
     before: Option<&'static str>,

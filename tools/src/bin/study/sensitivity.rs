@@ -1,4 +1,4 @@
-//! What the source does not report, and how much depends on it.
+//! Sensitivity of the results to the inputs that the source does not report.
 
 use crate::Study;
 use crate::ask::{Outcome, number};
@@ -7,7 +7,7 @@ use crate::page::{change, sig};
 use crate::table3::rms;
 use serde_json::{Value, json};
 
-/// One assumption: how it is called, what it is, what it is changed to (a value for each of two columns, or one).
+/// One assumption: its name, its value, and its changed values (one for each of two columns, or a single one).
 struct Assumption {
     name: &'static str,
     stated: String,
@@ -223,8 +223,7 @@ pub(crate) fn write(study: &mut Study) -> Outcome<()> {
 /// Ratio of both RMS values to those of the base document, and the assumption's name.
 type Ratios = Vec<(f64, f64, String)>;
 
-/// A row for every change of every assumption: what is assumed, what it is changed to, changes of the four headline
-/// numbers.
+/// A row for every change of every assumption: assumed value, changed value, changes of the four headline numbers.
 fn vary(
     study: &mut Study,
     document: &Value,
@@ -259,7 +258,7 @@ fn vary(
     Ok((rows, ratios))
 }
 
-/// What the answer with the contact in the equations rests on.
+/// Assumptions of the result with the contact in the equations.
 fn assumptions_of_contact(base: &Value) -> Outcome<Vec<Assumption>> {
     let mass = |gear: &str| number(base, &format!("/geometry/{gear}/mass_kg"));
     let spring = |name: &str| number(base, &format!("/supports/{name}/value"));
@@ -319,7 +318,7 @@ fn assumptions_of_contact(base: &Value) -> Outcome<Vec<Assumption>> {
     Ok(assumptions)
 }
 
-/// The same question with the contact in the equations.
+/// Writes the sensitivities with the contact in the equations.
 pub(crate) fn write_contact(study: &mut Study) -> Outcome<()> {
     let document = contact()?;
     let base = study.bench.result(&document)?;

@@ -1,4 +1,4 @@
-//! What the source paper prints in its Tables 2 and 3.
+//! Tables 2 and 3 as printed in the source paper.
 
 /// One row of both tables.
 pub(crate) struct Printed {

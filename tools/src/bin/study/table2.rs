@@ -10,7 +10,7 @@ use crate::ways::{WAYS, reach};
 use herringbone_tools::plot::{BLACK, BLUE, Field, GREEN, ORANGE, Scale, Sheet, Style};
 use serde_json::{Value, json};
 
-/// What Table 2 asks of one design.
+/// Quantities of one design that enter Table 2.
 pub(crate) struct Impact {
     pub ratio: f64,
     pub transverse: f64,

@@ -5,13 +5,13 @@ use crate::ask::{Outcome, number};
 use crate::documents::with;
 use serde_json::{Value, json};
 
-/// One input, or two that go together.
+/// One input, or two that are changed together.
 pub(crate) struct Way {
     pub name: &'static str,
     pub unit: &'static str,
-    /// Where it is searched.
+    /// Range of the input within which a contact ratio is searched, in `unit`.
     range: [f64; 2],
-    /// Why the greatest ratios are not reached.
+    /// Text with the reason why the largest contact ratios are not reached.
     pub limit: &'static str,
     pub make: fn(&Value, f64) -> Value,
 }

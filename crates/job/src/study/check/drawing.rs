@@ -38,7 +38,7 @@ fn margin(margin: gear::Margin) -> MarginResult {
 }
 
 fn section(pair: &Pair, document: &JobDocument) -> DrawnSection {
-    // Where the lines of the left half pass through its middle.
+    // Roll coordinate of the lines of contact in the middle of the left half.
     let b = pair.spec.face_width_m;
     let x_m = pair.position_m(0.0) + 0.5 * b * pair.base_helix_angle_rad.tan();
     let [pinion_pitch_m, gear_pitch_m] = pair.pitch_radii_m();
@@ -71,8 +71,9 @@ fn section(pair: &Pair, document: &JobDocument) -> DrawnSection {
     }
 }
 
-/// From which end the pinion is seen to turn clockwise. On a right half of right hand the outer ends are ahead
-/// counter-clockwise, seen from the right; with the apex leading the inner ends are ahead in the sense of rotation.
+/// The end of the axis from which the pinion is seen to turn clockwise. On a right half of right hand the outer ends
+/// are ahead counter-clockwise, seen from the right; with the apex leading the inner ends are ahead in the sense of
+/// rotation.
 fn seen_from(document: &JobDocument) -> Half {
     let right_half_is_right_hand = document.design.pinion.left_half_hand == Hand::Left;
     let apex_leads = document.operation.rotation == RotationInput::ApexLeading;

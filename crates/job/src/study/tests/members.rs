@@ -1,4 +1,4 @@
-//! Gears of different material and width, wide play, and inputs that a sweep moves together.
+//! Tests of gears of different material and width, of large backlash, and of inputs that a sweep varies together.
 
 use super::*;
 
@@ -86,7 +86,7 @@ fn own_values_that_are_the_designs_change_not_a_bit() {
         own["design"]["pinion"]["coast"] = json!({"lead_crowning_um": 12.0});
         assert_eq!(solved(&own), solved(&plain), "{name}");
     }
-    // What a material leaves out is the design's, not steel's.
+    // Fields left out of a gear's material default to those of the design's material, not to steel.
     let mut soft = example("table1");
     soft["design"]["material"] = json!({"youngs_modulus_gpa": 100});
     soft["design"]["gear"]["material"] = json!({"density_kg_m3": 7000});
@@ -94,7 +94,7 @@ fn own_values_that_are_the_designs_change_not_a_bit() {
     assert_eq!((material.youngs_modulus_gpa, material.density_kg_m3), (100.0, 7000.0));
 }
 
-/// What was computed before gears had values of their own.
+/// Results of the examples, unchanged since before gears had materials and widths of their own.
 #[test]
 fn numbers_of_the_examples_stay() {
     let topic = "Job: example documents";

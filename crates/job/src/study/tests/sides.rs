@@ -1,4 +1,4 @@
-//! Negative torque and none: the coast flanks, and gears at rest.
+//! Tests of negative and zero torque: the coast flanks, and gears at rest.
 
 use super::*;
 
@@ -54,8 +54,8 @@ fn the_closed_form_runs_on_the_other_flank() {
     assert_ne!(curve(c), curve(d));
 }
 
-/// Loaded contact: a drive-flank relief does nothing to the coast flanks that have none, not by a bit, and the coast
-/// flanks' own does.
+/// Loaded contact: a relief of the drive flanks leaves the results of unrelieved coast flanks bit-identical; a relief
+/// of the coast flanks changes them.
 #[test]
 fn loaded_contact_runs_on_the_other_flank_with_its_own_modifications() {
     let mut bare = example("table1");
