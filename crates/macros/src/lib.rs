@@ -27,8 +27,8 @@ use syn::{DeriveInput, parse_macro_input};
 ///   "…")` for a field of an object): section of the form, rank in it, symbol, the values of another field for which
 ///   this one is in use, the description of the default.
 ///
-/// On the struct: `group = "…"` for all fields, and `rules = path`, a function `fn(&mut Self, &ObjectPlace)` that checks
-/// the rules between the fields and settles those that follow from others.
+/// On the struct: `group = "…"` for all fields, and `rules = path`, a function `fn(&mut Self, &ObjectPlace)` that
+/// checks the rules between the fields and settles those that follow from others.
 #[proc_macro_derive(Input, attributes(input))]
 pub fn derive_input(item: TokenStream) -> TokenStream {
     input::derive_input(parse_macro_input!(item as DeriveInput)).unwrap_or_else(|error| error.to_compile_error()).into()
