@@ -1,9 +1,9 @@
-//! The HTTP interface. One file per endpoint in [`routes`]; shared are the extractors ([`request`]), the representation
-//! of jobs ([`view`]) and of errors ([`problem`]). No other module depends on HTTP.
+//! The HTTP interface. One file per endpoint in `routes`; shared are the extractors (`request`), the representation
+//! of jobs (`view`) and of errors (`problem`). No other module depends on HTTP.
 //!
 //! Invariant: every response with a status of 400 or above is `application/problem+json` in one schema, with a code of
 //! a closed list; the request middleware brings errors of the framework into the same form. (A request whose head
-//! cannot be parsed does not reach it: see [`connections`].)
+//! cannot be parsed does not reach it: see `connections`.)
 
 mod columns;
 mod config;

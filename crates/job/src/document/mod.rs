@@ -1,7 +1,7 @@
 //! The job document: the input of a job. Names and units are the public contract. Every default is filled in, so that a
 //! serialized document states all inputs of the calculation.
 //!
-//! Each field is declared here, once: see [`crate::field`]. The doc comments' first paragraphs are the help texts of
+//! Each field is declared here, once: see `crate::field`. The doc comments' first paragraphs are the help texts of
 //! schema and form.
 
 mod analysis;
@@ -110,7 +110,7 @@ pub enum RotationInput {
 ///
 /// # Errors
 /// [`DocumentError::Malformed`] when the bytes are not JSON in UTF-8 or repeat a member, [`DocumentError::Invalid`] with all violations otherwise.
-/// Whether the gear can exist is not checked here (see [`crate::study::Checked`]).
+/// Whether the gear can exist is not checked here (see [`crate::study::CheckedJob`]).
 pub fn parse(bytes: &[u8]) -> Result<JobDocument, DocumentError> {
     let value = json::read(bytes).map_err(|json::NotJson { detail, line, column }| DocumentError::Malformed {
         detail,

@@ -1,6 +1,6 @@
 //! The result document: what comes out. Names and units are the public contract; stages that did not run are null.
 //!
-//! A scalar is declared once, as a field of these structs with its `#[scalar(…)]` attribute: see [`ResultFields`].
+//! A scalar is declared once, as a field of these structs with its `#[scalar(…)]` attribute: see `ResultFields`.
 
 mod accuracy;
 mod geometry;
