@@ -1,5 +1,6 @@
 //! The derives of job documents.
 
+use super::doc_lines;
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use syn::punctuated::Punctuated;
@@ -408,22 +409,20 @@ pub(crate) fn derive_words(item: DeriveInput) -> Result<TokenStream> {
                 serializer.serialize_str(self.as_str())
             }
         }
+
+        impl<'de> serde::Deserialize<'de> for #ident {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let word = <std::borrow::Cow<str> as serde::Deserialize>::deserialize(deserializer)?;
+                <Self as crate::field::Words>::of_word(&word)
+                    .ok_or_else(|| serde::de::Error::custom(format!("{word:?} is not one of the permitted words")))
+            }
+        }
     })
 }
 
 /// The first paragraph of a doc comment, in one line.
 fn help(attributes: &[Attribute]) -> String {
-    let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
-        Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {
-            Expr::Lit(literal) => match &literal.lit {
-                syn::Lit::Str(text) => Some(text.value().trim().to_owned()),
-                _ => None,
-            },
-            _ => None,
-        },
-        _ => None,
-    });
-    lines.take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+    doc_lines(attributes).take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 /// Whether an empty field is omitted when the document is serialized (`#[serde(skip_serializing_if = …)]`).

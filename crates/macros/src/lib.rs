@@ -5,7 +5,7 @@ mod result;
 mod units;
 
 use proc_macro::TokenStream;
-use syn::{DeriveInput, parse_macro_input};
+use syn::{Attribute, DeriveInput, Expr, ExprLit, Lit, Meta, parse_macro_input};
 
 /// Declares the fields of an object of the job document: one for each field of the struct, with the first paragraph of
 /// its doc comment as the help text. Implements `crate::field::Input`.
@@ -75,4 +75,15 @@ pub fn result_fields(input: TokenStream) -> TokenStream {
 pub fn sweep_columns(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
     result::sweep_columns(&input).unwrap_or_else(syn::Error::into_compile_error).into()
+}
+
+/// The lines of a doc comment.
+fn doc_lines(attributes: &[Attribute]) -> impl Iterator<Item = String> {
+    attributes.iter().filter_map(|attribute| match &attribute.meta {
+        Meta::NameValue(meta) if meta.path.is_ident("doc") => match &meta.value {
+            Expr::Lit(ExprLit { lit: Lit::Str(line), .. }) => Some(line.value().trim().to_owned()),
+            _ => None,
+        },
+        _ => None,
+    })
 }

@@ -1,11 +1,11 @@
 //! The derives of results: `ResultFields` for the structs of a result, `SweepColumns` for the row of a sweep.
 
-use super::units;
+use super::{doc_lines, units};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 use syn::meta::ParseNestedMeta;
 use syn::spanned::Spanned;
-use syn::{Attribute, Data, DeriveInput, Error, Expr, ExprLit, Field, Fields, Lit, LitInt, LitStr, Meta, Result};
+use syn::{Data, DeriveInput, Error, Expr, Field, Fields, LitInt, LitStr, Meta, Result};
 
 /// See [`crate::result_fields`].
 pub(crate) fn result_fields(input: &DeriveInput) -> Result<TokenStream> {
@@ -53,7 +53,7 @@ fn declaration(field: &Field) -> Result<TokenStream> {
     }
     let symbol = attributes.symbol.unwrap_or_default();
     let unit = attributes.unit.unwrap_or_else(|| derived_unit.to_owned());
-    let help = attributes.help.unwrap_or_else(|| documentation(&field.attrs));
+    let help = attributes.help.unwrap_or_else(|| doc_lines(&field.attrs).collect::<Vec<_>>().join(" "));
     let (label, is_labelled) = match attributes.label {
         Some(label) => (label, true),
         None => (units::words(stem), false),
@@ -285,18 +285,6 @@ fn serialized_name(field: &Field) -> Result<String> {
         })?;
     }
     Ok(name)
-}
-
-/// The text of the doc comment, its lines joined.
-fn documentation(attributes: &[Attribute]) -> String {
-    let lines = attributes.iter().filter_map(|attribute| match &attribute.meta {
-        Meta::NameValue(meta) if meta.path.is_ident("doc") => match &meta.value {
-            Expr::Lit(ExprLit { lit: Lit::Str(line), .. }) => Some(line.value().trim().to_owned()),
-            _ => None,
-        },
-        _ => None,
-    });
-    lines.collect::<Vec<_>>().join(" ")
 }
 
 /// The string literal of `name = "…"`.

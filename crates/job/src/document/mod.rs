@@ -16,7 +16,8 @@ pub use design::{
 };
 pub use model::{
     ActsOn, BodyInput, CornerImpactInput, Elements, Fidelity, GivenImpactInput, GivenStiffness, HarmonicInput,
-    ImpactDuration, ImpactInput, Ltca, MeshForce, MeshStiffness, ModelInput, Plane, StiffnessLaw,
+    ImpactDuration, ImpactInput, ImpactSource, Ltca, MeshForce, MeshStiffness, MeshStiffnessSource, ModelInput, Plane,
+    StiffnessLaw,
 };
 pub use sweep::{Axis, AxisPoints, Continuation, MAX_SWEEP_POINTS, Recorded, Spacing};
 

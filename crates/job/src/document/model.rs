@@ -65,8 +65,9 @@ impl MeshForce {
 }
 
 /// Plane in which the equations of motion are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Words)]
 pub enum Plane {
+    #[default]
     /// The base plane, in which the contact acts.
     #[words(label = "base (consistent)")]
     Base,
@@ -99,8 +100,10 @@ struct MeshStiffnessMembers {
     given: GivenStiffnessMembers,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
-enum MeshStiffnessSource {
+/// Origin of the mesh stiffness.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Words)]
+pub enum MeshStiffnessSource {
+    #[default]
     #[words(label = "loaded tooth contact")]
     Ltca,
     #[words(label = "ISO 6336-1, closed form")]
@@ -360,8 +363,10 @@ struct ImpactMembers {
     duration_mesh_periods: Option<f64>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
-enum ImpactSource {
+/// Law of the mesh-in impact.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Words)]
+pub enum ImpactSource {
+    #[default]
     CornerContact,
     #[words(label = "Zhou (2008), unbuffered")]
     Zhou2008,
@@ -426,8 +431,9 @@ impl Input for ImpactInput {
 }
 
 /// Motions that an impact acts on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Words)]
 pub enum ActsOn {
+    #[default]
     /// The torsional equations only, as the source prints them.
     Torsion,
     /// Bending and axial motion too, as a normal force on the tooth does.

@@ -1,6 +1,7 @@
 //! The mesh-in impact.
 
-use super::{ActsOnResult, ImpactSource, ResultFields};
+use super::ResultFields;
+use crate::document::{ActsOn, ImpactSource};
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
@@ -55,7 +56,7 @@ pub struct ImpactResult {
     #[serde(default)]
     #[cfg_attr(feature = "schema", schema(value_type = String))]
     #[scalar(label = "motions that the impact acts on")]
-    pub acts_on: ActsOnResult,
+    pub acts_on: ActsOn,
 }
 
 /// Of results stored before impacts could be reported alone.

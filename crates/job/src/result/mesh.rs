@@ -1,6 +1,7 @@
 //! The loaded mesh: stiffness, transmission error, load distribution.
 
-use super::{PerHalf, ResultFields, StiffnessSource};
+use super::{PerHalf, ResultFields};
+use crate::document::MeshStiffnessSource;
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
@@ -66,7 +67,7 @@ pub struct Mesh {
     /// Where the stiffness came from: `ltca`, `iso6336` or `given`.
     #[cfg_attr(feature = "schema", schema(value_type = String))]
     #[scalar(label = "source of the mesh stiffness")]
-    pub source: StiffnessSource,
+    pub source: MeshStiffnessSource,
     /// How the force of the contact over approach and phase was tabulated for the equations of motion; null where they do not contain it.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub contact_force: Option<ContactForceTable>,

@@ -28,8 +28,7 @@ pub use supports::{SpringValue, SupportsResult};
 pub use sweep::{Campbell, CampbellCrossing, Hysteresis, Jump, SweepAxis, SweepPoint, SweepResult};
 pub use sweep_column::{Cell, CellKind, Column};
 pub use words::{
-    ActsOnResult, BranchDifference, BranchDirection, ContactStateResult, ImpactSource, MethodResult, PlaneResult,
-    RegimeResult, ReusedStage, SpringOrigin, StiffnessSource,
+    BranchDifference, BranchDirection, ContactStateResult, MethodResult, RegimeResult, ReusedStage, SpringOrigin,
 };
 
 pub(crate) use herringbone_macros::{ResultFields, SweepColumns};

@@ -1,6 +1,7 @@
 //! The vibration response.
 
-use super::{ContactStateResult, MethodResult, PerHalf, PlaneResult, RegimeResult, ResultFields};
+use super::{ContactStateResult, MethodResult, PerHalf, RegimeResult, ResultFields};
+use crate::document::Plane;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -59,7 +60,7 @@ pub struct ResponseResult {
     pub backlash_um: Option<f64>,
     #[cfg_attr(feature = "schema", schema(value_type = String))]
     #[scalar(label = "plane of the equations")]
-    pub plane: PlaneResult,
+    pub plane: Plane,
     pub mesh_frequency_hz: f64,
     /// Mesh periods over which the means were taken.
     #[scalar(label = "mesh periods in the means")]

@@ -1,6 +1,7 @@
-//! The words of a result: fields with a fixed set of values.
+//! The words of a result: fields with a fixed set of values. Those that repeat a choice of the document have its type.
 
 use super::{Cell, CellKind, ToCell};
+use crate::document::{ActsOn, ImpactSource, MeshStiffnessSource, Plane};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
@@ -46,37 +47,6 @@ words! {
         Assumed = "assumed",
     }
 
-    /// Origin of the mesh stiffness.
-    StiffnessSource {
-        /// Loaded tooth contact analysis.
-        Ltca = "ltca",
-        /// ISO 6336-1, method B.
-        Iso6336 = "iso6336",
-        #[default]
-        Given = "given",
-    }
-
-    /// Law of the mesh-in impact.
-    ImpactSource {
-        /// Corner contact, the force buffered by the pairs in mesh.
-        CornerContact = "corner_contact",
-        /// Corner contact after Zhou et al. (2008), unbuffered.
-        Zhou2008 = "zhou2008",
-        /// No impact.
-        None = "none",
-        #[default]
-        Given = "given",
-    }
-
-    /// Equations of motion that the impact force acts on.
-    ActsOnResult {
-        /// The rotations only.
-        #[default]
-        Torsion = "torsion",
-        /// Rotations, bending and axial motion.
-        All = "all",
-    }
-
     /// State of contact over the record.
     ContactStateResult {
         /// The working flanks stay in contact.
@@ -97,13 +67,6 @@ words! {
         /// By integration in time.
         #[default]
         Integrate = "integrate",
-    }
-
-    /// Plane in which the equations of motion are written.
-    PlaneResult {
-        #[default]
-        Base = "base",
-        Pitch = "pitch",
     }
 
     /// Direction in which a continuation follows a branch.
@@ -192,7 +155,7 @@ impl<'de> Deserialize<'de> for RegimeResult {
     }
 }
 
-super::quantity::scalars! { Word: RegimeResult; }
+super::quantity::scalars! { Word: ActsOn, ImpactSource, MeshStiffnessSource, Plane, RegimeResult; }
 
 impl ToCell for Option<RegimeResult> {
     const KIND: CellKind = CellKind::Word;

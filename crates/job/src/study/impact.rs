@@ -4,7 +4,7 @@ use super::bounds;
 use super::equations::MotionPlane;
 use super::mesh::MeshStage;
 use super::prepare::Prepared;
-use crate::document::{ActsOn, CornerImpactInput, ImpactDuration, ImpactInput, JobDocument, MeshForce};
+use crate::document::{CornerImpactInput, ImpactDuration, ImpactInput, ImpactSource, JobDocument, MeshForce};
 use crate::result;
 use crate::warning::Warning;
 use herringbone_physics::dynamics;
@@ -39,10 +39,7 @@ pub(super) fn run(
     }
     if let Some(summary) = &mut stage.summary {
         summary.applied = applied;
-        summary.acts_on = match document.model.impact.acts_on() {
-            ActsOn::Torsion => result::ActsOnResult::Torsion,
-            ActsOn::All => result::ActsOnResult::All,
-        };
+        summary.acts_on = document.model.impact.acts_on();
     }
     warnings.extend(bounds::of_pulses(document, plane, &stage.pulses));
     stage
@@ -70,7 +67,7 @@ fn calculate(
                 force_n: given.force_n,
                 duration_us: given.duration_mesh_periods / prepared.mesh_frequency_hz * 1e6,
                 start_mesh_periods: given.start_mesh_periods,
-                source: result::ImpactSource::Given,
+                source: ImpactSource::Given,
                 ..result::ImpactResult::default()
             };
             ImpactStage { summary: Some(summary), pulses: [Some(pulse(0.0)), Some(pulse(shift))] }
@@ -173,7 +170,7 @@ fn calculated(
         corner_deflection_um: Some(deflection_m * 1e6),
         corner_overrun_mm: Some(left.overrun_m * 1e3),
         start_mesh_periods,
-        source: if buffered { result::ImpactSource::CornerContact } else { result::ImpactSource::Zhou2008 },
+        source: if buffered { ImpactSource::CornerContact } else { ImpactSource::Zhou2008 },
         ..result::ImpactResult::default()
     };
     ImpactStage { summary: Some(summary), pulses: [pulse(&left, 0.0), pulse(&right, shift)] }

@@ -7,9 +7,10 @@ use super::mesh_force::{self, MeshForces};
 use super::prepare::Prepared;
 use super::{SolveContext, SolveError, Stage};
 use crate::document::{
-    BodyInput, Elements, Fidelity, JobDocument, JobKind, Ltca, MeshForce, MeshStiffness, StiffnessLaw,
+    BodyInput, Elements, Fidelity, JobDocument, JobKind, Ltca, MeshForce, MeshStiffness, MeshStiffnessSource,
+    StiffnessLaw,
 };
-use crate::result::{ApexSensitivity, Convergence, FlankLoad, Mesh, MeshCurve, PerHalf, ReusedStage, StiffnessSource};
+use crate::result::{ApexSensitivity, Convergence, FlankLoad, Mesh, MeshCurve, PerHalf, ReusedStage};
 use herringbone_physics::compliance::{BodyHold, Settings};
 use herringbone_physics::contact::{self, ContactError, ForceTable, HalfCycle, LoadedContact, MESH_IN_PHASE};
 use herringbone_physics::dynamics::Stiffness;
@@ -172,7 +173,7 @@ pub(super) fn run(
         MeshStiffness::Given(given) => {
             let stiffness = given_stiffness(given);
             let curve = |phase: f64| stiffness.at(phase) / plane.stiffness_factor;
-            let mut stage = closed_form(StiffnessSource::Given, prepared, curve);
+            let mut stage = closed_form(MeshStiffnessSource::Given, prepared, curve);
             stage.stiffness = [stiffness.clone(), stiffness];
             Ok((stage, Vec::new()))
         }
@@ -281,7 +282,7 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
             slices: left.slices as u32,
             slice_error_percent: 100.0 * most(&|half| half.slice_error),
         }),
-        source: StiffnessSource::Ltca,
+        source: MeshStiffnessSource::Ltca,
         contact_force: None,
         curve: curve(left, &|i| left.transmission_error_m[i]),
         right_curve: (!contact.equal_halves).then(|| curve(right, &|i| right.transmission_error_m[i])),
@@ -369,7 +370,7 @@ fn iso6336(prepared: &Prepared, plane: &MotionPlane) -> Result<MeshStage, SolveE
         None => method.at_n_per_m(pair, foot_m(pair, phase)),
         Some(coast) => method.at_n_per_m(coast, foot_m(coast, pair.coast_phase(phase))),
     };
-    let mut stage = closed_form(StiffnessSource::Iso6336, prepared, curve);
+    let mut stage = closed_form(MeshStiffnessSource::Iso6336, prepared, curve);
     let samples = stage.summary.curve.stiffness_n_per_um.iter().map(|k| k * 1e6 * plane.stiffness_factor).collect();
     let stiffness = Stiffness::Samples { values_n_per_m: samples };
     stage.stiffness = [stiffness.clone(), stiffness];
@@ -383,7 +384,7 @@ fn foot_m(pair: &Pair, phase: f64) -> f64 {
 
 /// A stage from a stiffness curve k_bt(phase) alone: deflection F/k; the entering pair's share by the length of its
 /// line of contact (uniform line load).
-fn closed_form(source: StiffnessSource, prepared: &Prepared, curve: impl Fn(f64) -> f64) -> MeshStage {
+fn closed_form(source: MeshStiffnessSource, prepared: &Prepared, curve: impl Fn(f64) -> f64) -> MeshStage {
     let force_n = prepared.half_force_n;
     let phase: Vec<f64> = (0..CLOSED_FORM_POSITIONS).map(|i| i as f64 / CLOSED_FORM_POSITIONS as f64).collect();
     let stiffness: Vec<f64> = phase.iter().map(|&phase| curve(phase)).collect();

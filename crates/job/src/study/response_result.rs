@@ -1,14 +1,14 @@
 //! The `response` block of the result, made from a solved response.
 
 use super::bounds::backlash_um;
-use crate::document::{JobDocument, Plane};
+use crate::document::JobDocument;
 use crate::result::{
     ContactStateResult, FloquetMultiplier, IntervalPerHalf, IntervalResult, MethodResult, NaturalMode, PerHalf,
-    PlaneResult, Poincare, RegimeResult, ResponseResult, RmsIntervalsResult, RmsResult, SpectrumResult,
-    ToothForceResult, ToothForces,
+    Poincare, RegimeResult, ResponseResult, RmsIntervalsResult, RmsResult, SpectrumResult, ToothForceResult,
+    ToothForces,
 };
 use herringbone_physics::dynamics::{DynamicsError, NaturalModes, Parameters};
-use herringbone_physics::response::{self, ContactState, Halves, Regime};
+use herringbone_physics::response::{self, AppliedMethod, ContactState, Halves, Regime};
 
 fn per_half(halves: Halves<f64>) -> PerHalf {
     PerHalf { left: halves.left, right: halves.right }
@@ -118,17 +118,14 @@ pub(super) fn summary(
         min_displacement_um: summary.min_displacement_m * 1e6,
         natural_frequencies_hz: summary.natural_frequencies_hz.clone(),
         error_estimate: summary.error_estimate,
-        method: match summary.method.as_str() {
-            "periodic" => MethodResult::Periodic,
-            _ => MethodResult::Integrate,
+        method: match summary.method {
+            AppliedMethod::Periodic => MethodResult::Periodic,
+            AppliedMethod::Integrate => MethodResult::Integrate,
         },
         fraction_in_contact: 0.5 * (summary.contact_share.left + summary.contact_share.right),
         damping_in_gap: summary.damping_in_gap,
         backlash_um: Some(backlash_um(document)),
-        plane: match document.model.plane {
-            Plane::Base => PlaneResult::Base,
-            Plane::Pitch => PlaneResult::Pitch,
-        },
+        plane: document.model.plane,
         mesh_frequency_hz: parameters.mesh_frequency_hz,
         averaged_mesh_periods: summary.recorded_mesh_periods,
         poincare: Poincare::default(),

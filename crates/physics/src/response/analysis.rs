@@ -90,6 +90,16 @@ pub enum Regime {
     Unstable,
 }
 
+/// Method by which a motion was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AppliedMethod {
+    /// Newton's method on the period map, or a motion known in closed form.
+    Periodic,
+    /// Integration in time.
+    Integrate,
+}
+
 /// Contact of the teeth over the recorded periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -181,8 +191,8 @@ pub struct Summary {
     /// Estimated relative error of the RMS values: of the integration for a periodic motion or a record that is
     /// integrated accurately, otherwise the standard error of the finite record.
     pub error_estimate: f64,
-    /// `periodic` or `integrate`: method by which the reported motion was found.
-    pub method: String,
+    /// Method by which the reported motion was found.
+    pub method: AppliedMethod,
     /// Modulus of the largest Floquet multiplier over one mesh period, rigid-body modes excluded; None unless the
     /// motion was found as a periodic orbit.
     pub floquet_modulus: Option<f64>,

@@ -4,7 +4,7 @@
 //! grow nor decay; the perturbations of a transient decay as it does. As long as contact does not change the equations
 //! are linear with periodic coefficients, and the Floquet multipliers decide exactly.
 
-use super::analysis::{Regime, Response};
+use super::analysis::{AppliedMethod, Regime, Response};
 use super::channel::ChannelId;
 use super::lyapunov::{CHAOS_PER_MESH_PERIOD, LYAPUNOV_MESH_PERIODS, lyapunov_exponent_with};
 use super::poincare::PoincareSection;
@@ -182,7 +182,7 @@ impl ResponseProblem<'_> {
             floquet: Some(modulus),
             multipliers: None,
             lyapunov: Some(modulus.ln()),
-            method: "integrate",
+            method: AppliedMethod::Integrate,
             // An RMS value of a growing motion has no accuracy.
             error_estimate: 1.0,
             energy_residual: finished.energy.and_then(|e| e.residual()),

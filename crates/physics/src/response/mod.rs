@@ -25,8 +25,8 @@ mod statistics;
 mod steady;
 
 pub use analysis::{
-    Analysis, ContactState, Halves, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals, SolutionMethod,
-    Summary, ToothForce,
+    Analysis, AppliedMethod, ContactState, Halves, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals,
+    SolutionMethod, Summary, ToothForce,
 };
 pub use channel::{Channel, ChannelId, ChannelQuantity};
 pub use confidence::ConfidenceInterval;

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::analysis::{
-    Analysis, ContactState, Halves, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals, Summary, ToothForce,
+    Analysis, AppliedMethod, ContactState, Halves, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals,
+    Summary, ToothForce,
 };
 use super::channel::{Channel, ChannelId};
 use super::confidence::rms_interval_95;
@@ -26,7 +27,7 @@ pub(super) struct MotionAssessment {
     /// Over the period of the motion, largest first.
     pub multipliers: Option<Vec<Multiplier>>,
     pub lyapunov: Option<f64>,
-    pub method: &'static str,
+    pub method: AppliedMethod,
     pub error_estimate: f64,
     pub energy_residual: Option<f64>,
     /// Time of the first recorded value, s.
@@ -131,7 +132,7 @@ pub(super) fn assemble_response<const D: usize>(
         min_displacement_m,
         natural_frequencies_hz: input.modes.frequencies_hz.clone(),
         error_estimate: assessment.error_estimate,
-        method: assessment.method.into(),
+        method: assessment.method,
         floquet_modulus: assessment.floquet,
         floquet_multipliers: assessment.multipliers,
         lyapunov_per_mesh_period: assessment.lyapunov,

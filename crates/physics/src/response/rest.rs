@@ -1,6 +1,6 @@
 //! Exact response of a pair at rest: no load, no impact, and a start at rest.
 
-use super::analysis::{ContactState, Halves, Regime, Response, SolutionMethod};
+use super::analysis::{AppliedMethod, ContactState, Halves, Regime, Response, SolutionMethod};
 use super::recording::RecordedRun;
 use super::report::{MotionAssessment, assemble_response};
 use super::solve::ResponseProblem;
@@ -41,9 +41,9 @@ impl ResponseProblem<'_> {
             SolutionMethod::Integrate { mesh_periods, record_mesh_periods } => {
                 let end = mesh_periods.max(1);
                 let periods = record_mesh_periods.clamp(1, end);
-                ("integrate", end - periods, periods)
+                (AppliedMethod::Integrate, end - periods, periods)
             }
-            SolutionMethod::Auto | SolutionMethod::Periodic => ("periodic", 0, 1),
+            SolutionMethod::Auto | SolutionMethod::Periodic => (AppliedMethod::Periodic, 0, 1),
         };
         // In contact without force: the contact is fixed as open, so that rounding does not close it.
         let side = if model.b == 0.0 { 1 } else { 0 };

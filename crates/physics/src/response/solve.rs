@@ -1,6 +1,6 @@
 //! Response of operating points: steady-state search or integration, record, error estimate.
 
-use super::analysis::{Analysis, Multiplier, Regime, Response, SolutionMethod};
+use super::analysis::{Analysis, AppliedMethod, Multiplier, Regime, Response, SolutionMethod};
 use super::channel::ChannelId;
 use super::energy::EnergyBalance;
 use super::recorder::ChannelRecorder;
@@ -254,7 +254,7 @@ impl ResponseProblem<'_> {
                 found.multipliers.iter().map(|m| Multiplier { modulus: m.norm(), angle_rad: m.arg() }).collect()
             }),
             lyapunov: found.lyapunov,
-            method: if found.orbit.is_some() { "periodic" } else { "integrate" },
+            method: if found.orbit.is_some() { AppliedMethod::Periodic } else { AppliedMethod::Integrate },
             error_estimate,
             energy_residual: finished.energy.and_then(|e| e.residual()),
             t0_s: if found.orbit.is_some() { 0.0 } else { found.start.period as f64 * self.p.mesh_period_s() },
@@ -282,7 +282,7 @@ impl ResponseProblem<'_> {
             floquet: None,
             multipliers: None,
             lyapunov: None,
-            method: "integrate",
+            method: AppliedMethod::Integrate,
             error_estimate: 0.0,
             energy_residual: finished.energy.as_ref().and_then(EnergyBalance::residual),
             t0_s: finished.from.period as f64 * self.p.mesh_period_s(),
