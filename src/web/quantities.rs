@@ -1,7 +1,7 @@
-//! The script module `common/quantities.js`: the scalars of a result and the columns of a sweep, as the result's types
-//! declare them. The pages take names, units and meanings from it.
+//! The script module `common/quantities.js`: the scalars of a result and of gear data and the columns of a sweep, as
+//! their types declare them. The pages take names, units and meanings from it.
 
-use herringbone_job::result::{CellKind, Column, SweepPoint, quantities};
+use herringbone_job::result::{CellKind, Column, SweepPoint, gear_data_quantities, quantities};
 use serde::Serialize;
 use std::sync::LazyLock;
 
@@ -33,8 +33,9 @@ static MODULE: LazyLock<String> = LazyLock::new(|| {
     let columns: Vec<_> = SweepPoint::COLUMNS.iter().map(ColumnEntry::from).collect();
     format!(
         "// Made by the service from the declarations of its results.\n\n\
-         export const QUANTITIES = {};\n\nexport const SWEEP_COLUMNS = {};\n",
+         export const QUANTITIES = {};\n\nexport const GEAR_DATA = {};\n\nexport const SWEEP_COLUMNS = {};\n",
         list(quantities()),
+        list(gear_data_quantities()),
         list(&columns)
     )
 });
@@ -59,7 +60,7 @@ mod tests {
     fn each_quantity_and_column_is_an_entry() {
         let module = module();
         let entries = module.lines().filter(|line| line.starts_with("  {")).count();
-        assert_eq!(entries, quantities().len() + SweepPoint::COLUMNS.len());
+        assert_eq!(entries, quantities().len() + gear_data_quantities().len() + SweepPoint::COLUMNS.len());
         assert!(
             module.contains(r#""pointer":"/mesh/stiffness_mean_n_per_um","label":"mesh stiffness of one half, mean""#)
         );

@@ -1,6 +1,7 @@
 //! The gear data of a pair in the terms of ISO 21771-1, calculated from its document.
 
 use crate::document::{GearInput, Hand, JobDocument};
+use crate::result::ResultFields;
 use crate::study::{bounds, prepare};
 use crate::{DocumentError, parse};
 use herringbone_physics::gear::{Half, Member, Pair};
@@ -11,46 +12,65 @@ const MM: f64 = 1e3;
 
 /// Gear data of the pair of a job, ISO 21771-1 (symbols in brackets): of one helix half where widths and forces are
 /// meant; of a sweep those of its base document.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
 pub struct GearData {
     /// Normal module (m_n).
+    #[scalar(label = "normal module", symbol = "m_n")]
     pub normal_module_mm: f64,
     /// Transverse module (m_t).
+    #[scalar(label = "transverse module", symbol = "m_t")]
     pub transverse_module_mm: f64,
     /// Normal pressure angle (α_n).
+    #[scalar(label = "normal pressure angle", symbol = "α_n")]
     pub normal_pressure_angle_deg: f64,
     /// Transverse pressure angle (α_t).
+    #[scalar(label = "transverse pressure angle", symbol = "α_t")]
     pub transverse_pressure_angle_deg: f64,
     /// Working transverse pressure angle (α_wt).
+    #[scalar(label = "working transverse pressure angle", symbol = "α_wt")]
     pub working_pressure_angle_deg: f64,
     /// Helix angle at the reference cylinder (β).
+    #[scalar(label = "helix angle", symbol = "β")]
     pub helix_angle_deg: f64,
     /// Base helix angle (β_b).
+    #[scalar(label = "base helix angle", symbol = "β_b")]
     pub base_helix_angle_deg: f64,
     /// Gear ratio z2/z1 (u).
+    #[scalar(label = "gear ratio", symbol = "u")]
     pub gear_ratio: f64,
     /// Working centre distance, its error included (a_w).
+    #[scalar(label = "centre distance, working", symbol = "a")]
     pub center_distance_mm: f64,
     /// Face width of a half that both gears have in common (b).
+    #[scalar(label = "face width of a half", symbol = "b")]
     pub face_width_mm: f64,
     /// Gap between the common face widths of the halves.
+    #[scalar(label = "gap between the halves")]
     pub gap_width_mm: f64,
     /// Transverse base pitch (p_bt).
+    #[scalar(label = "transverse base pitch", symbol = "p_bt")]
     pub transverse_base_pitch_mm: f64,
     /// Axial pitch (p_x); null for spur gears.
+    #[scalar(label = "axial pitch", symbol = "p_x")]
     pub axial_pitch_mm: Option<f64>,
     /// Length of the path of contact (g_α).
+    #[scalar(label = "length of the path of contact", symbol = "g_α")]
     pub path_of_contact_mm: f64,
     /// Transverse contact ratio (ε_α).
+    #[scalar(label = "transverse contact ratio", symbol = "ε_α")]
     pub transverse_contact_ratio: f64,
     /// Overlap ratio (ε_β).
+    #[scalar(label = "overlap ratio", symbol = "ε_β")]
     pub overlap_ratio: f64,
     /// Total contact ratio (ε_γ).
+    #[scalar(label = "total contact ratio", symbol = "ε_γ")]
     pub total_contact_ratio: f64,
     /// Backlash of the equations of motion along the mesh displacement s, both sides together.
+    #[scalar(label = "backlash along s, total", symbol = "j")]
     pub backlash_um: f64,
     /// Velocity at the working pitch circles (v_w).
+    #[scalar(label = "pitch line velocity", symbol = "v_w")]
     pub pitch_line_velocity_m_s: f64,
     pub pinion: MemberData,
     pub gear: MemberData,
@@ -62,44 +82,63 @@ pub struct GearData {
 }
 
 /// Gear data of one gear (both halves, but for the face width).
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
 pub struct MemberData {
     /// Number of teeth (z).
+    #[scalar(label = "number of teeth", symbol = "z")]
     pub teeth: u32,
     /// Hand of the left half: `left` or `right`.
     #[cfg_attr(feature = "schema", schema(value_type = String))]
+    #[scalar(label = "hand of the left half")]
     pub left_half_hand: Hand,
     /// Profile shift coefficient (x).
+    #[scalar(label = "profile shift coefficient", symbol = "x")]
     pub profile_shift: f64,
     /// Reference diameter (d).
+    #[scalar(label = "reference diameter", symbol = "d")]
     pub reference_diameter_mm: f64,
     /// Base diameter (d_b).
+    #[scalar(label = "base diameter", symbol = "d_b")]
     pub base_diameter_mm: f64,
     /// Working pitch diameter (d_w).
+    #[scalar(label = "working pitch diameter", symbol = "d_w")]
     pub working_pitch_diameter_mm: f64,
     /// Tip diameter (d_a).
+    #[scalar(label = "tip diameter", symbol = "d_a")]
     pub tip_diameter_mm: f64,
     /// Root diameter (d_f).
+    #[scalar(label = "root diameter", symbol = "d_f")]
     pub root_diameter_mm: f64,
     /// Root form diameter (d_Ff).
+    #[scalar(label = "root form diameter", symbol = "d_Ff")]
     pub root_form_diameter_mm: f64,
     /// Tooth thickness at the tip in the normal section (s_an).
+    #[scalar(label = "normal tooth thickness at the tip", symbol = "s_an")]
     pub tip_thickness_normal_mm: f64,
     /// Addendum of the basic rack, normal modules (h*_aP).
+    #[scalar(label = "addendum of the rack, modules", symbol = "h*_aP")]
     pub addendum: f64,
     /// Dedendum of the basic rack, normal modules (h*_fP).
+    #[scalar(label = "dedendum of the rack, modules", symbol = "h*_fP")]
     pub dedendum: f64,
     /// Root fillet radius of the basic rack, normal modules (ρ*_fP).
+    #[scalar(label = "root fillet radius of the rack, modules", symbol = "ρ*_fP")]
     pub fillet_radius: f64,
     /// Face width of one half of this gear (b).
+    #[scalar(label = "face width of a half of its own", symbol = "b")]
     pub face_width_mm: f64,
+    #[scalar(label = "bore diameter", symbol = "d_i")]
     pub bore_diameter_mm: f64,
     /// Speed (n).
+    #[scalar(label = "speed", symbol = "n")]
     pub speed_rpm: f64,
     /// Torque on both halves together (T).
+    #[scalar(label = "torque, both halves", symbol = "T")]
     pub torque_nm: f64,
+    #[scalar(label = "mass", symbol = "m")]
     pub mass_kg: f64,
+    #[scalar(label = "moment of inertia", symbol = "J")]
     pub inertia_kg_m2: f64,
 }
 

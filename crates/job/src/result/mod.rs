@@ -19,7 +19,7 @@ pub use geometry::{GearGeometry, Geometry};
 pub use impact::ImpactResult;
 pub use mesh::{ApexSensitivity, ContactForceTable, Convergence, FlankLoad, Mesh, MeshCurve};
 pub use numerics::{NotFinite, NumericsResult, WallMs};
-pub use quantity::{Change, Quantity, QuantityKind, quantities};
+pub use quantity::{Change, Quantity, QuantityKind, gear_data_quantities, quantities};
 pub use response::{
     FloquetMultiplier, IntervalPerHalf, IntervalResult, NaturalMode, Poincare, ResponseResult, RmsIntervalsResult,
     RmsResult, SpectrumResult, ToothForceResult, ToothForces,

@@ -2,6 +2,7 @@
 //! The headline table of the command line, the pages and the comparison of jobs are made from it.
 
 use super::JobResult;
+use crate::gear_data::GearData;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -55,12 +56,21 @@ pub enum Change {
 
 /// Every scalar of a result, in the order of the result.
 pub fn quantities() -> &'static [Quantity] {
-    static QUANTITIES: LazyLock<Vec<Quantity>> = LazyLock::new(|| {
-        let mut quantities = Vec::new();
-        JobResult::declare(&Place::ROOT, &mut quantities);
-        quantities
-    });
+    static QUANTITIES: LazyLock<Vec<Quantity>> = LazyLock::new(declared_by::<JobResult>);
     &QUANTITIES
+}
+
+/// Every scalar of the gear data, in their order.
+pub fn gear_data_quantities() -> &'static [Quantity] {
+    static QUANTITIES: LazyLock<Vec<Quantity>> = LazyLock::new(declared_by::<GearData>);
+    &QUANTITIES
+}
+
+/// The scalars of an answer of type `T`, with pointers from its root.
+fn declared_by<T: ResultFields>() -> Vec<Quantity> {
+    let mut quantities = Vec::new();
+    T::declare(&Place::ROOT, &mut quantities);
+    quantities
 }
 
 impl Quantity {

@@ -1,7 +1,7 @@
 //! The words of a result: fields with a fixed set of values. Those that repeat a choice of the document have its type.
 
 use super::{Cell, CellKind, ToCell};
-use crate::document::{ActsOn, ImpactSource, MeshStiffnessSource, Plane};
+use crate::document::{ActsOn, Hand, ImpactSource, MeshStiffnessSource, Plane};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
@@ -155,7 +155,7 @@ impl<'de> Deserialize<'de> for RegimeResult {
     }
 }
 
-super::quantity::scalars! { Word: ActsOn, ImpactSource, MeshStiffnessSource, Plane, RegimeResult; }
+super::quantity::scalars! { Word: ActsOn, Hand, ImpactSource, MeshStiffnessSource, Plane, RegimeResult; }
 
 impl ToCell for Option<RegimeResult> {
     const KIND: CellKind = CellKind::Word;

@@ -1,8 +1,8 @@
 // Types of the module that the service makes from the declarations of its results (src/web/quantities.rs).
 
-/** A number, word or flag of the result. */
+/** A number, word or flag of a result, or of gear data. */
 export interface Quantity {
-  /** JSON pointer in the result; `{half}` in it stands for `left` and `right`. */
+  /** JSON pointer in the answer; `{half}` in it stands for `left` and `right`. */
   pointer: string;
   /** In lower case. */
   label: string;
@@ -36,4 +36,6 @@ export interface SweepColumn {
 }
 
 export const QUANTITIES: Quantity[];
+/** Of the answer `GearData`. */
+export const GEAR_DATA: Quantity[];
 export const SWEEP_COLUMNS: SweepColumn[];
