@@ -8,6 +8,7 @@ COPY tools tools
 COPY migrations migrations
 COPY openapi openapi
 COPY examples examples
+COPY docs docs
 COPY tests tests
 RUN cargo build --release --locked --bin herringbone \
  && cp target/release/herringbone /herringbone

@@ -21,7 +21,6 @@ use tower_http::compression::CompressionLayer;
 use tower_http::limit::RequestBodyLimitLayer;
 use tower_http::sensitive_headers::{SetSensitiveRequestHeadersLayer, SetSensitiveResponseHeadersLayer};
 use tower_http::timeout::TimeoutLayer;
-use utoipa_swagger_ui::{Config, SwaggerUi};
 
 /// The web pages, passed in by the program: the HTTP interface does not depend on them.
 #[derive(Default)]
@@ -40,7 +39,6 @@ pub fn router(state: AppState, config: &HttpConfig, access: &Access, pages: Page
     let (api, _document) = openapi::documented_routes().split_for_parts();
     api.merge(routes::undocumented())
         .with_state(state)
-        .merge(SwaggerUi::new("/docs").config(Config::from("/openapi.json")))
         .merge(pages.routes)
         .merge(login_routes(access, pages.login))
         .fallback(async move |request: Request| fallback(request, not_found).await)

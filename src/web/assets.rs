@@ -3,7 +3,7 @@
 
 use super::quantities;
 use axum::extract::Path;
-use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use headers::{HeaderMapExt, IfNoneMatch};
 use rust_embed::{EmbeddedFile, RustEmbed};
@@ -14,14 +14,25 @@ use std::borrow::Cow;
 #[folder = "src/web/assets/"]
 struct Files;
 
-/// Module made by [`quantities`].
-const QUANTITIES: &str = "common/quantities.js";
+/// The text of a module made by [`quantities`].
+fn made(name: &str) -> Option<&'static str> {
+    match name {
+        "common/quantities.js" => Some(quantities::module()),
+        "common/units.js" => Some(quantities::units_module()),
+        _ => None,
+    }
+}
 
 /// `/assets/{*file}`: revalidated by entity tag, so that a new version is used at once.
 pub(super) async fn file(Path(name): Path<String>, headers: HeaderMap) -> Response {
     let Some((content, media_type)) = find(&name) else {
         return super::not_found().await;
     };
+    answer(content, media_type, &headers)
+}
+
+/// A file in response to a request, revalidated by its entity tag.
+pub(super) fn answer(content: Content, media_type: &str, headers: &HeaderMap) -> Response {
     let tag = entity_tag(&content);
     let known: Option<IfNoneMatch> = headers.typed_get();
     let is_known = known.zip(tag.parse().ok()).is_some_and(|(known, tag)| !known.precondition_passes(&tag));
@@ -29,10 +40,7 @@ pub(super) async fn file(Path(name): Path<String>, headers: HeaderMap) -> Respon
     if is_known {
         return (StatusCode::NOT_MODIFIED, caching).into_response();
     }
-    let kind = [
-        (header::CONTENT_TYPE, HeaderValue::from_static(media_type)),
-        (header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff")),
-    ];
+    let kind = [(header::CONTENT_TYPE, media_type), (header::X_CONTENT_TYPE_OPTIONS, "nosniff")];
     (caching, kind, content.data.into_owned()).into_response()
 }
 
@@ -42,9 +50,15 @@ pub(super) fn text(name: &str) -> Option<String> {
 }
 
 /// The bytes of a file, and the digest of which its entity tag is made.
-struct Content {
+pub(super) struct Content {
     data: Cow<'static, [u8]>,
     sha256: [u8; 32],
+}
+
+impl From<Cow<'static, [u8]>> for Content {
+    fn from(data: Cow<'static, [u8]>) -> Self {
+        Self { sha256: Sha256::digest(&data).into(), data }
+    }
 }
 
 impl From<EmbeddedFile> for Content {
@@ -60,11 +74,9 @@ fn find(name: &str) -> Option<(Content, &'static str)> {
         "svg" => "image/svg+xml",
         _ => return None,
     };
-    let content = if name == QUANTITIES {
-        let data = quantities::module().as_bytes();
-        Content { sha256: Sha256::digest(data).into(), data: data.into() }
-    } else {
-        Files::get(name)?.into()
+    let content = match made(name) {
+        Some(text) => Content::from(Cow::from(text.as_bytes())),
+        None => Files::get(name)?.into(),
     };
     Some((content, media_type))
 }

@@ -6,11 +6,13 @@
 
 mod assets;
 mod form;
+mod help;
 mod modules;
 mod pages;
 mod plotly;
 mod presets;
 mod quantities;
+mod swagger;
 
 pub use pages::{login, not_found};
 
@@ -26,7 +28,7 @@ use axum::{Extension, Router};
 pub const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; \
                                            base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
-/// The pages `/`, `/jobs`, `/jobs/{id}`, `/jobs/{id}/report`, `/compare` and the files under `/assets/`. `has_login`:
+/// The pages `/`, `/jobs`, `/jobs/{id}`, `/jobs/{id}/report`, `/compare`, `/docs`, `/help` and below, and the files under `/assets/`. `has_login`:
 /// the service has a token, so that the pages offer to log out.
 pub fn routes(has_login: bool) -> Router {
     Router::new()
@@ -35,6 +37,11 @@ pub fn routes(has_login: bool) -> Router {
         .route("/jobs/{id}", get(pages::job))
         .route("/jobs/{id}/report", get(pages::report))
         .route("/compare", get(pages::compare))
+        .route("/docs", get(swagger::page))
+        .route("/docs/", get(swagger::page))
+        .route("/docs/{*file}", get(swagger::file))
+        .route("/help", get(help::start))
+        .route("/help/{*address}", get(help::topic))
         .route("/assets/plotly.js", get(plotly::script))
         .route("/assets/plotly.css", get(plotly::stylesheet))
         .route("/assets/presets.json", get(presets::presets))

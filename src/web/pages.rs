@@ -102,7 +102,8 @@ pub fn login(status: StatusCode, next: &str, error: Option<&str>) -> Response {
     page(status, &LoginPage { next, error: error.unwrap_or_default() })
 }
 
-fn page(status: StatusCode, template: &impl Template) -> Response {
+/// A page as a response; status 500 when it cannot be rendered.
+pub(super) fn page(status: StatusCode, template: &impl Template) -> Response {
     match template.render() {
         Ok(html) => (status, page_headers(), Html(html)).into_response(),
         Err(error) => {

@@ -2,7 +2,9 @@
 //! their types declare them. The pages take names, units and meanings from it.
 
 use herringbone_job::result::{CellKind, Column, SweepPoint, gear_data_quantities, quantities};
+use herringbone_job::unit::typographic_units;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 /// A column in the module.
@@ -40,9 +42,21 @@ static MODULE: LazyLock<String> = LazyLock::new(|| {
     )
 });
 
+static UNITS_MODULE: LazyLock<String> = LazyLock::new(|| {
+    let symbols: BTreeMap<_, _> = typographic_units().collect();
+    // Texts, which can be written.
+    let symbols = serde_json::to_string(&symbols).unwrap_or_default();
+    format!("// Made by the service from its table of units.\n\nexport const UNIT_SYMBOLS = {symbols};\n")
+});
+
 /// The text of the module.
 pub(super) fn module() -> &'static str {
     &MODULE
+}
+
+/// The text of the module `common/units.js`: units with typographic symbols, by those of the API.
+pub(super) fn units_module() -> &'static str {
+    &UNITS_MODULE
 }
 
 /// A list in JSON, which is JavaScript too, with a line for each entry.

@@ -4,13 +4,26 @@ use super::*;
 use axum::http::StatusCode;
 use axum_test::TestServer;
 
+const PAGES: [&str; 10] = [
+    "/",
+    "/jobs",
+    "/jobs/0190",
+    "/jobs/0190/report",
+    "/compare",
+    "/help",
+    "/help/results",
+    "/help/inputs",
+    "/help/theory/vibration",
+    "/help/validation/tables/contact",
+];
+
 fn server() -> TestServer {
     TestServer::new(routes(true).fallback(not_found))
 }
 
 #[tokio::test]
 async fn pages_are_html_under_the_policy() {
-    for path in ["/", "/jobs", "/jobs/0190", "/jobs/0190/report", "/compare"] {
+    for path in PAGES {
         let answer = server().get(path).await;
         answer.assert_status_ok();
         assert_eq!(answer.header(header::CONTENT_TYPE), "text/html; charset=utf-8", "{path}");
@@ -20,7 +33,14 @@ async fn pages_are_html_under_the_policy() {
 
 #[tokio::test]
 async fn unknown_addresses_get_a_page_that_says_so() {
-    for path in ["/nowhere", "/assets/nothing.js", "/assets/example.json"] {
+    for path in [
+        "/nowhere",
+        "/assets/nothing.js",
+        "/assets/example.json",
+        "/help/nothing",
+        "/help/..%2FCargo.toml",
+        "/docs/nothing.js",
+    ] {
         let answer = server().get(path).await;
         answer.assert_status_not_found();
         assert!(answer.text().contains("Nothing here"), "{path}");
@@ -29,13 +49,14 @@ async fn unknown_addresses_get_a_page_that_says_so() {
 
 #[tokio::test]
 async fn no_page_has_inline_code_or_outside_addresses() {
-    for path in ["/", "/jobs", "/jobs/0190", "/jobs/0190/report", "/compare", "/nowhere"] {
+    for path in PAGES.into_iter().chain(["/docs", "/nowhere"]) {
         let text = server().get(path).await.text();
         for forbidden in ["http://", "https://", "style=", "<style", "onclick=", "javascript:"] {
             assert!(!text.contains(forbidden), "{forbidden} in {path}");
         }
         for script in text.split("<script").skip(1) {
-            assert!(script.contains(" src=\"/assets/"), "{path}: {script:.60}");
+            let is_ours = script.contains(" src=\"/assets/") || script.contains(" src=\"/docs/");
+            assert!(is_ours, "{path}: {script:.60}");
             assert!(script.split_once('>').is_some_and(|(_, rest)| rest.starts_with("</script>")), "{path}");
         }
     }
@@ -44,10 +65,11 @@ async fn no_page_has_inline_code_or_outside_addresses() {
 #[tokio::test]
 async fn everything_a_page_links_to_exists() {
     let server = server();
-    for path in ["/", "/jobs", "/jobs/0190", "/jobs/0190/report", "/compare", "/nowhere"] {
+    for path in PAGES.into_iter().chain(["/docs", "/nowhere"]) {
         let text = server.get(path).await.text();
-        for (start, _) in text.match_indices("\"/assets/") {
-            let address = text[start + 1..].split('"').next().unwrap_or_default();
+        let linked = ["\"/assets/", "\"/docs/", "\"/help"].into_iter().flat_map(|start| text.match_indices(start));
+        for (start, _) in linked {
+            let address = text[start + 1..].split(['"', '#']).next().unwrap_or_default();
             server.get(address).await.assert_status_ok();
         }
     }

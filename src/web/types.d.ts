@@ -143,8 +143,14 @@ declare global {
   /** Both ends of a range of values. */
   type Span = [number, number];
 
-  /** A row of a list of values: term, value, unit. */
-  type ValueRow = [Child, Child, string?];
+  /** A row of a list of values: term, value, unit, meaning. */
+  type ValueRow = [Child, Child, string?, Explained?];
+
+  /** What a "?" shows: the meaning of a number, and the section of the theory pages (page and heading). */
+  interface Explained {
+    help: string;
+    theory: string;
+  }
 
   /** Axes of a plot, and what is drawn beside its traces. */
   interface PlotAxes {

@@ -184,9 +184,13 @@ async fn the_description_and_its_pages_are_served_from_here() {
     let app = app().await;
     assert_eq!(app.get("/openapi.json").await.text(), herringbone::api::openapi_json());
     let page = app.get("/docs/").await;
-    assert_eq!((page.status, page.header("content-type")), (200, "text/html"));
+    assert_eq!((page.status, page.header("content-type")), (200, "text/html; charset=utf-8"));
+    assert!(page.text().contains("href=\"/jobs\""), "there is a way back");
     assert!(!page.text().contains("//cdn") && !page.text().contains("https://"), "{}", page.text());
     assert!(!page.text().contains("<script>"), "inline scripts are forbidden by the policy");
-    assert_eq!(app.get("/docs/swagger-ui-bundle.js").await.status, 200);
+    let script = app.get("/docs/swagger-ui-bundle.js").await;
+    assert_eq!(script.status, 200);
+    let again = app.get_with("/docs/swagger-ui-bundle.js", &[("if-none-match", script.header("etag"))]).await;
+    assert_eq!(again.status, 304);
     assert!(app.get("/docs/swagger-initializer.js").await.text().contains("/openapi.json"));
 }

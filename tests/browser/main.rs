@@ -8,6 +8,7 @@ mod accessibility;
 mod browser;
 mod compare;
 mod form;
+mod help;
 mod job;
 mod keyboard;
 mod list;

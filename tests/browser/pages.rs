@@ -49,6 +49,7 @@ impl Page {
 
 const CHECKED: &str = "document.querySelector('#check-state').classList.contains('good')";
 const COMPARED: &str = "document.querySelector('#curves[data-ready]')";
+const HELP: &str = "document.querySelector('article h1') && document.readyState === 'complete'";
 const SHOWN: &str = "document.querySelector('[data-ready]')";
 
 /// All pages of a service without a token, with jobs that it has solved for them.
@@ -92,6 +93,11 @@ pub(crate) async fn all(browser: &Browser) -> Vec<Page> {
             format!("/jobs/{failed}"),
             "document.querySelector('#state')?.textContent === 'failed'",
         ),
+        Page::new("help", "/help", HELP),
+        Page::new("help: results", "/help/results", HELP),
+        Page::new("help: inputs", "/help/inputs", HELP),
+        Page::new("help: theory", "/help/theory/vibration", HELP),
+        Page::new("help: validation", "/help/validation", HELP),
         Page::new("not found", "/nowhere", "document.readyState === 'complete'"),
     ]
 }

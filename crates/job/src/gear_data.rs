@@ -14,6 +14,7 @@ const MM: f64 = 1e3;
 /// meant; of a sweep those of its base document.
 #[derive(Debug, Clone, PartialEq, Serialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(theory = "geometry#diameters-angles-and-pitches")]
 pub struct GearData {
     /// Normal module (m_n).
     #[scalar(label = "normal module", symbol = "m_n")]
@@ -55,22 +56,22 @@ pub struct GearData {
     #[scalar(label = "axial pitch", symbol = "p_x")]
     pub axial_pitch_mm: Option<f64>,
     /// Length of the path of contact (g_α).
-    #[scalar(label = "length of the path of contact", symbol = "g_α")]
+    #[scalar(label = "length of the path of contact", symbol = "g_α", theory = "geometry#contact-ratios")]
     pub path_of_contact_mm: f64,
     /// Transverse contact ratio (ε_α).
-    #[scalar(label = "transverse contact ratio", symbol = "ε_α")]
+    #[scalar(label = "transverse contact ratio", symbol = "ε_α", theory = "geometry#contact-ratios")]
     pub transverse_contact_ratio: f64,
     /// Overlap ratio (ε_β).
-    #[scalar(label = "overlap ratio", symbol = "ε_β")]
+    #[scalar(label = "overlap ratio", symbol = "ε_β", theory = "geometry#contact-ratios")]
     pub overlap_ratio: f64,
     /// Total contact ratio (ε_γ).
-    #[scalar(label = "total contact ratio", symbol = "ε_γ")]
+    #[scalar(label = "total contact ratio", symbol = "ε_γ", theory = "geometry#contact-ratios")]
     pub total_contact_ratio: f64,
     /// Backlash of the equations of motion along the mesh displacement s, both sides together.
-    #[scalar(label = "backlash along s, total", symbol = "j")]
+    #[scalar(label = "backlash along s, total", symbol = "j", theory = "geometry#backlash")]
     pub backlash_um: f64,
     /// Velocity at the working pitch circles (v_w).
-    #[scalar(label = "pitch line velocity", symbol = "v_w")]
+    #[scalar(label = "pitch line velocity", symbol = "v_w", theory = "geometry#speed-torque-and-mesh-frequency")]
     pub pitch_line_velocity_m_s: f64,
     pub pinion: MemberData,
     pub gear: MemberData,
@@ -84,6 +85,7 @@ pub struct GearData {
 /// Gear data of one gear (both halves, but for the face width).
 #[derive(Debug, Clone, PartialEq, Serialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(theory = "geometry#diameters-angles-and-pitches")]
 pub struct MemberData {
     /// Number of teeth (z).
     #[scalar(label = "number of teeth", symbol = "z")]
@@ -111,10 +113,10 @@ pub struct MemberData {
     #[scalar(label = "root diameter", symbol = "d_f")]
     pub root_diameter_mm: f64,
     /// Root form diameter (d_Ff).
-    #[scalar(label = "root form diameter", symbol = "d_Ff")]
+    #[scalar(label = "root form diameter", symbol = "d_Ff", theory = "geometry#tooth-form")]
     pub root_form_diameter_mm: f64,
     /// Tooth thickness at the tip in the normal section (s_an).
-    #[scalar(label = "normal tooth thickness at the tip", symbol = "s_an")]
+    #[scalar(label = "normal tooth thickness at the tip", symbol = "s_an", theory = "geometry#tooth-form")]
     pub tip_thickness_normal_mm: f64,
     /// Addendum of the basic rack, normal modules (h*_aP).
     #[scalar(label = "addendum of the rack, modules", symbol = "h*_aP")]
@@ -128,17 +130,17 @@ pub struct MemberData {
     /// Face width of one half of this gear (b).
     #[scalar(label = "face width of a half of its own", symbol = "b")]
     pub face_width_mm: f64,
-    #[scalar(label = "bore diameter", symbol = "d_i")]
+    #[scalar(label = "bore diameter", symbol = "d_i", theory = "geometry#mass-and-moment-of-inertia")]
     pub bore_diameter_mm: f64,
     /// Speed (n).
-    #[scalar(label = "speed", symbol = "n")]
+    #[scalar(label = "speed", symbol = "n", theory = "geometry#speed-torque-and-mesh-frequency")]
     pub speed_rpm: f64,
     /// Torque on both halves together (T).
-    #[scalar(label = "torque, both halves", symbol = "T")]
+    #[scalar(label = "torque, both halves", symbol = "T", theory = "geometry#speed-torque-and-mesh-frequency")]
     pub torque_nm: f64,
-    #[scalar(label = "mass", symbol = "m")]
+    #[scalar(label = "mass", symbol = "m", theory = "geometry#mass-and-moment-of-inertia")]
     pub mass_kg: f64,
-    #[scalar(label = "moment of inertia", symbol = "J")]
+    #[scalar(label = "moment of inertia", symbol = "J", theory = "geometry#mass-and-moment-of-inertia")]
     pub inertia_kg_m2: f64,
 }
 

@@ -102,6 +102,29 @@ pub static UNITS: [Unit; 50] = [
     declared("", "unit of the input", "in its unit", 1.0, Number),
 ];
 
+/// Units of results that no field of a document is declared in, in ASCII and with typographic symbols.
+const RESULT_SYMBOLS: [(&str, &str); 8] = [
+    ("us", "µs"),
+    ("m/s2", "m/s²"),
+    ("m/s^2", "m/s²"),
+    ("rad/s2", "rad/s²"),
+    ("rad/s^2", "rad/s²"),
+    ("%/um", "% per µm"),
+    ("um/um", "µm/µm"),
+    ("1/mesh period", "per mesh period"),
+];
+
+/// Units of the API that are written differently with typographic symbols: in ASCII, and so.
+pub fn typographic_units() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let declared = UNITS.iter().filter(|unit| unit.declared && unit.quantity != Number);
+    declared.map(|unit| (unit.text, unit.symbol)).filter(|(text, symbol)| text != symbol).chain(RESULT_SYMBOLS)
+}
+
+/// A unit of the API with typographic symbols.
+pub fn typographic(text: &str) -> &str {
+    typographic_units().find_map(|(ascii, symbol)| (ascii == text).then_some(symbol)).unwrap_or(text)
+}
+
 impl Unit {
     /// No unit: a plain number.
     pub const ONE: &'static Unit = Unit::of_field("", "1");

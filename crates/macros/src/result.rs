@@ -11,12 +11,20 @@ use syn::{Data, DeriveInput, Error, Expr, Field, Fields, LitInt, LitStr, Meta, R
 pub(crate) fn result_fields(input: &DeriveInput) -> Result<TokenStream> {
     let name = &input.ident;
     let mut halves = false;
+    let mut theory = None;
     for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("scalar")) {
         attribute.parse_nested_meta(|meta| {
-            halves = meta.path.is_ident("halves");
-            if halves { Ok(()) } else { Err(meta.error("expected `halves`")) }
+            if meta.path.is_ident("halves") {
+                halves = true;
+            } else if meta.path.is_ident("theory") {
+                theory = Some(text(&meta)?);
+            } else {
+                return Err(meta.error("expected `halves` or `theory`"));
+            }
+            Ok(())
         })?;
     }
+    let theory = theory.map(|theory| quote! { let place = &place.with_theory(#theory); });
     let fields = named_fields(input)?;
     let declarations = if halves {
         // Both halves have the same fields: those of the left one stand for both.
@@ -28,6 +36,7 @@ pub(crate) fn result_fields(input: &DeriveInput) -> Result<TokenStream> {
     Ok(quote! {
         impl crate::result::ResultFields for #name {
             fn declare(place: &crate::result::Place, quantities: &mut Vec<crate::result::Quantity>) {
+                #theory
                 #declarations
             }
         }
@@ -66,6 +75,10 @@ fn declaration(field: &Field) -> Result<TokenStream> {
         Some(change) => quote! { Some(crate::result::Change::#change) },
         None => quote! { None },
     };
+    let theory = match attributes.theory {
+        Some(theory) => quote! { Some(#theory) },
+        None => quote! { None },
+    };
     let (percent, lower_is_better, inherits) = (attributes.percent, attributes.lower_is_better, attributes.inherits);
     Ok(quote! {
         <#ty as crate::result::ResultFields>::declare(
@@ -76,6 +89,7 @@ fn declaration(field: &Field) -> Result<TokenStream> {
                 symbol: #symbol,
                 unit: #unit,
                 help: #help,
+                theory: #theory,
                 headline: #headline,
                 percent: #percent,
                 change: #change,
@@ -94,6 +108,7 @@ struct ScalarAttributes {
     symbol: Option<String>,
     unit: Option<String>,
     help: Option<String>,
+    theory: Option<String>,
     headline: Option<u8>,
     change: Option<Ident>,
     percent: bool,
@@ -109,6 +124,7 @@ impl ScalarAttributes {
             "symbol" => self.symbol = Some(text(meta)?),
             "unit" => self.unit = Some(text(meta)?),
             "help" => self.help = Some(text(meta)?),
+            "theory" => self.theory = Some(text(meta)?),
             "headline" if meta.input.peek(syn::Token![=]) => {
                 self.headline = Some(meta.value()?.parse::<LitInt>()?.base10_parse()?);
             }
@@ -119,7 +135,7 @@ impl ScalarAttributes {
             "inherits" => self.inherits = true,
             _ => {
                 return Err(meta.error(
-                    "expected one of label, symbol, unit, help, headline, change, percent, lower_is_better, inherits",
+                    "expected one of label, symbol, unit, help, theory, headline, change, percent, lower_is_better, inherits",
                 ));
             }
         }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Numerical error and model error, which are different things.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(theory = "accuracy#numerical-error-and-error-of-the-model")]
 pub struct Accuracy {
     /// Relative error of the solution of the equations: the estimate for the RMS values (of a sweep the largest of its points; null where none
     /// was solved); without a response that of the contact's discretisation. 0 for a closed form.
@@ -22,6 +23,7 @@ pub struct Accuracy {
 /// the largest difference found in pairs of the same kind. Supports, damping, friction and manufacture are not in it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(theory = "accuracy#numerical-error-and-error-of-the-model")]
 pub struct ModelError {
     /// Of the mean mesh stiffness; null where the model claims nothing.
     #[scalar(

@@ -5,12 +5,14 @@ use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(theory = "geometry#diameters-angles-and-pitches")]
 pub struct Geometry {
-    #[scalar(symbol = "ε_α", headline)]
+    #[scalar(symbol = "ε_α", headline, theory = "geometry#contact-ratios")]
     pub transverse_contact_ratio: f64,
-    #[scalar(symbol = "ε_β", headline)]
+    #[scalar(symbol = "ε_β", headline, theory = "geometry#contact-ratios")]
     pub overlap_ratio: f64,
     #[scalar(
+        theory = "geometry#contact-ratios",
         symbol = "ε_γ",
         headline,
         help = "Transverse contact ratio plus overlap ratio of one half, from the geometry. The loaded one counts the contact that \
@@ -21,7 +23,7 @@ pub struct Geometry {
     pub working_pressure_angle_deg: f64,
     #[scalar(symbol = "a", headline)]
     pub center_distance_mm: f64,
-    #[scalar(headline = 1)]
+    #[scalar(headline = 1, theory = "geometry#speed-torque-and-mesh-frequency")]
     pub mesh_frequency_hz: f64,
     #[scalar(symbol = "α_t")]
     pub transverse_pressure_angle_deg: f64,
@@ -31,7 +33,7 @@ pub struct Geometry {
     pub base_helix_angle_deg: f64,
     #[scalar(symbol = "p_bt")]
     pub transverse_base_pitch_mm: f64,
-    #[scalar(label = "length of the path of contact", symbol = "g_α")]
+    #[scalar(label = "length of the path of contact", symbol = "g_α", theory = "geometry#contact-ratios")]
     pub path_of_contact_mm: f64,
     /// Face width of one half that both gears have in common, and the gap between those of the halves.
     #[serde(default)]
@@ -48,6 +50,7 @@ pub struct Geometry {
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(theory = "geometry#diameters-angles-and-pitches")]
 pub struct GearGeometry {
     #[scalar(symbol = "d")]
     pub reference_diameter_mm: f64,
@@ -57,18 +60,18 @@ pub struct GearGeometry {
     pub tip_diameter_mm: f64,
     #[scalar(symbol = "d_f")]
     pub root_diameter_mm: f64,
-    #[scalar(symbol = "d_Ff")]
+    #[scalar(symbol = "d_Ff", theory = "geometry#tooth-form")]
     pub root_form_diameter_mm: f64,
-    #[scalar(label = "normal tooth thickness at the tip", symbol = "s_an")]
+    #[scalar(label = "normal tooth thickness at the tip", symbol = "s_an", theory = "geometry#tooth-form")]
     pub tip_thickness_normal_mm: f64,
-    #[scalar(symbol = "d_i")]
+    #[scalar(symbol = "d_i", theory = "geometry#mass-and-moment-of-inertia")]
     pub bore_diameter_mm: f64,
     /// Face width of one half of this gear.
     #[serde(default)]
     #[scalar(label = "face width of one half")]
     pub face_width_mm: Option<f64>,
-    #[scalar(symbol = "m")]
+    #[scalar(symbol = "m", theory = "geometry#mass-and-moment-of-inertia")]
     pub mass_kg: f64,
-    #[scalar(label = "moment of inertia", symbol = "J")]
+    #[scalar(label = "moment of inertia", symbol = "J", theory = "geometry#mass-and-moment-of-inertia")]
     pub inertia_kg_m2: f64,
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(theory = "contact#mesh-stiffness")]
 pub struct Mesh {
     /// Tangent stiffness dF_bt/dδ of one half in the base plane (mean of both halves where they differ).
     #[scalar(
@@ -23,40 +24,44 @@ pub struct Mesh {
     pub secant_stiffness_mean_n_per_um: f64,
     /// Loaded transmission error: displacement of the flanks in contact along the transverse base tangent, in the sense of the mesh displacement s:
     /// positive where the pinion's drive flanks carry (the pinion leads), negative where its coast flanks do (negative torque).
-    #[scalar(label = "transmission error, mean", headline)]
+    #[scalar(label = "transmission error, mean", headline, theory = "contact#transmission-error")]
     pub transmission_error_mean_um: f64,
     #[scalar(
+        theory = "contact#transmission-error",
         label = "transmission error, peak to peak",
         headline,
         help = "How much the loaded deflection along the base tangent varies over a mesh period: what excites the vibration of a pair \
                 whose teeth stay in contact."
     )]
     pub transmission_error_pp_um: f64,
-    #[scalar(label = "load share at mesh-in", headline = 1, percent)]
+    #[scalar(label = "load share at mesh-in", headline = 1, percent, theory = "contact#load-shares")]
     pub load_share_at_mesh_in: Option<f64>,
-    #[scalar(headline)]
+    #[scalar(headline, theory = "contact#loaded-contact-ratio")]
     pub loaded_contact_ratio: Option<f64>,
     /// Amplitudes of the first harmonics of the transmission error.
     pub transmission_error_harmonics_um: Vec<f64>,
-    #[scalar(label = "line load, greatest")]
+    #[scalar(label = "line load, greatest", theory = "contact#line-load-and-contact-pressure")]
     pub max_line_load_n_per_mm: Option<f64>,
     /// The same without the ends of the lines of contact (three quarters of a normal module each), where edge effects rule.
     #[serde(default)]
-    #[scalar(label = "line load, greatest away from the ends of the lines of contact")]
+    #[scalar(
+        label = "line load, greatest away from the ends of the lines of contact",
+        theory = "contact#line-load-and-contact-pressure"
+    )]
     pub max_line_load_interior_n_per_mm: Option<f64>,
-    #[scalar(label = "contact pressure, greatest")]
+    #[scalar(label = "contact pressure, greatest", theory = "contact#line-load-and-contact-pressure")]
     pub max_contact_pressure_mpa: Option<f64>,
-    #[scalar(label = "pairs in contact, least", change = Absolute)]
+    #[scalar(label = "pairs in contact, least", change = Absolute, theory = "contact#loaded-contact-ratio")]
     pub pairs_in_contact_min: Option<u32>,
-    #[scalar(label = "pairs in contact, most", change = Absolute)]
+    #[scalar(label = "pairs in contact, most", change = Absolute, theory = "contact#loaded-contact-ratio")]
     pub pairs_in_contact_max: Option<u32>,
     /// Transverse base-tangent force of one half; negative, as the axial force, under negative torque.
-    #[scalar(label = "force of a half along the base tangent")]
+    #[scalar(label = "force of a half along the base tangent", theory = "contact#forces-and-the-floating-pinion")]
     pub force_n: f64,
-    #[scalar(label = "axial force of a half")]
+    #[scalar(label = "axial force of a half", theory = "contact#forces-and-the-floating-pinion")]
     pub axial_force_n: PerHalf,
     /// Axial position that the floating pinion takes, mean over the mesh period.
-    #[scalar(label = "axial shift of the floating pinion", change = Absolute)]
+    #[scalar(label = "axial shift of the floating pinion", change = Absolute, theory = "contact#forces-and-the-floating-pinion")]
     pub pinion_axial_shift_um: f64,
     /// What an axial shift of the pinion against the gear (an apex error) does where the pinion cannot float.
     #[serde(default)]
@@ -80,6 +85,7 @@ pub struct Mesh {
 /// Change per micrometre of axial shift with the pinion held axially; means over the mesh period.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(theory = "contact#forces-and-the-floating-pinion")]
 pub struct ApexSensitivity {
     /// Part of the torque that moves from one half to the other.
     #[scalar(label = "load moved by an apex offset")]
@@ -92,6 +98,7 @@ pub struct ApexSensitivity {
 /// Discretisation of the contact analysis and what it costs in accuracy.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(theory = "contact#discretisation")]
 pub struct Convergence {
     /// Positions solved over one mesh period of a half.
     #[scalar(label = "contact analysis: positions per mesh period", change = Absolute)]
@@ -126,6 +133,7 @@ pub struct MeshCurve {
 /// The mesh force of one half as a function of approach and phase.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(theory = "vibration#contact-force-table")]
 pub struct ContactForceTable {
     /// Levels of approach above that of no load.
     #[scalar(label = "contact force: levels tabulated", change = Absolute)]

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Numerics))]
+#[scalar(theory = "accuracy#computing-effort")]
 pub struct NumericsResult {
     pub wall_ms: WallMs,
     /// Stages that were taken from the store instead of computed: `result`, `mesh`, `finite_elements`, `points` (some of a sweep).
@@ -33,6 +34,7 @@ pub struct NotFinite {
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+#[scalar(theory = "accuracy#computing-effort")]
 pub struct WallMs {
     #[scalar(label = "computing time, geometry", unit = "ms")]
     pub geometry: f64,

@@ -20,6 +20,8 @@ pub struct Quantity {
     pub unit: &'static str,
     /// Meaning; empty where the label says it.
     pub help: &'static str,
+    /// Section of `docs/theory` with formula, source, validity and validation: page and heading, `contact#line-load`.
+    pub theory: &'static str,
     pub kind: QuantityKind,
     /// Place among the headline numbers of its block: smaller ones first, equal ones in the order of the table.
     #[serde(skip)]
@@ -102,6 +104,8 @@ pub(crate) struct Declaration {
     pub symbol: &'static str,
     pub unit: &'static str,
     pub help: &'static str,
+    /// None: that of the struct, or of the field above.
+    pub theory: Option<&'static str>,
     pub headline: Option<u8>,
     pub percent: bool,
     /// None: by the unit.
@@ -116,12 +120,13 @@ pub(crate) struct Declaration {
 pub(crate) struct Place {
     pointer: String,
     declaration: Option<&'static Declaration>,
+    theory: &'static str,
     /// Labels of the fields above, inner ones first.
     qualifiers: Vec<&'static str>,
 }
 
 impl Place {
-    const ROOT: Self = Self { pointer: String::new(), declaration: None, qualifiers: Vec::new() };
+    const ROOT: Self = Self { pointer: String::new(), declaration: None, theory: "", qualifiers: Vec::new() };
 
     /// The place of a field of the struct that stands here.
     pub(crate) fn field(&self, declaration: &'static Declaration) -> Self {
@@ -131,13 +136,19 @@ impl Place {
         }
         let qualifier = self.declaration.filter(|above| above.is_labelled).map(|above| above.label);
         let qualifiers = qualifier.into_iter().chain(self.qualifiers.iter().copied()).collect();
-        Self { pointer, declaration: Some(declaration), qualifiers }
+        let theory = declaration.theory.unwrap_or(self.theory);
+        Self { pointer, declaration: Some(declaration), theory, qualifiers }
     }
 
     /// The place of a value of each half: `{half}` stands for both, under the declaration of the field that holds
     /// them.
     pub(crate) fn half(&self) -> Self {
         Self { pointer: format!("{}/{}", self.pointer, Quantity::HALF), ..self.clone() }
+    }
+
+    /// This place with the theory section of the struct that stands here.
+    pub(crate) fn with_theory(&self, theory: &'static str) -> Self {
+        Self { theory, ..self.clone() }
     }
 
     /// The scalar that stands here; none at the root.
@@ -157,6 +168,7 @@ impl Place {
             symbol: declaration.symbol,
             unit,
             help: declaration.help,
+            theory: self.theory,
             kind,
             headline: declaration.headline,
             percent: declaration.percent,

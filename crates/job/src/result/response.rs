@@ -7,10 +7,12 @@ use std::collections::BTreeMap;
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Response))]
+#[scalar(theory = "vibration#steady-motion")]
 pub struct ResponseResult {
     pub rms: RmsResult,
     /// Largest normal force on the teeth of a half (mesh force and applied impact) over the static one; null without torque. Never below 1.
     #[scalar(
+        theory = "vibration#tooth-force-and-dynamic-factor",
         headline,
         lower_is_better,
         help = "Greatest normal force between the flanks over one period (or the record), impact included where one is applied, divided \
@@ -24,6 +26,7 @@ pub struct ResponseResult {
     /// motion had settled, `unstable` where it grows without bound (its RMS values then mean nothing).
     #[cfg_attr(feature = "schema", schema(value_type = String))]
     #[scalar(
+        theory = "vibration#regime",
         label = "motion",
         help = "How the steady motion repeats. Period 1 follows the mesh; longer periods, quasi-periodic and chaotic motions come with \
                 separation."
@@ -32,11 +35,13 @@ pub struct ResponseResult {
     /// `continuous`, `single-sided` (separation), `double-sided` (back flanks too), `apart` (no contact at all).
     #[cfg_attr(feature = "schema", schema(value_type = String))]
     #[scalar(
+        theory = "vibration#contact-and-separation",
         help = "Whether the working flanks keep touching while the pair vibrates. Separation makes the system nonlinear: several \
                 motions may be possible at one speed, and impacts load the teeth."
     )]
     pub contact: ContactStateResult,
     #[scalar(
+        theory = "vibration#contact-and-separation",
         label = "smallest mesh displacement",
         headline,
         change = Absolute,
@@ -44,26 +49,27 @@ pub struct ResponseResult {
     )]
     pub min_displacement_um: f64,
     pub natural_frequencies_hz: Vec<f64>,
-    #[scalar(label = "estimated relative error of the RMS values")]
+    #[scalar(label = "estimated relative error of the RMS values", theory = "vibration#error-estimate")]
     pub error_estimate: f64,
     #[cfg_attr(feature = "schema", schema(value_type = String))]
     #[scalar(label = "method of the response")]
     pub method: MethodResult,
-    #[scalar(label = "time in contact, mean of both halves", percent)]
+    #[scalar(label = "time in contact, mean of both halves", percent, theory = "vibration#contact-and-separation")]
     pub fraction_in_contact: f64,
     /// Whether the mesh damper acted in the gap (the printed law) or not.
-    #[scalar(label = "mesh damper acts in the gap")]
+    #[scalar(label = "mesh damper acts in the gap", theory = "vibration#mesh-force")]
     pub damping_in_gap: bool,
     /// Total play along s in the equations.
     #[serde(default)]
-    #[scalar(label = "backlash along s, total")]
+    #[scalar(label = "backlash along s, total", theory = "geometry#backlash")]
     pub backlash_um: Option<f64>,
     #[cfg_attr(feature = "schema", schema(value_type = String))]
-    #[scalar(label = "plane of the equations")]
+    #[scalar(label = "plane of the equations", theory = "vibration#equations-of-motion")]
     pub plane: Plane,
+    #[scalar(theory = "geometry#speed-torque-and-mesh-frequency")]
     pub mesh_frequency_hz: f64,
     /// Mesh periods over which the means were taken.
-    #[scalar(label = "mesh periods in the means")]
+    #[scalar(label = "mesh periods in the means", theory = "vibration#rms-values")]
     pub averaged_mesh_periods: u64,
     /// Displacement and velocity of the left mesh at each mesh period's start.
     pub poincare: Poincare,
@@ -71,7 +77,7 @@ pub struct ResponseResult {
     pub spectrum: Option<SpectrumResult>,
     /// Mesh periods after which the motion repeats; null when it does not.
     #[serde(default)]
-    #[scalar(label = "motion repeats after")]
+    #[scalar(label = "motion repeats after", theory = "vibration#regime")]
     pub period_mesh_periods: Option<u64>,
     /// What small deviations are multiplied by over one period of the motion (`period_mesh_periods`), largest modulus first, motions that
     /// nothing holds left out; null when the motion was not found by the periodic method, and where nothing is left of any deviation after a
@@ -80,15 +86,15 @@ pub struct ResponseResult {
     pub floquet_multipliers: Option<Vec<FloquetMultiplier>>,
     /// Modulus of the largest multiplier, as growth per mesh period; below 1 the motion is stable.
     #[serde(default)]
-    #[scalar(label = "largest Floquet multiplier")]
+    #[scalar(label = "largest Floquet multiplier", theory = "vibration#stability")]
     pub floquet_modulus_per_mesh_period: Option<f64>,
     /// Largest Lyapunov exponent of a motion that does not repeat; above 0.01 it is called chaotic. Of an unstable one its growth rate.
     #[serde(default)]
-    #[scalar(label = "largest Lyapunov exponent", change = Absolute)]
+    #[scalar(label = "largest Lyapunov exponent", change = Absolute, theory = "vibration#stability")]
     pub lyapunov_per_mesh_period: Option<f64>,
     /// Share of the recorded time in which each half's teeth touch, on either flank.
     #[serde(default)]
-    #[scalar(label = "time in contact", percent)]
+    #[scalar(label = "time in contact", percent, theory = "vibration#contact-and-separation")]
     pub contact_share: PerHalf,
     /// Where the true RMS values lie with a probability of 95 %, for a motion that does not repeat (batch means over the record); null for
     /// one that does, or when the record is too short against its correlation to say.
@@ -97,7 +103,7 @@ pub struct ResponseResult {
     /// Work-energy theorem over the recorded periods (the first 200 of a longer record): what the work of all forces does not explain of the change of kinetic
     /// energy, over the integral of the absolute power on each coordinate; null when nothing moves.
     #[serde(default)]
-    #[scalar(label = "balance of work and energy, residual")]
+    #[scalar(label = "balance of work and energy, residual", theory = "vibration#energy-balance")]
     pub energy_balance_residual: Option<f64>,
     /// What each of `natural_frequencies_hz` is, in their order: undamped, contact closed, mean mesh stiffness.
     #[serde(default)]
@@ -115,6 +121,7 @@ pub struct ToothForces {
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = ToothForce))]
+#[scalar(theory = "vibration#tooth-force-and-dynamic-factor")]
 pub struct ToothForceResult {
     /// What the torque alone needs.
     #[serde(rename = "static")]
@@ -169,6 +176,7 @@ pub struct FloquetMultiplier {
 /// Intervals of the RMS values.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = RmsIntervals))]
+#[scalar(theory = "vibration#confidence-interval")]
 pub struct RmsIntervalsResult {
     #[scalar(label = "mesh circumferential acceleration RMS")]
     pub mesh_circumferential_acceleration_m_s2: IntervalPerHalf,
@@ -195,6 +203,7 @@ pub struct IntervalResult {
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Rms))]
+#[scalar(theory = "vibration#rms-values")]
 pub struct RmsResult {
     #[scalar(
         label = "mesh circumferential acceleration RMS",

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Supports of each half and couplings between the halves of a gear, as they stand in the equations; of a sweep those of its base document.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Supports))]
+#[scalar(theory = "vibration#supports-and-couplings")]
 pub struct SupportsResult {
     #[scalar(label = "lateral support, pinion")]
     pub pinion_lateral_n_per_um: SpringValue,

@@ -56,7 +56,34 @@ export function show(node, visible = true) {
 export const showFigureOf = (box, visible) => show(/** @type {HTMLElement} */ (box.closest("figure")), visible);
 
 /**
- * Fills a `dl` with [term, value, unit] rows; rows without a value are left out.
+ * A "?" that opens to the meaning of a number, with a link to its formula, source and validity in the help.
+ * @param {string} name
+ * @param {Explained} explained
+ */
+export function tip(name, { help, theory }) {
+  const summary = el("summary", { title: help || "What is this?" }, "?");
+  summary.setAttribute("aria-label", `What is: ${name}?`);
+  const link = theory ? el("a", { href: `/help/theory/${theory}` }, "Formula, source, validity") : null;
+  link?.setAttribute("aria-label", `Formula, source, validity: ${name}`);
+  const details = el("details", { class: "tip" }, summary, el("p", {}, help, help && link ? " " : "", link));
+  details.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") details.open = false;
+  });
+  details.addEventListener("focusout", (event) => {
+    if (!details.contains(/** @type {Node | null} */ (event.relatedTarget))) details.open = false;
+  });
+  return details;
+}
+
+/**
+ * A name with its "?".
+ * @param {string} name
+ * @param {Explained} explained
+ */
+export const explained = (name, explained) => el("span", { class: "explained" }, name, " ", tip(name, explained));
+
+/**
+ * Fills a `dl` with [term, value, unit, meaning] rows; rows without a value are left out.
  * @param {HTMLElement} list
  * @param {ValueRow[]} rows
  */
@@ -64,7 +91,7 @@ export function fillValues(list, rows) {
   list.replaceChildren(
     ...rows
       .filter(([, value]) => value !== undefined && value !== null && value !== "")
-      .map(([term, value, unit]) => el("div", {}, el("dt", {}, term), el("dd", {}, value, unit ? el("span", { class: "unit" }, ` ${unit}`) : null))),
+      .map(([term, value, unit, meaning]) => el("div", {}, el("dt", {}, term, meaning ? " " : "", meaning ? tip(term instanceof Node ? (term.textContent ?? "") : String(term), meaning) : null), el("dd", {}, value, unit ? el("span", { class: "unit" }, ` ${unit}`) : null))),
   );
 }
 

@@ -1,5 +1,7 @@
 // Numbers, names, units and times as text.
 
+import { UNIT_SYMBOLS } from "./units.js";
+
 /** Endings of field names and the units they stand for; longer endings first. */
 const UNITS = [
   ["_kg_m2", "kg·m²"], ["_kg_m3", "kg/m³"], ["_n_per_um", "N/µm"], ["_n_per_mm", "N/mm"], ["_m_s2", "m/s²"], ["_m_s", "m/s"],
@@ -7,16 +9,13 @@ const UNITS = [
   ["_nm", "N·m"], ["_mm", "mm"], ["_um", "µm"], ["_us", "µs"], ["_ms", "ms"], ["_kg", "kg"], ["_n", "N"], ["_m", "m"],
 ];
 
-/** Units as they are shown, by those of the API. @type {Record<string, string>} */
-const SHOWN = { um: "µm", us: "µs", "%/um": "% per µm", "um/um": "µm/µm", "1/mesh period": "per mesh period", "N m/rad": "N·m/rad", deg: "°", "kg m2": "kg·m²", "N m": "N·m", "N/um": "N/µm", "m/s2": "m/s²", "m/s^2": "m/s²", "rad/s2": "rad/s²", "rad/s^2": "rad/s²", 1: "" };
-
 /** Unit of a field, from its name. @param {string} name */
 export function unitOf(name) {
   return UNITS.find(([ending]) => name.endsWith(ending))?.[1] ?? "";
 }
 
 /** A unit of the API as it is shown. @param {string | null | undefined} unit */
-export const shownUnit = (unit) => SHOWN[unit ?? ""] ?? unit ?? "";
+export const shownUnit = (unit) => (unit === "1" ? "" : (UNIT_SYMBOLS[unit ?? ""] ?? unit ?? ""));
 
 /** A field's name as words, without its unit. @param {string} name */
 export function labelOf(name) {

@@ -25,16 +25,17 @@ export async function gearDataOf(id) {
 const PAIR = GEAR_DATA.filter(({ pointer }) => !/^\/(pinion|gear)\//.test(pointer));
 const MEMBERS = GEAR_DATA.filter(({ pointer }) => pointer.startsWith("/pinion/"));
 
-/** Symbol, name and unit of a scalar. @param {import("./quantities.js").Quantity} scalar */
-function namesOf({ symbol, label, unit }) {
+/** Symbol, name, unit and meaning of a scalar. @param {import("./quantities.js").Quantity} scalar */
+function namesOf(scalar) {
+  const { symbol, label, unit } = scalar;
   const [letter, index = ""] = symbol.split("_");
-  return { symbol: /** @type {[string, string]} */ ([letter, index]), name: sentence(label), unit: shownUnit(unit) };
+  return { symbol: /** @type {[string, string]} */ ([letter, index]), name: sentence(label), unit: shownUnit(unit), meaning: scalar };
 }
 
 /**
  * Rows of the pair's data; members without a value are left out.
  * @param {GearData} data
- * @returns {{ symbol: [string, string], name: string, value: number, unit: string }[]}
+ * @returns {{ symbol: [string, string], name: string, value: number, unit: string, meaning: Explained }[]}
  */
 export function pairRows(data) {
   return PAIR.flatMap((scalar) => {
@@ -46,7 +47,7 @@ export function pairRows(data) {
 /**
  * Rows of the data of pinion and gear. Their own face widths are shown where one is wider than the common width.
  * @param {GearData} data
- * @returns {{ symbol: [string, string], name: string, pinion: Scalar, gear: Scalar, unit: string }[]}
+ * @returns {{ symbol: [string, string], name: string, pinion: Scalar, gear: Scalar, unit: string, meaning: Explained }[]}
  */
 export function memberRows({ pinion, gear, face_width_mm: common }) {
   const isCommon = pinion.face_width_mm === common && gear.face_width_mm === common;

@@ -11,6 +11,8 @@ export interface Quantity {
   /** In ASCII, or empty. */
   unit: string;
   help: string;
+  /** Section of the theory pages: page and heading. */
+  theory: string;
   kind: "number" | "word" | "flag";
   /** The value is a share of 1 that is shown in per cent. */
   percent: boolean;

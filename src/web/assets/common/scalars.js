@@ -53,26 +53,26 @@ export function valuesPerHalf(result, scalar) {
 export const areAlike = (a, b) => a === b || Math.abs(a - b) <= 1e-9 * Math.max(Math.abs(a), Math.abs(b));
 
 /**
- * Label, value and unit of a scalar; both halves in one row. The value is null where the result has none.
+ * Label, value, unit and meaning of a scalar; both halves in one row. The value is null where the result has none.
  * @param {object} result
  * @param {Quantity} scalar
  * @param {number} [digits]
- * @returns {[label: string, value: string | null, unit: string]}
+ * @returns {[label: string, value: string | null, unit: string, meaning: Quantity]}
  */
 export function rowOf(result, scalar, digits = 5) {
   const { label, unit } = scalar;
   /** @param {Scalar} value */
   const text = (value) => (typeof value === "number" ? number(value, digits) : value);
-  if (!isPerHalf(scalar)) return [label, text(valueOf(result, scalar)), unit];
+  if (!isPerHalf(scalar)) return [label, text(valueOf(result, scalar)), unit, scalar];
   const both = valuesPerHalf(result, scalar);
-  if (!both) return [label, null, unit];
-  if (areAlike(both.left, both.right)) return [`${label}, both halves`, text(both.left), unit];
-  return [`${label}, left / right`, `${text(both.left)} / ${text(both.right)}`, unit];
+  if (!both) return [label, null, unit, scalar];
+  if (areAlike(both.left, both.right)) return [`${label}, both halves`, text(both.left), unit, scalar];
+  return [`${label}, left / right`, `${text(both.left)} / ${text(both.right)}`, unit, scalar];
 }
 
 /**
  * As `rowOf`, by the pointer.
  * @param {object} result
- * @returns {(pointer: string, digits?: number) => [label: string, value: string | null, unit: string]}
+ * @returns {(pointer: string, digits?: number) => ReturnType<typeof rowOf>}
  */
 export const rowsFrom = (result) => (pointer, digits) => rowOf(result, scalarAt(pointer), digits);

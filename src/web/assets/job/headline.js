@@ -1,6 +1,6 @@
 // The headline numbers of a result, each with its meaning.
 
-import { byId, el, show } from "../common/dom.js";
+import { byId, el, show, tip } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { scalarAt } from "../common/scalars.js";
 import { nearestResonance } from "./motion_plots.js";
@@ -14,14 +14,14 @@ const GRAVITY = 9.80665;
  * @param {JobResult} result
  */
 export function headlines({ geometry, mesh, impact, response, numerics, accuracy }) {
-  /** @type {[name: string, shown: string, unit: string, note: Child | Child[], meaning: string][]} */
+  /** @type {[name: string, shown: string, unit: string, note: Child | Child[], meaning: Explained][]} */
   const tiles = [];
   /** @param {typeof tiles[number]} tile */
   const add = (...tile) => tiles.push(tile);
   /** The tile of a scalar. @param {string} pointer @param {string} shown @param {Child | Child[]} note */
   const addScalar = (pointer, shown, note) => {
-    const { label, unit, help } = scalarAt(pointer);
-    add(label, shown, unit, note, help);
+    const scalar = scalarAt(pointer);
+    add(scalar.label, shown, scalar.unit, note, scalar);
   };
   if (response) {
     const { rms } = response;
@@ -50,7 +50,7 @@ export function headlines({ geometry, mesh, impact, response, numerics, accuracy
   const nearest = response && nearestResonance(response, numerics);
   if (nearest) {
     const { order, ratio, mode } = nearest;
-    add("Nearest resonance", number(ratio, 3), "", `order ${order} at ${number(ratio, 3)} of mode ${mode.index} (${number(mode.frequency_hz, 4)} Hz)`, "The mesh order that lies closest to a natural frequency which the mesh excites: the order's frequency over the natural frequency. Close to 1 the vibration grows until damping holds it.");
+    add("Nearest resonance", number(ratio, 3), "", `order ${order} at ${number(ratio, 3)} of mode ${mode.index} (${number(mode.frequency_hz, 4)} Hz)`, { help: "The mesh order that lies closest to a natural frequency which the mesh excites: the order's frequency over the natural frequency. Close to 1 the vibration grows until damping holds it.", theory: "vibration#natural-frequencies-and-modes" });
   }
   if (accuracy) add("Error of the model", ...accuracyTexts(accuracy));
   return tiles;
@@ -59,7 +59,7 @@ export function headlines({ geometry, mesh, impact, response, numerics, accuracy
 /**
  * Number, unit, note and explanation of the error of the model, with the numerical error beside it.
  * @param {Accuracy} accuracy
- * @returns {[shown: string, unit: string, note: string, meaning: string]}
+ * @returns {[shown: string, unit: string, note: string, meaning: Explained]}
  */
 export function accuracyTexts({ numerical, model }) {
   const { mesh_stiffness_percent: stiffness, transmission_error_harmonic_percent: harmonic, basis } = model;
@@ -68,7 +68,10 @@ export function accuracyTexts({ numerical, model }) {
   const notes = [claims ? `of the mesh stiffness; ${number(harmonic, 2)} % of the transmission error's first harmonic` : "the mesh stiffness is given", solved];
   return [
     claims ? number(stiffness, 2) : "Not known", claims ? "%" : "", notes.filter(Boolean).join("; "),
-    `${scalarAt("/accuracy/numerical").help} ${scalarAt("/accuracy/model/mesh_stiffness_percent").help} Basis: ${basis}.`,
+    {
+      help: `${scalarAt("/accuracy/numerical").help} ${scalarAt("/accuracy/model/mesh_stiffness_percent").help} Basis: ${basis}.`,
+      theory: scalarAt("/accuracy/model/mesh_stiffness_percent").theory,
+    },
   ];
 }
 
@@ -88,20 +91,6 @@ export function showHeadline(result) {
     ),
   );
   show(box, tiles.length > 0);
-}
-
-/** @param {string} name @param {string} meaning */
-function tip(name, meaning) {
-  const summary = el("summary", { title: meaning }, "?");
-  summary.setAttribute("aria-label", `What is: ${name}?`);
-  const details = el("details", { class: "tip" }, summary, el("p", {}, meaning));
-  details.addEventListener("keydown", (event) => {
-    if (event.key === "Escape") details.open = false;
-  });
-  details.addEventListener("focusout", (event) => {
-    if (!details.contains(/** @type {Node | null} */ (event.relatedTarget))) details.open = false;
-  });
-  return details;
 }
 
 /** @param {ImpactResult} impact */

@@ -1,6 +1,6 @@
 // The mesh-in impact: the forces beside each other, the pulse, and the quantities from which they are calculated.
 
-import { byId, fillRows, fillValues, show, showFigureOf } from "../common/dom.js";
+import { byId, explained, fillRows, fillValues, show, showFigureOf } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { draw } from "../common/plots.js";
 import { rowsFrom, scalarAt } from "../common/scalars.js";
@@ -31,8 +31,8 @@ export function impactRows(impact) {
   const calculated = typeof impact.zhou2008_force_n === "number";
   const first = impact.source === "given" ? "Given" : "Corner contact, buffered by the pairs in mesh";
   return [
-    [first, `${number(impact.force_n)} N`],
-    ...(calculated ? [["Zhou 2008, unbuffered", `${number(impact.zhou2008_force_n)} N`], ["Reduction", `${number(impact.reduction_percent, 4)} %`]] : []),
+    [explained(first, scalarAt("/impact/force_n")), `${number(impact.force_n)} N`],
+    ...(calculated ? [[explained("Zhou 2008, unbuffered", scalarAt("/impact/zhou2008_force_n")), `${number(impact.zhou2008_force_n)} N`], [explained("Reduction", scalarAt("/impact/reduction_percent")), `${number(impact.reduction_percent, 4)} %`]] : []),
   ];
 }
 
@@ -40,9 +40,9 @@ export function impactRows(impact) {
 export function impactValues(impact) {
   const row = rowsFrom({ impact });
   return [
-    [scalarAt("/impact/source").label, IMPACTS[impact.source] ?? impact.source],
-    [scalarAt("/impact/applied").label, impact.applied === false ? "no: only reported" : "yes"],
-    [scalarAt("/impact/acts_on").label, impact.applied === false ? null : (ACTS_ON[impact.acts_on] ?? null)],
+    [scalarAt("/impact/source").label, IMPACTS[impact.source] ?? impact.source, "", scalarAt("/impact/source")],
+    [scalarAt("/impact/applied").label, impact.applied === false ? "no: only reported" : "yes", "", scalarAt("/impact/applied")],
+    [scalarAt("/impact/acts_on").label, impact.applied === false ? null : (ACTS_ON[impact.acts_on] ?? null), "", scalarAt("/impact/acts_on")],
     row("/impact/velocity_m_s", 4),
     row("/impact/duration_us", 4),
     row("/impact/energy_balance_duration_us", 4),

@@ -41,16 +41,16 @@ export function meshValues(mesh, input) {
   const law = mesh.contact_force ? "none: the force of the loaded contact over approach and phase" : mesh.source === "ltca" ? LAWS[input?.model?.mesh_stiffness?.law] : null;
   const row = rowsFrom({ mesh });
   return [
-    [scalarAt("/mesh/source").label, STIFFNESS[mesh.source] ?? mesh.source],
-    ["Stiffness in the equations", law],
+    [scalarAt("/mesh/source").label, STIFFNESS[mesh.source] ?? mesh.source, "", scalarAt("/mesh/source")],
+    ["Stiffness in the equations", law, "", { help: "", theory: "vibration#mesh-force" }],
     row("/mesh/stiffness_mean_n_per_um"),
-    ["Mesh stiffness of one half, range", range(mesh.stiffness_min_n_per_um, mesh.stiffness_max_n_per_um, 4), scalarAt("/mesh/stiffness_mean_n_per_um").unit],
+    ["Mesh stiffness of one half, range", range(mesh.stiffness_min_n_per_um, mesh.stiffness_max_n_per_um, 4), scalarAt("/mesh/stiffness_mean_n_per_um").unit, scalarAt("/mesh/stiffness_min_n_per_um")],
     row("/mesh/secant_stiffness_mean_n_per_um"),
     row("/mesh/transmission_error_mean_um", 4),
     row("/mesh/transmission_error_pp_um", 4),
     row("/mesh/load_share_at_mesh_in", 3),
     row("/mesh/loaded_contact_ratio"),
-    ["Pairs in contact", range(mesh.pairs_in_contact_min, mesh.pairs_in_contact_max)],
+    ["Pairs in contact", range(mesh.pairs_in_contact_min, mesh.pairs_in_contact_max), "", scalarAt("/mesh/pairs_in_contact_min")],
     row("/mesh/max_line_load_n_per_mm", 4),
     row("/mesh/max_contact_pressure_mpa", 4),
     row("/mesh/force_n"),

@@ -62,22 +62,22 @@ export function numericsValues({ job, numerics, response, mesh }) {
   /** @param {number | null | undefined} error */
   const small = (error) => (typeof error === "number" ? number(error, 2) : null);
   /** A row by the scalar's label and unit. @type {(pointer: string, shown: Child) => ValueRow} */
-  const row = (pointer, shown) => [scalarAt(pointer).label, shown, scalarAt(pointer).unit];
+  const row = (pointer, shown) => [scalarAt(pointer).label, shown, scalarAt(pointer).unit, scalarAt(pointer)];
   return [
-    ["Method", response ? (METHODS[response.method] ?? response.method) : null],
+    ["Method", response ? (METHODS[response.method] ?? response.method) : null, "", scalarAt("/response/method")],
     row("/numerics/degrees_of_freedom", halves),
-    ["States of the equations", states],
-    [scalarAt("/response/averaged_mesh_periods").label, count(response?.averaged_mesh_periods)],
+    ["States of the equations", states, "", scalarAt("/numerics/degrees_of_freedom")],
+    [scalarAt("/response/averaged_mesh_periods").label, count(response?.averaged_mesh_periods), "", scalarAt("/response/averaged_mesh_periods")],
     row("/numerics/steps", count(numerics.steps)),
     row("/numerics/rejected_steps", count(numerics.rejected_steps)),
     row("/numerics/force_evaluations", count(numerics.force_evaluations)),
-    ["Contact analysis: positions per mesh period, slices", convergence ? `${number(convergence.positions)}, ${number(convergence.slices)}` : null],
+    ["Contact analysis: positions per mesh period, slices", convergence ? `${number(convergence.positions)}, ${number(convergence.slices)}` : null, "", scalarAt("/mesh/convergence/positions")],
     row("/mesh/convergence/position_error_percent", small(convergence?.position_error_percent)),
-    ["Contact force: levels, phases tabulated", mesh?.contact_force ? `${number(mesh.contact_force.levels)}, ${number(mesh.contact_force.phases)}` : null],
+    ["Contact force: levels, phases tabulated", mesh?.contact_force ? `${number(mesh.contact_force.levels)}, ${number(mesh.contact_force.phases)}` : null, "", scalarAt("/mesh/contact_force/levels")],
     row("/mesh/contact_force/error_percent", small(mesh?.contact_force?.error_percent)),
     row("/mesh/convergence/slice_error_percent", small(convergence?.slice_error_percent)),
     row("/response/energy_balance_residual", small(response?.energy_balance_residual)),
-    ["Reused", reused.length ? reused.map((name) => REUSED[name] ?? name).join(", ") : "nothing"],
+    ["Reused", reused.length ? reused.map((name) => REUSED[name] ?? name).join(", ") : "nothing", "", scalarAt("/numerics/wall_ms/mesh")],
     row("/numerics/solver_version", numerics.solver_version),
     ["Input hash", job?.input_hash ? el("code", { class: "hash" }, job.input_hash) : null],
     ...(numerics.not_finite ?? []).map(({ pointer, reason }) => /** @type {ValueRow} */ ([`Not finite: ${pointer}`, reason])),

@@ -7,7 +7,7 @@ import { SCALARS, rowOf } from "../common/scalars.js";
 export function showValues({ result }) {
   const rows = SCALARS.flatMap((scalar) => {
     const [label, value, unit] = rowOf(result, scalar, 6);
-    return value === null ? [] : [[el("span", { title: scalar.pointer }, label), value, unit, scalar.help]];
+    return value === null ? [] : [[el("a", { href: `/help/theory/${scalar.theory}`, title: scalar.pointer }, label), value, unit, scalar.help]];
   });
   fillRows(byId("values-table").tBodies[0], rows);
   show(byId("values"), rows.length > 0);
