@@ -2,7 +2,9 @@
 
 use crate::support::*;
 use herringbone::work::WorkConfig;
+use http_body_util::BodyExt;
 use serde_json::{Value, json};
+use tower::ServiceExt;
 
 async fn page(app: &App, path: &str, query: &str) -> Value {
     let answer = app.get(&format!("{path}/points{query}")).await;
@@ -270,4 +272,47 @@ async fn the_result_of_a_sweep_can_be_read_without_its_rows() {
     assert_eq!(app.get(&format!("{path}/result?rows=true")).await.json, whole.json);
     app.get(&format!("{path}/result?rows=no")).await.assert_problem(400, "invalid-parameter");
     app.get(&format!("{path}/result?row=true")).await.assert_problem(400, "invalid-parameter");
+}
+
+/// A response of which only the head has come.
+async fn begun(app: &App, path: &str) -> axum::body::Body {
+    let request = axum::http::Request::get(path).header("host", "localhost").body(axum::body::Body::empty());
+    let response = app.router.clone().oneshot(request.expect("a request")).await.expect("an answer");
+    assert_eq!(response.status(), 200, "{path}");
+    response.into_body()
+}
+
+#[tokio::test]
+async fn a_download_breaks_off_when_its_sweep_is_deleted() {
+    let app = app().await;
+    for rows in ["points?decimal=point", "points?decimal=comma&limit=350", "points?limit=10000", "result"] {
+        let (path, _) = app.run(&sweep("large", 400)).await;
+        let whole = app.get(&format!("{path}/{rows}")).await;
+        let mut body = begun(&app, &format!("{path}/{rows}")).await;
+        let first = body.frame().await.expect("a piece").expect("unbroken").into_data().expect("data");
+        assert!(first.len() < whole.body.len() / 2, "{rows}");
+        app.delete(&path).await.assert_status(204);
+        let mut received = first.len();
+        let ended = loop {
+            match body.frame().await {
+                Some(Ok(frame)) => received += frame.data_ref().map_or(0, |data| data.len()),
+                Some(Err(error)) => break Err(error),
+                None => break Ok(()),
+            }
+        };
+        assert!(ended.is_err(), "{rows}: {received} of {} bytes look whole", whole.body.len());
+    }
+}
+
+#[tokio::test]
+async fn a_limit_bounds_what_is_read() {
+    let app = app().await;
+    let (path, _) = app.run(&sweep("large", 400)).await;
+    let body = begun(&app, &format!("{path}/points?decimal=point&from=3&limit=1")).await;
+    app.delete(&path).await.assert_status(204);
+    // The only row was read before.
+    let text = body.collect().await.expect("a whole body").to_bytes();
+    let text = String::from_utf8(text.to_vec()).expect("UTF-8");
+    let positions: Vec<_> = text.lines().map(|line| line.split(',').next().unwrap_or_default()).collect();
+    assert_eq!(positions, ["position", "3"]);
 }

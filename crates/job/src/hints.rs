@@ -2,7 +2,7 @@
 //! program, with the converted value if the document determines it.
 
 use super::schema::field_descriptions;
-use super::unit::{Unit, UnitQuantity};
+use super::unit::{Unit, UnitQuantity, with_unit};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -371,9 +371,12 @@ impl ForeignName<'_> {
         let given = self.unknown.value.as_f64().map(|value| [value, value * unit.size / field.size]);
         Some(match given.filter(|[_, converted]| converted.is_finite()).map(|both| both.map(significant)) {
             Some([given, converted]) => {
-                format!("did you mean \"{name}\"? {given} {} are {converted} {}", unit.text, field.text)
+                format!("did you mean \"{name}\"? {} are {}", unit.after(given), field.after(converted))
             }
-            None => format!("did you mean \"{name}\", in {}?", field.text),
+            None => format!(
+                "did you mean \"{name}\", in {}?",
+                if field.symbol.is_empty() { field.text } else { field.symbol }
+            ),
         })
     }
 
@@ -405,7 +408,7 @@ impl ForeignName<'_> {
         self.unknown.object.starts_with("/design/gear") || is_of_gear(self.stem)
     }
 
-    /// Text such as " = 20 deg" for an angle that was given in another unit.
+    /// Text such as " = 20°" for an angle that was given in another unit.
     fn in_degrees(&self) -> String {
         let angle = self.si(UnitQuantity::Angle, PI / 180.0).filter(|_| self.unit.is_some());
         shown(angle.map(f64::to_degrees), "deg")
@@ -437,7 +440,8 @@ fn is_of_gear(stem: &str) -> bool {
 /// Text such as " = 5.4628 mm"; empty if the document does not determine the value.
 fn shown(value: Option<f64>, unit: &str) -> String {
     match value.filter(|value| value.is_finite()) {
-        Some(value) => format!(" = {} {unit}", significant(value)).trim_end().to_owned(),
+        Some(value) if unit.is_empty() => format!(" = {}", significant(value)),
+        Some(value) => format!(" = {}", with_unit(significant(value), unit)),
         None => String::new(),
     }
 }
@@ -485,9 +489,9 @@ mod tests {
     #[case("/design/transverse_pitch_mm", 18.849556, &["= 5.4628 mm"])]
     #[case("/design/ratio", 2.6, &["/design/gear/teeth over /design/pinion/teeth", "44/17 = 2.58824"])]
     #[case("/design/gear_ratio", 2.6, &["44/17"])]
-    #[case("/design/helix_angle_rad", 0.5, &["\"helix_angle_deg\"", "0.5 rad are 28.6479 deg"])]
+    #[case("/design/helix_angle_rad", 0.5, &["\"helix_angle_deg\"", "0.5 rad are 28.6479°"])]
     #[case("/design/beta", 20.0, &["/design/helix_angle_deg"])]
-    #[case("/design/base_helix_angle_deg", 22.0, &["sin β = sin β_b / cos α_n = 23.2656 deg"])]
+    #[case("/design/base_helix_angle_deg", 22.0, &["sin β = sin β_b / cos α_n = 23.2656°"])]
     #[case("/design/transverse_pressure_angle_deg", 20.0, &["/design/pressure_angle_deg", "\"transverse\""])]
     #[case("/design/centre_distance_mm", 201.0, &["center_distance_mm"])]
     #[case("/design/centre_distance", 201.0, &["/design/center_distance_mm"])]
@@ -495,13 +499,13 @@ mod tests {
     #[case("/design/total_face_width_mm", 180.0, &["/design/face_width_mm", "/ 2 = 75 mm"])]
     #[case("/design/face_width_total_mm", 200.0, &["/ 2 = 85 mm"])]
     #[case("/design/face_width_in", 3.0, &["3 in are 76.2 mm"])]
-    #[case("/design/backlash_mm", 0.2, &["0.2 mm are 200 um"])]
+    #[case("/design/backlash_mm", 0.2, &["0.2 mm are 200 µm"])]
     #[case("/design/teeth", 17.0, &["/design/pinion/teeth", "/design/gear/teeth"])]
     #[case("/design/z1", 17.0, &["/design/pinion/teeth"])]
     #[case("/design/torque_nm", 800.0, &["/operation/pinion_torque_nm"])]
     #[case("/design/density_kg_m3", 7850.0, &["/design/material/density_kg_m3"])]
     #[case("/design/material/youngs_modulus_mpa", 206000.0, &["206000 MPa are 206 GPa"])]
-    #[case("/design/material/density_g_cm3", 7.85, &["7.85 g/cm3 are 7850 kg/m3"])]
+    #[case("/design/material/density_g_cm3", 7.85, &["7.85 g/cm3 are 7850 kg/m³"])]
     #[case("/design/pinion/tip_diameter_mm", 124.0, &["/design/pinion/tip_alteration = -0.00253"])]
     #[case("/design/gear/outside_diameter_mm", 301.953, &["/design/gear/tip_alteration = -0.000667"])]
     #[case("/design/pinion/root_diameter_mm", 97.0, &["/design/pinion/dedendum = profile_shift", "= 1.25253"])]
@@ -511,18 +515,18 @@ mod tests {
     #[case("/design/pinion/x", 0.2, &["/design/pinion/profile_shift"])]
     #[case("/design/pinion/number_of_teeth", 17.0, &["\"teeth\""])]
     #[case("/design/pinion/torque_nm", 800.0, &["/operation/pinion_torque_nm"])]
-    #[case("/design/gear/torque_nm", 2070.588235, &["/operation/pinion_torque_nm", "T_2 z_1 / z_2 = 800 N m"])]
+    #[case("/design/gear/torque_nm", 2070.588235, &["/operation/pinion_torque_nm", "T_2 z_1 / z_2 = 800 N·m"])]
     #[case("/design/gear/speed_rpm", 772.727273, &["/operation/pinion_speed_rpm", "= 2000 r/min"])]
     #[case("/design/pinion/bore_mm", 50.0, &["/design/pinion/bore_diameter_mm"])]
-    #[case("/design/pinion/inertia_kg_mm2", 65000.0, &["65000 kg mm2 are 0.065 kg m2"])]
+    #[case("/design/pinion/inertia_kg_mm2", 65000.0, &["65000 kg mm2 are 0.065 kg·m²"])]
     #[case("/operation/speed", 2000.0, &["/operation/pinion_speed_rpm"])]
     #[case("/operation/rpm", 2000.0, &["/operation/pinion_speed_rpm"])]
     #[case("/operation/speed_rad_s", 100.0, &["/operation/pinion_speed_rpm = 954.93 r/min"])]
     #[case("/operation/pinion_speed_rad_s", 100.0, &["100 rad/s are 954.93 r/min"])]
-    #[case("/operation/pinion_torque_knm", 0.8, &["0.8 kN m are 800 N m"])]
-    #[case("/operation/gear_torque_nm", 2070.588235, &["= 800 N m"])]
+    #[case("/operation/pinion_torque_knm", 0.8, &["0.8 kN m are 800 N·m"])]
+    #[case("/operation/gear_torque_nm", 2070.588235, &["= 800 N·m"])]
     #[case("/operation/output_speed_rpm", 772.727273, &["= 2000 r/min"])]
-    #[case("/operation/power_kw", 100.0, &["T_1 = P / ω_1 = 477.465 N m"])]
+    #[case("/operation/power_kw", 100.0, &["T_1 = P / ω_1 = 477.465 N·m"])]
     #[case("/operation/mesh_frequency_hz", 566.666667, &["/operation/pinion_speed_rpm", "= 2000 r/min"])]
     #[case("/operation/helix_angle_deg", 20.0, &["/design/helix_angle_deg"])]
     #[case("/axes/0/step", 500.0, &["points", "/ step + 1 = 16"])]
@@ -552,7 +556,7 @@ mod tests {
         let hinted = detail("/design/pinion/root_diameter_mm", json!(report.geometry.pinion.root_diameter_mm));
         assert!(hinted.ends_with("= 1.25"), "{hinted}");
         let hinted = detail("/design/base_helix_angle_deg", json!(report.geometry.base_helix_angle_deg));
-        assert!(hinted.ends_with("= 24.43 deg"), "{hinted}");
+        assert!(hinted.ends_with("= 24.43°"), "{hinted}");
     }
 
     #[test]

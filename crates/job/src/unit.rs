@@ -102,7 +102,24 @@ pub static UNITS: [Unit; 50] = [
     declared("", "unit of the input", "in its unit", 1.0, Number),
 ];
 
+/// A number with a unit given by its text in ASCII, as sentences for people write it.
+pub(crate) fn with_unit(number: impl std::fmt::Display, text: &str) -> String {
+    match UNITS.iter().find(|unit| unit.declared && unit.text == text) {
+        Some(unit) => unit.after(number),
+        None => format!("{number} {text}"),
+    }
+}
+
 impl Unit {
+    /// A number with this unit, as sentences for people write it.
+    pub(crate) fn after(&self, number: impl std::fmt::Display) -> String {
+        match if self.symbol.is_empty() { self.text } else { self.symbol } {
+            "1" => number.to_string(),
+            "°" => format!("{number}°"),
+            unit => format!("{number} {unit}"),
+        }
+    }
+
     /// No unit: a plain number.
     pub const ONE: &'static Unit = Unit::of_field("", "1");
 
