@@ -3,6 +3,7 @@
 
 use super::columns;
 use super::csv::{CsvField, CsvWriter, Decimal};
+use super::problem::ApiError;
 use super::text_body::PIECE_BYTES;
 use crate::store::{JobId, PointRow, Store, StoreError};
 use axum::body::{Body, Bytes};
@@ -14,6 +15,24 @@ use std::io;
 /// Rows in the first page that is read, whose length is not known, and the most in any other.
 const FIRST_PAGE_ROWS: u64 = 16;
 const MAX_PAGE_ROWS: u64 = 1000;
+
+/// Failure to read the rows of a sweep.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum RowsError {
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    #[error("the sweep was deleted while its rows were read")]
+    Deleted,
+}
+
+impl From<RowsError> for ApiError {
+    fn from(error: RowsError) -> Self {
+        match error {
+            RowsError::Store(error) => error.into(),
+            RowsError::Deleted => ApiError::not_found("There is no such job."),
+        }
+    }
+}
 
 /// Rows of a sweep: those of a job with positions in `from..to`, `limit` at most.
 #[derive(Debug, Clone, Copy)]
@@ -37,14 +56,14 @@ pub(super) struct ListEnd {
 }
 
 /// Rows in pages of about [`PIECE_BYTES`].
-pub(super) type Pages = BoxStream<'static, Result<Vec<PointRow>, StoreError>>;
+pub(super) type Pages = BoxStream<'static, Result<Vec<PointRow>, RowsError>>;
 
 /// Reads rows of a job a page at a time, the first one now. When the job is deleted meanwhile, the stream ends with an
 /// error, and with it the connection of a response made from it.
 ///
 /// # Errors
 /// The database cannot be read.
-pub(super) async fn pages(store: &Store, id: JobId, range: RowRange) -> Result<Pages, StoreError> {
+pub(super) async fn pages(store: &Store, id: JobId, range: RowRange) -> Result<Pages, RowsError> {
     let store = store.clone();
     let rest = Some((range, FIRST_PAGE_ROWS));
     let mut pages = Box::pin(stream::try_unfold(rest, move |rest| {
@@ -74,13 +93,8 @@ fn next_page_rows(rows: &[PointRow]) -> u64 {
 }
 
 /// Fails when a job is gone: then rows that were not read may be missing.
-async fn check_exists(store: &Store, id: JobId) -> Result<(), StoreError> {
-    match store.job(id).await? {
-        Some(_) => Ok(()),
-        None => {
-            Err(StoreError::Corrupt { what: "points", detail: "the job was deleted while they were read".to_owned() })
-        }
-    }
+async fn check_exists(store: &Store, id: JobId) -> Result<(), RowsError> {
+    store.job(id).await?.map(drop).ok_or(RowsError::Deleted)
 }
 
 /// What follows the rows of a range that was read up to `next`.
@@ -92,7 +106,7 @@ pub(super) async fn list_end(
     id: JobId,
     (next, to): (u64, u64),
     n_points: u64,
-) -> Result<ListEnd, StoreError> {
+) -> Result<ListEnd, RowsError> {
     let next_position = store.points(id, next, to, 1).await?.first().map(|row| row.position);
     let n_solved = store.point_count(id).await?;
     check_exists(store, id).await?;
@@ -103,22 +117,26 @@ pub(super) async fn list_end(
 ///
 /// # Errors
 /// The database cannot be read.
-pub(super) async fn json_body(store: Store, id: JobId, range: RowRange, n_points: u64) -> Result<Body, StoreError> {
-    let state = (Some(pages(&store, id, range).await?), range.from, "{\"items\":[", store);
+pub(super) async fn json_body(store: Store, id: JobId, range: RowRange, n_points: u64) -> Result<Body, RowsError> {
+    let state = (Some(pages(&store, id, range).await?), range.from, "", store);
     let pieces = stream::try_unfold(state, move |(pages, next, separator, store)| async move {
         let Some(mut pages) = pages else { return Ok(None) };
         let Some(rows) = pages.next().await.transpose()? else {
             let end = list_end(&store, id, (next, range.to), n_points).await?;
-            let end = serde_json::to_string(&end).map_err(to_store_error)?;
+            let end = serde_json::to_string(&end).map_err(unreadable)?;
             let text = "],".to_owned() + end.trim_start_matches('{');
-            return Ok::<_, StoreError>(Some((text, (None, next, separator, store))));
+            return Ok::<_, RowsError>(Some((text, (None, next, separator, store))));
         };
-        let next = rows.last().map_or(next, |row| row.position + 1);
-        let items = rows.iter().map(|row| format!("{{\"position\":{},\"point\":{}}}", row.position, row.body));
-        let text = separator.to_owned() + &items.collect::<Vec<_>>().join(",");
-        Ok(Some((text, (Some(pages), next, ",", store))))
+        let (mut text, mut next, mut separator) = (String::new(), next, separator);
+        for row in rows {
+            text += &format!("{separator}{{\"position\":{},\"point\":{}}}", row.position, row.body);
+            next = row.position + 1;
+            separator = ",";
+        }
+        Ok(Some((text, (Some(pages), next, separator, store))))
     });
-    Ok(Body::from_stream(pieces))
+    let head = stream::iter([Ok("{\"items\":[".to_owned())]);
+    Ok(Body::from_stream(head.chain(pieces)))
 }
 
 /// A response body with rows as CSV: a header with a column for each of `axes`, then a record for each row.
@@ -131,21 +149,21 @@ pub(super) async fn csv_body(
     range: RowRange,
     axes: &[String],
     decimal: Decimal,
-) -> Result<Body, StoreError> {
-    let header = header(axes, decimal).map_err(to_store_error)?;
+) -> Result<Body, RowsError> {
+    let header = header(axes, decimal).map_err(unreadable)?;
     let records = pages(store, id, range).await?.map(move |page| {
         let mut writer = CsvWriter::new(Vec::new(), decimal);
         for row in page? {
-            let point: SweepPoint = serde_json::from_str(&row.body).map_err(to_store_error)?;
-            write_row(&mut writer, row.position, &point).map_err(to_store_error)?;
+            let point: SweepPoint = serde_json::from_str(&row.body).map_err(unreadable)?;
+            write_row(&mut writer, row.position, &point).map_err(unreadable)?;
         }
-        writer.into_inner().map(Bytes::from).map_err(to_store_error)
+        writer.into_inner().map(Bytes::from).map_err(unreadable)
     });
     Ok(Body::from_stream(stream::iter([Ok(Bytes::from(header))]).chain(records)))
 }
 
-fn to_store_error(error: impl std::fmt::Display) -> StoreError {
-    StoreError::Corrupt { what: "point", detail: error.to_string() }
+fn unreadable(error: impl std::fmt::Display) -> RowsError {
+    StoreError::Corrupt { what: "point", detail: error.to_string() }.into()
 }
 
 fn header(axes: &[String], decimal: Decimal) -> io::Result<Vec<u8>> {

@@ -3,7 +3,7 @@
 //! The rows are stored apart from the result and sent as they were written. Serde walks through the members of the
 //! result and so finds the place of the rows; every other member is copied unparsed ([`RawValue`]).
 
-use super::points::{self, RowRange};
+use super::points::{self, RowRange, RowsError};
 use super::text_body::TextBody;
 use crate::store::{JobId, Store, StoreError};
 use axum::body::{Body, Bytes};
@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 ///
 /// # Errors
 /// The stored result is not the JSON of a sweep's result, or the database cannot be read.
-pub(super) async fn result_body(store: &Store, id: JobId, result: &str, count: u64) -> Result<Body, StoreError> {
+pub(super) async fn result_body(store: &Store, id: JobId, result: &str, count: u64) -> Result<Body, RowsError> {
     let (head, tail) =
         split_at_rows(result).map_err(|error| StoreError::Corrupt { what: "result", detail: error.to_string() })?;
     let sent = Arc::new(AtomicU64::new(0));
@@ -40,7 +40,9 @@ pub(super) async fn result_body(store: &Store, id: JobId, result: &str, count: u
     let all_sent = stream::once(async move {
         match sent_at_end.load(Ordering::Relaxed) {
             sent if sent == count => Ok(Bytes::new()),
-            sent => Err(StoreError::Corrupt { what: "points", detail: format!("{sent} of {count} rows") }),
+            sent => {
+                Err(RowsError::from(StoreError::Corrupt { what: "points", detail: format!("{sent} of {count} rows") }))
+            }
         }
     });
     let text = |text| stream::iter(TextBody::new(text).map(Ok));

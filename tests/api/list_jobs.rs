@@ -108,7 +108,7 @@ async fn a_list_of_many_is_searched_sorted_and_counted() {
     let (second, rest, end) = read(&format!("sort=name&search=gear&limit=1&cursor={}", cursor.unwrap())).await;
     assert_eq!((first, second, total, rest, end), (vec!["Gear A".into()], vec!["gear b".into()], 2, 2, None));
     let long = "a".repeat(201);
-    for wrong in ["sort=best", "order=up", "from=yesterday", "to=2026-13-01", &format!("search={long}")] {
+    for wrong in ["sort=best", "order=up", "from=yesterday", "from=", "to=2026-13-01", &format!("search={long}")] {
         app.get(&format!("/api/v1/jobs?{wrong}")).await.assert_problem(400, "invalid-parameter");
     }
 }

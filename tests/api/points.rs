@@ -316,3 +316,27 @@ async fn a_limit_bounds_what_is_read() {
     let positions: Vec<_> = text.lines().map(|line| line.split(',').next().unwrap_or_default()).collect();
     assert_eq!(positions, ["position", "3"]);
 }
+
+#[tokio::test]
+async fn a_page_that_ends_where_a_piece_ends_is_whole() {
+    let app = app().await;
+    for n in [2, 15, 16, 17, 33] {
+        let (path, _) = app.run(&sweep("large", n)).await;
+        let n = n as usize;
+        let whole = page(&app, &path, "").await;
+        let positions = |page: &Value| -> Vec<u64> {
+            page["items"].as_array().unwrap().iter().map(|item| item["position"].as_u64().unwrap()).collect()
+        };
+        assert_eq!(positions(&whole), (0..n as u64).collect::<Vec<_>>());
+        assert!(whole["next_position"].is_null());
+        let first = page(&app, &path, "?limit=1").await;
+        assert_eq!((positions(&first), first["next_position"].as_u64()), (vec![0], Some(1)));
+        assert!(positions(&page(&app, &path, "?from=200").await).is_empty());
+        let result = app.get(&format!("{path}/result")).await.json;
+        assert_eq!(result["sweep"]["points"].as_array().map(Vec::len), Some(n));
+        let columns = app.get(&format!("{path}/points/columns")).await.json;
+        assert_eq!(columns["positions"].as_array().map(Vec::len), Some(n));
+        let text = app.get(&format!("{path}/points?decimal=point")).await.text();
+        assert_eq!(text.lines().count(), n + 1);
+    }
+}

@@ -128,7 +128,9 @@ impl ForeignName<'_> {
                 module("m_n = m_t cos β", self.mm().zip(self.cos_beta()).map(|(m, cos)| m * cos))
             }
             "module" | "module_normal" | "mn" | "m_n" | "m" => {
-                module("from a transverse module m_t, m_n = m_t cos β", None)
+                let normal = shown(self.mm(), "mm");
+                let transverse = self.mm().zip(self.cos_beta()).map(|(m, cos)| m * cos);
+                module(&format!("the value itself{normal}; from a transverse module m_t, m_n = m_t cos β"), transverse)
             }
             "normal_module" if object != "/design" => module("one for both gears", None),
             "normal_diametral_pitch" | "pnd" | "p_nd" => {
@@ -308,6 +310,20 @@ impl ForeignName<'_> {
                     shown(torque, "N m")
                 ))
             }
+            "application_factor" | "service_factor" | "overload_factor" | "load_factor" | "ka" | "k_a" => {
+                let torque =
+                    value.zip(self.number("/operation/pinion_torque_nm")).map(|(factor, torque)| factor * torque);
+                Some(format!("the factor belongs into the torque, /operation/pinion_torque_nm{}", shown(torque, "N m")))
+            }
+            "e" | "e_gpa" | "e_modulus" | "elastic_modulus" | "young_modulus" | "modulus_of_elasticity"
+                if self.is_of_material() =>
+            {
+                let modulus = self.si(UnitQuantity::Stress, 1e9).filter(|_| self.unit.is_some());
+                Some(format!("Young's modulus is youngs_modulus_gpa{}", shown(modulus.map(|pa| pa / 1e9), "GPa")))
+            }
+            "poisson" | "poisson_ratio" | "nu" if self.is_of_material() => {
+                Some("Poisson's ratio is poissons_ratio".to_owned())
+            }
             "mesh_frequency" | "tooth_frequency" => {
                 let teeth = self.number("/design/pinion/teeth");
                 let rpm = value.filter(|_| self.unit.is_none_or(|unit| unit.text == "r/s")).zip(teeth);
@@ -359,9 +375,13 @@ impl ForeignName<'_> {
         }
     }
 
-    /// Hint for a field's name with another unit: the value in the unit of the field.
+    /// Hint for a field's name with another unit, or without one: the value in the unit of the field.
     fn in_another_unit(&self) -> Option<String> {
-        let unit = self.unit?;
+        let Some(unit) = self.unit else {
+            let is_meant = |name: &&&str| matches!(split(name), (stem, Some(_)) if stem == self.stem);
+            let name = self.unknown.known.iter().find(is_meant)?;
+            return Some(format!("did you mean \"{name}\", in {}?", split(name).1?.name_for_people()));
+        };
         let (name, field) = self.unknown.known.iter().find_map(|name| match split(name) {
             (stem, Some(field)) if stem == self.stem && field.quantity == unit.quantity && field.size != unit.size => {
                 Some((name, field))
@@ -373,10 +393,7 @@ impl ForeignName<'_> {
             Some([given, converted]) => {
                 format!("did you mean \"{name}\"? {} are {}", unit.after(given), field.after(converted))
             }
-            None => format!(
-                "did you mean \"{name}\", in {}?",
-                if field.symbol.is_empty() { field.text } else { field.symbol }
-            ),
+            None => format!("did you mean \"{name}\", in {}?", field.name_for_people()),
         })
     }
 
@@ -384,6 +401,10 @@ impl ForeignName<'_> {
     fn elsewhere(&self, name: &str) -> Option<String> {
         static POINTERS: LazyLock<Vec<String>> =
             LazyLock::new(|| field_descriptions().into_iter().map(|field| field.pointer).collect());
+        // The name of a material is not that of the job.
+        if self.is_of_material() {
+            return None;
+        }
         let has_name = |pointer: &&String| pointer.rsplit('/').next() == Some(name) && !pointer.contains('*');
         let found: Vec<&str> = POINTERS.iter().filter(has_name).map(String::as_str).collect();
         match found[..] {
@@ -402,6 +423,10 @@ impl ForeignName<'_> {
 
     fn is_known(&self, name: &str) -> bool {
         self.unknown.known.contains(&name)
+    }
+
+    fn is_of_material(&self) -> bool {
+        self.unknown.object.ends_with("/material")
     }
 
     fn is_about_the_gear(&self) -> bool {
@@ -529,6 +554,17 @@ mod tests {
     #[case("/operation/power_kw", 100.0, &["T_1 = P / ω_1 = 477.465 N·m"])]
     #[case("/operation/mesh_frequency_hz", 566.666667, &["/operation/pinion_speed_rpm", "= 2000 r/min"])]
     #[case("/operation/helix_angle_deg", 20.0, &["/design/helix_angle_deg"])]
+    #[case("/design/module_mm", 6.0, &["the value itself = 6 mm", "m_n = m_t cos β = 5.4628 mm"])]
+    #[case("/design/pinion/hand", 1.0, &["/design/pinion/left_half_hand"])]
+    #[case("/design/gear/inertia", 1.0, &["\"inertia_kg_m2\", in kg·m²"])]
+    #[case("/design/pressure_angle", 20.0, &["\"pressure_angle_deg\", in °"])]
+    #[case("/design/material/e_gpa", 206.0, &["youngs_modulus_gpa"])]
+    #[case("/design/material/elastic_modulus_mpa", 206000.0, &["youngs_modulus_gpa = 206 GPa"])]
+    #[case("/design/material/poisson_ratio", 0.3, &["poissons_ratio"])]
+    #[case("/operation/power_hp", 134.102209, &["T_1 = P / ω_1 = 477.465 N·m"])]
+    #[case("/operation/torque_ft_lb", 590.049719, &["/operation/pinion_torque_nm", "= 800 N·m"])]
+    #[case("/operation/pinion_torque_in_lb", 7080.59663, &["are 800 N·m"])]
+    #[case("/operation/application_factor", 1.25, &["/operation/pinion_torque_nm = 1000 N·m"])]
     #[case("/axes/0/step", 500.0, &["points", "/ step + 1 = 16"])]
     #[case("/axes/0/count", 16.0, &["\"points\""])]
     #[case("/axes/0/start", 1.0, &["\"from\""])]

@@ -25,8 +25,8 @@ use utoipa_axum::router::OpenApiRouter;
         super::csv::Decimal,
         super::downsample::DownsampleMethod,
         super::columns::ColumnName,
-        super::routes::ListSort,
-        super::routes::ListDirection
+        routes::ListSort,
+        routes::ListDirection
     )),
     tags(
         (name = "jobs", description = "Submit, follow, cancel and delete jobs"),

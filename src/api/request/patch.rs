@@ -7,19 +7,21 @@ use crate::store::JobDescription;
 use axum::extract::{FromRequest, Request};
 use herringbone_job::document::{MAX_LABEL_CHARS, MAX_NAME_CHARS};
 use herringbone_job::{Violation, parse_json};
+use serde::Deserialize;
 use serde_json::Value;
 use utoipa::ToSchema;
 
 /// A change of a job: each member a text, or null to remove it.
-#[derive(ToSchema)]
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
 #[expect(dead_code, reason = "only for the description: null and left out differ")]
 pub(crate) struct JobPatch {
-    #[schema(max_length = 200)]
+    #[schema(max_length = 200, pattern = r"^[^\u0000-\u001f\u007f-\u009f]*$")]
     pub name: Option<String>,
-    #[schema(max_length = 100)]
+    #[schema(max_length = 100, pattern = r"^[^\u0000-\u001f\u007f-\u009f]*$")]
     pub label: Option<String>,
     /// Text of several lines.
-    #[schema(max_length = 5000)]
+    #[schema(max_length = 5000, pattern = r"^[^\u0000-\u0008\u000b\u000c\u000e-\u001f\u007f-\u009f]*$")]
     pub notes: Option<String>,
 }
 

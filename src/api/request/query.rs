@@ -90,7 +90,7 @@ impl QueryParameters {
 
     /// A time: RFC 3339, or a date, which stands for its start in UTC.
     pub(crate) fn time(&mut self, name: &'static str) -> Option<Timestamp> {
-        let text = self.text(name)?;
+        let text = self.value(name)?;
         let start_of = |date: Date| date.to_zoned(TimeZone::UTC).map(|start| start.timestamp());
         let time = Timestamp::from_str(&text).or_else(|_| Date::from_str(&text).and_then(start_of)).ok();
         if time.is_none() {

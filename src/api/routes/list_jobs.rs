@@ -64,9 +64,10 @@ const SORTS: [(&str, JobSort); 7] = [
         ("label" = Option<String>, Query, description = "Exactly this label; an empty one counts as left out."),
         ("search" = Option<String>, Query, max_length = 200, description = "Part of the name, the label or the notes, in upper or lower \
             case; an empty one counts as left out."),
-        ("from" = Option<String>, Query, description = "Submitted at this time or later: RFC 3339 (`2026-01-31T08:00:00Z`), or a date, which \
-            stands for its start in UTC; an empty one counts as left out.", example = "2026-01-31"),
-        ("to" = Option<String>, Query, description = "Submitted before this time, in the same forms.", example = "2026-02-01T00:00:00Z"),
+        ("from" = Option<String>, Query, format = DateTime, description = "Submitted at this time or later. A date alone stands for its \
+            start in UTC.", example = "2026-01-31T08:00:00+01:00"),
+        ("to" = Option<String>, Query, format = DateTime, description = "Submitted before this time. A date alone stands for its start in \
+            UTC.", example = "2026-02-01T00:00:00Z"),
         ("sort" = Option<ListSort>, Query, description = "What the jobs are sorted by; `submitted` when left out. Names and labels regardless \
             of the case of ASCII letters. Jobs without a value come last in either direction."),
         ("order" = Option<ListDirection>, Query, description = "`asc` or `desc`; `asc` when left out for `name` and `label`, else `desc`: newest, \

@@ -52,8 +52,9 @@ pub(super) async fn read_result(
     if if_none_match.matches(&etag) {
         return Ok(not_modified(etag));
     }
-    let place = if summary.bytes > LARGE_BODY_BYTES { Some(state.large_body_place().await?) } else { None };
-    let permit = state.large_read_permit().await?;
+    let is_large = summary.bytes > LARGE_BODY_BYTES;
+    let place = if is_large { Some(state.large_body_place().await?) } else { None };
+    let permit = if is_large { Some(state.large_read_permit().await?) } else { None };
     let result = store.result(id).await?.ok_or_else(super::job_not_found)?;
     let body = match result.rows {
         Some(summary) if rows => result_body(store, id, &result.body, summary.count).await?,
