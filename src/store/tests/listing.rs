@@ -227,9 +227,9 @@ async fn an_upgrade_takes_the_headline_numbers_out_of_stored_results() {
         let today = with_result(&store, None, body).await.headline;
         assert_eq!(store.job(id).await.unwrap().unwrap().headline, today, "{body}");
     }
-    let greatest =
-        store.list(&JobFilter::default(), JobOrder { sort: JobSort::MeshAcceleration, descending: true }, None, 1);
-    assert_eq!(greatest.await.unwrap().jobs[0].headline.mesh_acceleration_rms_m_s2, Some(4.0));
+    let order = JobOrder { sort: JobSort::MeshAcceleration, descending: true };
+    let page = store.list(&JobFilter::default(), order, None, 1).await.unwrap();
+    assert_eq!(page.jobs[0].headline.mesh_acceleration_rms_m_s2, Some(4.0));
 }
 
 /// Pages and counts read indexes, not the rows, which contain the documents.
