@@ -1,7 +1,6 @@
 //! The columns of the rows of a sweep, as declared with the fields of the row.
 
 use herringbone_job::result::{Cell, CellKind, Column, SweepPoint};
-use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
 use utoipa::openapi::{ObjectBuilder, RefOr, Schema, Type};
 use utoipa::{PartialSchema, ToSchema};
 
@@ -30,38 +29,53 @@ impl PartialSchema for ColumnName {
 
 impl ToSchema for ColumnName {}
 
-/// Rows, serialized as an object with a list for each column.
-pub(super) struct ColumnTable<'a> {
-    pub columns: &'a [&'static Column],
-    pub rows: &'a [SweepPoint],
+/// A table of rows as JSON: an object with a list for each column. Only its text is kept of the rows.
+pub(super) struct ColumnTable {
+    lists: Vec<(&'static Column, Vec<u8>)>,
+    n_rows: usize,
 }
 
-impl Serialize for ColumnTable<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.columns.len()))?;
-        for column in self.columns {
-            map.serialize_entry(column.name, &ColumnValues { column, rows: self.rows })?;
-        }
-        map.end()
+impl ColumnTable {
+    pub(super) fn new(columns: Vec<&'static Column>) -> Self {
+        Self { lists: columns.into_iter().map(|column| (column, Vec::new())).collect(), n_rows: 0 }
     }
-}
 
-struct ColumnValues<'a> {
-    column: &'a Column,
-    rows: &'a [SweepPoint],
-}
-
-impl Serialize for ColumnValues<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut list = serializer.serialize_seq(Some(self.rows.len()))?;
-        for row in self.rows {
-            match (self.column.cell)(row) {
-                Cell::Number(value) => list.serialize_element(&value)?,
-                Cell::Word(value) => list.serialize_element(&value)?,
-                Cell::Numbers(value) => list.serialize_element(&value)?,
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// JSON cannot be written, which does not happen in memory.
+    pub(super) fn push(&mut self, row: &SweepPoint) -> serde_json::Result<()> {
+        for (column, list) in &mut self.lists {
+            if self.n_rows > 0 {
+                list.push(b',');
+            }
+            match (column.cell)(row) {
+                Cell::Number(value) => serde_json::to_writer(list, &value)?,
+                Cell::Word(value) => serde_json::to_writer(list, &value)?,
+                Cell::Numbers(value) => serde_json::to_writer(list, &value)?,
             }
         }
-        list.end()
+        self.n_rows += 1;
+        Ok(())
+    }
+
+    /// The text of the object.
+    ///
+    /// # Errors
+    /// As [`ColumnTable::push`].
+    pub(super) fn into_json(self) -> serde_json::Result<Vec<u8>> {
+        let mut text = vec![b'{'];
+        for (at, (column, list)) in self.lists.into_iter().enumerate() {
+            if at > 0 {
+                text.push(b',');
+            }
+            serde_json::to_writer(&mut text, column.name)?;
+            text.extend_from_slice(b":[");
+            text.extend_from_slice(&list);
+            text.push(b']');
+        }
+        text.push(b'}');
+        Ok(text)
     }
 }
 
@@ -108,6 +122,10 @@ mod tests {
             "error": [null, "no"],
             "acceleration_spectrum_m_s2": [[0.5, 1.0], null],
         });
-        assert_eq!(serde_json::to_value(ColumnTable { columns: &columns, rows: &rows }).unwrap(), expected);
+        let mut table = ColumnTable::new(columns.to_vec());
+        rows.iter().for_each(|row| table.push(row).unwrap());
+        let text = table.into_json().unwrap();
+        assert_eq!(serde_json::from_slice::<serde_json::Value>(&text).unwrap(), expected);
+        assert_eq!(ColumnTable::new(Vec::new()).into_json().unwrap(), b"{}");
     }
 }

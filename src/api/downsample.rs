@@ -26,15 +26,15 @@ impl DownsampleMethod {
 /// Ratio of preselected to returned points; 4 is the value recommended with the method.
 const PRESELECTION_RATIO: usize = 4;
 
-/// Selects at most `max_points` (4 or more) of the values. Returns their indices, ascending, and the method applied:
-/// [`DownsampleMethod::None`] when all values are selected.
+/// Selects at most `max_points` (4 or more) of the values. Returns their indices, ascending, and the method applied; no
+/// indices and [`DownsampleMethod::None`] when all values are selected.
 pub(super) fn downsample(
     values: &[f64],
     max_points: usize,
     method: DownsampleMethod,
 ) -> (Vec<usize>, DownsampleMethod) {
     if method == DownsampleMethod::None || values.len() <= max_points {
-        return ((0..values.len()).collect(), DownsampleMethod::None);
+        return (Vec::new(), DownsampleMethod::None);
     }
     match method {
         DownsampleMethod::Lttb => {
@@ -82,6 +82,11 @@ mod tests {
         ) {
             for requested in [DownsampleMethod::MinMax, DownsampleMethod::Lttb] {
                 let (indices, applied) = downsample(&values, max_points, requested);
+                if values.len() <= max_points {
+                    prop_assert_eq!((indices, applied), (Vec::new(), DownsampleMethod::None));
+                    continue;
+                }
+                prop_assert_eq!(applied, requested);
                 prop_assert!(indices.len() <= max_points);
                 prop_assert!(indices.windows(2).all(|pair| pair[0] < pair[1]));
                 prop_assert_eq!((indices[0], indices[indices.len() - 1]), (0, values.len() - 1));
@@ -94,7 +99,8 @@ mod tests {
                     }
                 }
             }
-            prop_assert_eq!(downsample(&values, 4, DownsampleMethod::None).0.len(), values.len());
+            let all = downsample(&values, 4, DownsampleMethod::None);
+            prop_assert_eq!(all, (Vec::new(), DownsampleMethod::None));
         }
     }
 }

@@ -6,9 +6,10 @@ use super::request::RequestId;
 use axum::body::Body;
 use axum::extract::{MatchedPath, Request};
 use axum::http::header::{
-    CONTENT_LENGTH, CONTENT_SECURITY_POLICY, CONTENT_TYPE, REFERRER_POLICY, X_CONTENT_TYPE_OPTIONS, X_FRAME_OPTIONS,
+    CONTENT_ENCODING, CONTENT_LENGTH, CONTENT_SECURITY_POLICY, CONTENT_TYPE, ETAG, IF_NONE_MATCH, REFERRER_POLICY,
+    VARY, X_CONTENT_TYPE_OPTIONS, X_FRAME_OPTIONS,
 };
-use axum::http::{HeaderMap, HeaderName, HeaderValue, Method};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use std::any::Any;
@@ -63,6 +64,32 @@ pub(super) async fn request_middleware(mut request: Request, next: Next) -> Resp
     response
 }
 
+/// Middleware around compression: makes the strong entity tag of a representation weak where it was compressed, as the
+/// bytes are no longer the same (RFC 9110, 8.8.3).
+pub(super) async fn distinguish_encodings(request: Request, next: Next) -> Response {
+    let known: Vec<HeaderValue> = request.headers().get_all(IF_NONE_MATCH).into_iter().cloned().collect();
+    let mut response = next.run(request).await;
+    let is_not_modified = response.status() == StatusCode::NOT_MODIFIED;
+    if is_not_modified {
+        // As the response with the representation would.
+        response.headers_mut().append(VARY, HeaderValue::from_static("accept-encoding"));
+    }
+    let Some(etag) = response.headers().get(ETAG).filter(|etag| etag.as_bytes().starts_with(b"\"")) else {
+        return response;
+    };
+    let Ok(weak) = HeaderValue::try_from([b"W/", etag.as_bytes()].concat()) else { return response };
+    // The client of a 304 knows the representation that its own tag names.
+    let is_known_weak = || known.iter().any(|value| contains(value.as_bytes(), weak.as_bytes()));
+    if response.headers().contains_key(CONTENT_ENCODING) || (is_not_modified && is_known_weak()) {
+        response.headers_mut().insert(ETAG, weak);
+    }
+    response
+}
+
+fn contains(text: &[u8], part: &[u8]) -> bool {
+    text.windows(part.len()).any(|window| window == part)
+}
+
 /// The response to a panic in a handler: a fixed text; the message of the panic is logged.
 pub(super) fn panic_response(panic: Box<dyn Any + Send + 'static>) -> Response {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
@@ -77,9 +104,11 @@ fn method_label(method: &Method) -> &str {
     if known.contains(method) { method.as_str() } else { "other" }
 }
 
-/// The request id sent by the client if it is short and printable, else a new one.
+/// The request id sent by the client if it is one, short and printable, else a new one.
 fn request_id(headers: &HeaderMap) -> String {
-    let given = headers.get(X_REQUEST_ID).and_then(|value| value.to_str().ok());
+    let mut values = headers.get_all(X_REQUEST_ID).into_iter();
+    let only = values.next().filter(|_| values.next().is_none());
+    let given = only.and_then(|value| value.to_str().ok());
     let usable = given.filter(|id| (1..=MAX_REQUEST_ID_CHARS).contains(&id.len()) && id.chars().all(is_id_character));
     usable.map_or_else(|| Uuid::now_v7().to_string(), str::to_owned)
 }

@@ -20,9 +20,11 @@ mod request;
 mod result_body;
 mod router;
 mod routes;
+mod samples;
 mod serve;
 mod state;
 mod telemetry;
+mod text_body;
 mod view;
 
 pub use config::{HttpConfig, MAX_BODY_BYTES, MAX_WAIT_S};

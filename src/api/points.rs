@@ -2,65 +2,168 @@
 //! number.
 
 use super::columns;
-use super::config::MAX_ROWS;
 use super::csv::{CsvField, CsvWriter, Decimal};
+use super::problem::ApiError;
+use super::text_body::PIECE_BYTES;
 use crate::store::{JobId, PointRow, Store, StoreError};
 use axum::body::{Body, Bytes};
-use futures_util::stream::{self, Stream, StreamExt};
+use futures_util::stream::{self, BoxStream, StreamExt};
 use herringbone_job::result::{BranchDirection, Cell, SweepPoint};
+use serde::Serialize;
 use std::io;
 
-/// Reads up to `limit` rows of a job with positions in `from..to`. Also returns the position of the next row, if there
-/// is one.
+/// Rows in the first page that is read, whose length is not known, and the most in any other.
+const FIRST_PAGE_ROWS: u64 = 16;
+const MAX_PAGE_ROWS: u64 = 1000;
+
+/// Failure to read the rows of a sweep.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum RowsError {
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    #[error("the sweep was deleted while its rows were read")]
+    Deleted,
+}
+
+impl From<RowsError> for ApiError {
+    fn from(error: RowsError) -> Self {
+        match error {
+            RowsError::Store(error) => error.into(),
+            RowsError::Deleted => ApiError::not_found("There is no such job."),
+        }
+    }
+}
+
+/// Rows of a sweep: those of a job with positions in `from..to`, `limit` at most.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RowRange {
+    pub from: u64,
+    pub to: u64,
+    pub limit: u64,
+}
+
+impl RowRange {
+    /// Every row.
+    pub(super) const ALL: Self = Self { from: 0, to: u64::MAX, limit: u64::MAX };
+}
+
+/// The number of a sweep's points that are solved, and where its rows go on.
+#[derive(Debug, Serialize)]
+pub(super) struct ListEnd {
+    pub next_position: Option<u64>,
+    pub n_solved: u64,
+    pub n_points: u64,
+}
+
+/// Rows in pages of about [`PIECE_BYTES`].
+pub(super) type Pages = BoxStream<'static, Result<Vec<PointRow>, RowsError>>;
+
+/// Reads rows of a job a page at a time, the first one now. When the job is deleted meanwhile, the stream ends with an
+/// error, and with it the connection of a response made from it.
 ///
 /// # Errors
 /// The database cannot be read.
-pub(super) async fn read_page(
-    store: &Store,
-    id: JobId,
-    from: u64,
-    to: u64,
-    limit: u32,
-) -> Result<(Vec<PointRow>, Option<u64>), StoreError> {
-    // One row more than requested shows whether another follows.
-    let mut rows = store.points(id, from, to, limit + 1).await?;
-    let next_position = rows.get(limit as usize).map(|row| row.position);
-    rows.truncate(limit as usize);
-    Ok((rows, next_position))
-}
-
-/// The rows of a job from position `from` on, in pages of [`MAX_ROWS`]; the last page has fewer rows, perhaps none. An
-/// error ends the stream, and with it the connection of a response made from it.
-pub(super) fn pages(store: Store, id: JobId, from: u64) -> impl Stream<Item = Result<Vec<PointRow>, StoreError>> {
-    stream::try_unfold(Some(from), move |from| {
+pub(super) async fn pages(store: &Store, id: JobId, range: RowRange) -> Result<Pages, RowsError> {
+    let store = store.clone();
+    let rest = Some((range, FIRST_PAGE_ROWS));
+    let mut pages = Box::pin(stream::try_unfold(rest, move |rest| {
         let store = store.clone();
         async move {
-            let Some(from) = from else { return Ok(None) };
-            let rows = store.points(id, from, u64::MAX, MAX_ROWS).await?;
-            let next = rows.last().filter(|_| rows.len() as u64 == u64::from(MAX_ROWS)).map(|row| row.position + 1);
-            Ok(Some((rows, next)))
+            let Some((range, page_rows)) = rest else { return Ok(None) };
+            let limit = page_rows.min(range.limit);
+            let rows = store.points(id, range.from, range.to, limit as u32).await?;
+            let left = range.limit - rows.len() as u64;
+            let last = rows.last().filter(|_| rows.len() as u64 == limit && left > 0);
+            let rest =
+                last.map(|row| (RowRange { from: row.position + 1, limit: left, ..range }, next_page_rows(&rows)));
+            if rest.is_none() {
+                check_exists(&store, id).await?;
+            }
+            Ok(Some((rows, rest)))
         }
-    })
+    }));
+    let first = pages.next().await.transpose()?;
+    Ok(stream::iter(first.map(Ok)).chain(pages).boxed())
 }
 
-/// A response body with rows as CSV, from position `from` on, `limit` at most: a header with a column for each of
-/// `axes`, then a record for each row.
-pub(super) fn csv_body(store: Store, id: JobId, axes: &[String], (from, limit): (u64, u64), decimal: Decimal) -> Body {
-    let header = header(axes, decimal).map(Bytes::from).map_err(to_store_error);
-    let end = from.saturating_add(limit);
-    let records = pages(store, id, from).map(move |page| {
-        let mut writer = CsvWriter::new(Vec::new(), decimal);
-        for row in page?.into_iter().filter(|row| row.position < end) {
-            let point: SweepPoint = serde_json::from_str(&row.body).map_err(to_store_error)?;
-            write_row(&mut writer, row.position, &point).map_err(to_store_error)?;
+/// The number of rows of a page of about [`PIECE_BYTES`], if rows are as long as these.
+fn next_page_rows(rows: &[PointRow]) -> u64 {
+    let bytes: usize = rows.iter().map(|row| row.body.len()).sum();
+    (PIECE_BYTES * rows.len() / bytes.max(1)).clamp(1, MAX_PAGE_ROWS as usize) as u64
+}
+
+/// Fails when a job is gone: then rows that were not read may be missing.
+async fn check_exists(store: &Store, id: JobId) -> Result<(), RowsError> {
+    store.job(id).await?.map(drop).ok_or(RowsError::Deleted)
+}
+
+/// What follows the rows of a range that was read up to `next`.
+///
+/// # Errors
+/// The database cannot be read, or the job is gone.
+pub(super) async fn list_end(
+    store: &Store,
+    id: JobId,
+    (next, to): (u64, u64),
+    n_points: u64,
+) -> Result<ListEnd, RowsError> {
+    let next_position = store.points(id, next, to, 1).await?.first().map(|row| row.position);
+    let n_solved = store.point_count(id).await?;
+    check_exists(store, id).await?;
+    Ok(ListEnd { next_position, n_solved, n_points })
+}
+
+/// A response body with rows as JSON: `items`, and the members of [`ListEnd`].
+///
+/// # Errors
+/// The database cannot be read.
+pub(super) async fn json_body(store: Store, id: JobId, range: RowRange, n_points: u64) -> Result<Body, RowsError> {
+    let state = (Some(pages(&store, id, range).await?), range.from, "", store);
+    let pieces = stream::try_unfold(state, move |(pages, next, separator, store)| async move {
+        let Some(mut pages) = pages else { return Ok(None) };
+        let Some(rows) = pages.next().await.transpose()? else {
+            let end = list_end(&store, id, (next, range.to), n_points).await?;
+            let end = serde_json::to_string(&end).map_err(unreadable)?;
+            let text = "],".to_owned() + end.trim_start_matches('{');
+            return Ok::<_, RowsError>(Some((text, (None, next, separator, store))));
+        };
+        let (mut text, mut next, mut separator) = (String::new(), next, separator);
+        for row in rows {
+            text += &format!("{separator}{{\"position\":{},\"point\":{}}}", row.position, row.body);
+            next = row.position + 1;
+            separator = ",";
         }
-        writer.into_inner().map(Bytes::from).map_err(to_store_error)
+        Ok(Some((text, (Some(pages), next, separator, store))))
     });
-    Body::from_stream(stream::iter([header]).chain(records))
+    let head = stream::iter([Ok("{\"items\":[".to_owned())]);
+    Ok(Body::from_stream(head.chain(pieces)))
 }
 
-fn to_store_error(error: impl std::fmt::Display) -> StoreError {
-    StoreError::Corrupt { what: "point", detail: error.to_string() }
+/// A response body with rows as CSV: a header with a column for each of `axes`, then a record for each row.
+///
+/// # Errors
+/// The database cannot be read.
+pub(super) async fn csv_body(
+    store: &Store,
+    id: JobId,
+    range: RowRange,
+    axes: &[String],
+    decimal: Decimal,
+) -> Result<Body, RowsError> {
+    let header = header(axes, decimal).map_err(unreadable)?;
+    let records = pages(store, id, range).await?.map(move |page| {
+        let mut writer = CsvWriter::new(Vec::new(), decimal);
+        for row in page? {
+            let point: SweepPoint = serde_json::from_str(&row.body).map_err(unreadable)?;
+            write_row(&mut writer, row.position, &point).map_err(unreadable)?;
+        }
+        writer.into_inner().map(Bytes::from).map_err(unreadable)
+    });
+    Ok(Body::from_stream(stream::iter([Ok(Bytes::from(header))]).chain(records)))
+}
+
+fn unreadable(error: impl std::fmt::Display) -> RowsError {
+    StoreError::Corrupt { what: "point", detail: error.to_string() }.into()
 }
 
 fn header(axes: &[String], decimal: Decimal) -> io::Result<Vec<u8>> {

@@ -3,8 +3,8 @@
 //! The rows are stored apart from the result and sent as they were written. Serde walks through the members of the
 //! result and so finds the place of the rows; every other member is copied unparsed ([`RawValue`]).
 
-use super::config::MAX_ROWS;
-use super::points;
+use super::points::{self, RowRange, RowsError};
+use super::text_body::TextBody;
 use crate::store::{JobId, Store, StoreError};
 use axum::body::{Body, Bytes};
 use futures_util::stream::{self, StreamExt};
@@ -14,33 +14,39 @@ use serde_json::value::RawValue;
 use std::cell::RefCell;
 use std::fmt;
 use std::io::{self, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Streams a stored `result` with the `count` rows of the job in `sweep.points`. When rows are missing (the job is
 /// deleted meanwhile), the body ends with an error, and the response is incomplete.
 ///
 /// # Errors
-/// The stored result is not the JSON of a sweep's result.
-pub(super) fn result_body(store: Store, id: JobId, result: &str, count: u64) -> Result<Body, StoreError> {
+/// The stored result is not the JSON of a sweep's result, or the database cannot be read.
+pub(super) async fn result_body(store: &Store, id: JobId, result: &str, count: u64) -> Result<Body, RowsError> {
     let (head, tail) =
         split_at_rows(result).map_err(|error| StoreError::Corrupt { what: "result", detail: error.to_string() })?;
-    let mut sent = 0;
-    let rows = points::pages(store, id, 0).map(move |page| {
+    let sent = Arc::new(AtomicU64::new(0));
+    let sent_at_end = Arc::clone(&sent);
+    let rows = points::pages(store, id, RowRange::ALL).await?.map(move |page| {
         let mut text = String::new();
-        let rows = page?;
-        for row in &rows {
-            if sent > 0 {
+        for row in page? {
+            if sent.fetch_add(1, Ordering::Relaxed) > 0 {
                 text.push(',');
             }
-            sent += 1;
             text.push_str(&row.body);
-        }
-        if rows.len() < MAX_ROWS as usize && sent != count {
-            return Err(StoreError::Corrupt { what: "points", detail: format!("{sent} of {count} rows") });
         }
         Ok(Bytes::from(text))
     });
-    let (head, tail) = (stream::iter([Ok(Bytes::from(head))]), stream::iter([Ok(Bytes::from(tail))]));
-    Ok(Body::from_stream(head.chain(rows).chain(tail)))
+    let all_sent = stream::once(async move {
+        match sent_at_end.load(Ordering::Relaxed) {
+            sent if sent == count => Ok(Bytes::new()),
+            sent => {
+                Err(RowsError::from(StoreError::Corrupt { what: "points", detail: format!("{sent} of {count} rows") }))
+            }
+        }
+    });
+    let text = |text| stream::iter(TextBody::new(text).map(Ok));
+    Ok(Body::from_stream(text(head).chain(rows).chain(all_sent).chain(text(tail))))
 }
 
 /// The JSON text before and after the elements of `sweep.points`.

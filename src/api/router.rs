@@ -1,8 +1,10 @@
 //! The router and its layers.
 
 use super::config::{HttpConfig, MAX_BODY_BYTES};
-use super::guard::{Access, LoginRenderer, check_credentials, check_host, check_origin, login_routes};
-use super::middleware::{panic_response, request_middleware};
+use super::guard::{
+    Access, LoginRenderer, check_credentials, check_header_fields, check_host, check_origin, login_routes,
+};
+use super::middleware::{distinguish_encodings, panic_response, request_middleware};
 use super::openapi;
 use super::problem::ApiError;
 use super::request::negotiate;
@@ -35,7 +37,7 @@ pub struct Pages {
 /// The router of the whole service; the pages get the same layers as the interface.
 pub fn router(state: AppState, config: &HttpConfig, access: &Access, pages: Pages) -> Router {
     let not_found = pages.not_found;
-    let state = state.with_max_followers(config.connections.max_followers());
+    let state = state.with_limits(config);
     let (api, _document) = openapi::documented_routes().split_for_parts();
     api.merge(routes::undocumented())
         .with_state(state)
@@ -49,12 +51,14 @@ pub fn router(state: AppState, config: &HttpConfig, access: &Access, pages: Page
         .layer(from_fn_with_state(access.clone(), check_credentials))
         .layer(check_origin())
         .layer(from_fn_with_state(access.clone(), check_host))
+        .layer(from_fn(check_header_fields))
         .layer(CatchPanicLayer::custom(panic_response))
         .layer(from_fn(request_middleware))
         // Keeps secrets out of headers that inner layers log.
         .layer(SetSensitiveResponseHeadersLayer::new([SET_COOKIE]))
         .layer(SetSensitiveRequestHeadersLayer::new([AUTHORIZATION, COOKIE]))
         .layer(CompressionLayer::new())
+        .layer(from_fn(distinguish_encodings))
 }
 
 /// The response at unknown paths: a page for browsers, a problem for programs.

@@ -1,11 +1,13 @@
 //! The state shared by handlers.
 
-use super::config::MAX_SERIES_IN_MEMORY;
+use super::config::{HttpConfig, MAX_LARGE_BODIES, MAX_LARGE_READS, RETRY_LARGE_S};
+use super::problem::{ApiError, ProblemCode};
 use super::telemetry;
 use crate::work::Jobs;
 use jiff::Timestamp;
 use metrics_exporter_prometheus::PrometheusHandle;
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
 /// Jobs, metrics and the time of the start. Cheap to clone.
@@ -13,7 +15,9 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 pub struct AppState {
     shared: Arc<AppShared>,
     follower_permits: Arc<Semaphore>,
-    series_permits: Arc<Semaphore>,
+    large_bodies: Arc<Semaphore>,
+    large_reads: Arc<Semaphore>,
+    large_body_wait: Duration,
 }
 
 struct AppShared {
@@ -30,13 +34,16 @@ impl AppState {
         Self {
             shared,
             follower_permits: semaphore(Semaphore::MAX_PERMITS),
-            series_permits: semaphore(MAX_SERIES_IN_MEMORY),
+            large_bodies: semaphore(MAX_LARGE_BODIES),
+            large_reads: semaphore(MAX_LARGE_READS),
+            large_body_wait: HttpConfig::default().large_body_wait(),
         }
     }
 
-    /// Returns this state with a bound on the clients that follow jobs.
-    pub(super) fn with_max_followers(self, limit: usize) -> Self {
-        Self { follower_permits: Arc::new(Semaphore::new(limit)), ..self }
+    /// Returns this state with the limits of `config`.
+    pub(super) fn with_limits(self, config: &HttpConfig) -> Self {
+        let followers = Semaphore::new(config.connections.max_followers());
+        Self { follower_permits: Arc::new(followers), large_body_wait: config.large_body_wait(), ..self }
     }
 
     pub fn jobs(&self) -> &Jobs {
@@ -57,8 +64,27 @@ impl AppState {
         self.follower_permits.clone().try_acquire_owned().ok()
     }
 
-    /// Waits for the permit to hold a series in memory; to be kept until the response was sent.
-    pub(super) async fn series_permit(&self) -> Option<OwnedSemaphorePermit> {
-        self.series_permits.clone().acquire_owned().await.ok()
+    /// Waits for the place of a large body; to be kept until it was sent.
+    ///
+    /// # Errors
+    /// 503 when all places stay taken.
+    pub(super) async fn large_body_place(&self) -> Result<OwnedSemaphorePermit, ApiError> {
+        self.permit_in_time(&self.large_bodies).await
+    }
+
+    /// Waits for the permit to read a series or a large text; to be kept while it is unpacked or copied.
+    ///
+    /// # Errors
+    /// 503 when it takes too long.
+    pub(super) async fn large_read_permit(&self) -> Result<OwnedSemaphorePermit, ApiError> {
+        self.permit_in_time(&self.large_reads).await
+    }
+
+    async fn permit_in_time(&self, semaphore: &Arc<Semaphore>) -> Result<OwnedSemaphorePermit, ApiError> {
+        let acquired = tokio::time::timeout(self.large_body_wait, semaphore.clone().acquire_owned()).await;
+        acquired.ok().and_then(Result::ok).ok_or_else(|| {
+            let detail = "As many large answers are being sent as the service allows.";
+            ApiError::new(ProblemCode::TooManyLargeAnswers, detail).retry_after(RETRY_LARGE_S)
+        })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::config::RETRY_LIVE_S;
 use super::problem::{ApiError, Problem};
-use crate::store::{JobRecord, JobState};
+use crate::store::{Headline, JobRecord, JobState};
 use axum::Json;
 use axum::http::header::{CACHE_CONTROL, RETRY_AFTER};
 use axum::http::{HeaderValue, StatusCode};
@@ -21,6 +21,8 @@ pub(super) struct Job {
     pub kind: String,
     pub name: Option<String>,
     pub label: Option<String>,
+    /// What people noted on the job; `PATCH` changes name, label and notes.
+    pub notes: Option<String>,
     pub state: JobState,
     /// Grows with every change; the `id` of the events and the entity tag of this answer.
     pub revision: i64,
@@ -47,7 +49,19 @@ pub(super) struct Job {
     pub reused_from: Option<String>,
     /// Why the job failed; null in every other state.
     pub error: Option<Problem>,
+    /// Numbers of the result; null where a job has none of them.
+    pub headline: Option<JobHeadline>,
     pub links: JobLinks,
+}
+
+/// Numbers of the result of a job, by which lists can be sorted. Null where the result does not have one.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+pub(super) struct JobHeadline {
+    /// Root mean square of the circumferential acceleration of the mesh, the larger one of both halves.
+    pub mesh_circumferential_acceleration_rms_m_s2: Option<f64>,
+    pub dynamic_factor: Option<f64>,
+    /// Transmission error, peak to peak.
+    pub transmission_error_pp_um: Option<f64>,
 }
 
 /// Paths of what belongs to a job.
@@ -71,6 +85,7 @@ impl From<&JobRecord> for Job {
             kind: job.kind.clone(),
             name: job.name.clone(),
             label: job.label.clone(),
+            notes: job.notes.clone(),
             state: job.state,
             revision: job.revision,
             attempt: job.attempt,
@@ -84,6 +99,7 @@ impl From<&JobRecord> for Job {
             solver_version: job.solver_version.clone(),
             reused_from: job.reused_from.map(|id| id.to_string()),
             error: Problem::of_job(job),
+            headline: JobHeadline::of(job.headline),
             links: JobLinks {
                 events: format!("{path}/events"),
                 input: format!("{path}/input"),
@@ -93,6 +109,16 @@ impl From<&JobRecord> for Job {
                 itself: path,
             },
         }
+    }
+}
+
+impl JobHeadline {
+    fn of(headline: Headline) -> Option<Self> {
+        (headline != Headline::default()).then_some(Self {
+            mesh_circumferential_acceleration_rms_m_s2: headline.mesh_acceleration_rms_m_s2,
+            dynamic_factor: headline.dynamic_factor,
+            transmission_error_pp_um: headline.transmission_error_pp_um,
+        })
     }
 }
 

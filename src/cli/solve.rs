@@ -100,12 +100,10 @@ pub(super) fn run(arguments: SolveArguments) -> ExitCode {
     }
 }
 
-/// Restricts the recorded channels to those of the document and of `--series`; none by default.
+/// Adds the channels of `--series` to those of a document that does not record all.
 fn record(document: &mut JobDocument, series: &[(String, PathBuf)]) {
-    if document.analysis.channels.is_none() || !series.is_empty() {
-        let mut channels = document.analysis.channels.take().unwrap_or_default();
+    if let Some(channels) = &mut document.analysis.channels {
         channels.extend(series.iter().map(|(channel, _)| channel.clone()));
-        document.analysis.channels = Some(channels);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::connect::{Store, StoreError};
 use super::failure::Failure;
+use super::headline::Headline;
 use super::lifecycle::JobId;
 use super::points::{PointBatch, RowsSummary, copy_points, drop_line_ends, insert_points};
 use super::record::{JobRecord, job_columns, record_event};
@@ -100,10 +101,12 @@ pub(super) async fn complete(
     completion: &Completion,
     now: Timestamp,
 ) -> Result<Option<JobRecord>, StoreError> {
+    let headline = Headline::of_result(&completion.body);
     let done: Option<JobRecord> = sqlx::query_as(concat!(
         "UPDATE jobs SET state = 'succeeded', revision = revision + 1, progress = 1, \
          ended_at_us = MAX($3, COALESCE(started_at_us, submitted_at_us)), \
-         solver_version = $4, input_hash = $5, reused_from = $6 \
+         solver_version = $4, input_hash = $5, reused_from = $6, \
+         mesh_acceleration_rms_m_s2 = $7, dynamic_factor = $8, transmission_error_pp_um = $9 \
          WHERE id = $1 AND attempt = $2 AND state = 'running' RETURNING ",
         job_columns!()
     ))
@@ -113,6 +116,9 @@ pub(super) async fn complete(
     .bind(&completion.solver_version)
     .bind(&completion.input_hash)
     .bind(completion.reused_from.map(|source| source.to_string()))
+    .bind(headline.mesh_acceleration_rms_m_s2)
+    .bind(headline.dynamic_factor)
+    .bind(headline.transmission_error_pp_um)
     .fetch_optional(&mut **transaction)
     .await?;
     let Some(job) = done else { return Ok(None) };

@@ -2,6 +2,7 @@
 
 use super::connect::StoreError;
 use super::failure::Failure;
+use super::headline::Headline;
 use super::lifecycle::{JobId, JobState};
 use jiff::Timestamp;
 use sqlx::sqlite::SqliteRow;
@@ -15,6 +16,7 @@ pub struct JobRecord {
     pub kind: String,
     pub name: Option<String>,
     pub label: Option<String>,
+    pub notes: Option<String>,
     pub state: JobState,
     /// Number that increases with every visible change.
     pub revision: i64,
@@ -35,13 +37,16 @@ pub struct JobRecord {
     pub reused_from: Option<JobId>,
     /// Id of the request that submitted it.
     pub request_id: Option<String>,
+    /// Numbers of the result, if it has one.
+    pub headline: Headline,
 }
 
 /// The columns of a [`JobRecord`], as a literal for `concat!`.
 macro_rules! job_columns {
     () => {
-        "id, kind, name, label, state, revision, attempt, progress, stage, input_hash, solver_version, \
-         submitted_at_us, started_at_us, ended_at_us, cancel_requested_at_us, error, reused_from, request_id"
+        "id, kind, name, label, notes, state, revision, attempt, progress, stage, input_hash, solver_version, \
+         submitted_at_us, started_at_us, ended_at_us, cancel_requested_at_us, error, reused_from, request_id, \
+         mesh_acceleration_rms_m_s2, dynamic_factor, transmission_error_pp_um"
     };
 }
 pub(super) use job_columns;
@@ -55,6 +60,7 @@ impl<'r> FromRow<'r, SqliteRow> for JobRecord {
             kind: row.try_get("kind")?,
             name: row.try_get("name")?,
             label: row.try_get("label")?,
+            notes: row.try_get("notes")?,
             state: JobState::from_str(&state).map_err(|()| column_error("state", "unknown state"))?,
             revision: row.try_get("revision")?,
             attempt: row.try_get("attempt")?,
@@ -74,6 +80,11 @@ impl<'r> FromRow<'r, SqliteRow> for JobRecord {
                 .map(|text| parse_column("reused_from", text))
                 .transpose()?,
             request_id: row.try_get("request_id")?,
+            headline: Headline {
+                mesh_acceleration_rms_m_s2: row.try_get("mesh_acceleration_rms_m_s2")?,
+                dynamic_factor: row.try_get("dynamic_factor")?,
+                transmission_error_pp_um: row.try_get("transmission_error_pp_um")?,
+            },
         })
     }
 }

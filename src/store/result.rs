@@ -19,6 +19,15 @@ pub struct StoredResult {
     pub rows: Option<RowsSummary>,
 }
 
+/// What is told of a result without reading it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ResultSummary {
+    /// As in [`StoredResult`].
+    pub etag: String,
+    /// Length of the body.
+    pub bytes: u64,
+}
+
 /// A result of another job with the same input and solver version.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReusableResult {
@@ -40,6 +49,21 @@ impl Store {
             .await?;
         row.map(|row| {
             Ok(StoredResult { body: row.try_get("body")?, etag: row.try_get("etag")?, rows: rows_summary(&row)? })
+        })
+        .transpose()
+    }
+
+    /// Reads entity tag and length of the result of a job.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn result_summary(&self, id: JobId) -> Result<Option<ResultSummary>, StoreError> {
+        let row = sqlx::query("SELECT etag, octet_length(body) AS bytes FROM results WHERE job_id = $1")
+            .bind(id.to_string())
+            .fetch_optional(&self.reader)
+            .await?;
+        row.map(|row| {
+            Ok(ResultSummary { etag: row.try_get("etag")?, bytes: row.try_get::<i64, _>("bytes")?.unsigned_abs() })
         })
         .transpose()
     }

@@ -26,6 +26,13 @@ pub struct SeriesEntry {
     pub rms: Option<f64>,
 }
 
+impl SeriesEntry {
+    /// Time of a sample.
+    pub fn time_s(&self, index: usize) -> f64 {
+        self.t0_s + index as f64 * self.dt_s
+    }
+}
+
 /// A channel with its samples compressed (zstd, f64 little-endian).
 #[derive(Debug, Clone, PartialEq)]
 pub struct PackedSeries {

@@ -153,7 +153,7 @@ impl JobEventListener {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::JobState;
+    use crate::store::{Headline, JobState};
 
     fn job(id: JobId, revision: i64) -> JobRecord {
         JobRecord {
@@ -161,6 +161,7 @@ mod tests {
             kind: "mesh".into(),
             name: None,
             label: None,
+            notes: None,
             state: JobState::Running,
             revision,
             attempt: 1,
@@ -175,6 +176,7 @@ mod tests {
             error: None,
             reused_from: None,
             request_id: None,
+            headline: Headline::default(),
         }
     }
 

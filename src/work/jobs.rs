@@ -9,7 +9,10 @@ use super::queue::{Queue, Workers};
 use super::recorder::{Clock, JobRecorder};
 use super::reuse::stored_completion;
 use super::solver::Solver;
-use crate::store::{Cancellation, Deletion, JobId, JobRecord, NewJob, Store, StoreError, Submission, WorkClass};
+use crate::store::{
+    Cancellation, Deletion, Described, JobDescription, JobId, JobRecord, NewJob, Store, StoreError, Submission,
+    WorkClass,
+};
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
 use herringbone_job::drawing::Drawing;
@@ -250,6 +253,14 @@ impl Jobs {
             self.0.queue.stop(id);
         }
         Ok(cancellation)
+    }
+
+    /// Changes name, label or notes of a job.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn describe(&self, id: JobId, description: &JobDescription) -> Result<Described, StoreError> {
+        self.0.recorder.describe(id, description).await
     }
 
     /// Deletes an ended job with its result, series and history.

@@ -3,8 +3,8 @@
 use super::hub::{Hub, JobEventListener, JobSubscription};
 use super::measure;
 use crate::store::{
-    Cancellation, Claim, Completion, Deletion, Failure, JobId, JobRecord, JobState, PointBatch, ReleaseReason, Store,
-    StoreError, WorkClass,
+    Cancellation, Claim, Completion, Deletion, Described, Failure, JobDescription, JobId, JobRecord, JobState,
+    PointBatch, ReleaseReason, Store, StoreError, WorkClass,
 };
 use jiff::Timestamp;
 use std::sync::Arc;
@@ -59,6 +59,22 @@ impl JobRecorder {
             self.hub.publish_deletion(id);
         }
         Ok(deletion)
+    }
+
+    /// Changes name, label or notes of a job.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn describe(&self, id: JobId, description: &JobDescription) -> Result<Described, StoreError> {
+        let described = self.store.describe(id, description).await?;
+        if let Described::Changed(job) = &described {
+            self.hub.publish(job);
+            if description.label.is_some() {
+                // Who listens to the jobs of the former label is not told of the job any more.
+                self.hub.publish_resync();
+            }
+        }
+        Ok(described)
     }
 
     /// Notifies listeners that the list of jobs is to be read again.

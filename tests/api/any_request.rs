@@ -101,6 +101,9 @@ async fn every_request_is_answered_or_refused() {
         // What is no address cannot be sent.
         let Ok(uri) = text.parse::<Uri>() else { continue };
         let mut request = Request::builder().method(Method::GET).uri(uri);
+        if !asked.headers.iter().any(|(name, _)| name.eq_ignore_ascii_case("host")) {
+            request = request.header("host", "localhost");
+        }
         for (name, value) in &asked.headers {
             if let Ok(value) = HeaderValue::from_bytes(value) {
                 request = request.header(*name, value);

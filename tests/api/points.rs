@@ -2,7 +2,9 @@
 
 use crate::support::*;
 use herringbone::work::WorkConfig;
+use http_body_util::BodyExt;
 use serde_json::{Value, json};
+use tower::ServiceExt;
 
 async fn page(app: &App, path: &str, query: &str) -> Value {
     let answer = app.get(&format!("{path}/points{query}")).await;
@@ -270,4 +272,71 @@ async fn the_result_of_a_sweep_can_be_read_without_its_rows() {
     assert_eq!(app.get(&format!("{path}/result?rows=true")).await.json, whole.json);
     app.get(&format!("{path}/result?rows=no")).await.assert_problem(400, "invalid-parameter");
     app.get(&format!("{path}/result?row=true")).await.assert_problem(400, "invalid-parameter");
+}
+
+/// A response of which only the head has come.
+async fn begun(app: &App, path: &str) -> axum::body::Body {
+    let request = axum::http::Request::get(path).header("host", "localhost").body(axum::body::Body::empty());
+    let response = app.router.clone().oneshot(request.expect("a request")).await.expect("an answer");
+    assert_eq!(response.status(), 200, "{path}");
+    response.into_body()
+}
+
+#[tokio::test]
+async fn a_download_breaks_off_when_its_sweep_is_deleted() {
+    let app = app().await;
+    for rows in ["points?decimal=point", "points?decimal=comma&limit=350", "points?limit=10000", "result"] {
+        let (path, _) = app.run(&sweep("large", 400)).await;
+        let whole = app.get(&format!("{path}/{rows}")).await;
+        let mut body = begun(&app, &format!("{path}/{rows}")).await;
+        let first = body.frame().await.expect("a piece").expect("unbroken").into_data().expect("data");
+        assert!(first.len() < whole.body.len() / 2, "{rows}");
+        app.delete(&path).await.assert_status(204);
+        let mut received = first.len();
+        let ended = loop {
+            match body.frame().await {
+                Some(Ok(frame)) => received += frame.data_ref().map_or(0, |data| data.len()),
+                Some(Err(error)) => break Err(error),
+                None => break Ok(()),
+            }
+        };
+        assert!(ended.is_err(), "{rows}: {received} of {} bytes look whole", whole.body.len());
+    }
+}
+
+#[tokio::test]
+async fn a_limit_bounds_what_is_read() {
+    let app = app().await;
+    let (path, _) = app.run(&sweep("large", 400)).await;
+    let body = begun(&app, &format!("{path}/points?decimal=point&from=3&limit=1")).await;
+    app.delete(&path).await.assert_status(204);
+    // The only row was read before.
+    let text = body.collect().await.expect("a whole body").to_bytes();
+    let text = String::from_utf8(text.to_vec()).expect("UTF-8");
+    let positions: Vec<_> = text.lines().map(|line| line.split(',').next().unwrap_or_default()).collect();
+    assert_eq!(positions, ["position", "3"]);
+}
+
+#[tokio::test]
+async fn a_page_that_ends_where_a_piece_ends_is_whole() {
+    let app = app().await;
+    for n in [2, 15, 16, 17, 33] {
+        let (path, _) = app.run(&sweep("large", n)).await;
+        let n = n as usize;
+        let whole = page(&app, &path, "").await;
+        let positions = |page: &Value| -> Vec<u64> {
+            page["items"].as_array().unwrap().iter().map(|item| item["position"].as_u64().unwrap()).collect()
+        };
+        assert_eq!(positions(&whole), (0..n as u64).collect::<Vec<_>>());
+        assert!(whole["next_position"].is_null());
+        let first = page(&app, &path, "?limit=1").await;
+        assert_eq!((positions(&first), first["next_position"].as_u64()), (vec![0], Some(1)));
+        assert!(positions(&page(&app, &path, "?from=200").await).is_empty());
+        let result = app.get(&format!("{path}/result")).await.json;
+        assert_eq!(result["sweep"]["points"].as_array().map(Vec::len), Some(n));
+        let columns = app.get(&format!("{path}/points/columns")).await.json;
+        assert_eq!(columns["positions"].as_array().map(Vec::len), Some(n));
+        let text = app.get(&format!("{path}/points?decimal=point")).await.text();
+        assert_eq!(text.lines().count(), n + 1);
+    }
 }

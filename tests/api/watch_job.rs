@@ -8,6 +8,8 @@ async fn snapshot_changes_and_end() {
     app.solver.breakpoints.reached("solve", 1).await;
     let mut events = app.events(&path, &[("accept", "text/event-stream")]).await;
     assert_eq!((events.status, events.media_type.as_str()), (200, "text/event-stream"));
+    // A proxy that buffers would hold the events back.
+    assert_eq!((events.header("x-accel-buffering"), events.header("cache-control")), ("no", "no-store"));
     let snapshot = events.next().await.unwrap();
     assert_eq!((snapshot.name.as_str(), snapshot.data["state"].as_str()), ("state", Some("running")));
     assert_eq!(Some(snapshot.id), snapshot.data["revision"].as_i64());

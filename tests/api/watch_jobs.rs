@@ -21,6 +21,7 @@ async fn until(events: &mut EventStream, enough: impl Fn(&Event) -> bool) -> (Ve
 async fn opened(app: &App, path: &str) -> EventStream {
     let mut events = app.stream(path, &[("accept", "text/event-stream")]).await;
     assert_eq!((events.status, events.media_type.as_str()), (200, "text/event-stream"));
+    assert_eq!((events.header("x-accel-buffering"), events.header("cache-control")), ("no", "no-store"));
     let first = events.next().await.expect("an event");
     assert_eq!((first.name.as_str(), &first.data), ("reload", &json!({})), "read the list now");
     events

@@ -36,7 +36,7 @@ async fn an_invalid_field_is_marked_with_the_servers_message() {
         browser.fill("/design/pinion/teeth", "seventeen").await;
         browser.until("document.querySelectorAll('[aria-invalid=true]').length === 2").await;
         let error = browser.text("[data-pointer='/design/helix_angle_deg'] .error").await;
-        assert_eq!(error, "is 77; permitted: 0 to 50 deg");
+        assert_eq!(error, "is 77; permitted: 0 to 50°");
         // Submitting goes to the list of what is wrong, whose entries lead to the fields.
         browser.element("#submit").await.click().await.unwrap();
         browser.until("!document.querySelector('#problems').hidden").await;

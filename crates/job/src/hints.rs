@@ -2,7 +2,7 @@
 //! program, with the converted value if the document determines it.
 
 use super::schema::field_descriptions;
-use super::unit::{Unit, UnitQuantity};
+use super::unit::{Unit, UnitQuantity, with_unit};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -128,7 +128,9 @@ impl ForeignName<'_> {
                 module("m_n = m_t cos β", self.mm().zip(self.cos_beta()).map(|(m, cos)| m * cos))
             }
             "module" | "module_normal" | "mn" | "m_n" | "m" => {
-                module("from a transverse module m_t, m_n = m_t cos β", None)
+                let normal = shown(self.mm(), "mm");
+                let transverse = self.mm().zip(self.cos_beta()).map(|(m, cos)| m * cos);
+                module(&format!("the value itself{normal}; from a transverse module m_t, m_n = m_t cos β"), transverse)
             }
             "normal_module" if object != "/design" => module("one for both gears", None),
             "normal_diametral_pitch" | "pnd" | "p_nd" => {
@@ -308,6 +310,20 @@ impl ForeignName<'_> {
                     shown(torque, "N m")
                 ))
             }
+            "application_factor" | "service_factor" | "overload_factor" | "load_factor" | "ka" | "k_a" => {
+                let torque =
+                    value.zip(self.number("/operation/pinion_torque_nm")).map(|(factor, torque)| factor * torque);
+                Some(format!("the factor belongs into the torque, /operation/pinion_torque_nm{}", shown(torque, "N m")))
+            }
+            "e" | "e_gpa" | "e_modulus" | "elastic_modulus" | "young_modulus" | "modulus_of_elasticity"
+                if self.is_of_material() =>
+            {
+                let modulus = self.si(UnitQuantity::Stress, 1e9).filter(|_| self.unit.is_some());
+                Some(format!("Young's modulus is youngs_modulus_gpa{}", shown(modulus.map(|pa| pa / 1e9), "GPa")))
+            }
+            "poisson" | "poisson_ratio" | "nu" if self.is_of_material() => {
+                Some("Poisson's ratio is poissons_ratio".to_owned())
+            }
             "mesh_frequency" | "tooth_frequency" => {
                 let teeth = self.number("/design/pinion/teeth");
                 let rpm = value.filter(|_| self.unit.is_none_or(|unit| unit.text == "r/s")).zip(teeth);
@@ -359,9 +375,13 @@ impl ForeignName<'_> {
         }
     }
 
-    /// Hint for a field's name with another unit: the value in the unit of the field.
+    /// Hint for a field's name with another unit, or without one: the value in the unit of the field.
     fn in_another_unit(&self) -> Option<String> {
-        let unit = self.unit?;
+        let Some(unit) = self.unit else {
+            let is_meant = |name: &&&str| matches!(split(name), (stem, Some(_)) if stem == self.stem);
+            let name = self.unknown.known.iter().find(is_meant)?;
+            return Some(format!("did you mean \"{name}\", in {}?", split(name).1?.name_for_people()));
+        };
         let (name, field) = self.unknown.known.iter().find_map(|name| match split(name) {
             (stem, Some(field)) if stem == self.stem && field.quantity == unit.quantity && field.size != unit.size => {
                 Some((name, field))
@@ -371,9 +391,9 @@ impl ForeignName<'_> {
         let given = self.unknown.value.as_f64().map(|value| [value, value * unit.size / field.size]);
         Some(match given.filter(|[_, converted]| converted.is_finite()).map(|both| both.map(significant)) {
             Some([given, converted]) => {
-                format!("did you mean \"{name}\"? {given} {} are {converted} {}", unit.text, field.text)
+                format!("did you mean \"{name}\"? {} are {}", unit.after(given), field.after(converted))
             }
-            None => format!("did you mean \"{name}\", in {}?", field.text),
+            None => format!("did you mean \"{name}\", in {}?", field.name_for_people()),
         })
     }
 
@@ -381,6 +401,10 @@ impl ForeignName<'_> {
     fn elsewhere(&self, name: &str) -> Option<String> {
         static POINTERS: LazyLock<Vec<String>> =
             LazyLock::new(|| field_descriptions().into_iter().map(|field| field.pointer).collect());
+        // The name of a material is not that of the job.
+        if self.is_of_material() {
+            return None;
+        }
         let has_name = |pointer: &&String| pointer.rsplit('/').next() == Some(name) && !pointer.contains('*');
         let found: Vec<&str> = POINTERS.iter().filter(has_name).map(String::as_str).collect();
         match found[..] {
@@ -401,11 +425,15 @@ impl ForeignName<'_> {
         self.unknown.known.contains(&name)
     }
 
+    fn is_of_material(&self) -> bool {
+        self.unknown.object.ends_with("/material")
+    }
+
     fn is_about_the_gear(&self) -> bool {
         self.unknown.object.starts_with("/design/gear") || is_of_gear(self.stem)
     }
 
-    /// Text such as " = 20 deg" for an angle that was given in another unit.
+    /// Text such as " = 20°" for an angle that was given in another unit.
     fn in_degrees(&self) -> String {
         let angle = self.si(UnitQuantity::Angle, PI / 180.0).filter(|_| self.unit.is_some());
         shown(angle.map(f64::to_degrees), "deg")
@@ -437,7 +465,8 @@ fn is_of_gear(stem: &str) -> bool {
 /// Text such as " = 5.4628 mm"; empty if the document does not determine the value.
 fn shown(value: Option<f64>, unit: &str) -> String {
     match value.filter(|value| value.is_finite()) {
-        Some(value) => format!(" = {} {unit}", significant(value)).trim_end().to_owned(),
+        Some(value) if unit.is_empty() => format!(" = {}", significant(value)),
+        Some(value) => format!(" = {}", with_unit(significant(value), unit)),
         None => String::new(),
     }
 }
@@ -485,9 +514,9 @@ mod tests {
     #[case("/design/transverse_pitch_mm", 18.849556, &["= 5.4628 mm"])]
     #[case("/design/ratio", 2.6, &["/design/gear/teeth over /design/pinion/teeth", "44/17 = 2.58824"])]
     #[case("/design/gear_ratio", 2.6, &["44/17"])]
-    #[case("/design/helix_angle_rad", 0.5, &["\"helix_angle_deg\"", "0.5 rad are 28.6479 deg"])]
+    #[case("/design/helix_angle_rad", 0.5, &["\"helix_angle_deg\"", "0.5 rad are 28.6479°"])]
     #[case("/design/beta", 20.0, &["/design/helix_angle_deg"])]
-    #[case("/design/base_helix_angle_deg", 22.0, &["sin β = sin β_b / cos α_n = 23.2656 deg"])]
+    #[case("/design/base_helix_angle_deg", 22.0, &["sin β = sin β_b / cos α_n = 23.2656°"])]
     #[case("/design/transverse_pressure_angle_deg", 20.0, &["/design/pressure_angle_deg", "\"transverse\""])]
     #[case("/design/centre_distance_mm", 201.0, &["center_distance_mm"])]
     #[case("/design/centre_distance", 201.0, &["/design/center_distance_mm"])]
@@ -495,13 +524,13 @@ mod tests {
     #[case("/design/total_face_width_mm", 180.0, &["/design/face_width_mm", "/ 2 = 75 mm"])]
     #[case("/design/face_width_total_mm", 200.0, &["/ 2 = 85 mm"])]
     #[case("/design/face_width_in", 3.0, &["3 in are 76.2 mm"])]
-    #[case("/design/backlash_mm", 0.2, &["0.2 mm are 200 um"])]
+    #[case("/design/backlash_mm", 0.2, &["0.2 mm are 200 µm"])]
     #[case("/design/teeth", 17.0, &["/design/pinion/teeth", "/design/gear/teeth"])]
     #[case("/design/z1", 17.0, &["/design/pinion/teeth"])]
     #[case("/design/torque_nm", 800.0, &["/operation/pinion_torque_nm"])]
     #[case("/design/density_kg_m3", 7850.0, &["/design/material/density_kg_m3"])]
     #[case("/design/material/youngs_modulus_mpa", 206000.0, &["206000 MPa are 206 GPa"])]
-    #[case("/design/material/density_g_cm3", 7.85, &["7.85 g/cm3 are 7850 kg/m3"])]
+    #[case("/design/material/density_g_cm3", 7.85, &["7.85 g/cm3 are 7850 kg/m³"])]
     #[case("/design/pinion/tip_diameter_mm", 124.0, &["/design/pinion/tip_alteration = -0.00253"])]
     #[case("/design/gear/outside_diameter_mm", 301.953, &["/design/gear/tip_alteration = -0.000667"])]
     #[case("/design/pinion/root_diameter_mm", 97.0, &["/design/pinion/dedendum = profile_shift", "= 1.25253"])]
@@ -511,20 +540,31 @@ mod tests {
     #[case("/design/pinion/x", 0.2, &["/design/pinion/profile_shift"])]
     #[case("/design/pinion/number_of_teeth", 17.0, &["\"teeth\""])]
     #[case("/design/pinion/torque_nm", 800.0, &["/operation/pinion_torque_nm"])]
-    #[case("/design/gear/torque_nm", 2070.588235, &["/operation/pinion_torque_nm", "T_2 z_1 / z_2 = 800 N m"])]
+    #[case("/design/gear/torque_nm", 2070.588235, &["/operation/pinion_torque_nm", "T_2 z_1 / z_2 = 800 N·m"])]
     #[case("/design/gear/speed_rpm", 772.727273, &["/operation/pinion_speed_rpm", "= 2000 r/min"])]
     #[case("/design/pinion/bore_mm", 50.0, &["/design/pinion/bore_diameter_mm"])]
-    #[case("/design/pinion/inertia_kg_mm2", 65000.0, &["65000 kg mm2 are 0.065 kg m2"])]
+    #[case("/design/pinion/inertia_kg_mm2", 65000.0, &["65000 kg mm2 are 0.065 kg·m²"])]
     #[case("/operation/speed", 2000.0, &["/operation/pinion_speed_rpm"])]
     #[case("/operation/rpm", 2000.0, &["/operation/pinion_speed_rpm"])]
     #[case("/operation/speed_rad_s", 100.0, &["/operation/pinion_speed_rpm = 954.93 r/min"])]
     #[case("/operation/pinion_speed_rad_s", 100.0, &["100 rad/s are 954.93 r/min"])]
-    #[case("/operation/pinion_torque_knm", 0.8, &["0.8 kN m are 800 N m"])]
-    #[case("/operation/gear_torque_nm", 2070.588235, &["= 800 N m"])]
+    #[case("/operation/pinion_torque_knm", 0.8, &["0.8 kN m are 800 N·m"])]
+    #[case("/operation/gear_torque_nm", 2070.588235, &["= 800 N·m"])]
     #[case("/operation/output_speed_rpm", 772.727273, &["= 2000 r/min"])]
-    #[case("/operation/power_kw", 100.0, &["T_1 = P / ω_1 = 477.465 N m"])]
+    #[case("/operation/power_kw", 100.0, &["T_1 = P / ω_1 = 477.465 N·m"])]
     #[case("/operation/mesh_frequency_hz", 566.666667, &["/operation/pinion_speed_rpm", "= 2000 r/min"])]
     #[case("/operation/helix_angle_deg", 20.0, &["/design/helix_angle_deg"])]
+    #[case("/design/module_mm", 6.0, &["the value itself = 6 mm", "m_n = m_t cos β = 5.4628 mm"])]
+    #[case("/design/pinion/hand", 1.0, &["/design/pinion/left_half_hand"])]
+    #[case("/design/gear/inertia", 1.0, &["\"inertia_kg_m2\", in kg·m²"])]
+    #[case("/design/pressure_angle", 20.0, &["\"pressure_angle_deg\", in °"])]
+    #[case("/design/material/e_gpa", 206.0, &["youngs_modulus_gpa"])]
+    #[case("/design/material/elastic_modulus_mpa", 206000.0, &["youngs_modulus_gpa = 206 GPa"])]
+    #[case("/design/material/poisson_ratio", 0.3, &["poissons_ratio"])]
+    #[case("/operation/power_hp", 134.102209, &["T_1 = P / ω_1 = 477.465 N·m"])]
+    #[case("/operation/torque_ft_lb", 590.049719, &["/operation/pinion_torque_nm", "= 800 N·m"])]
+    #[case("/operation/pinion_torque_in_lb", 7080.59663, &["are 800 N·m"])]
+    #[case("/operation/application_factor", 1.25, &["/operation/pinion_torque_nm = 1000 N·m"])]
     #[case("/axes/0/step", 500.0, &["points", "/ step + 1 = 16"])]
     #[case("/axes/0/count", 16.0, &["\"points\""])]
     #[case("/axes/0/start", 1.0, &["\"from\""])]
@@ -552,7 +592,7 @@ mod tests {
         let hinted = detail("/design/pinion/root_diameter_mm", json!(report.geometry.pinion.root_diameter_mm));
         assert!(hinted.ends_with("= 1.25"), "{hinted}");
         let hinted = detail("/design/base_helix_angle_deg", json!(report.geometry.base_helix_angle_deg));
-        assert!(hinted.ends_with("= 24.43 deg"), "{hinted}");
+        assert!(hinted.ends_with("= 24.43°"), "{hinted}");
     }
 
     #[test]

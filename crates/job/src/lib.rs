@@ -23,7 +23,7 @@ pub mod unit;
 mod violation;
 mod warning;
 
-pub use document::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_value};
+pub use document::{MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_json, parse_value};
 pub use encoding::{EncodingError, utf8_text, without_mark};
 pub use finite::not_finite;
 pub use shape::SweepShape;

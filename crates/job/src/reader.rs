@@ -669,8 +669,7 @@ fn bounded(violation: Violation, declared: &Declared) -> Violation {
 }
 
 fn range_text(declared: &Declared) -> String {
-    let unit = if declared.unit.text == "1" { String::new() } else { format!(" {}", declared.unit.text) };
-    format!("{} to {}{unit}", shown(declared.min), shown(declared.max))
+    format!("{} to {}", shown(declared.min), declared.unit.after(shown(declared.max)))
 }
 
 /// A number as text for messages: very large and very small ones with a power of ten.

@@ -49,7 +49,7 @@ const fn other(suffix: &'static str, text: &'static str, size: f64, quantity: Un
 }
 
 /// Every unit; a longer ending stands before one that ends it.
-pub static UNITS: [Unit; 50] = [
+pub static UNITS: [Unit; 56] = [
     declared("_n_per_mm_um", "N/(mm um)", "N/(mm·µm)", 1e9, LineStiffness),
     declared("_nm_per_rad", "N m/rad", "N·m/rad", 1.0, TorsionalStiffness),
     other("_nm_per_deg", "N m/deg", 180.0 / PI, TorsionalStiffness),
@@ -66,7 +66,12 @@ pub static UNITS: [Unit; 50] = [
     other("_kg_cm2", "kg cm2", 1e-4, Inertia),
     declared("_kg_m2", "kg m2", "kg·m²", 1.0, Inertia),
     other("_lbf_ft", "lbf ft", 1.355_817_948_331_4, Torque),
+    other("_ft_lbf", "lbf ft", 1.355_817_948_331_4, Torque),
+    other("_ft_lb", "lbf ft", 1.355_817_948_331_4, Torque),
+    other("_lbft", "lbf ft", 1.355_817_948_331_4, Torque),
     other("_lbf_in", "lbf in", 0.112_984_829_027_617, Torque),
+    other("_in_lbf", "lbf in", 0.112_984_829_027_617, Torque),
+    other("_in_lb", "lbf in", 0.112_984_829_027_617, Torque),
     other("_nmm", "N mm", 1e-3, Torque),
     other("_knm", "kN m", 1e3, Torque),
     other("_n_m", "N m", 1.0, Torque),
@@ -87,6 +92,7 @@ pub static UNITS: [Unit; 50] = [
     other("_arcmin", "arcmin", PI / 10_800.0, Angle),
     declared("_deg", "deg", "°", PI / 180.0, Angle),
     other("_kw", "kW", 1e3, Power),
+    other("_hp", "hp", 745.699_871_582_27, Power),
     other("_w", "W", 1.0, Power),
     other("_kn", "kN", 1e3, Force),
     declared("_kg", "kg", "kg", 1.0, Mass),
@@ -125,7 +131,29 @@ pub fn typographic(text: &str) -> &str {
     typographic_units().find_map(|(ascii, symbol)| (ascii == text).then_some(symbol)).unwrap_or(text)
 }
 
+/// A number with a unit given by its text in ASCII, as sentences for people write it.
+pub(crate) fn with_unit(number: impl std::fmt::Display, text: &str) -> String {
+    match Unit::named(text) {
+        Some(unit) => unit.after(number),
+        None => format!("{number} {text}"),
+    }
+}
+
 impl Unit {
+    /// The unit as sentences for people write it.
+    pub(crate) fn name_for_people(&self) -> &'static str {
+        if self.symbol.is_empty() { self.text } else { self.symbol }
+    }
+
+    /// A number with this unit, as sentences for people write it.
+    pub(crate) fn after(&self, number: impl std::fmt::Display) -> String {
+        match self.name_for_people() {
+            "1" => number.to_string(),
+            "°" => format!("{number}°"),
+            unit => format!("{number} {unit}"),
+        }
+    }
+
     /// No unit: a plain number.
     pub const ONE: &'static Unit = Unit::of_field("", "1");
 

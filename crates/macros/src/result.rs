@@ -80,24 +80,25 @@ fn declaration(field: &Field) -> Result<TokenStream> {
         None => quote! { None },
     };
     let (percent, lower_is_better, inherits) = (attributes.percent, attributes.lower_is_better, attributes.inherits);
-    Ok(quote! {
-        <#ty as crate::result::ResultFields>::declare(
-            &place.field(&crate::result::Declaration {
-                name: #name,
-                label: #label,
-                is_labelled: #is_labelled,
-                symbol: #symbol,
-                unit: #unit,
-                help: #help,
-                theory: #theory,
-                headline: #headline,
-                percent: #percent,
-                change: #change,
-                lower_is_better: #lower_is_better,
-                inherits: #inherits,
-            }),
-            quantities,
-        );
+    let place = quote! {
+        place.field(&crate::result::Declaration {
+            name: #name,
+            label: #label,
+            is_labelled: #is_labelled,
+            symbol: #symbol,
+            unit: #unit,
+            help: #help,
+            theory: #theory,
+            headline: #headline,
+            percent: #percent,
+            change: #change,
+            lower_is_better: #lower_is_better,
+            inherits: #inherits,
+        })
+    };
+    Ok(match attributes.items {
+        Some(items) => quote! { #place.declare_items(#items, quantities); },
+        None => quote! { <#ty as crate::result::ResultFields>::declare(&#place, quantities); },
     })
 }
 
@@ -114,6 +115,8 @@ struct ScalarAttributes {
     percent: bool,
     lower_is_better: bool,
     inherits: bool,
+    /// Number of items of a list of numbers that are scalars.
+    items: Option<usize>,
 }
 
 impl ScalarAttributes {
@@ -133,9 +136,11 @@ impl ScalarAttributes {
             "percent" => self.percent = true,
             "lower_is_better" => self.lower_is_better = true,
             "inherits" => self.inherits = true,
+            "items" => self.items = Some(meta.value()?.parse::<LitInt>()?.base10_parse()?),
             _ => {
                 return Err(meta.error(
-                    "expected one of label, symbol, unit, help, theory, headline, change, percent, lower_is_better, inherits",
+                    "expected one of label, symbol, unit, help, theory, headline, change, percent, lower_is_better, inherits, \
+                     items",
                 ));
             }
         }
@@ -269,6 +274,10 @@ fn path_value(text: &str, pointer: &LitStr) -> Result<TokenStream> {
     };
     let mut value = quote! { Some(result) };
     for segment in path.split('/') {
+        if let Ok(index) = segment.parse::<usize>() {
+            value = quote! { #value.and_then(|list| list.get(#index)) };
+            continue;
+        }
         let mut segment = syn::parse_str::<Ident>(segment)
             .map_err(|_| Error::new(pointer.span(), format!("{segment} is no field")))?;
         segment.set_span(pointer.span());

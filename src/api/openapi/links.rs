@@ -3,11 +3,12 @@
 use serde_json::{Value, json};
 
 /// Operations whose response is one job.
-const RETURN_JOB: [&str; 3] = ["submit_job", "read_job", "cancel_job"];
+const RETURN_JOB: [&str; 4] = ["submit_job", "read_job", "update_job", "cancel_job"];
 
 /// Operations with the id of a job as their parameter.
-const TAKE_JOB_ID: [&str; 9] = [
+const TAKE_JOB_ID: [&str; 10] = [
     "read_job",
+    "update_job",
     "watch_job",
     "cancel_job",
     "read_input",

@@ -24,7 +24,9 @@ use utoipa_axum::router::OpenApiRouter;
         super::problem::Problem,
         super::csv::Decimal,
         super::downsample::DownsampleMethod,
-        super::columns::ColumnName
+        super::columns::ColumnName,
+        routes::ListSort,
+        routes::ListDirection
     )),
     tags(
         (name = "jobs", description = "Submit, follow, cancel and delete jobs"),

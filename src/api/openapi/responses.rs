@@ -104,7 +104,7 @@ pub(super) fn add_common(path: &str, operation: &mut Value) {
         parameters.iter_mut().for_each(|parameter| simplify(&mut parameter["schema"]));
         // The codes are a closed list.
         for parameter in parameters.iter_mut().filter(|parameter| parameter["name"] == "code") {
-            parameter["schema"]["enum"] = json!(CODES.map(|entry| entry.name));
+            parameter["schema"]["enum"] = json!(CODES.iter().map(|entry| entry.name).collect::<Vec<_>>());
         }
     }
     let Some(responses) = operation["responses"].as_object_mut() else { return };

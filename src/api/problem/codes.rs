@@ -22,11 +22,13 @@ pub enum ProblemCode {
     MisdirectedRequest,
     InvalidDesign,
     UnsupportedDesign,
+    InvalidPatch,
     IdempotencyKeyReused,
     TooManyAttempts,
     Internal,
     QueueFull,
     TooManyStreams,
+    TooManyLargeAnswers,
     ShuttingDown,
     NotConverged,
     Diverged,
@@ -62,7 +64,7 @@ const fn entry(
 }
 
 /// Every code, by status.
-pub(crate) const CODES: [CodeEntry; 32] = [
+pub(crate) const CODES: [CodeEntry; 34] = [
     entry(
         ProblemCode::MalformedJson,
         "malformed-json",
@@ -190,6 +192,14 @@ pub(crate) const CODES: [CodeEntry; 32] = [
         "The document is valid, but this version does not compute what it asks for; `errors` names the fields.",
     ),
     entry(
+        ProblemCode::InvalidPatch,
+        "invalid-patch",
+        422,
+        "The change of the job is invalid",
+        "Name, label and notes of a job can be changed, each to a text within its length or, with null, to none. Each entry of \
+         `errors` names one member.",
+    ),
+    entry(
         ProblemCode::IdempotencyKeyReused,
         "idempotency-key-reused",
         422,
@@ -287,6 +297,14 @@ pub(crate) const CODES: [CodeEntry; 32] = [
         "Too many clients follow jobs",
         "Event streams have a bound, so that they cannot use up all connections. Try again after `Retry-After`, or ask for \
          the job now and then.",
+    ),
+    entry(
+        ProblemCode::TooManyLargeAnswers,
+        "too-many-large-answers",
+        503,
+        "Too many large answers are being sent",
+        "Series in full and large results have a bound, so that clients that read slowly cannot use up the memory. Try again \
+         after `Retry-After`, or ask for less: a downsampled series, fewer points of a sweep.",
     ),
     entry(
         ProblemCode::ShuttingDown,

@@ -4,6 +4,7 @@ mod accept;
 mod body;
 mod cursor;
 mod headers;
+mod patch;
 mod path;
 mod query;
 
@@ -11,5 +12,6 @@ pub(super) use accept::{event_stream_only, json_only, negotiate, negotiate_table
 pub(super) use body::DocumentBody;
 pub(super) use cursor::Cursor;
 pub(super) use headers::{IdempotencyKey, IfNoneMatch, Prefer, RequestId};
+pub(super) use patch::{JobPatch, PatchBody};
 pub(super) use path::{ChannelPath, JobPath, PointPath};
 pub(super) use query::QueryParameters;

@@ -4,6 +4,9 @@ use crate::api::problem::{ApiError, Problem, ProblemCode};
 use axum::extract::{FromRequestParts, Query};
 use axum::http::request::Parts;
 use herringbone_job::Violation;
+use jiff::Timestamp;
+use jiff::civil::Date;
+use jiff::tz::TimeZone;
 use std::str::FromStr;
 
 /// The query parameters of a request: each known one is read by a method, then [`QueryParameters::finish`] is called.
@@ -25,6 +28,19 @@ impl<S: Send + Sync> FromRequestParts<S> for QueryParameters {
 }
 
 impl QueryParameters {
+    /// A text of at most `max_chars` characters; `None` when it is empty or absent.
+    pub(crate) fn short_text(&mut self, name: &'static str, max_chars: usize) -> Option<String> {
+        let text = self.text(name)?;
+        let length = text.chars().count();
+        if length > max_chars {
+            let detail = format!("has {length} characters; permitted: at most {max_chars}");
+            let violation = Violation::new(format!("/{name}"), "too-long", detail);
+            self.violations.push(Violation { maximum: Some(max_chars as f64), ..violation });
+            return None;
+        }
+        Some(text)
+    }
+
     /// A text; `None` when it is empty or absent.
     pub(crate) fn text(&mut self, name: &'static str) -> Option<String> {
         self.value(name).filter(|value| !value.is_empty())
@@ -70,6 +86,18 @@ impl QueryParameters {
             self.violations.push(Violation { unit: Some(unit.to_owned()), ..violation });
         }
         value
+    }
+
+    /// A time: RFC 3339, or a date, which stands for its start in UTC.
+    pub(crate) fn time(&mut self, name: &'static str) -> Option<Timestamp> {
+        let text = self.value(name)?;
+        let start_of = |date: Date| date.to_zoned(TimeZone::UTC).map(|start| start.timestamp());
+        let time = Timestamp::from_str(&text).or_else(|_| Date::from_str(&text).and_then(start_of)).ok();
+        if time.is_none() {
+            let detail = format!("is \"{}\"; needed: a time such as 2026-01-31T08:00:00Z, or a date", truncate(&text));
+            self.violations.push(Violation::new(format!("/{name}"), "wrong-type", detail));
+        }
+        time
     }
 
     /// One of a closed list of names.

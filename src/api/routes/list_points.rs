@@ -2,23 +2,21 @@
 
 use crate::api::config::{DEFAULT_ROWS, MAX_ROWS, MAX_SWEEP_ROWS};
 use crate::api::csv::Decimal;
-use crate::api::points;
+use crate::api::points::{self, RowRange};
 use crate::api::problem::ApiError;
 use crate::api::request::{JobPath, QueryParameters, negotiate_table};
 use crate::api::state::AppState;
-use axum::Json;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_TYPE, VARY};
 use axum::response::{IntoResponse, Response};
 use herringbone_job::SweepShape;
 use herringbone_job::result::SweepPoint;
-use serde::Serialize;
-use serde_json::value::RawValue;
 use utoipa::ToSchema;
 
 /// Some points of a sweep, in the order of their positions.
-#[derive(Debug, Serialize, ToSchema)]
+#[derive(ToSchema)]
+#[expect(dead_code, reason = "only for the description: the answer is written by `points::json_body`")]
 pub(super) struct PointList {
     pub items: Vec<PointItem>,
     /// Position to go on from; null when nothing follows yet.
@@ -28,12 +26,12 @@ pub(super) struct PointList {
     pub n_points: u64,
 }
 
-#[derive(Debug, Serialize, ToSchema)]
+#[derive(ToSchema)]
+#[expect(dead_code, reason = "only for the description")]
 pub(super) struct PointItem {
     /// Place in the result's `sweep.points`.
     pub position: u64,
-    #[schema(value_type = SweepPoint)]
-    pub point: Box<RawValue>,
+    pub point: SweepPoint,
 }
 
 /// Read the points of a sweep, a page at a time or as CSV.
@@ -69,25 +67,18 @@ pub(super) async fn list_points(
 ) -> Result<Response, ApiError> {
     let csv_decimal = negotiate_table(&headers, &mut query)?;
     let from = query.integer("from", 0, MAX_SWEEP_ROWS, false).unwrap_or(0);
-    let limit = query.integer("limit", 1, MAX_ROWS.into(), false);
+    let limit = query.integer("limit", 1, MAX_ROWS, false);
     query.finish()?;
     let input = super::sweep_input(&state, id).await?;
     let shape = SweepShape::of_stored(&input).map_err(ApiError::internal)?;
     let store = state.jobs().store();
     let vary = (VARY, "accept");
     if let Some(decimal) = csv_decimal {
-        let rows = (from, limit.unwrap_or(u64::MAX));
-        let body = points::csv_body(store.clone(), id, &shape.pointers(), rows, decimal);
+        let range = RowRange { from, limit: limit.unwrap_or(u64::MAX), ..RowRange::ALL };
+        let body = points::csv_body(store, id, range, &shape.pointers(), decimal).await?;
         return Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response());
     }
-    let limit = limit.map_or(DEFAULT_ROWS, |limit| limit as u32);
-    let (rows, next_position) = points::read_page(store, id, from, u64::MAX, limit).await?;
-    let items: Result<Vec<_>, _> = rows
-        .into_iter()
-        .map(|row| Ok(PointItem { position: row.position, point: RawValue::from_string(row.body)? }))
-        .collect();
-    let items = items.map_err(|error: serde_json::Error| ApiError::internal(error))?;
-    let n_solved = store.point_count(id).await?;
-    let list = PointList { items, next_position, n_solved, n_points: shape.rows() as u64 };
-    Ok(([vary], Json(list)).into_response())
+    let range = RowRange { from, limit: limit.unwrap_or(DEFAULT_ROWS), ..RowRange::ALL };
+    let body = points::json_body(store.clone(), id, range, shape.rows() as u64).await?;
+    Ok(([(CONTENT_TYPE, "application/json"), vary], body).into_response())
 }

@@ -19,28 +19,39 @@ mod read_result;
 mod read_series;
 mod read_system;
 mod submit_job;
+mod update_job;
 mod validate_job;
 mod watch_job;
 mod watch_jobs;
 
-use super::config::RETRY_FOLLOW_S;
+pub(super) use list_jobs::{ListDirection, ListSort};
+
+use super::config::{KEEP_ALIVE, RETRY_FOLLOW_S};
 use super::problem::{ApiError, ProblemCode};
 use super::request::{event_stream_only, json_only};
 use super::state::AppState;
 use crate::store::{JobId, JobRecord, JobState};
 use axum::Router;
+use axum::http::HeaderName;
+use axum::http::header::CACHE_CONTROL;
 use axum::middleware::from_fn;
+use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use futures_util::Stream;
 use herringbone_job::document::JobKind;
+use std::convert::Infallible;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
+
+const X_ACCEL_BUFFERING: HeaderName = HeaderName::from_static("x-accel-buffering");
 
 /// The endpoints under `/api/v1`, with their OpenAPI descriptions.
 pub(super) fn versioned() -> OpenApiRouter<AppState> {
     let json = OpenApiRouter::new()
         .routes(routes!(list_jobs::list_jobs, submit_job::submit_job))
         .routes(routes!(validate_job::validate_job))
-        .routes(routes!(read_job::read_job, delete_job::delete_job))
+        .routes(routes!(read_job::read_job, update_job::update_job, delete_job::delete_job))
         .routes(routes!(cancel_job::cancel_job))
         .routes(routes!(read_input::read_input))
         .routes(routes!(read_gear_data::read_gear_data))
@@ -97,6 +108,13 @@ async fn find_succeeded_job(state: &AppState, id: JobId) -> Result<JobRecord, Ap
             Err(ApiError::new(ProblemCode::JobNotSucceeded, format!("The job is {}.", job.state.as_str())))
         }
     }
+}
+
+/// The response with events: kept alive by comments, neither cached nor, by proxies that heed the header (nginx),
+/// buffered.
+fn event_stream(events: impl Stream<Item = Result<Event, Infallible>> + Send + 'static) -> Response {
+    let headers = [(CACHE_CONTROL, "no-store"), (X_ACCEL_BUFFERING, "no")];
+    (headers, Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE))).into_response()
 }
 
 fn too_many_followers() -> ApiError {

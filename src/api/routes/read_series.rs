@@ -1,24 +1,31 @@
 //! `GET /api/v1/jobs/{id}/series/{channel}`
 
-use crate::api::config::{DEFAULT_POINTS, MAX_POINTS, MAX_RAW_POINTS, MIN_POINTS};
-use crate::api::csv::{CsvField, CsvWriter, Decimal};
-use crate::api::downsample::{DownsampleMethod, downsample};
+use crate::api::config::{DEFAULT_POINTS, LARGE_BODY_BYTES, MAX_POINTS, MAX_RAW_POINTS, MIN_POINTS};
+use crate::api::csv::Decimal;
+use crate::api::downsample::DownsampleMethod;
 use crate::api::guarded_body::GuardedBody;
 use crate::api::problem::ApiError;
 use crate::api::request::{ChannelPath, QueryParameters, negotiate_table};
+use crate::api::samples::Samples;
 use crate::api::state::AppState;
-use crate::store::PackedSeries;
+use crate::api::text_body::TextBody;
+use crate::store::SeriesEntry;
 use axum::body::Body;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_TYPE, VARY};
 use axum::response::{IntoResponse, Response};
+use futures_util::stream;
 use herringbone_job::Violation;
-use serde::Serialize;
+use std::ops::Range;
 use utoipa::ToSchema;
 
+/// An estimate of the text of a sample: time and value.
+const SAMPLE_BYTES: u64 = 40;
+
 /// Samples of a channel.
-#[derive(Debug, Serialize, ToSchema)]
+#[derive(ToSchema)]
+#[expect(dead_code, reason = "only for the description: the answer is written by `Samples`")]
 pub(super) struct SeriesData {
     pub channel: String,
     pub quantity: String,
@@ -60,6 +67,7 @@ pub(super) struct SeriesData {
         (status = 404, description = "No such job or channel."),
         (status = 406, description = "Neither JSON nor CSV is accepted."),
         (status = 409, description = "`result-not-ready` or `job-not-succeeded`."),
+        (status = 503, description = "`too-many-large-answers` or `storage-unavailable`; `Retry-After` says when to try again."),
     )
 )]
 pub(super) async fn read_series(
@@ -71,14 +79,30 @@ pub(super) async fn read_series(
     let csv_decimal = negotiate_table(&headers, &mut query)?;
     let request = SeriesRequest::read(query)?;
     super::find_succeeded_job(&state, id).await?;
-    let permit = state.series_permit().await;
-    let packed = state.jobs().store().series(id, &channel).await?;
-    let packed = packed.ok_or_else(|| ApiError::not_found("The job has no such channel."))?;
-    let encoded = tokio::task::spawn_blocking(move || request.select(&packed)?.encode(csv_decimal));
-    let body = Body::from(encoded.await.map_err(ApiError::internal)??);
+    let store = state.jobs().store();
+    let catalogue = store.series_catalogue(id).await?;
+    let no_channel = || ApiError::not_found("The job has no such channel.");
+    let entry = catalogue.into_iter().find(|entry| entry.channel == channel).ok_or_else(no_channel)?;
+    let (window, n_returned) = request.extent(&entry)?;
+    let is_large = n_returned as u64 * SAMPLE_BYTES > LARGE_BODY_BYTES;
+    let place = if is_large { Some(state.large_body_place().await?) } else { None };
+    let permit = state.large_read_permit().await?;
+    let packed = store.series(id, &channel).await?.ok_or_else(no_channel)?;
+    let samples = tokio::task::spawn_blocking(move || {
+        let samples = Samples::select(&packed, window, request.max_points, request.method);
+        drop((packed, permit));
+        samples
+    });
+    let pieces = samples.await.map_err(ApiError::internal)??.encode(csv_decimal).map_err(ApiError::internal)?;
+    let body = match place {
+        Some(place) => Body::new(GuardedBody::new(Body::from_stream(stream::iter(pieces)), place)),
+        None => {
+            let text: Vec<_> = pieces.collect::<Result<_, _>>().map_err(ApiError::internal)?;
+            TextBody::new(text.concat()).into()
+        }
+    };
     let content_type = if csv_decimal.is_some() { "text/csv; charset=utf-8" } else { "application/json" };
-    let headers = [(CONTENT_TYPE, content_type), (VARY, "accept")];
-    Ok((headers, Body::new(GuardedBody::new(body, permit))).into_response())
+    Ok(([(CONTENT_TYPE, content_type), (VARY, "accept")], body).into_response())
 }
 
 /// The time window and downsampling of a request.
@@ -105,41 +129,35 @@ impl SeriesRequest {
         Ok(Self { from_s, to_s, max_points: max_points.unwrap_or(DEFAULT_POINTS) as usize, method })
     }
 
-    /// The samples in the window, downsampled.
-    fn select(&self, packed: &PackedSeries) -> Result<SeriesData, ApiError> {
-        let entry = &packed.entry;
-        let values = packed.unpack()?;
-        let time = |index: usize| entry.t0_s + index as f64 * entry.dt_s;
-        let indices: Vec<usize> = (0..values.len()).collect();
-        let start = indices.partition_point(|index| time(*index) < self.from_s);
-        let end = indices.partition_point(|index| time(*index) <= self.to_s).max(start);
-        let window = &values[start..end];
-        if self.method == DownsampleMethod::None && window.len() as u64 > MAX_RAW_POINTS {
-            return Err(too_many_samples(window.len()));
+    /// The indices of the samples in the time window, and an upper bound on the number of those returned.
+    ///
+    /// # Errors
+    /// There are more of them than may be returned without downsampling.
+    fn extent(&self, entry: &SeriesEntry) -> Result<(Range<usize>, usize), ApiError> {
+        let n = entry.n as usize;
+        let start = partition_point(n, |index| entry.time_s(index) < self.from_s);
+        let end = partition_point(n, |index| entry.time_s(index) <= self.to_s).max(start);
+        let n_source = end - start;
+        match self.method {
+            DownsampleMethod::None if n_source as u64 > MAX_RAW_POINTS => Err(too_many_samples(n_source)),
+            DownsampleMethod::None => Ok((start..end, n_source)),
+            DownsampleMethod::MinMax | DownsampleMethod::Lttb => Ok((start..end, n_source.min(self.max_points))),
         }
-        let (selected, method) = downsample(window, self.max_points, self.method);
-        Ok(SeriesData {
-            channel: entry.channel.clone(),
-            quantity: entry.quantity.clone(),
-            unit: entry.unit.clone(),
-            t: selected.iter().map(|index| time(start + index)).collect(),
-            y: selected.iter().map(|index| window[*index]).collect(),
-            n_source: window.len(),
-            n_returned: selected.len(),
-            n_not_finite: selected.iter().filter(|index| !window[**index].is_finite()).count(),
-            method: method.as_str().to_owned(),
-        })
     }
 }
 
-impl SeriesData {
-    /// The response body: CSV with this decimal sign, or JSON.
-    fn encode(&self, csv_decimal: Option<Decimal>) -> Result<Vec<u8>, ApiError> {
-        match csv_decimal {
-            Some(decimal) => csv(self, decimal).map_err(ApiError::internal),
-            None => serde_json::to_vec(self).map_err(ApiError::internal),
+/// The first of the indices below `n` for which a predicate is false that is true for those before it.
+fn partition_point(n: usize, is_before: impl Fn(usize) -> bool) -> usize {
+    let (mut start, mut end) = (0, n);
+    while start < end {
+        let middle = start + (end - start) / 2;
+        if is_before(middle) {
+            start = middle + 1;
+        } else {
+            end = middle;
         }
     }
+    start
 }
 
 fn too_many_samples(n: usize) -> ApiError {
@@ -150,13 +168,4 @@ fn too_many_samples(n: usize) -> ApiError {
         ..Violation::new("/method", "out-of-range", detail.as_str())
     };
     Problem::new(ProblemCode::InvalidParameter, detail).with_errors(vec![violation]).into()
-}
-
-fn csv(data: &SeriesData, decimal: Decimal) -> std::io::Result<Vec<u8>> {
-    let mut writer = CsvWriter::with_mark(Vec::with_capacity(data.t.len() * 40), decimal)?;
-    writer.write_record(["t_s", "value"].map(CsvField::Text))?;
-    for (t, y) in data.t.iter().zip(&data.y) {
-        writer.write_record([CsvField::Number(*t), CsvField::Number(*y)])?;
-    }
-    writer.into_inner()
 }

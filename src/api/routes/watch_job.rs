@@ -1,6 +1,5 @@
 //! `GET /api/v1/jobs/{id}/events`
 
-use crate::api::config::KEEP_ALIVE;
 use crate::api::problem::ApiError;
 use crate::api::request::JobPath;
 use crate::api::state::AppState;
@@ -10,7 +9,7 @@ use crate::store::{JobId, JobRecord};
 use crate::work::JobSubscription;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
-use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::sse::Event;
 use axum::response::{IntoResponse, Response};
 use futures_util::stream::{Stream, StreamExt, unfold};
 use std::convert::Infallible;
@@ -20,8 +19,8 @@ use tokio_util::sync::CancellationToken;
 /// Follow a job as server-sent events.
 #[utoipa::path(
     get, path = "/jobs/{id}/events", tag = "jobs",
-    description = "The job as it stands comes first. Then `progress`, `state` (started, requeued, cancel asked) and \
-        at last `done`, after\nwhich the stream ends. The data of every event is the whole job, its `id` the \
+    description = "The job as it stands comes first. Then `progress`, `state` (started, requeued, cancel asked, \
+        renamed) and at last `done`, after\nwhich the stream ends. The data of every event is the whole job, its `id` the \
         revision; a client that reconnects\nmisses nothing that still matters. The stream also ends when the service \
         shuts down.",
     params(
@@ -52,7 +51,7 @@ pub(super) async fn watch_job(
         let _ = &guards;
         event
     });
-    Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE)).into_response())
+    Ok(super::event_stream(events))
 }
 
 fn last_event(headers: &HeaderMap) -> Option<i64> {
@@ -95,10 +94,11 @@ fn events(
 }
 
 fn event_name(last: &JobRecord, newer: &JobRecord) -> &'static str {
-    let visible = |job: &JobRecord| (job.state, job.attempt, job.cancel_requested_at);
+    let transition = |job: &JobRecord| (job.state, job.attempt, job.cancel_requested_at);
+    let texts = |job: &JobRecord| [&job.name, &job.label, &job.notes].map(Clone::clone);
     match newer.state.is_ended() {
         true => "done",
-        false if visible(last) != visible(newer) => "state",
+        false if transition(last) != transition(newer) || texts(last) != texts(newer) => "state",
         false => "progress",
     }
 }

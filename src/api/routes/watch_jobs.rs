@@ -1,6 +1,5 @@
 //! `GET /api/v1/jobs/events`
 
-use crate::api::config::KEEP_ALIVE;
 use crate::api::problem::ApiError;
 use crate::api::request::QueryParameters;
 use crate::api::state::AppState;
@@ -9,8 +8,8 @@ use crate::api::view::Job;
 use crate::store::JobRecord;
 use crate::work::{JobEvent, JobEventListener};
 use axum::extract::State;
-use axum::response::sse::{Event, KeepAlive, Sse};
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
+use axum::response::sse::Event;
 use futures_util::stream::{Stream, StreamExt, unfold};
 use herringbone_job::document::JobKind;
 use serde_json::json;
@@ -21,7 +20,7 @@ use tokio_util::sync::CancellationToken;
 #[utoipa::path(
     get, path = "/jobs/events", tag = "jobs",
     description = "The first event is `reload`: read the list now, whatever changes afterwards is told. Then `state` \
-        (submitted, started,\nrequeued, cancel asked), `progress` and `done`, each with the whole job as data, and \
+        (submitted, started,\nrequeued, cancel asked, renamed), `progress` and `done`, each with the whole job as data, and \
         `deleted` with its `id`. Another\n`reload` comes when the client was too slow to be told everything, or when \
         many jobs were deleted at once: read the list\nagain. Events of one job may overtake each other; the greater \
         `revision` counts. There is no filter by state: a job that\nno longer fits one would have to be told as well. \
@@ -52,7 +51,7 @@ pub(super) async fn watch_jobs(
         let _ = &guards;
         event
     });
-    Ok(Sse::new(events).keep_alive(KeepAlive::new().interval(KEEP_ALIVE)).into_response())
+    Ok(super::event_stream(events))
 }
 
 /// Selects the jobs whose events are sent.

@@ -83,3 +83,19 @@ async fn sixty_four_megabytes_do_not_get_through() {
     }
     assert_eq!(served.get("/healthz").await.status(), 200);
 }
+
+#[tokio::test]
+async fn http_1_1_names_one_host_and_http_1_0_need_not() {
+    let served = served_with(ConnectionConfig::default()).await;
+    for (head, status) in [
+        ("GET /healthz HTTP/1.1\r\n", 400),
+        ("GET http://localhost/healthz HTTP/1.1\r\n", 400),
+        ("GET /api/v1/jobs HTTP/1.1\r\nhost: localhost\r\nhost: localhost\r\n", 400),
+        ("GET /healthz HTTP/1.1\r\nhost: localhost\r\n", 200),
+        ("GET /healthz HTTP/1.0\r\n", 200),
+    ] {
+        let answer = heard(served.sent(&format!("{head}connection: close\r\n\r\n")).await).await;
+        assert_eq!(answer.status(), status, "{head}: {}", answer.text);
+        assert_eq!(answer.text.contains("\"code\":\"invalid-parameter\""), status == 400, "{}", answer.text);
+    }
+}

@@ -76,6 +76,7 @@ pub(crate) struct Event {
 pub(crate) struct EventStream {
     pub status: u16,
     pub media_type: String,
+    headers: HeaderMap,
     body: Body,
     buffer: String,
 }
@@ -86,9 +87,15 @@ impl EventStream {
         Self {
             status: response.status().as_u16(),
             media_type: media_type.unwrap_or_default().to_owned(),
+            headers: response.headers().clone(),
             body: response.into_body(),
             buffer: String::new(),
         }
+    }
+
+    /// Empty when there is no such header.
+    pub(crate) fn header(&self, name: &str) -> &str {
+        self.headers.get(name).and_then(|value| value.to_str().ok()).unwrap_or_default()
     }
 
     /// The next event, or `None` at the end of the stream.

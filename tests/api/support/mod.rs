@@ -48,6 +48,13 @@ pub(crate) async fn app_with(work: WorkConfig) -> App {
     start(tempfile::tempdir().expect("temporary directory"), work, HttpConfig::default()).await
 }
 
+/// A service over `jobs.db` in a directory that is kept.
+pub(crate) async fn app_at(directory: &std::path::Path) -> App {
+    let other = tempfile::tempdir().expect("temporary directory");
+    let work = WorkConfig { sweep_time_limit_s: 600, ..small() };
+    start_with_store(&StoreConfig::at(directory.join("jobs.db")), other, work, HttpConfig::default()).await
+}
+
 /// A service with a request timeout of zero.
 pub(crate) async fn impatient_app() -> App {
     let http = HttpConfig { request_timeout_s: 0, ..HttpConfig::default() };
@@ -87,12 +94,18 @@ async fn start_with_store(store: &StoreConfig, directory: TempDir, work: WorkCon
     App { router, jobs, solver, directory }
 }
 
+/// These headers, and a host where they have none.
+fn with_host<'a>(headers: &[(&'a str, &'a str)]) -> Vec<(&'a str, &'a str)> {
+    let host = (!headers.iter().any(|(name, _)| *name == "host")).then_some(("host", "localhost"));
+    headers.iter().copied().chain(host).collect()
+}
+
 async fn panics() -> &'static str {
     panic!("secret detail")
 }
 
 impl App {
-    /// Sends a request with headers given as `name: value`.
+    /// Sends a request with headers given as `name: value`; the host is localhost unless it is given.
     pub(crate) async fn send(
         &self,
         method: Method,
@@ -101,8 +114,8 @@ impl App {
         body: impl Into<Body>,
     ) -> Answer {
         let mut request = Request::builder().method(method).uri(path);
-        for (name, value) in headers {
-            request = request.header(*name, *value);
+        for (name, value) in with_host(headers) {
+            request = request.header(name, value);
         }
         let request = request.body(body.into()).expect("a valid request");
         let response = self.router.clone().oneshot(request).await.expect("the router never fails");
@@ -160,8 +173,8 @@ impl App {
     /// Events from this path, read one by one.
     pub(crate) async fn stream(&self, path: &str, headers: &[(&str, &str)]) -> EventStream {
         let mut request = Request::builder().uri(path);
-        for (name, value) in headers {
-            request = request.header(*name, *value);
+        for (name, value) in with_host(headers) {
+            request = request.header(name, value);
         }
         let request = request.body(Body::empty()).expect("a valid request");
         EventStream::of(self.router.clone().oneshot(request).await.expect("the router never fails"))
@@ -174,6 +187,12 @@ impl App {
         let App { router, jobs, solver, directory } = self;
         drop((router, jobs, solver));
         start(directory, small(), HttpConfig::default()).await
+    }
+
+    /// Stops as a shutdown does.
+    pub(crate) async fn close(self) {
+        assert!(self.jobs.close().await, "running jobs did not stop");
+        self.jobs.store().close().await;
     }
 
     pub(crate) fn database(&self) -> std::path::PathBuf {

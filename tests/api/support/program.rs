@@ -73,6 +73,13 @@ impl Program {
         SocketAddr::from(([127, 0, 0, 1], self.address.port()))
     }
 
+    /// The most memory that it has held so far, in MB (`VmHWM`: peak resident set size).
+    pub(crate) fn peak_memory_mb(&self) -> f64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.process.id())).expect("a process");
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("its memory");
+        line.trim().trim_end_matches(" kB").parse::<f64>().expect("a number") / 1e3
+    }
+
     /// Status and body.
     pub(crate) fn get(&self, path: &str) -> (u16, String) {
         self.get_with(path, "")
@@ -86,8 +93,9 @@ impl Program {
     /// Status and body of a request with header lines and a body.
     pub(crate) fn exchange(&self, method: &str, path: &str, headers: &str, body: &str) -> (u16, String) {
         let mut stream = TcpStream::connect(self.address()).expect("a connection");
+        // In HTTP/1.0 no answer comes in chunks.
         let request =
-            format!("{method} {path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n{headers}\r\n{body}");
+            format!("{method} {path} HTTP/1.0\r\nhost: localhost\r\nconnection: close\r\n{headers}\r\n{body}");
         stream.write_all(request.as_bytes()).expect("sent");
         let mut answer = String::new();
         stream.read_to_string(&mut answer).expect("an answer");

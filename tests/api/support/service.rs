@@ -33,6 +33,10 @@ impl Service {
         serde_json::from_str(&body).expect("JSON")
     }
 
+    pub(crate) fn program(&self) -> &Program {
+        &self.0
+    }
+
     /// Submits a job; its path.
     pub(crate) fn submit(&self, document: &Value) -> String {
         let job = self.request("POST", "/api/v1/jobs", &document.to_string());

@@ -4,12 +4,13 @@ use super::Breakpoints;
 use herringbone::work::Solver;
 use herringbone_job::DocumentError;
 use herringbone_job::document::{JobDocument, JobKind};
-use herringbone_job::result::{JobResult, ReusedStage, SweepPoint, SweepResult};
+use herringbone_job::result::{JobResult, Mesh, PerHalf, ResponseResult, ReusedStage, SweepPoint, SweepResult};
 use herringbone_job::study::{self, CheckedJob, Outcome, RecordedChannel, SolveContext, SolveError, Stage};
 use herringbone_physics::watch::Canceled;
 
-/// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`; anything else succeeds. Every
-/// calculation passes the breakpoint `solve`, and the one of its own name.
+/// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`, `large`,
+/// `numbers`; anything else succeeds.
+/// Every calculation passes the breakpoint `solve`, and the one of its own name.
 #[derive(Default)]
 pub(crate) struct ScriptedSolver {
     pub breakpoints: Breakpoints,
@@ -57,6 +58,8 @@ impl Solver for ScriptedSolver {
                 Ok(outcome)
             }
             _ if document.kind == JobKind::Sweep => self.sweep(document, context),
+            "large" => Ok(large()),
+            "numbers" => Ok(with_numbers()),
             _ => Ok(outcome()),
         }
     }
@@ -80,10 +83,11 @@ impl ScriptedSolver {
                 return Err(SolveError::Canceled(Canceled));
             }
             let not_finite = document.name.as_deref() == Some("not finite");
+            let is_large = document.name.as_deref() == Some("large");
             let row = SweepPoint {
                 values: vec![axis.value(position)],
                 dynamic_factor: not_finite.then_some(f64::INFINITY),
-                error: (!not_finite).then(|| "no \"response\", scripted".to_owned()),
+                error: (!not_finite).then(|| "no \"response\", scripted".repeat(if is_large { 80 } else { 1 })),
                 ..SweepPoint::default()
             };
             context.points.save(position, &row, None);
@@ -97,6 +101,16 @@ impl ScriptedSolver {
     }
 }
 
+/// A result with the numbers that lists show.
+fn with_numbers() -> Outcome {
+    let mut outcome = outcome();
+    let mut response = ResponseResult { dynamic_factor: Some(1.25), ..ResponseResult::default() };
+    response.rms.mesh_circumferential_acceleration_m_s2 = PerHalf { left: 50.25, right: 52.5 };
+    outcome.result.response = Some(response);
+    outcome.result.mesh = Some(Mesh { transmission_error_pp_um: 0.75, ..Mesh::default() });
+    outcome
+}
+
 /// Loads a stage if it is there, else saves it.
 fn with_stage(context: &SolveContext) -> Outcome {
     let mut outcome = outcome();
@@ -107,6 +121,15 @@ fn with_stage(context: &SolveContext) -> Outcome {
         }
         None => context.stages.save("key", Stage::Mesh, b"stage"),
     }
+    outcome
+}
+
+/// A million samples, and a result of ten megabytes.
+fn large() -> Outcome {
+    let mut outcome = outcome();
+    let values = &mut outcome.series[0].values;
+    *values = (0..1_000_000).map(|index| (f64::from(index) * 0.618).fract()).collect();
+    outcome.result.numerics.solver_version = "scripted-1 ".repeat(1_000_000);
     outcome
 }
 

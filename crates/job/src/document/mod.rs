@@ -29,6 +29,10 @@ use herringbone_macros::{Input, Words};
 use serde::Serialize;
 use serde_json::Value;
 
+/// Longest name and longest label of a job.
+pub const MAX_NAME_CHARS: usize = 200;
+pub const MAX_LABEL_CHARS: usize = 100;
+
 /// How much a job computes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Words)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Kind, rename_all = "snake_case"))]
@@ -52,10 +56,10 @@ pub struct JobDocument {
     #[input(default = JobKind::Response)]
     pub kind: JobKind,
     /// A name for people.
-    #[input(max_chars = 200)]
+    #[input(max_chars = MAX_NAME_CHARS)]
     pub name: Option<String>,
     /// A label to find jobs by.
-    #[input(max_chars = 100)]
+    #[input(max_chars = MAX_LABEL_CHARS)]
     pub label: Option<String>,
     /// The gear pair.
     #[input(required)]
@@ -113,12 +117,19 @@ pub enum RotationInput {
 /// [`DocumentError::Malformed`] when the bytes are not JSON in UTF-8 or repeat a member, [`DocumentError::Invalid`] with all violations otherwise.
 /// Whether the gear can exist is not checked here (see [`crate::study::CheckedJob`]).
 pub fn parse(bytes: &[u8]) -> Result<JobDocument, DocumentError> {
-    let value = json::read(bytes).map_err(|json::NotJson { detail, line, column }| DocumentError::Malformed {
+    parse_value(&parse_json(bytes)?)
+}
+
+/// Parses JSON (UTF-8, with or without a byte order mark).
+///
+/// # Errors
+/// [`DocumentError::Malformed`] when the bytes are not JSON in UTF-8 or repeat a member.
+pub fn parse_json(bytes: &[u8]) -> Result<Value, DocumentError> {
+    json::read(bytes).map_err(|json::NotJson { detail, line, column }| DocumentError::Malformed {
         detail,
         line,
         column,
-    })?;
-    parse_value(&value)
+    })
 }
 
 /// As [`parse`], from JSON that is already read.

@@ -39,6 +39,12 @@ pub struct Mesh {
     #[scalar(headline, theory = "contact#loaded-contact-ratio")]
     pub loaded_contact_ratio: Option<f64>,
     /// Amplitudes of the first harmonics of the transmission error.
+    #[scalar(
+        theory = "contact#transmission-error",
+        label = "transmission error, harmonic",
+        items = 3,
+        help = "Amplitude of the part of the transmission error at this multiple of the mesh frequency."
+    )]
     pub transmission_error_harmonics_um: Vec<f64>,
     #[scalar(label = "line load, greatest", theory = "contact#line-load-and-contact-pressure")]
     pub max_line_load_n_per_mm: Option<f64>,

@@ -123,10 +123,13 @@ pub(crate) struct Place {
     theory: &'static str,
     /// Labels of the fields above, inner ones first.
     qualifiers: Vec<&'static str>,
+    /// Number of an item of a list, from 1; part of its label.
+    item: Option<usize>,
 }
 
 impl Place {
-    const ROOT: Self = Self { pointer: String::new(), declaration: None, theory: "", qualifiers: Vec::new() };
+    const ROOT: Self =
+        Self { pointer: String::new(), declaration: None, theory: "", qualifiers: Vec::new(), item: None };
 
     /// The place of a field of the struct that stands here.
     pub(crate) fn field(&self, declaration: &'static Declaration) -> Self {
@@ -137,7 +140,13 @@ impl Place {
         let qualifier = self.declaration.filter(|above| above.is_labelled).map(|above| above.label);
         let qualifiers = qualifier.into_iter().chain(self.qualifiers.iter().copied()).collect();
         let theory = declaration.theory.unwrap_or(self.theory);
-        Self { pointer, declaration: Some(declaration), theory, qualifiers }
+        Self { pointer, declaration: Some(declaration), theory, qualifiers, item: None }
+    }
+
+    /// Adds the first `items` of the list of numbers that stands here as scalars.
+    pub(crate) fn declare_items(&self, items: usize, quantities: &mut Vec<Quantity>) {
+        let item = |index| Self { pointer: format!("{}/{index}", self.pointer), item: Some(index + 1), ..self.clone() };
+        quantities.extend((0..items).filter_map(|index| item(index).scalar(QuantityKind::Number)));
     }
 
     /// The place of a value of each half: `{half}` stands for both, under the declaration of the field that holds
@@ -161,7 +170,9 @@ impl Place {
             (QuantityKind::Number, "deg") => Change::Absolute,
             (QuantityKind::Number, _) => Change::Percent,
         });
-        let labels: Vec<_> = std::iter::once(declaration.label).chain(self.qualifiers.iter().copied()).collect();
+        let own =
+            self.item.map_or_else(|| declaration.label.to_owned(), |item| format!("{} {item}", declaration.label));
+        let labels: Vec<_> = std::iter::once(own.as_str()).chain(self.qualifiers.iter().copied()).collect();
         Some(Quantity {
             pointer: self.pointer.clone(),
             label: labels.join(", "),
@@ -207,6 +218,14 @@ impl<T: Optional> Optional for Option<T> {
 
 impl<T> ResultFields for Vec<T> {
     fn declare(_place: &Place, _quantities: &mut Vec<Quantity>) {}
+}
+
+impl<T> Optional for Vec<T> {
+    type Value = Self;
+
+    fn value(&self) -> Option<&Self> {
+        Some(self)
+    }
 }
 
 impl<K, V> ResultFields for BTreeMap<K, V> {

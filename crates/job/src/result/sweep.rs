@@ -117,6 +117,20 @@ pub struct SweepPoint {
     pub min_displacement_um: Option<f64>,
     #[column(from = "/mesh/stiffness_mean_n_per_um")]
     pub stiffness_mean_n_per_um: Option<f64>,
+    #[column(from = "/mesh/transmission_error_pp_um")]
+    pub transmission_error_pp_um: Option<f64>,
+    #[column(from = "/mesh/transmission_error_harmonics_um/0")]
+    pub transmission_error_harmonic_1_um: Option<f64>,
+    #[column(from = "/mesh/transmission_error_harmonics_um/1")]
+    pub transmission_error_harmonic_2_um: Option<f64>,
+    #[column(from = "/mesh/transmission_error_harmonics_um/2")]
+    pub transmission_error_harmonic_3_um: Option<f64>,
+    #[column(from = "/mesh/max_contact_pressure_mpa")]
+    pub max_contact_pressure_mpa: Option<f64>,
+    #[column(from = "/mesh/max_line_load_n_per_mm")]
+    pub max_line_load_n_per_mm: Option<f64>,
+    #[column(from = "/mesh/max_line_load_interior_n_per_mm")]
+    pub max_line_load_interior_n_per_mm: Option<f64>,
     #[column(from = "/impact/force_n")]
     pub impact_force_n: Option<f64>,
     #[column(from = "/geometry/total_contact_ratio")]

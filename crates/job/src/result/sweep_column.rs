@@ -67,7 +67,9 @@ impl ToCell for Option<Vec<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{JobResult, PerHalf, RegimeResult, ResponseResult, ToothForceResult, ToothForces, quantities};
+    use super::super::{
+        JobResult, Mesh, PerHalf, RegimeResult, ResponseResult, ToothForceResult, ToothForces, quantities,
+    };
     use super::*;
 
     #[test]
@@ -89,7 +91,22 @@ mod tests {
             tooth_force_n: ToothForces { left: force(1.0), right: force(2.0) },
             ..ResponseResult::default()
         };
-        let row = SweepPoint::of_result(vec![7.0], &JobResult { response: Some(response), ..JobResult::default() });
+        let mesh = Mesh {
+            transmission_error_pp_um: 0.5,
+            transmission_error_harmonics_um: vec![0.25, 0.125],
+            max_contact_pressure_mpa: Some(900.0),
+            max_line_load_n_per_mm: Some(300.0),
+            ..Mesh::default()
+        };
+        let result = JobResult { response: Some(response), mesh: Some(mesh), ..JobResult::default() };
+        let row = SweepPoint::of_result(vec![7.0], &result);
+        let [first, second, third] = [
+            row.transmission_error_harmonic_1_um,
+            row.transmission_error_harmonic_2_um,
+            row.transmission_error_harmonic_3_um,
+        ];
+        assert_eq!((row.transmission_error_pp_um, first, second, third), (Some(0.5), Some(0.25), Some(0.125), None));
+        assert_eq!((row.max_contact_pressure_mpa, row.max_line_load_n_per_mm), (Some(900.0), Some(300.0)));
         assert_eq!((row.dynamic_factor, row.loaded_contact_ratio), (Some(1.5), None));
         assert_eq!(row.tooth_force_max_n, Some(PerHalf { left: 1.0, right: 2.0 }));
         let cell = |name: &str| {

@@ -55,9 +55,9 @@ pub(crate) fn of_document(document: &JobDocument, prepared: &Prepared, discs: [(
                 None => warnings.push(warning(
                     "assumed-inertia",
                     pointer,
-                    format!("not given: {} kg m2 assumed (solid discs of both halves from the bore to the reference circle; shaft and hub are not counted)", shown(inertia_kg_m2)),
+                    format!("not given: {} kg·m² assumed (solid discs of both halves from the bore to the reference circle; shaft and hub are not counted)", shown(inertia_kg_m2)),
                 )),
-                Some(given) => warnings.extend(implausible("inertia-implausible", pointer, given, inertia_kg_m2, "kg m2")),
+                Some(given) => warnings.extend(implausible("inertia-implausible", pointer, given, inertia_kg_m2, "kg·m²")),
             }
         }
         if vibrates {
@@ -108,13 +108,13 @@ fn backlash(document: &JobDocument, prepared: &Prepared) -> Vec<Warning> {
     let mut warnings = Vec::new();
     if document.design.backlash_um.is_none() {
         let detail =
-            format!("not given: {um} um assumed; practice for this size is {least_um:.0} um and more (ISO/TR 10064-2)");
+            format!("not given: {um} µm assumed; practice for this size is {least_um:.0} µm and more (ISO/TR 10064-2)");
         warnings.push(warning("assumed-backlash", POINTER, detail));
     }
     let limit_um = SMALL_BACKLASH * least_um;
     if um < limit_um {
         let detail = format!(
-            "is {um} um, below {limit_um:.0} um, a quarter of the least normal backlash of practice for this module and centre distance ({least_um:.0} um, ISO/TR 10064-2): \
+            "is {um} µm, below {limit_um:.0} µm, a quarter of the least normal backlash of practice for this module and centre distance ({least_um:.0} µm, ISO/TR 10064-2): \
              teeth that separate meet the back flanks sooner than those of a real pair"
         );
         warnings.push(warning("backlash-small", POINTER, detail));
@@ -146,7 +146,7 @@ pub(crate) fn of_mesh(document: &JobDocument, mesh: &Mesh) -> Vec<Warning> {
     let secant = matches!(&document.model.mesh_stiffness, MeshStiffness::Ltca(Ltca { law: StiffnessLaw::Secant, .. }));
     if secant && ratio < SECANT_OF_TANGENT {
         let detail = format!(
-            "is \"secant\", whose mean is {ratio:.2} of the tangent stiffness ({:.0} of {:.0} N/um), below {SECANT_OF_TANGENT}: the closing of flank modifications or misalignment \
+            "is \"secant\", whose mean is {ratio:.2} of the tangent stiffness ({:.0} of {:.0} N/µm), below {SECANT_OF_TANGENT}: the closing of flank modifications or misalignment \
              counts as softness, and natural frequencies come out too low; \"transmission_error\" does not",
             mesh.secant_stiffness_mean_n_per_um, mesh.stiffness_mean_n_per_um
         );

@@ -2,6 +2,7 @@
 //! document, one sentence.
 
 use crate::Violation;
+use crate::unit::with_unit;
 use crate::warning::Warning;
 use herringbone_physics::gear::{
     self, AssemblyField, CenterDistanceFit, Consequence, GearField, Infeasibility, InfeasibilityReason, MaterialField,
@@ -51,7 +52,7 @@ pub(super) fn warning(found: &gear::Warning) -> Warning {
         WarningReason::FilletInterference { cut_m } => (
             "fillet-interference",
             format!(
-                "the {side}'s tip dips {:.2} um into the {}'s nominal root fillet: the tips need an edge break or the root more depth",
+                "the {side}'s tip dips {:.2} µm into the {}'s nominal root fillet: the tips need an edge break or the root more depth",
                 cut_m * UM,
                 mate(found.field)
             ),
@@ -74,7 +75,7 @@ pub(super) fn warning(found: &gear::Warning) -> Warning {
         WarningReason::NegativeBacklash { backlash_m, fit } => (
             "negative-play",
             format!(
-                "at the working centre distance {:.4} mm teeth of nominal thickness overlap by {:.1} um along the base tangent: they must be thinner by that and the play; {}",
+                "at the working centre distance {:.4} mm teeth of nominal thickness overlap by {:.1} µm along the base tangent: they must be thinner by that and the play; {}",
                 fit.center_distance_m * MM,
                 -backlash_m * UM,
                 fitting(fit)
@@ -83,7 +84,7 @@ pub(super) fn warning(found: &gear::Warning) -> Warning {
         WarningReason::LargeBacklash { backlash_m, fit } => (
             "large-play",
             format!(
-                "at the working centre distance {:.4} mm teeth of nominal thickness have {:.0} um play along the base tangent; the dynamics take the play stated as backlash_um; {}",
+                "at the working centre distance {:.4} mm teeth of nominal thickness have {:.0} µm play along the base tangent; the dynamics take the play stated as backlash_um; {}",
                 fit.center_distance_m * MM,
                 backlash_m * UM,
                 fitting(fit)
@@ -130,7 +131,7 @@ fn detail(found: &Infeasibility) -> String {
         InfeasibilityReason::ValueOutOfRange { value, minimum, maximum } => {
             let (unit, convert) = field_unit(found.field);
             let [value, low, high] = [*value, *minimum, *maximum].map(convert);
-            format!("{value} {unit} is outside {low} … {high} {unit}")
+            format!("{} is outside {low} … {}", with_unit(value, unit), with_unit(high, unit))
         }
         InfeasibilityReason::RackTipPointed { dedendum, .. } => {
             format!("the rack that cuts the {side} is pointed before it reaches a dedendum of {dedendum} m_n")
@@ -187,7 +188,7 @@ fn detail(found: &Infeasibility) -> String {
             )
         }
         InfeasibilityReason::FlanksOverlap { backlash_m, limit_m, limit } => format!(
-            "teeth of nominal thickness overlap by {:.1} um along the base tangent, more than {:.1} um ({limit} m_n), which thinner teeth could make up for",
+            "teeth of nominal thickness overlap by {:.1} µm along the base tangent, more than {:.1} µm ({limit} m_n), which thinner teeth could make up for",
             -backlash_m * UM,
             limit_m * UM
         ),

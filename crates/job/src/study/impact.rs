@@ -129,7 +129,7 @@ fn calculated(
             code: "no-impact".to_owned(),
             pointer: "/model/impact".to_owned(),
             detail: format!(
-                "the entering end is {:.2} um open, more than the {:.2} um by which the load closes it: no early contact, no impact",
+                "the entering end is {:.2} µm open, more than the {:.2} µm by which the load closes it: no early contact, no impact",
                 none.flank_gap_m * 1e6,
                 none.deflection_m * 1e6
             ),

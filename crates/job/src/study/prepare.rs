@@ -218,7 +218,7 @@ fn short_face(document: &JobDocument, pair: &Pair) -> Option<Warning> {
         code: "short-face".to_owned(),
         pointer: "/design/face_width_mm".to_owned(),
         detail: format!(
-            "is {:.2} mm, {modules:.2} normal modules, at a helix angle of {:.1} deg: the analytic mesh stiffness is about {:.0} % too {} against finite elements, more than {:.0} %; fidelity `fe` does not have this error",
+            "is {:.2} mm, {modules:.2} normal modules, at a helix angle of {:.1}°: the analytic mesh stiffness is about {:.0} % too {} against finite elements, more than {:.0} %; fidelity `fe` does not have this error",
             pair.spec.face_width_m * 1e3,
             pair.spec.helix_angle_rad.to_degrees(),
             excess.abs() * 100.0,

@@ -3,7 +3,10 @@
 
 use crate::documents;
 use crate::times::Times;
-use herringbone::store::{JobFilter, JobId, JobState, NewJob, Store, StoreConfig, Submission, WorkClass};
+use herringbone::store::{
+    JobFilter, JobId, JobOrder, JobSort, JobState, ListPlace, NewJob, SortValue, Store, StoreConfig, Submission,
+    WorkClass,
+};
 use herringbone_tools::Failure;
 use jiff::Timestamp;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqliteSynchronous};
@@ -127,21 +130,29 @@ async fn rows(store: &Store) -> Result<Vec<(&'static str, String)>, Failure> {
     let usual = JobFilter { label: Some("usual".to_owned()), ..JobFilter::default() };
     let rare = JobFilter { label: Some("rare".to_owned()), ..JobFilter::default() };
     let several = JobFilter { label: Some("usual".to_owned()), kind: Some("response".to_owned()), ..live.clone() };
-    let newest = store.list(&everything, None, 50).await?;
-    let oldest = oldest(store, newest.jobs.last().map(|job| job.id)).await?;
-    for (name, filter, before) in [
-        ("page of the list, first", &everything, None),
-        ("… the last, by its cursor", &everything, oldest),
-        ("… of a state", &states(&[JobState::Queued]), None),
-        ("… of a state that no job has", &states(&[JobState::Failed]), None),
-        ("… of two states", &live, None),
-        ("… of a kind (1 of 100)", &kind, None),
-        ("… of a label (1 of 50)", &rare, None),
-        ("… of a label (49 of 50), last page", &usual, oldest),
-        ("… of states, kind and label", &several, None),
+    let search = |text: &str| JobFilter { search: Some(text.to_owned()), ..JobFilter::default() };
+    let newest_first = JobOrder::default();
+    let by_name = JobOrder { sort: JobSort::Name, descending: false };
+    let oldest = oldest(store).await?;
+    for (name, filter, order, after) in [
+        ("page of the list, first", &everything, newest_first, None),
+        ("… the last, by its cursor", &everything, newest_first, Some(&oldest)),
+        ("… of a state", &states(&[JobState::Queued]), newest_first, None),
+        ("… of a state that no job has", &states(&[JobState::Failed]), newest_first, None),
+        ("… of two states", &live, newest_first, None),
+        ("… of a kind (1 of 100)", &kind, newest_first, None),
+        ("… of a label (1 of 50)", &rare, newest_first, None),
+        ("… of a label (49 of 50), last page", &usual, newest_first, Some(&oldest)),
+        ("… of states, kind and label", &several, newest_first, None),
+        ("… sorted by name", &everything, by_name, None),
+        ("… searched for what many have", &search("USUAL"), newest_first, None),
+        ("… searched for what none has", &search("nothing"), newest_first, None),
     ] {
-        let mut times = Times::of(50, async || assert!(store.list(filter, before, 50).await.is_ok())).await;
+        let mut times = Times::of(50, async || assert!(store.list(filter, order, after, 50).await.is_ok())).await;
         rows.push((name, times.told()));
+    }
+    for (name, filter) in [("jobs counted", &everything), ("jobs counted, by a search", &search("nothing"))] {
+        rows.push((name, Times::of(50, async || assert!(store.count(filter).await.is_ok())).await.told()));
     }
     let mut counts = Times::of(50, async || assert!(store.counts().await.is_ok())).await;
     rows.push(("jobs counted by state (`/metrics`)", counts.told()));
@@ -159,15 +170,10 @@ async fn rows(store: &Store) -> Result<Vec<(&'static str, String)>, Failure> {
     Ok(rows)
 }
 
-/// An id with about fifty jobs older than it.
-async fn oldest(store: &Store, start: Option<JobId>) -> Result<Option<JobId>, Failure> {
-    let mut before = start;
-    loop {
-        let page = store.list(&JobFilter::default(), before, 200).await?;
-        match page.jobs.iter().nth_back(50.min(page.jobs.len().saturating_sub(1))) {
-            Some(job) if !page.more => return Ok(Some(job.id)),
-            Some(_) => before = page.jobs.last().map(|job| job.id),
-            None => return Ok(before),
-        }
-    }
+/// The place of the fiftieth job from the end of the list.
+async fn oldest(store: &Store) -> Result<ListPlace, Failure> {
+    let order = JobOrder { descending: false, ..JobOrder::default() };
+    let page = store.list(&JobFilter::default(), order, None, 51).await?;
+    let id = page.jobs.last().map_or_else(JobId::new, |job| job.id);
+    Ok(ListPlace { id, value: SortValue::None })
 }
