@@ -76,6 +76,15 @@ declare global {
     states: string[];
     kind: string;
     label: string;
+    /** Part of name, label or notes. */
+    search: string;
+    /** First and last day of submission, in the local calendar. */
+    from: string;
+    to: string;
+    /** What the list is sorted by and its direction: "name-asc". */
+    sort: string;
+    /** Jobs on a page. */
+    limit: number;
     cursor: string;
     /** Cursors of the pages before this one, as far as they were visited. */
     trail: string[] | null;

@@ -3,6 +3,7 @@
 use crate::browser::{Browser, flow};
 use crate::job::{submit, succeeded};
 use serde_json::{Value, json};
+use thirtyfour::prelude::*;
 
 /// A document of a job that takes no time.
 fn quick(name: &str, label: &str) -> Value {
@@ -213,6 +214,79 @@ async fn filters_and_pages_stand_in_the_address() {
         browser.until("document.querySelector('#selected').textContent === 'None selected'").await;
         let gone = browser.fetch(&format!("/api/v1/jobs/{}", ids[0])).await;
         assert_eq!(gone["status"], json!(404));
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn among_many_jobs_one_is_found_sorted_and_described() {
+    flow(async |browser| {
+        browser.open("/jobs").await;
+        let mut ids = Vec::new();
+        for number in 0..60 {
+            ids.push(post(browser, &quick(&format!("variant {number:02} of the gearbox"), "study")).await);
+        }
+        let mut loud: Value = serde_json::from_str(include_str!("../../examples/table1.json")).unwrap();
+        loud["name"] = json!("Überlast");
+        let loud = browser.solved(&loud).await;
+        let mut quiet: Value = serde_json::from_str(include_str!("../../examples/contact.json")).unwrap();
+        quiet["name"] = json!("Quiet");
+        let quiet = browser.solved(&quiet).await;
+        let rows = "document.querySelectorAll('#jobs tbody tr').length";
+        let place = "document.querySelector('#place').textContent";
+        browser.until(&format!("{place} === '1 to 25 of 62 jobs'")).await;
+        // Part of a name, in upper or lower case, in the address too.
+        browser.element("#filter-search").await.send_keys("ARIANT 07").await.unwrap();
+        browser.until(&format!("{rows} === 1 && {place} === '1 job fit the filters'")).await;
+        browser.until("location.search === '?search=ARIANT+07'").await;
+        shown(browser, &ids[7]).await;
+        click(browser, "#clear-filters").await;
+        browser.until(&format!("{place} === '1 to 25 of 62 jobs'")).await;
+        browser.choose("#page-size", "50").await;
+        browser.until(&format!("{rows} === 50 && location.search === '?limit=50'")).await;
+        click(browser, "#older").await;
+        browser.until(&format!("{place} === '51 to 62 of 62 jobs' && {rows} === 12")).await;
+        // Sorted by a headline number, by the head of its column; jobs without one come last.
+        click(browser, "th[data-sort^='mesh_circ'] button").await;
+        let first = "document.querySelector('#jobs tbody tr').dataset.id";
+        browser.until(&format!("{first} === '{loud}'")).await;
+        let sorted = "document.querySelector(\"th[data-sort^='mesh_circ']\").getAttribute('aria-sort')";
+        assert_eq!(browser.value(sorted).await, json!("descending"));
+        let shown_rms = browser.text(&format!("{} td.value", row(&loud))).await;
+        let result = browser.fetch(&format!("/api/v1/jobs/{loud}/result")).await;
+        let rms = result["response"]["rms"]["mesh_circumferential_acceleration_m_s2"]["left"].as_f64().unwrap();
+        assert!((shown_rms.parse::<f64>().unwrap() / rms - 1.0).abs() < 1e-3, "{shown_rms} for {rms}");
+        click(browser, "th[data-sort^='mesh_circ'] button").await;
+        browser.until(&format!("{first} === '{quiet}'")).await;
+        assert_eq!(browser.value(sorted).await, json!("ascending"));
+        browser.driver.refresh().await.unwrap();
+        browser.until(&format!("{first} === '{quiet}'")).await;
+
+        // Another tab on the newest jobs sees what is changed and deleted here.
+        let here = browser.driver.window().await.unwrap();
+        let there = browser.driver.new_tab().await.unwrap();
+        browser.driver.switch_to_window(there.clone()).await.unwrap();
+        browser.open("/jobs").await;
+        browser.until(&format!("{place} === '1 to 25 of 62 jobs'")).await;
+        browser.driver.switch_to_window(here).await.unwrap();
+        // By keyboard.
+        browser.element(&format!("{} .describe-job", row(&quiet))).await.send_keys(Key::Enter).await.unwrap();
+        browser.until("document.activeElement.id === 'describe-name'").await;
+        browser.element("#describe-name").await.clear().await.unwrap();
+        browser.element("#describe-name").await.send_keys("Quieter").await.unwrap();
+        browser.element("#describe-notes").await.send_keys("<b>checked</b> by Anna").await.unwrap();
+        browser.element("#describe-label").await.send_keys(Key::Enter).await.unwrap();
+        browser.until(&format!("document.querySelector(\"{} a\").textContent === 'Quieter'", row(&quiet))).await;
+        assert_eq!(browser.text(&format!("{} .notes", row(&quiet))).await, "<b>checked</b> by Anna");
+        browser.element("#filter-search").await.send_keys("anna").await.unwrap();
+        browser.until(&format!("{rows} === 1 && {first} === '{quiet}'")).await;
+        // Deleted here, the place is filled there.
+        click(browser, &format!("{} .row-actions button:not([hidden])", row(&quiet))).await;
+        browser.until("document.querySelector('#confirm').open").await;
+        click(browser, "#confirm-yes").await;
+        browser.until(&format!("{place} === '0 jobs fit the filters'")).await;
+        browser.driver.switch_to_window(there).await.unwrap();
+        browser.until(&format!("{place} === '1 to 25 of 61 jobs' && {rows} === 25")).await;
     })
     .await;
 }

@@ -81,6 +81,11 @@ export const jobs = (parameters, signal) => request("GET", `/jobs${query(paramet
 export const kinds = () => request("GET", "/kinds");
 /** @type {(id: string) => Promise<Job>} */
 export const job = (id) => request("GET", at(id));
+/**
+ * Changes name, label or notes of a job; null removes a text.
+ * @type {(id: string, patch: { name?: string | null, label?: string | null, notes?: string | null }) => Promise<Job>}
+ */
+export const update = (id, patch) => request("PATCH", at(id), { body: patch });
 /** @type {(id: string) => Promise<Job>} */
 export const cancel = (id) => request("POST", `${at(id)}/cancel`);
 /** @type {(id: string) => Promise<null>} */

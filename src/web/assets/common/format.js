@@ -86,6 +86,12 @@ export function instant(timestamp) {
   return Number.isNaN(date.getTime()) ? "" : date.toLocaleString();
 }
 
+/** Day and time without seconds, as the browser writes them. @param {string} timestamp */
+export function dayAndTime(timestamp) {
+  const date = new Date(timestamp);
+  return Number.isNaN(date.getTime()) ? "" : date.toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
+}
+
 /** Seconds between two instants; null where there is none. @param {string} from @param {string} to */
 export function seconds(from, to) {
   const span = (Date.parse(to) - Date.parse(from)) / 1000;

@@ -47,7 +47,7 @@ export function pairRows(data) {
 /**
  * Rows of the data of pinion and gear. Their own face widths are shown where one is wider than the common width.
  * @param {GearData} data
- * @returns {{ symbol: [string, string], name: string, pinion: Scalar, gear: Scalar, unit: string, meaning: Explained }[]}
+ * @returns {(Omit<ReturnType<typeof namesOf>, never> & { pinion: Scalar, gear: Scalar })[]}
  */
 export function memberRows({ pinion, gear, face_width_mm: common }) {
   const isCommon = pinion.face_width_mm === common && gear.face_width_mm === common;

@@ -1,6 +1,7 @@
 // The list of jobs: one page of it, filtered by the address, kept up to date by the stream of all jobs' events.
 
 import * as api from "../common/api.js";
+import { describeJob } from "../common/describe.js";
 import { byId, el, notify, show } from "../common/dom.js";
 import { followJobs } from "../common/follow.js";
 import * as address from "./address.js";
@@ -8,10 +9,11 @@ import { Row } from "./rows.js";
 import { Selection } from "./selection.js";
 import { count, nameOf } from "./words.js";
 
-const LIMIT = 25;
 const LABELS_FROM = 200;
 const TICK_MS = 1000;
 const TYPING_MS = 300;
+/** Time in which further changes are waited for before the page is read again. */
+const SETTLING_MS = 400;
 
 const body = byId("jobs").tBodies[0];
 const notice = byId("notice");
@@ -25,6 +27,10 @@ const labels = new Set();
 let view = address.read();
 /** @type {string | null} */
 let nextCursor = null;
+/** Number of jobs in the list as filtered; null before the first answer. @type {number | null} */
+let total = null;
+/** @type {number | undefined} */
+let settling;
 let newer = new Set();
 /** The request under way. @type {AbortController | null} */
 let request = null;
@@ -52,12 +58,13 @@ async function refresh() {
   request = new AbortController();
   const { signal } = request;
   changed = new Map();
-  const { states, kind, label, cursor } = view;
+  const { cursor } = view;
   try {
-    const page = await api.jobs({ limit: LIMIT, state: states.join(","), kind, label, cursor }, signal);
+    const page = await api.jobs(address.parameters(view), signal);
     if (signal.aborted) return;
     notify(notice, null);
     nextCursor = page.next_cursor ?? null;
+    total = page.total;
     fill(page.items.filter((job) => !deletedIds.has(job.id)));
     isFilled = true;
     if (cursor === "") newer = new Set();
@@ -99,6 +106,7 @@ function rowOf(job) {
   const row = new Row(job, {
     select: (picked, isRange) => selection.pick(picked, isRange),
     filter: (label) => navigate({ ...view, label, cursor: "", trail: [] }, true),
+    describe: (asked, opener) => describe(asked, opener),
     cancel: (asked) => selection.each([asked], (job) => selection.stop(job)),
     remove: (asked) => selection.remove([asked]),
   });
@@ -131,23 +139,34 @@ function onJob(job) {
   if (row) {
     rowOf(job);
     row.node.classList.toggle("past", !fits);
-    if (!fits && !row.hasFocus && !row.box.checked) drop(job.id);
+    if (!fits && !row.hasFocus && !row.box.checked) {
+      drop(job.id);
+      readAgain();
+    } else if (row.hasMoved(view.sort)) {
+      readAgain();
+    }
   } else if (fits) {
     add(job);
   }
   updatePage();
-  refillPage();
 }
 
-/** Reads the list again when additions and removals leave too many or too few rows on this page. */
-function refillPage() {
-  if (request === null && (rows.size > 2 * LIMIT || (nextCursor !== null && rows.size < LIMIT / 2))) refresh();
+/** Reads this page again once the changes have settled: its places, and the number of jobs, follow from the list. */
+function readAgain() {
+  clearTimeout(settling);
+  settling = setTimeout(refresh, SETTLING_MS);
 }
+
+const isNewestFirst = () => view.sort === address.NEWEST;
 
 /** Adds the row of a new job. @param {Job} job */
 function add(job) {
   const present = shown();
   const isFirst = view.cursor === "";
+  if (!isNewestFirst()) {
+    readAgain();
+    return;
+  }
   if (!isFirst && (present.length === 0 || job.id > present[0].job.id)) {
     // Jobs on the pages before this one change, too: only a job that was just submitted is new.
     const endedAtOnce = job.ended_at === job.submitted_at;
@@ -159,6 +178,18 @@ function add(job) {
   const after = present.find((row) => row.job.id < job.id);
   body.insertBefore(rowOf(job).node, after?.node ?? null);
   if (isFirst && job.id > (present[0]?.job.id ?? "")) announceText(`New job: ${nameOf(job)}`);
+  readAgain();
+}
+
+/**
+ * Opens the window in which name, label and notes of a job are changed.
+ * @param {Job} job
+ * @param {HTMLElement} opener
+ */
+async function describe(job, opener) {
+  const described = await describeJob(job);
+  if (described) onJob(described);
+  opener.focus();
 }
 
 /** Takes up that a job was deleted. @param {string} id */
@@ -168,7 +199,7 @@ function remove(id) {
   selection.forget(id);
   drop(id);
   updatePage();
-  refillPage();
+  readAgain();
 }
 
 /** Brings the rest of the page in line with the rows. */
@@ -180,13 +211,43 @@ function updatePage() {
   if (isFilled) byId("jobs").setAttribute("aria-busy", "false");
   byId("older").disabled = nextCursor === null;
   byId("newer").disabled = view.cursor === "";
-  byId("place").textContent = view.cursor === "" ? "" : view.trail ? `Page ${view.trail.length + 1}` : "Older jobs";
+  if (total !== null) byId("place").textContent = placeText(total);
+  showOrder();
   const button = byId("new-jobs");
   show(button, newer.size > 0);
   button.textContent = `${count(newer.size, "new job")}: to the newest`;
   const filtered = address.isFiltered(view);
   byId("clear-filters").disabled = !filtered;
   selection.show();
+}
+
+/** The place of the page in the list. @param {number} all */
+function placeText(all) {
+  const jobs = `${count(all)}${address.isFiltered(view) ? " fit the filters" : ""}`;
+  const before = view.cursor === "" ? 0 : view.trail ? view.trail.length * view.limit : null;
+  if (rows.size === 0 || before === null) return jobs;
+  return all <= rows.size ? jobs : `${before + 1} to ${before + Math.min(rows.size, view.limit)} of ${jobs}`;
+}
+
+/** Shows in the heads of the columns what the list is sorted by. */
+function showOrder() {
+  const [by, order] = view.sort.split("-");
+  for (const head of sortedHeads()) {
+    if (head.dataset.sort === by) head.setAttribute("aria-sort", order === "asc" ? "ascending" : "descending");
+    else head.removeAttribute("aria-sort");
+  }
+  byId("newer").textContent = isNewestFirst() ? "Newer" : "Previous";
+  byId("older").textContent = isNewestFirst() ? "Older" : "Next";
+}
+
+const sortedHeads = () => /** @type {NodeListOf<HTMLElement>} */ (byId("jobs").querySelectorAll("th[data-sort]"));
+
+/** Sorts by the column of a head: a second click turns the order round. @param {HTMLElement} head */
+function sortBy(head) {
+  const name = head.dataset.sort ?? "";
+  const [first, second] = name === "name" || name === "label" ? ["asc", "desc"] : ["desc", "asc"];
+  const sort = view.sort === `${name}-${first}` ? `${name}-${second}` : `${name}-${first}`;
+  navigate({ ...view, sort, cursor: "", trail: [] }, true);
 }
 
 function emptyTexts() {
@@ -250,6 +311,7 @@ function showView(next) {
   view = next;
   request?.abort();
   request = null;
+  clearTimeout(settling);
   isFilled = false;
   newer = new Set();
   address.fillForm(view);
@@ -263,15 +325,18 @@ let typing;
 filters.addEventListener("input", (event) => {
   clearTimeout(typing);
   // All letters typed without a pause are one step.
-  if (event.target === address.label) typing = setTimeout(() => navigate(address.readForm(), false), TYPING_MS);
+  if (address.isTyped(event.target)) typing = setTimeout(() => navigate(address.readForm(), false), TYPING_MS);
 });
-filters.addEventListener("change", () => {
+function applyForm() {
   clearTimeout(typing);
   navigate(address.readForm(), true);
-});
+}
+filters.addEventListener("change", applyForm);
+// Belongs to the form, but stands below the list.
+byId("page-size").addEventListener("change", applyForm);
 filters.addEventListener("reset", (event) => {
   event.preventDefault();
-  navigate({ states: [], kind: "", label: "", cursor: "", trail: [] }, true);
+  navigate(address.withoutFilters(view), true);
 });
 filters.addEventListener("submit", (event) => event.preventDefault());
 
@@ -303,6 +368,7 @@ function top() {
   byId("main").scrollIntoView({ block: "start" });
 }
 
+for (const head of sortedHeads()) head.querySelector("button")?.addEventListener("click", () => sortBy(head));
 window.addEventListener("popstate", () => showView(address.read()));
 setInterval(() => {
   if (document.hidden) return;

@@ -2,8 +2,18 @@
 
 import * as api from "../common/api.js";
 import { el, show } from "../common/dom.js";
-import { age, instant } from "../common/format.js";
+import { age, dayAndTime, instant, number } from "../common/format.js";
 import { duration, durationOf, nameOf } from "./words.js";
+
+/**
+ * Headline numbers: their members of a job, names and units.
+ * @type {[keyof NonNullable<Job["headline"]>, string, string][]}
+ */
+const VALUES = [
+  ["mesh_circumferential_acceleration_rms_m_s2", "RMS", "m/s²"],
+  ["dynamic_factor", "Dynamic factor", ""],
+  ["transmission_error_pp_um", "TE", "µm"],
+];
 
 /** One row of the list. */
 export class Row {
@@ -12,6 +22,7 @@ export class Row {
    * @param {{
    *   select: (row: Row, isRange: boolean) => void,
    *   filter: (label: string) => void,
+   *   describe: (job: Job, opener: HTMLElement) => void,
    *   cancel: (job: Job) => void,
    *   remove: (job: Job) => void,
    * }} actions of its buttons
@@ -19,15 +30,20 @@ export class Row {
   constructor(job, actions) {
     this.job = job;
     this.isFilled = false;
+    /** @type {string | undefined} */
+    this.place = undefined;
     this.link = el("a", {});
     this.label = el("button", { type: "button", class: "label" });
     this.kind = el("td", { class: "kind" });
     this.badge = el("span", { class: "badge" });
     this.stage = el("span", { class: "stage" });
     this.bar = el("progress", { max: 1 });
+    this.values = VALUES.map(([, name, unit]) => el("td", { class: "value", title: unit ? `${name}, ${unit}` : name, "data-name": name, "data-unit": unit }));
+    this.notes = el("span", { class: "notes" });
     this.age = el("td", { class: "age" });
     this.duration = el("td", { class: "duration" });
     this.box = el("input", { type: "checkbox" });
+    this.describe = el("button", { type: "button", class: "quiet plain describe-job" }, "Edit");
     this.clone = el("a", { class: "button quiet" }, "Clone");
     this.cancel = el("button", { type: "button", class: "quiet" }, "Cancel");
     this.remove = el("button", { type: "button", class: "quiet" }, "Delete");
@@ -35,15 +51,17 @@ export class Row {
       "tr",
       { "data-id": job.id },
       el("td", { class: "pick" }, el("label", { class: "hit" }, this.box)),
-      el("th", { scope: "row" }, el("span", { class: "title" }, this.link, this.label)),
+      el("th", { scope: "row" }, el("span", { class: "title" }, this.link, this.label, this.describe), this.notes),
       this.kind,
       el("td", { class: "state" }, el("span", { class: "words" }, this.badge, this.stage), this.bar),
+      ...this.values,
       this.age,
       this.duration,
       el("td", { class: "row-actions" }, this.clone, this.cancel, this.remove),
     );
     this.box.addEventListener("click", (event) => actions.select(this, event.shiftKey));
     this.label.addEventListener("click", () => actions.filter(this.job.label ?? ""));
+    this.describe.addEventListener("click", () => actions.describe(this.job, this.describe));
     this.cancel.addEventListener("click", () => actions.cancel(this.job));
     this.remove.addEventListener("click", () => actions.remove(this.job));
     this.update(job);
@@ -73,7 +91,13 @@ export class Row {
     show(this.bar, job.state === "running");
     this.bar.value = job.progress ?? 0;
     this.bar.setAttribute("aria-label", `Progress of ${name}`);
-    this.age.title = instant(job.submitted_at);
+    write(this.notes, job.notes ?? "");
+    show(this.notes, Boolean(job.notes));
+    VALUES.forEach(([member], index) => {
+      const value = job.headline?.[member];
+      write(this.values[index], typeof value === "number" ? number(value, 4) : "");
+    });
+    write(this.age, dayAndTime(job.submitted_at));
     this.clone.href = `/?from=${encodeURIComponent(job.id)}`;
     this.clone.title = "Open its document in the form, as a new job";
     const live = !api.isEnded(job);
@@ -82,6 +106,8 @@ export class Row {
     show(this.cancel, live);
     show(this.remove, !live);
     this.cancel.disabled = Boolean(job.cancel_requested_at);
+    this.describe.title = "Change name, label and notes";
+    this.describe.setAttribute("aria-label", `Edit name, label and notes of ${name}`);
     this.clone.setAttribute("aria-label", `Clone ${name}`);
     this.cancel.setAttribute("aria-label", `Cancel ${name}`);
     this.remove.setAttribute("aria-label", `Delete ${name}`);
@@ -93,9 +119,19 @@ export class Row {
   /** Updates the texts that depend on the present time. */
   tick(now = Date.now()) {
     const { job } = this;
-    write(this.age, age(job.submitted_at, now));
+    this.age.title = `${instant(job.submitted_at)}, ${age(job.submitted_at, now)}`;
     const span = durationOf(job, now);
     write(this.duration, span === null ? "" : duration(span));
+  }
+
+  /** Whether what the list is sorted by has changed since this was last asked. @param {string} sort */
+  hasMoved(sort) {
+    const { name, label, ended_at: ended, headline } = this.job;
+    const [by] = sort.split("-");
+    const value = by === "submitted" ? "" : JSON.stringify(by === "name" ? name : by === "label" ? label : by === "ended" ? ended : headline);
+    const moved = this.place !== undefined && this.place !== `${by} ${value}`;
+    this.place = `${by} ${value}`;
+    return moved;
   }
 
   /** Whether the focus is in this row, which then is not removed. */
