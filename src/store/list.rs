@@ -259,8 +259,8 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn count(&self, filter: &JobFilter) -> Result<u64, StoreError> {
-        let mut query: QueryBuilder<Sqlite> =
-            QueryBuilder::new("SELECT COUNT(*) AS n FROM jobs INDEXED BY jobs_listing WHERE 1 = 1");
+        let mut query: QueryBuilder<Sqlite> = QueryBuilder::new("SELECT COUNT(*) AS n FROM jobs");
+        query.push(if filter.needs_listing() { " INDEXED BY jobs_listing WHERE 1 = 1" } else { " WHERE 1 = 1" });
         filter.push_states(&mut query);
         filter.push(&mut query);
         let row = query.build().fetch_one(&self.reader).await?;
