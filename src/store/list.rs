@@ -190,12 +190,12 @@ impl JobFilter {
 fn glob_pattern(part: &str) -> String {
     let mut pattern = "*".to_owned();
     for letter in part.chars() {
-        let mut variants = vec![letter];
-        let cases = letter.to_uppercase().chain(letter.to_lowercase());
+        let upper = single(letter.to_uppercase()).unwrap_or(letter);
         // The lower case of the upper case too: σ and ς have one upper case.
-        for variant in cases.chain(letter.to_uppercase().flat_map(char::to_lowercase)) {
-            let is_one = letter.to_uppercase().count() == 1 && letter.to_lowercase().count() == 1;
-            if is_one && !variants.contains(&variant) {
+        let lower = [letter, upper].map(|letter| single(letter.to_lowercase()).unwrap_or(letter));
+        let mut variants = vec![letter];
+        for variant in [upper, lower[0], lower[1]] {
+            if !variants.contains(&variant) {
                 variants.push(variant);
             }
         }
@@ -209,6 +209,11 @@ fn glob_pattern(part: &str) -> String {
         }
     }
     pattern + "*"
+}
+
+/// The only item.
+fn single(mut letters: impl Iterator<Item = char>) -> Option<char> {
+    letters.next().filter(|_| letters.next().is_none())
 }
 
 impl Store {
@@ -254,8 +259,8 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn count(&self, filter: &JobFilter) -> Result<u64, StoreError> {
-        let mut query: QueryBuilder<Sqlite> =
-            QueryBuilder::new("SELECT COUNT(*) AS n FROM jobs INDEXED BY jobs_listing WHERE 1 = 1");
+        let mut query: QueryBuilder<Sqlite> = QueryBuilder::new("SELECT COUNT(*) AS n FROM jobs");
+        query.push(if filter.needs_listing() { " INDEXED BY jobs_listing WHERE 1 = 1" } else { " WHERE 1 = 1" });
         filter.push_states(&mut query);
         filter.push(&mut query);
         let row = query.build().fetch_one(&self.reader).await?;

@@ -11,7 +11,7 @@ use proptest::test_runner::{Config, RngSeed, TestRunner};
 use tower::ServiceExt;
 
 /// Words that mean something to some parameter, and some that nearly do.
-const WORDS: [&str; 26] = [
+const WORDS: [&str; 31] = [
     "queued,failed",
     "mesh",
     "sweep",
@@ -38,9 +38,28 @@ const WORDS: [&str; 26] = [
     "\u{e9}",
     "*/*",
     "W/\"1\"",
+    "name",
+    "desc",
+    "2026-02-30",
+    "-009999-01-01T00:00:00%2B25:59",
+    "%5B%5D*",
 ];
-const NAMES: [&str; 11] =
-    ["state", "kind", "label", "limit", "cursor", "from", "to", "max_points", "method", "page", "%66rom"];
+const NAMES: [&str; 14] = [
+    "state",
+    "kind",
+    "label",
+    "limit",
+    "cursor",
+    "from",
+    "to",
+    "max_points",
+    "method",
+    "page",
+    "%66rom",
+    "search",
+    "sort",
+    "order",
+];
 const HEADERS: [&str; 9] = [
     "accept",
     "if-none-match",

@@ -211,10 +211,7 @@ async fn an_upgrade_takes_the_headline_numbers_out_of_stored_results() {
         [body(Some(1.5), Some(2.5), 0.25), body(Some(4.0), None, 1.0), "{\"sweep\":{\"points\":[]}}".to_owned()];
     let mut old = Vec::new();
     for body in &bodies {
-        let id = JobId::new();
-        let insert = "INSERT INTO jobs (id, kind, state, revision, attempt, input, input_hash, solver_version, submitted_at_us, \
-                      started_at_us, ended_at_us) VALUES ($1, 'response', 'succeeded', 3, 1, '{}', $2, 'test-1', 0, 1, 2)";
-        sqlx::query(insert).bind(id.to_string()).bind(body).execute(&store.writer).await.unwrap();
+        let id = insert_succeeded(&store, body).await;
         let insert =
             "INSERT INTO results (job_id, body, etag, input_hash, solver_version) VALUES ($1, $2, 'tag', $2, 'test-1')";
         sqlx::query(insert).bind(id.to_string()).bind(body).execute(&store.writer).await.unwrap();

@@ -63,3 +63,13 @@ pub(super) async fn running(store: &Store, hash: &str) -> JobRecord {
     queued(store, hash).await;
     store.claim_next(WorkClass::Single, at(1)).await.expect("claims").expect("a job waits").job
 }
+
+/// A job that succeeded, in a database of any schema; without its result.
+pub(super) async fn insert_succeeded(store: &Store, hash: &str) -> JobId {
+    let id = JobId::new();
+    let insert = "INSERT INTO jobs (id, kind, state, revision, attempt, input, input_hash, solver_version, \
+                  submitted_at_us, started_at_us, ended_at_us) \
+                  VALUES ($1, 'response', 'succeeded', 3, 1, '{}', $2, 'test-1', 0, 1, 2)";
+    sqlx::query(insert).bind(id.to_string()).bind(hash).execute(&store.writer).await.expect("inserted");
+    id
+}

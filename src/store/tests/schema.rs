@@ -41,15 +41,15 @@ async fn results_of_a_database_with_row_offsets_are_read_after_the_upgrade() {
     let config = StoreConfig::at(directory.path().join("jobs.db"));
     let before = MIGRATIONS.iter().filter(|step| step.version < 5).cloned().collect();
     let store = Store::open_with(&config, &Migrator::with_migrations(before)).await.unwrap();
-    let job = running(&store, "a").await;
+    let id = insert_succeeded(&store, "a").await;
     let body = "{\"sweep\":{\"points\":[]}}";
     let insert = "INSERT INTO results (job_id, body, etag, input_hash, solver_version, points_at, points_n, points_digest) \
                   VALUES ($1, $2, 'tag', 'a', 'test-1', 20, 2, 'digest')";
-    sqlx::query(insert).bind(job.id.to_string()).bind(body).execute(&store.writer).await.unwrap();
+    sqlx::query(insert).bind(id.to_string()).bind(body).execute(&store.writer).await.unwrap();
     store.close().await;
     drop(store);
     let store = Store::open(&config).await.unwrap();
     let rows = Some(RowsSummary { count: 2, digest: "digest".into() });
     let expected = StoredResult { body: body.into(), etag: "tag".into(), rows };
-    assert_eq!(store.result(job.id).await.unwrap(), Some(expected));
+    assert_eq!(store.result(id).await.unwrap(), Some(expected));
 }
