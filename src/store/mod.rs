@@ -7,6 +7,7 @@
 mod backup;
 mod cancel;
 mod connect;
+mod durations;
 mod error;
 mod examine;
 mod failure;
@@ -31,6 +32,7 @@ mod write_probe;
 pub use backup::{BackupError, BackupSummary, backup};
 pub use cancel::{Cancellation, Deletion};
 pub use connect::{Store, StoreConfig};
+pub use durations::{CalculationClass, MeasuredDuration};
 pub use error::{StoreError, Unavailable};
 pub use failure::Failure;
 pub use finish::Completion;
