@@ -137,7 +137,7 @@ async fn an_own_pair_over_the_example_does_not_keep_its_values_unnoticed() {
         let path = browser.value("location.pathname").await;
         let accepted = browser.fetch(&format!("/api/v1{}/input", path.as_str().unwrap())).await;
         let design = &accepted["design"];
-        assert_eq!((&design["gear"]["bore_diameter_mm"], &design["gear"]["inertia_kg_m2"]), (&json!(120.0), &Value::Null));
+        assert_eq!((&design["gear"]["bore_diameter_mm"], &design["gear"]["inertia_kg_m2"]), (&json!(120), &Value::Null));
         assert_eq!(design["pinion"]["bore_diameter_mm"], Value::Null);
     })
     .await;
@@ -222,8 +222,9 @@ async fn two_tabs_keep_a_draft_each_and_that_of_a_closed_tab_can_be_opened() {
         browser.until("document.querySelector('#start-note').textContent.includes('Your draft')").await;
         assert_eq!(document(browser).await["design"]["face_width_mm"], json!(61));
         // The closed tab's is among the choices.
-        let key = browser.value("document.querySelector('#start-drafts option')?.value").await;
-        browser.choose("#start-from", key.as_str().unwrap()).await;
+        let open = "const choice = document.querySelector('#start-from'); choice.value = document.querySelector('#start-drafts option').value; \
+                    choice.dispatchEvent(new Event('change', {bubbles: true}));";
+        browser.driver.execute(open, Vec::new()).await.unwrap();
         browser.until("document.querySelector('#start-note').textContent.includes('The draft of')").await;
         assert_eq!(document(browser).await["design"]["face_width_mm"], json!(62));
     })
@@ -307,7 +308,7 @@ async fn nothing_overlaps_on_a_telephone() {
             return found; })()";
         assert_eq!(browser.value(overlapping).await, json!([]));
         let wide = browser.value("document.documentElement.scrollWidth").await;
-        assert_eq!(wide, json!(390));
+        assert!(wide.as_u64().is_some_and(|width| width <= 390), "{wide}");
     })
     .await;
 }
@@ -344,7 +345,7 @@ async fn a_stranger_comes_from_an_empty_form_to_a_relieved_design() {
         succeeded(browser).await;
         let accepted = browser.fetch(&format!("/api/v1/jobs/{id}/input")).await;
         let design = &accepted["design"];
-        assert_eq!(design["pinion"]["tip_relief"]["amount_um"], json!(20.0));
+        assert_eq!(design["pinion"]["tip_relief"]["amount_um"], json!(20));
         assert_eq!((&design["pinion"]["profile_shift"], &design["gear"]["profile_shift"]), (&json!(0.3), &json!(-0.1)));
         for name in ["inertia_kg_m2", "mass_kg", "bore_diameter_mm"] {
             assert_eq!((&design["pinion"][name], &design["gear"][name]), (&Value::Null, &Value::Null), "{name}");

@@ -166,7 +166,7 @@ const keyOf = ({ pointer, code }) => `${pointer} ${code}`;
 function blameOf(entries) {
   const rules = entries.filter(({ field, code }) => field && !OF_ONE_FIELD.includes(code));
   const keys = rules.map(keyOf);
-  for (const key of [...broughtAbout.keys()]) if (!keys.includes(key)) broughtAbout.delete(key);
+  for (const key of broughtAbout.keys()) if (!keys.includes(key)) broughtAbout.delete(key);
   const blamed = new Map();
   for (const entry of rules) {
     const key = keyOf(entry);

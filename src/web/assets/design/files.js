@@ -7,15 +7,15 @@ import { textOf } from "../common/text.js";
 /** Largest body that the service accepts, bytes. */
 const MOST_BYTES = 1024 * 1024;
 
-/** Beginnings of other files, as Latin-1 text. @type {[RegExp, string][]} */
+/** Beginnings of other files, a character for each byte. @type {[string, string][]} */
 const OTHER_FILES = [
-  [/^\x89PNG/, "a PNG image"],
-  [/^\xff\xd8\xff/, "a JPEG image"],
-  [/^GIF8/, "a GIF image"],
-  [/^%PDF/, "a PDF document"],
-  [/^\xd0\xcf\x11\xe0/, "a document of an office program"],
-  [/^\x1f\x8b/, "a compressed file (gzip)"],
-  [/^SQLite format 3/, "a database"],
+  ["\x89PNG", "a PNG image"],
+  ["\xff\xd8\xff", "a JPEG image"],
+  ["GIF8", "a GIF image"],
+  ["%PDF", "a PDF document"],
+  ["\xd0\xcf\x11\xe0", "a document of an office program"],
+  ["\x1f\x8b", "a compressed file (gzip)"],
+  ["SQLite format 3", "a database"],
 ];
 
 /** @param {number} bytes */
@@ -28,14 +28,16 @@ const size = (bytes) => (bytes < 1e6 ? `${number(bytes / 1024, 3)} KiB` : `${num
  * @throws {Error} with the reason why it is refused, as a sentence after the name of the file
  */
 export async function documentOf(file) {
-  const head = new TextDecoder("latin1").decode(await file.slice(0, 4096).arrayBuffer());
-  const other = OTHER_FILES.find(([start]) => start.test(head))?.[1];
+  const bytes = new Uint8Array(await file.slice(0, 4096).arrayBuffer());
+  const head = String.fromCharCode(...bytes);
+  const other = OTHER_FILES.find(([start]) => head.startsWith(start))?.[1];
   if (other) throw new Error(`is ${other}, not a job document (JSON).`);
-  if (/\.rexsz?$/i.test(file.name) || /^[^{[]*<(?:\?xml|model\b)/.test(head) && /\brexs\b|<model\b/i.test(head)) {
+  const isXml = /^[^{[]*<[!?a-z]/i.test(head);
+  if (/\.rexsz?$/i.test(file.name) || (isXml && /\brexs\b|<model\b/i.test(head))) {
     throw new Error("is a REXS model. REXS import is not there yet: type the values in, or open a job document (JSON).");
   }
   if (head.startsWith("PK\u0003\u0004")) throw new Error("is a ZIP archive or a spreadsheet, not a job document (JSON). Columns of a spreadsheet can be pasted into lists.");
-  if (/^[^{[]*<[!?a-z]/i.test(head)) throw new Error("is an XML or HTML file, not a job document (JSON).");
+  if (isXml) throw new Error("is an XML or HTML file, not a job document (JSON).");
   if (file.size > MOST_BYTES) throw new Error(`has ${size(file.size)}; a job document has ${size(MOST_BYTES)} at most.`);
   if (file.size === 0) throw new Error("is empty.");
   let document;

@@ -112,7 +112,8 @@ function takeNameOut() {
 
 /** Shows the members of the document without a field: they are kept until they are removed. */
 function showExtras() {
-  const names = extraPointers().map((pointer) => `“${pointer.split("/").filter(Boolean).join(" › ")}”`);
+  const places = extraPointers().map((pointer) => pointer.split("/").filter((name) => name && !/^\d+$/.test(name)).join(" › "));
+  const names = [...new Set(places)].map((name) => `“${name}”`);
   const note = byId("extras");
   show(note, names.length > 0);
   if (!names.length) return;
