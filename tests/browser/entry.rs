@@ -188,6 +188,8 @@ async fn sentences_have_symbols_of_units_and_no_pointers() {
             ["not given: 0.065 kg m2 assumed", "not given: 0.065 kg·m² assumed"],
             ["a light load of 3 N m, 1 N/um", "a light load of 3 N·m, 1 N/µm"],
             ["above 1 m_n of amount_um", "above 1 mₙ of amount"],
+            ["gear_axial_n_per_um 216.9, gear_halves_torsional_nm_per_rad 9.5e8 (E)", "gear axial 216.9 N/µm, gear halves torsional 9.5e8 N·m/rad (E)"],
+            ["face_width_mm 75 mm", "face width 75 mm"],
             ["\"/operation/pinion_speed_rpm\" is no number", "“Pinion speed” is no number"],
         ]);
         let script = "const done = arguments[1]; import('/assets/common/sentence.js').then(({readable}) => \

@@ -44,7 +44,7 @@ pub(super) fn values(document: &JobDocument, prepared: &Prepared) -> Vec<Derived
     }
     for (name, gear, member) in [("pinion", &design.pinion, &pair.pinion), ("gear", &design.gear, &pair.gear)] {
         let at = |field: &str| format!("/design/{name}/{field}");
-        let basis = format!("{DEFAULT_BORE_FRACTION} of the reference diameter");
+        let basis = format!("{DEFAULT_BORE_FRACTION} × reference ø");
         add(at("bore_diameter_mm"), default_bore_mm(design, gear), basis, true);
         add(at("mass_kg"), member.mass_kg(), "as solid discs".to_owned(), true);
         add(at("inertia_kg_m2"), member.inertia_kg_m2(), "as solid discs".to_owned(), true);

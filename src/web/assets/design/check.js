@@ -4,7 +4,7 @@ import * as api from "../common/api.js";
 import { byId, el, fillValues, show } from "../common/dom.js";
 import { labelOf, number, unitOf } from "../common/format.js";
 import { initDrawing } from "./drawing.js";
-import { clearErrors, linkTo, problemItems, showErrors, showWarnings, warningItems } from "./errors.js";
+import { clearErrors, isOfADerivedValue, linkTo, problemItems, showErrors, showWarnings, warningItems } from "./errors.js";
 import { durationOf } from "./sweep_cost.js";
 
 /** @type {["transverse_contact_ratio" | "overlap_ratio" | "total_contact_ratio", string, string][]} */
@@ -36,8 +36,8 @@ const MARGINS = {
 
 /**
  * Sets up the check; `run(document)` checks and shows the answer, and returns the report, or null where there is none.
- * `checked(report)` is called with each report, and returns the fields with values of another geometry; `refused()` where
- * the document was refused.
+ * `checked(report)` is called with each report, and returns the fields with values of another geometry; `refused()`
+ * where the document was refused.
  * @param {HTMLFormElement} form
  * @param {{ checked: (report: CheckedDocument) => Promise<Field[]>, refused: () => void }} options
  */
@@ -132,12 +132,18 @@ function setState(kind, text) {
   state.textContent = text;
 }
 
-/** @param {HTMLElement} form @param {CheckedDocument} report @param {Field[]} stale fields with values of another geometry */
+/**
+ * @param {HTMLElement} form
+ * @param {CheckedDocument} report
+ * @param {Field[]} stale fields with values of another geometry
+ */
 function showReport(form, { geometry, drawing, memory_mib: memory, warnings, estimate }, stale) {
   const margins = drawing?.margins ?? [];
+  const derived = warnings.filter(isOfADerivedValue);
+  const told = warnings.filter((warning) => !isOfADerivedValue(warning));
   const found = [
     stale.length ? `${stale.length} ${stale.length === 1 ? "value" : "values"} of another geometry` : "",
-    warnings.length ? `${warnings.length} ${warnings.length === 1 ? "warning" : "warnings"}` : "",
+    told.length ? `${told.length} ${told.length === 1 ? "warning" : "warnings"}` : "",
   ].filter(Boolean);
   setState(found.length ? "good warned" : "good", ["Can be solved", ...found].join(", "));
   list(stale.map((field) => el("li", {}, linkTo(field), " entered for another geometry")));
@@ -158,7 +164,9 @@ function showReport(form, { geometry, drawing, memory_mib: memory, warnings, est
     ...DIAMETERS.map(([name, label]) => row(label, "mm", SIDES.map((side) => el("td", {}, number(geometry[side][name], 6))))),
     ...Object.entries(MARGINS).map(([code, [label, unit]]) => row(label, unit, SIDES.map((side) => marginCell(margins.find((one) => one.code === code && one.member === side))))),
   );
-  byId("check-warnings").replaceChildren(...warningItems(form, warnings));
+  byId("check-warnings").replaceChildren(...warningItems(form, told));
+  byId("check-derived").replaceChildren(...warningItems(form, derived));
+  show(byId("derived-values"), derived.length > 0);
 }
 
 /** @param {CheckedDocument["estimate"]} estimate */
@@ -189,4 +197,5 @@ const fixed = (value, decimals = 4) => (Number.isFinite(value) ? value.toFixed(d
 function fade() {
   byId("checked").classList.add("stale");
   byId("check-warnings").replaceChildren();
+  show(byId("derived-values"), false);
 }

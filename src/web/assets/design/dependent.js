@@ -8,7 +8,7 @@ import { say } from "./errors.js";
 
 /** @typedef {import("./document.js").Field} Field */
 /** @typedef {CheckedDocument["derived"][number]} Derived */
-/** @typedef {Record<string, { text: string, derived: number }>} Entered texts of fields, with the derived values at their entry */
+/** @typedef {import("./draft.js").Entered} Entered */
 
 /** Relative difference up to which two derived values are of the same geometry. */
 const SAME_GEOMETRY = 1e-6;
@@ -37,7 +37,11 @@ export function initDependent(form, changed) {
   const fields = () => fieldsOf(form).filter(({ pointer }) => derived.has(pointer));
   const stale = () => fields().filter(isStale);
 
-  /** The values of a document belong to the geometry of these derived values. @param {JobInput} document @param {Derived[]} list */
+  /**
+   * The values of a document belong to the geometry of these derived values.
+   * @param {JobInput} document
+   * @param {Derived[]} list
+   */
   function settle(document, list) {
     const values = new Map(list.map((one) => [one.pointer, one.value]));
     for (const field of fieldsOf(form)) {

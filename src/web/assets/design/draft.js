@@ -1,5 +1,5 @@
-// What the browser keeps of the form: the draft of each tab, the drafts of closed tabs, the document submitted last, and
-// the kind of start chosen last. Without storage nothing is kept.
+// What the browser keeps of the form: the draft of each tab, the drafts of closed tabs, the document submitted last,
+// and the kind of start chosen last. Without storage nothing is kept.
 
 const DRAFT = "herringbone.draft";
 const DRAFTS = "herringbone.draft.";
@@ -11,7 +11,8 @@ const MOST_DRAFTS = 5;
 /**
  * A document as it stood in the form, with what it was started from and which values of other geometry it has.
  * @typedef {{ kind: string, title: string, document: JobInput, id?: string }} Start
- * @typedef {{ document: JobInput, at: string, start?: Start, entered?: Record<string, { text: string, derived: number }>, nameKept?: boolean }} Kept
+ * @typedef {Record<string, { text: string, derived: number }>} Entered texts of fields, derived values at their entry
+ * @typedef {{ document: JobInput, at: string, start?: Start, entered?: Entered, nameKept?: boolean }} Kept
  */
 
 /** @param {() => Storage} storage @param {string} key @returns {any} */
@@ -41,8 +42,8 @@ const tab = () => sessionStorage;
 const checked = (kept) => (kept && typeof kept.document === "object" && kept.document ? kept : null);
 
 /**
- * Key of this page's draft among those of all tabs. A new one for each page: a tab that was duplicated has a copy of the
- * storage of the first.
+ * Key of this page's draft among those of all tabs. A new one for each page: a tab that was duplicated has a copy of
+ * the storage of the first.
  */
 const OWN = `${DRAFTS}${[...crypto.getRandomValues(new Uint8Array(8))].map((byte) => byte.toString(16).padStart(2, "0")).join("")}`;
 

@@ -1,7 +1,7 @@
 // Violations and warnings in answers of the server, shown at the fields they are about, and the list of all of them.
 
 import { byId, el, show } from "../common/dom.js";
-import { codeWords, FIELD_NAME, placeOf, readable, withUnits } from "../common/sentence.js";
+import { codeWords, FIELD_NAME, placeOf, readable, withUnits, withValue } from "../common/sentence.js";
 import { fieldAt, fieldsOf, readingOf, refusalOf, textOf } from "./document.js";
 
 /** @typedef {import("./document.js").Field} Field */
@@ -44,7 +44,11 @@ export function requireAll() {
   isStrict = true;
 }
 
-/** Takes all errors and cautions away; `isGood` where nothing is wrong. @param {HTMLElement} form @param {boolean} [isGood] */
+/**
+ * Takes all errors and cautions away; `isGood` where nothing is wrong.
+ * @param {HTMLElement} form
+ * @param {boolean} [isGood]
+ */
 export function clearErrors(form, isGood = true) {
   if (isGood) {
     shown.clear();
@@ -58,7 +62,10 @@ export function clearErrors(form, isGood = true) {
   show(byId("problems"), false);
 }
 
-/** Says below each field how its numbers are read, where that differs from the text, and what an empty one stands for. @param {HTMLElement} form */
+/**
+ * Says below each field how its numbers are read, where that differs from the text, and what an empty one stands for.
+ * @param {HTMLElement} form
+ */
 export function showReadings(form) {
   for (const field of fieldsOf(form)) {
     if (!["number", "integer", "numbers"].includes(field.control)) continue;
@@ -68,15 +75,18 @@ export function showReadings(form) {
   }
 }
 
-/** Warnings of assumed values that the field itself shows. */
+/** Warnings of derived values, which the fields themselves show. */
 const SHOWN_IN_THE_FIELD = ["bore-assumed", "assumed-inertia", "assumed-mass", "assumed-supports"];
+
+/** Whether a warning is of a derived value that its field shows. @param {WarningEntry} warning */
+export const isOfADerivedValue = ({ code }) => SHOWN_IN_THE_FIELD.includes(code);
 
 /** Marks the fields that warnings are about. @param {HTMLElement} form @param {WarningEntry[]} warnings */
 export function showWarnings(form, warnings) {
   const fields = fieldsOf(form);
-  for (const { code, pointer, detail } of warnings) {
+  for (const { code, pointer, detail } of warnings.filter((warning) => !isOfADerivedValue(warning))) {
     const field = fieldAt(fields, pointer ?? "");
-    if (!field || SHOWN_IN_THE_FIELD.includes(code)) continue;
+    if (!field) continue;
     // In a few words, so that nothing moves; in full where one looks, and in the list of warnings.
     const short = el("span", { class: "short", "aria-hidden": "true" }, codeWords(code));
     say(field, "caution", [short, el("span", { class: "full" }, ...sentenceOf(detail, fields, field))], { add: true });
@@ -189,8 +199,9 @@ export function sentenceOf(detail, fields, near) {
   const parts = [];
   let end = 0;
   for (const found of text.matchAll(FIELD_NAME)) {
-    const named = fieldNamed(found[1], fields, near);
-    parts.push(text.slice(end, found.index), named ? linkTo(named) : readable(found[1]));
+    const [, name, value] = found;
+    const named = fieldNamed(name, fields, near);
+    parts.push(text.slice(end, found.index), named ? linkTo(named) : readable(name), withValue(name, value));
     end = found.index + found[0].length;
   }
   return [...parts, text.slice(end)];

@@ -1,5 +1,5 @@
-// Initial document of the form: an empty pair, an example, the document submitted last, a file, a draft of this browser,
-// a job.
+// Initial document of the form: an empty pair, an example, the document submitted last, a file, a draft of this
+// browser, a job.
 
 import * as api from "../common/api.js";
 import { byId, el } from "../common/dom.js";
@@ -154,8 +154,8 @@ export function initStart({ fill, read }) {
   }
 
   /**
-   * The first contents: what was submitted from this place in the history, the job named in the address, the draft of this
-   * tab, else what was chosen last: an empty pair, or the example that the page came with.
+   * The first contents: what was submitted from this place in the history, the job named in the address, the draft of
+   * this tab, else what was chosen last: an empty pair, or the example that the page came with.
    */
   async function start() {
     const from = new URLSearchParams(window.location.search).get("from");
