@@ -309,6 +309,8 @@ async fn nothing_overlaps_on_a_telephone() {
               if (width > 1 && height > 3) found.push(`${one.node.textContent.trim() || one.node.id} / ${other.node.textContent.trim() || other.node.id}`); } \
             return found; })()";
         assert_eq!(browser.value(overlapping).await, json!([]));
+        let cut = "[...document.querySelectorAll('.input > .unit')].filter((node) => node.scrollWidth > node.clientWidth + 1).map((node) => node.textContent)";
+        assert_eq!(browser.value(cut).await, json!([]));
         let wide = browser.value("document.documentElement.scrollWidth").await;
         assert!(wide.as_u64().is_some_and(|width| width <= 390), "{wide}");
     })

@@ -33,7 +33,7 @@ impl Page {
         if self.path == "/" {
             // The form keeps a draft of what was changed; here it starts as for somebody new.
             browser.open("/nowhere").await;
-            browser.value("localStorage.clear()").await;
+            browser.value("(localStorage.clear(), sessionStorage.clear())").await;
         }
         browser.open(&self.path).await;
         browser.until(self.ready).await;
