@@ -109,8 +109,8 @@ async fn no_state_of_the_form_has_a_serious_finding() {
         browser.until(&format!("{state}.startsWith('Can be solved')")).await;
         browser.fill("/design/face_width_mm", "60").await;
         browser.until(&format!("{state}.includes('of another geometry')")).await;
-        browser.element("#changes-title").await.click().await.unwrap();
-        browser.element("#submit").await.click().await.unwrap();
+        browser.click("#changes-title").await;
+        browser.click("#submit").await;
         browser.until("document.querySelector('#problems .actions')").await;
         found.extend(everywhere(browser, &axe, "values of another geometry").await);
         browser.fill("/design/pinion/face_width_mm", "900").await;
@@ -131,7 +131,7 @@ async fn the_login_page_has_no_serious_finding() {
             browser.open("/jobs").await;
             let mut found = everywhere(browser, &axe, "login").await;
             browser.element("#token").await.send_keys("not-the-token-at-all").await.unwrap();
-            browser.element("main button").await.click().await.unwrap();
+            browser.click("main button").await;
             browser.until("document.querySelector('[role=alert]')").await;
             found.extend(everywhere(browser, &axe, "login refused").await);
             accept(&found);

@@ -110,6 +110,12 @@ impl Browser {
         query.first().await.unwrap_or_else(|error| panic!("{selector}: {error}"))
     }
 
+    /// Clicks on an element, on the form once its check has been answered: the answer moves what is below a field.
+    pub(crate) async fn click(&self, selector: &str) {
+        self.until("!document.querySelector('#design[data-pending]')").await;
+        self.element(selector).await.click().await.unwrap_or_else(|error| panic!("{selector}: {error}"));
+    }
+
     /// The input of the field at a JSON pointer of the job document.
     pub(crate) async fn field(&self, pointer: &str) -> WebElement {
         self.element(&format!("[data-pointer='{pointer}'] :is(input, select, textarea)")).await

@@ -21,7 +21,7 @@ fn input(pointer: &str) -> String {
 pub(crate) async fn empty_pair(browser: &Browser) {
     browser.open("/").await;
     browser.until(GOOD).await;
-    browser.element("#start-note button").await.click().await.unwrap();
+    browser.click("#start-note button").await;
     browser.until(&format!("{STATE} === '7 fields still to fill in'")).await;
 }
 
@@ -53,7 +53,7 @@ async fn an_empty_pair_has_nothing_of_the_example_and_no_error_yet() {
         browser.open("/").await;
         browser.until(&format!("{STATE} === '7 fields still to fill in'")).await;
         // The list leads to the fields; what was touched and left empty is an error.
-        browser.element("#check-problems li a").await.click().await.unwrap();
+        browser.click("#check-problems li a").await;
         let first = browser.value("document.activeElement.closest('[data-pointer]').dataset.pointer").await;
         assert!(NEEDED.iter().any(|(pointer, _)| first == json!(pointer)), "{first}");
         browser.fill("/design/pinion/teeth", "23").await;
@@ -78,6 +78,9 @@ async fn an_empty_pair_has_nothing_of_the_example_and_no_error_yet() {
         assert!((shown / derived["value"].as_f64().unwrap() - 1.0).abs() < 1e-3, "{shown} for {derived}");
         assert_eq!(browser.value(&said(inertia, "read")).await, json!("as solid discs"));
         assert_eq!(document(browser).await["design"]["gear"], json!({"teeth": 71}));
+        // The default backlash is none of practice: the value of practice is a click away.
+        browser.click("[data-pointer='/design/backlash_um'] [data-action='use']").await;
+        browser.until(&format!("{GOOD} && Number({}.value) > 100", input("/design/backlash_um"))).await;
         submit(browser).await;
         succeeded(browser).await;
     })
@@ -117,22 +120,22 @@ async fn an_own_pair_over_the_example_does_not_keep_its_values_unnoticed() {
         assert!(listed.as_str().unwrap().contains("17 → 23") && listed.as_str().unwrap().contains("75 mm → 60 mm"), "{listed}");
         assert!(listed.as_str().unwrap().contains("Not changed, though the geometry is another"), "{listed}");
         // Nothing is submitted before the question is answered.
-        browser.element("#submit").await.click().await.unwrap();
+        browser.click("#submit").await;
         browser.until("!document.querySelector('#problems').hidden && document.querySelectorAll('#problems li').length === 5").await;
         assert_eq!(browser.value("location.pathname").await, json!("/"));
         // One is kept, one replaced where it stands, the rest in one go.
-        browser.element("[data-pointer='/design/gear/bore_diameter_mm'] [data-action='keep']").await.click().await.unwrap();
+        browser.click("[data-pointer='/design/gear/bore_diameter_mm'] [data-action='keep']").await;
         browser.until(&format!("{STATE}.includes('4 values of another geometry')")).await;
-        browser.element("[data-pointer='/design/pinion/inertia_kg_m2'] [data-action='use']").await.click().await.unwrap();
+        browser.click("[data-pointer='/design/pinion/inertia_kg_m2'] [data-action='use']").await;
         browser.until(&format!("{STATE}.includes('3 values of another geometry')")).await;
         assert_eq!(document(browser).await["design"]["pinion"]["inertia_kg_m2"], Value::Null);
         // A mark survives a reload.
         browser.until("sessionStorage.getItem('herringbone.draft')?.includes('\"entered\"')").await;
         browser.driver.refresh().await.unwrap();
         browser.until(&format!("{STATE}.includes('3 values of another geometry')")).await;
-        browser.element("#submit").await.click().await.unwrap();
+        browser.click("#submit").await;
         browser.until("document.querySelectorAll('#problems li').length === 3").await;
-        browser.element("#problems .actions button").await.click().await.unwrap();
+        browser.click("#problems .actions button").await;
         browser.until("location.pathname.startsWith('/jobs/')").await;
         let path = browser.value("location.pathname").await;
         let accepted = browser.fetch(&format!("/api/v1{}/input", path.as_str().unwrap())).await;
@@ -328,12 +331,12 @@ async fn a_stranger_comes_from_an_empty_form_to_a_relieved_design() {
         browser.fill("/design/gap_width_mm", "20").await;
         browser.until(GOOD).await;
         // Profile shifts and relief are in sections of their own, which the list of sections opens.
-        browser.element("#sections a[href='#group-tooth-form']").await.click().await.unwrap();
+        browser.click("#sections a[href='#group-tooth-form']").await;
         browser.until("document.querySelector('#group-tooth-form').open").await;
         browser.fill("/design/pinion/profile_shift", "+0,3").await;
         browser.fill("/design/gear/profile_shift", "\u{2212}0,1").await;
         browser.until(&format!("{GOOD} && {}.includes('read as -0.1')", said("/design/gear/profile_shift", "read"))).await;
-        browser.element("#sections a[href='#group-micro-geometry']").await.click().await.unwrap();
+        browser.click("#sections a[href='#group-micro-geometry']").await;
         for member in ["pinion", "gear"] {
             browser.fill(&format!("/design/{member}/tip_relief/amount_um"), "20 µm").await;
         }

@@ -39,7 +39,7 @@ impl Page {
         browser.until(self.ready).await;
         if self.spoilt {
             browser.fill("/design/helix_angle_deg", "77").await;
-            browser.element("#submit").await.click().await.unwrap();
+            browser.click("#submit").await;
             browser
                 .until("!document.querySelector('#problems').hidden && document.querySelector('[aria-invalid=true]')")
                 .await;

@@ -117,7 +117,7 @@ async fn f08_a_list_with_decimal_commas_becomes_the_axis_of_a_sweep() {
         input.send_keys("pinion torque").await.unwrap();
         browser.until("document.querySelector('#axis-0-input-list .active')").await;
         input.send_keys("\u{e007}").await.unwrap();
-        browser.element("label:has([name='axis-0-mode'][value='list'])").await.click().await.unwrap();
+        browser.click("label:has([name='axis-0-mode'][value='list'])").await;
         let values = "[data-pointer='/axes/0/values']";
         for (text, expected) in [("100,5; 200,5; 300,5", [100.5, 200.5, 300.5]), ("1 000 Nm; 2 000 Nm; 3 000 Nm", [1000.0, 2000.0, 3000.0])] {
             browser.fill("/axes/0/values", text).await;
@@ -129,7 +129,7 @@ async fn f08_a_list_with_decimal_commas_becomes_the_axis_of_a_sweep() {
         // What can be read in two ways goes nowhere, and the field says why.
         browser.fill("/axes/0/values", "100,5").await;
         browser.until(&format!("document.querySelector(\"{values} .error\").textContent.includes('decimal point')")).await;
-        browser.element("#submit").await.click().await.unwrap();
+        browser.click("#submit").await;
         browser.until("document.querySelector('#problems')?.textContent.includes('decimal point')").await;
         assert_eq!(browser.value("location.pathname").await, json!("/"));
         // A column of a spreadsheet stays a list.
@@ -139,7 +139,7 @@ async fn f08_a_list_with_decimal_commas_becomes_the_axis_of_a_sweep() {
         browser.driver.execute(paste, vec![json!(format!("{values} input"))]).await.unwrap();
         assert_eq!(document(browser).await["axes"][0]["values"], json!([100.5, 200.5, 300.5]));
         // So do the ends of a range.
-        browser.element("label:has([name='axis-0-mode'][value='range'])").await.click().await.unwrap();
+        browser.click("label:has([name='axis-0-mode'][value='range'])").await;
         browser.fill("/axes/0/from", "0,5").await;
         browser.fill("/axes/0/to", "1 000 N·m").await;
         let axis = &document(browser).await["axes"][0];

@@ -71,13 +71,11 @@ export function initDependent(form, changed) {
     }
     const marked = isStale(field);
     field.box.classList.toggle("of-other-geometry", marked);
-    if (!marked) return say(field, "stale", []);
     const what = [shown, shownUnit(unit)].filter(Boolean).join(" ");
     const button = (text, action) => el("button", { type: "button", class: "quiet", "aria-label": `${field.label}: ${text}`, "data-action": action }, text);
-    say(field, "stale", [
-      isItsDefault ? `entered for another geometry, which gives ${what} ` : `entered for another geometry; practice for this one: ${what} `,
-      button(isItsDefault ? "Use derived" : `Use ${shown}`, "use"), " ", button("Keep", "keep"),
-    ]);
+    if (marked && isItsDefault) say(field, "stale", [`entered for another geometry; this one gives ${what} `, button("Use derived", "use"), " ", button("Keep", "keep")]);
+    else if (marked) say(field, "stale", [`entered for another geometry; practice for this one: ${what} `, button(`Use ${shown}`, "use"), " ", button("Keep", "keep")]);
+    else say(field, "stale", isItsDefault || ownText(field) !== "" || field.box.hidden ? [] : [`the default; practice for this size: ${what} `, button(`Use ${shown}`, "use")]);
   }
 
   /** @param {Field} field */

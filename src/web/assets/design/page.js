@@ -23,6 +23,8 @@ const check = initCheck(form, { checked, refused: () => { dependent.fade(); show
 /** @type {number | undefined} */
 let timer;
 let touched = false;
+/** Number of checks that were started. */
+let checks = 0;
 /** @type {import("./draft.js").Start} */
 let started = { kind: "example", title: "the example pair", document: readDocument(form) };
 /** Name and label of the example, taken out when it became another pair. @type {Record<string, string>} */
@@ -37,6 +39,13 @@ let settling = Promise.resolve();
 /** @returns {Contents} */
 const contents = () => ({ document: readDocument(form), start: started, entered: dependent.entered(), nameKept });
 
+/** A check is due or runs: the form says so until its answer is shown. */
+function awaitCheck() {
+  form.dataset.pending = "";
+  checks += 1;
+  return checks;
+}
+
 /** Brings the page in line with the fields, and starts a check a moment later. */
 function refresh() {
   applyConditions(form);
@@ -49,9 +58,11 @@ function refresh() {
   showExtras();
   check.stop();
   clearTimeout(timer);
-  timer = setTimeout(() => {
+  const mine = awaitCheck();
+  timer = setTimeout(async () => {
     if (touched) keep();
-    check.run(document);
+    await check.run(document);
+    if (mine === checks) delete form.dataset.pending;
   }, CHECK_AFTER_MS);
 }
 
@@ -147,6 +158,7 @@ async function submit(event) {
   check.stop();
   const button = byId("submit");
   button.disabled = true;
+  awaitCheck();
   requireAll();
   const document = readDocument(form);
   try {
@@ -164,6 +176,7 @@ async function submit(event) {
     if (touched) keep();
     check.notSubmitted(error);
     button.disabled = false;
+    delete form.dataset.pending;
   }
 }
 
@@ -192,6 +205,7 @@ async function askAboutStale() {
   );
   show(problems);
   problems.focus();
+  delete form.dataset.pending;
 }
 
 async function copyCurl() {
