@@ -113,7 +113,10 @@ impl Browser {
     /// Clicks on an element, on the form once its check has been answered: the answer moves what is below a field.
     pub(crate) async fn click(&self, selector: &str) {
         self.until("!document.querySelector('#design[data-pending]')").await;
-        self.element(selector).await.click().await.unwrap_or_else(|error| panic!("{selector}: {error}"));
+        let element = self.element(selector).await;
+        // Away from what stays in sight at the edges of the window.
+        element.scroll_into_view().await.unwrap();
+        element.click().await.unwrap_or_else(|error| panic!("{selector}: {error}"));
     }
 
     /// The input of the field at a JSON pointer of the job document.
@@ -190,6 +193,8 @@ impl Browser {
         let size = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
         self.command("Emulation.setDeviceMetricsOverride", size).await;
         assert_eq!(self.value("window.innerWidth").await, json!(width));
+        // Scripts that follow the size of elements have run then.
+        self.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))").await;
     }
 
     /// Whether the system prefers dark pages.

@@ -55,6 +55,8 @@ const NUMBERS: &[(&str, &str, Option<f64>)] = &[
 
 /// What is typed into a list, and its values.
 const LISTS: &[(&str, Option<&[f64]>)] = &[
+    ("200,5; 400,5", Some(&[200.5, 400.5])),
+    ("200,5 mm\n1\u{202f}400,5 mm\n", Some(&[200.5, 1400.5])),
     ("100,5; 200,5; 300,5", Some(&[100.5, 200.5, 300.5])),
     ("100,5;200,5;300,5", Some(&[100.5, 200.5, 300.5])),
     ("100,5\t200,5\t300,5", Some(&[100.5, 200.5, 300.5])),
@@ -87,7 +89,7 @@ async fn f08_numbers_are_read_as_they_are_meant_or_refused() {
             let refused = read["refused"].as_str().is_some_and(|why| why.contains("decimal point"));
             assert_eq!((read["value"].as_f64(), refused), (*expected, expected.is_none()), "{text} {unit}: {read}");
         }
-        let calls: Value = LISTS.iter().map(|(text, _)| json!([text])).collect();
+        let calls: Value = LISTS.iter().map(|(text, _)| json!([text, "mm"])).collect();
         let read = called(browser, module, "readList", &calls).await;
         for ((text, expected), read) in LISTS.iter().zip(read.as_array().unwrap()) {
             let refused = read["refused"].as_str().is_some_and(|why| why.contains("decimal point"));

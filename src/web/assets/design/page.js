@@ -109,7 +109,7 @@ function takeNameOut() {
       field.input.value = "";
     }
     if (textOf(field) !== "") delete takenOut[field.pointer];
-    const back = el("button", { type: "button", class: "quiet", "aria-label": `${field.label}: put the example's back` }, "Put it back");
+    const back = el("button", { type: "button", class: "quiet", "aria-label": `${field.label}: Put it back` }, "Put it back");
     back.addEventListener("click", () => {
       nameKept = true;
       field.input.value = given;
