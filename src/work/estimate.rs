@@ -63,7 +63,8 @@ mod tests {
 
     #[test]
     fn durations_are_scaled_by_points() {
-        let jobs = [(8.0, 4), (1.0, 1), (30.0, 10), (0.5, 1)].map(|(wall_s, points)| MeasuredDuration { wall_s, points });
+        let jobs =
+            [(8.0, 4), (1.0, 1), (30.0, 10), (0.5, 1)].map(|(wall_s, points)| MeasuredDuration { wall_s, points });
         assert_eq!(scaled(&jobs, 10), Some([15.0, 5.0, 30.0]));
         assert_eq!(scaled(&jobs[..1], 1), Some([2.0, 2.0, 2.0]));
         assert_eq!(scaled(&[], 3), None);

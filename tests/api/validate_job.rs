@@ -105,7 +105,8 @@ async fn the_time_that_similar_jobs_took() {
     assert_eq!(estimate(&other).await["jobs"], 0);
     let mut sweep = document.clone();
     sweep["kind"] = "sweep".into();
-    sweep["axes"] = serde_json::json!([{"pointer": "/operation/pinion_speed_rpm", "from": 1000, "to": 2000, "points": 7}]);
+    sweep["axes"] =
+        serde_json::json!([{"pointer": "/operation/pinion_speed_rpm", "from": 1000, "to": 2000, "points": 7}]);
     let of_sweep = estimate(&sweep).await;
     assert_eq!((&of_sweep["points"], &of_sweep["kind"]), (&7.into(), &"response".into()), "{of_sweep}");
     assert!((of_sweep["wall_time_s"].as_f64().unwrap() / single_s - 7.0).abs() < 1e-9, "{of_sweep}");

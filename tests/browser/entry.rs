@@ -72,7 +72,8 @@ async fn an_empty_pair_has_nothing_of_the_example_and_no_error_yet() {
                       body: document.querySelector('#document-text').textContent}).then((answer) => answer.json())";
         let script = format!("const done = arguments[0]; {answer}.then(done, (error) => done(String(error)));");
         let report = browser.driver.execute_async(&script, Vec::new()).await.unwrap().json().clone();
-        let derived = report["derived"].as_array().unwrap().iter().find(|one| one["pointer"] == inertia).unwrap().clone();
+        let derived =
+            report["derived"].as_array().unwrap().iter().find(|one| one["pointer"] == inertia).unwrap().clone();
         let placeholder = browser.value(&format!("{}.placeholder", input(inertia))).await;
         let shown: f64 = placeholder.as_str().unwrap().trim_start_matches("derived: ").parse().unwrap();
         assert!((shown / derived["value"].as_f64().unwrap() - 1.0).abs() < 1e-3, "{shown} for {derived}");
@@ -101,8 +102,10 @@ async fn an_own_pair_over_the_example_does_not_keep_its_values_unnoticed() {
         let stale = "[...document.querySelectorAll('.of-other-geometry')].map(({dataset}) => dataset.pointer)";
         let expected = json!([
             "/design/backlash_um",
-            "/design/pinion/bore_diameter_mm", "/design/gear/bore_diameter_mm",
-            "/design/pinion/inertia_kg_m2", "/design/gear/inertia_kg_m2",
+            "/design/pinion/bore_diameter_mm",
+            "/design/gear/bore_diameter_mm",
+            "/design/pinion/inertia_kg_m2",
+            "/design/gear/inertia_kg_m2",
         ]);
         let mut found: Vec<String> = serde_json::from_value(browser.value(stale).await).unwrap();
         let mut wanted: Vec<String> = serde_json::from_value(expected).unwrap();
@@ -117,11 +120,18 @@ async fn an_own_pair_over_the_example_does_not_keep_its_values_unnoticed() {
         assert_eq!(browser.text("#changes-title").await, "Changed from the example pair: 9 fields");
         let list = "document.querySelector('#changes').textContent";
         let listed = browser.value(list).await;
-        assert!(listed.as_str().unwrap().contains("17 → 23") && listed.as_str().unwrap().contains("75 mm → 60 mm"), "{listed}");
+        assert!(
+            listed.as_str().unwrap().contains("17 → 23") && listed.as_str().unwrap().contains("75 mm → 60 mm"),
+            "{listed}"
+        );
         assert!(listed.as_str().unwrap().contains("Not changed, though the geometry is another"), "{listed}");
         // Nothing is submitted before the question is answered.
         browser.click("#submit").await;
-        browser.until("!document.querySelector('#problems').hidden && document.querySelectorAll('#problems li').length === 5").await;
+        browser
+            .until(
+                "!document.querySelector('#problems').hidden && document.querySelectorAll('#problems li').length === 5",
+            )
+            .await;
         assert_eq!(browser.value("location.pathname").await, json!("/"));
         // One is kept, one replaced where it stands, the rest in one go.
         browser.click("[data-pointer='/design/gear/bore_diameter_mm'] [data-action='keep']").await;
@@ -140,7 +150,10 @@ async fn an_own_pair_over_the_example_does_not_keep_its_values_unnoticed() {
         let path = browser.value("location.pathname").await;
         let accepted = browser.fetch(&format!("/api/v1{}/input", path.as_str().unwrap())).await;
         let design = &accepted["design"];
-        assert_eq!((&design["gear"]["bore_diameter_mm"], &design["gear"]["inertia_kg_m2"]), (&json!(120), &Value::Null));
+        assert_eq!(
+            (&design["gear"]["bore_diameter_mm"], &design["gear"]["inertia_kg_m2"]),
+            (&json!(120), &Value::Null)
+        );
         assert_eq!(design["pinion"]["bore_diameter_mm"], Value::Null);
     })
     .await;
@@ -191,7 +204,10 @@ async fn sentences_have_symbols_of_units_and_no_pointers() {
             ["not given: 0.065 kg m2 assumed", "not given: 0.065 kg·m² assumed"],
             ["a light load of 3 N m, 1 N/um", "a light load of 3 N·m, 1 N/µm"],
             ["above 1 m_n of amount_um", "above 1 mₙ of amount"],
-            ["gear_axial_n_per_um 216.9, gear_halves_torsional_nm_per_rad 9.5e8 (E)", "gear axial 216.9 N/µm, gear halves torsional 9.5e8 N·m/rad (E)"],
+            [
+                "gear_axial_n_per_um 216.9, gear_halves_torsional_nm_per_rad 9.5e8 (E)",
+                "gear axial 216.9 N/µm, gear halves torsional 9.5e8 N·m/rad (E)"
+            ],
             ["face_width_mm 75 mm", "face width 75 mm"],
             ["\"/operation/pinion_speed_rpm\" is no number", "“Pinion speed” is no number"],
         ]);
@@ -276,8 +292,16 @@ async fn files_that_are_no_job_documents_are_named_for_what_they_are() {
         let large = format!("{{\"name\": \"{}\"}}", "x".repeat(3 << 20));
         for (name, bytes, expected) in [
             ("photo.json", b"\x89PNG\r\n\x1a\n....".to_vec(), "photo.json is a PNG image, not a job document"),
-            ("pair.rexs", b"<?xml version=\"1.0\"?><model version=\"1.5\"></model>".to_vec(), "is a REXS model. REXS import is not there yet"),
-            ("pair.xml", b"<?xml version=\"1.0\"?>\n<model applicationId=\"REXS\"/>".to_vec(), "is a REXS model. REXS import is not there yet"),
+            (
+                "pair.rexs",
+                b"<?xml version=\"1.0\"?><model version=\"1.5\"></model>".to_vec(),
+                "is a REXS model. REXS import is not there yet",
+            ),
+            (
+                "pair.xml",
+                b"<?xml version=\"1.0\"?>\n<model applicationId=\"REXS\"/>".to_vec(),
+                "is a REXS model. REXS import is not there yet",
+            ),
             ("large.json", large.into_bytes(), "large.json has 3 MiB; a job document has 1 MiB at most"),
             ("table.xlsx", b"PK\x03\x04rest".to_vec(), "is a ZIP archive or a spreadsheet"),
             ("result.json", br#"{"geometry": {}, "numerics": {}}"#.to_vec(), "is the result of a job"),
@@ -335,7 +359,9 @@ async fn a_stranger_comes_from_an_empty_form_to_a_relieved_design() {
         browser.until("document.querySelector('#group-tooth-form').open").await;
         browser.fill("/design/pinion/profile_shift", "+0,3").await;
         browser.fill("/design/gear/profile_shift", "\u{2212}0,1").await;
-        browser.until(&format!("{GOOD} && {}.includes('read as -0.1')", said("/design/gear/profile_shift", "read"))).await;
+        browser
+            .until(&format!("{GOOD} && {}.includes('read as -0.1')", said("/design/gear/profile_shift", "read")))
+            .await;
         browser.click("#sections a[href='#group-micro-geometry']").await;
         for member in ["pinion", "gear"] {
             browser.fill(&format!("/design/{member}/tip_relief/amount_um"), "20 µm").await;

@@ -65,7 +65,8 @@ async fn an_error_opens_the_section_it_is_in() {
         assert_eq!(browser.value("document.querySelector('#group-model').open").await, json!(false));
         browser.choose("[data-pointer='/model/mesh_stiffness/source'] select", "given").await;
         browser.until("document.querySelector('#group-model').open").await;
-        let missing = "document.querySelector(\"[data-pointer='/model/mesh_stiffness/mean_n_per_um'] .error\").textContent";
+        let missing =
+            "document.querySelector(\"[data-pointer='/model/mesh_stiffness/mean_n_per_um'] .error\").textContent";
         browser.until(&format!("{missing}.includes('is required with source \"given\"')")).await;
         // Closed by hand it stays closed, until the error is gone and comes again.
         browser.click("#group-model summary").await;

@@ -86,7 +86,16 @@ async fn the_example_is_submitted_by_keyboard_alone() {
 
 /// Types over what stands in the field that has the focus.
 async fn type_over(browser: &Browser, text: &str) {
-    browser.driver.action_chain().key_down(Key::Control).send_keys("a").key_up(Key::Control).send_keys(text).perform().await.unwrap();
+    browser
+        .driver
+        .action_chain()
+        .key_down(Key::Control)
+        .send_keys("a")
+        .key_up(Key::Control)
+        .send_keys(text)
+        .perform()
+        .await
+        .unwrap();
 }
 
 /// An own pair from an empty form: numbers as people type them, an error found by the list beside the status, a value of
@@ -120,7 +129,9 @@ async fn an_own_pair_is_entered_from_an_empty_form_by_keyboard_alone() {
         assert_eq!(browser.text("[data-pointer='/operation/pinion_speed_rpm'] .read").await, "read as 1500");
         tab_to(browser, "#check-problems a").await;
         press(browser, Key::Enter).await;
-        browser.until("document.activeElement.closest('[data-pointer]')?.dataset.pointer === '/design/helix_angle_deg'").await;
+        browser
+            .until("document.activeElement.closest('[data-pointer]')?.dataset.pointer === '/design/helix_angle_deg'")
+            .await;
         type_over(browser, "30°").await;
         browser.until(GOOD).await;
         tab_to(browser, "[data-pointer='/design/face_width_mm'] input").await;
@@ -147,7 +158,8 @@ async fn a_broken_rule_leads_to_both_fields_by_keyboard() {
     flow(async |browser| {
         browser.open("/").await;
         browser.until(GOOD).await;
-        let error = |pointer: &str| format!("document.querySelector(\"[data-pointer='{pointer}'] .error\").textContent");
+        let error =
+            |pointer: &str| format!("document.querySelector(\"[data-pointer='{pointer}'] .error\").textContent");
         let (width, gap) = ("/design/pinion/face_width_mm", "/design/gap_width_mm");
         tab_to(browser, &format!("[data-pointer='{gap}'] input")).await;
         type_over(browser, "20").await;
@@ -157,7 +169,9 @@ async fn a_broken_rule_leads_to_both_fields_by_keyboard() {
         browser.driver.action_chain().key_down(Key::Shift).perform().await.unwrap();
         for _ in 0..MANY {
             press(browser, Key::Tab).await;
-            if browser.value(&format!("document.activeElement.matches(\"[data-pointer='{gap}'] input\")")).await == json!(true) {
+            if browser.value(&format!("document.activeElement.matches(\"[data-pointer='{gap}'] input\")")).await
+                == json!(true)
+            {
                 break;
             }
         }
@@ -166,7 +180,9 @@ async fn a_broken_rule_leads_to_both_fields_by_keyboard() {
         browser.until(&format!("{}.startsWith('with this value, Face width, pinion')", error(gap))).await;
         tab_to(browser, &format!("[data-pointer='{gap}'] .error a")).await;
         press(browser, Key::Enter).await;
-        browser.until(&format!("document.activeElement.closest('[data-pointer]')?.dataset.pointer === '{width}'")).await;
+        browser
+            .until(&format!("document.activeElement.closest('[data-pointer]')?.dataset.pointer === '{width}'"))
+            .await;
         type_over(browser, "70").await;
         browser.until(GOOD).await;
         assert_eq!(browser.value(&error(gap)).await, json!(""));

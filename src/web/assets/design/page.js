@@ -99,12 +99,13 @@ const NAMES = ["/name", "/label"];
 
 /** Takes the example's name and label out as soon as the document is no longer the example. */
 function takeNameOut() {
-  const names = fieldsOf(form).filter(({ pointer }) => NAMES.includes(pointer));
-  const differs = changesFrom(form, started).some(({ field }) => !NAMES.includes(field.pointer));
-  for (const field of names) {
+  const changes = changesFrom(form, started).map(({ field: { pointer } }) => pointer).filter((pointer) => !NAMES.includes(pointer));
+  const isExample = started.kind === "example";
+  const isOtherDesign = changes.some((pointer) => pointer.startsWith("/design/"));
+  for (const field of fieldsOf(form).filter(({ pointer }) => NAMES.includes(pointer))) {
     const given = started.document[field.pointer.slice(1)] ?? "";
     const isOfTheStart = given !== "" && textOf(field) === given;
-    if (started.kind === "example" && differs && isOfTheStart && !nameKept) {
+    if (isExample && changes.length && isOfTheStart && !nameKept) {
       takenOut[field.pointer] = given;
       field.input.value = "";
     }
@@ -116,8 +117,8 @@ function takeNameOut() {
       field.input.focus();
       changed();
     });
-    const still = isOfTheStart && started.kind !== "example" && started.kind !== "empty" && changesFrom(form, started).some(({ field: { pointer } }) => pointer.startsWith("/design/"));
-    say(field, "stale", takenOut[field.pointer] ? ["the example’s was taken out: this is no longer the example ", back] : still ? [`still that of ${started.title}`] : []);
+    if (takenOut[field.pointer]) say(field, "stale", ["the example’s was taken out: this is no longer the example ", back]);
+    else say(field, "stale", isOfTheStart && !isExample && isOtherDesign ? [`still that of ${started.title}`] : []);
   }
 }
 
