@@ -1,6 +1,7 @@
 //! Operations on jobs: submit, wait, cancel, delete.
 
 use super::config::WorkConfig;
+use super::estimate::{Estimate, estimate};
 use super::hub::{JobEventListener, JobSubscription};
 use super::local_queue::LocalQueue;
 use super::measure;
@@ -154,6 +155,14 @@ impl Jobs {
             memory.check(job.document()).map(|()| job)
         });
         Ok(checked.await??)
+    }
+
+    /// Estimates the duration of a job by similar jobs that have ended.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn estimate(&self, document: &JobDocument) -> Result<Estimate, StoreError> {
+        estimate(self.store(), document, self.solver_version()).await
     }
 
     /// The data of a drawing of the pair of a job.

@@ -5,6 +5,7 @@
 
 mod config;
 mod database_stages;
+mod estimate;
 mod failure;
 mod hub;
 mod job_run;
@@ -21,6 +22,7 @@ mod solver;
 mod stop_signal;
 
 pub use config::WorkConfig;
+pub use estimate::Estimate;
 pub use hub::{JobEvent, JobEventListener, JobSubscription};
 pub use jobs::{Jobs, SubmitError, SubmitRequest, Submitted};
 pub use local_queue::LocalQueue;

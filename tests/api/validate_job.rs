@@ -60,3 +60,54 @@ async fn a_drawing_where_it_is_asked_for() {
     let unknown = app.send(Method::POST, "/api/v1/jobs/validate?draw=true", &json, document.to_string()).await;
     unknown.assert_problem(400, "invalid-parameter");
 }
+
+#[tokio::test]
+async fn values_that_the_rest_of_the_document_gives() {
+    let app = app().await;
+    let json = [("content-type", "application/json")];
+    let mut document = document();
+    let pointer = "/design/gear/inertia_kg_m2";
+    let derived = async |document: &serde_json::Value| {
+        let answer = app.send(Method::POST, "/api/v1/jobs/validate", &json, document.to_string()).await;
+        let list = answer.json["derived"].as_array().unwrap_or_else(|| panic!("{answer:?}")).clone();
+        list.into_iter().find(|one| one["pointer"] == pointer).unwrap()
+    };
+    document["design"]["gear"]["inertia_kg_m2"] = 0.5.into();
+    let before = derived(&document).await;
+    assert_eq!((&before["unit"], &before["is_default"]), (&"kg m2".into(), &true.into()), "{before}");
+    document["design"]["gear"]["inertia_kg_m2"] = 0.7.into();
+    assert_eq!(derived(&document).await, before, "does not depend on what the field says");
+    let width = document["design"]["face_width_mm"].as_f64().unwrap();
+    document["design"]["face_width_mm"] = (2.0 * width).into();
+    let doubled = derived(&document).await["value"].as_f64().unwrap() / before["value"].as_f64().unwrap();
+    assert!((doubled - 2.0).abs() < 1e-9, "{doubled}");
+}
+
+#[tokio::test]
+async fn the_time_that_similar_jobs_took() {
+    let app = app().await;
+    let json = [("content-type", "application/json")];
+    let estimate = async |document: &serde_json::Value| {
+        let answer = app.send(Method::POST, "/api/v1/jobs/validate", &json, document.to_string()).await;
+        answer.json["estimate"].clone()
+    };
+    let document = document();
+    let none = estimate(&document).await;
+    assert_eq!((&none["wall_time_s"], &none["jobs"]), (&serde_json::Value::Null, &0.into()), "{none}");
+    app.run(&document).await;
+    let one = estimate(&document).await;
+    assert_eq!((&one["jobs"], &one["points"], &one["kind"]), (&1.into(), &1.into(), &"response".into()), "{one}");
+    let single_s = one["wall_time_s"].as_f64().unwrap();
+    assert!(single_s > 0.0, "{one}");
+    // Another calculation has no measurement yet; a sweep is estimated by single points.
+    let mut other = document.clone();
+    other["analysis"]["method"] = "integrate".into();
+    assert_eq!(estimate(&other).await["jobs"], 0);
+    let mut sweep = document.clone();
+    sweep["kind"] = "sweep".into();
+    sweep["axes"] =
+        serde_json::json!([{"pointer": "/operation/pinion_speed_rpm", "from": 1000, "to": 2000, "points": 7}]);
+    let of_sweep = estimate(&sweep).await;
+    assert_eq!((&of_sweep["points"], &of_sweep["kind"]), (&7.into(), &"response".into()), "{of_sweep}");
+    assert!((of_sweep["wall_time_s"].as_f64().unwrap() / single_s - 7.0).abs() < 1e-9, "{of_sweep}");
+}

@@ -1,6 +1,7 @@
 //! What axe-core finds on the pages: WCAG 2.2 to level AA and its best practices.
 
 use crate::browser::{Browser, flow, flow_against};
+use crate::entry;
 use crate::pages;
 use crate::server::Server;
 use serde_json::json;
@@ -95,6 +96,32 @@ async fn no_page_has_a_serious_finding() {
     .await;
 }
 
+/// States of the form that it does not open with: an empty pair, problems, values of another geometry, the question about
+/// them.
+#[tokio::test]
+async fn no_state_of_the_form_has_a_serious_finding() {
+    let axe = axe_core();
+    flow(async |browser| {
+        let state = "document.querySelector('#check-state').textContent";
+        entry::empty_pair(browser).await;
+        let mut found = everywhere(browser, &axe, "empty pair").await;
+        browser.choose("#start-from", "contact").await;
+        browser.until(&format!("{state}.startsWith('Can be solved')")).await;
+        browser.fill("/design/face_width_mm", "60").await;
+        browser.until(&format!("{state}.includes('of another geometry')")).await;
+        browser.click("#changes-title").await;
+        browser.click("#submit").await;
+        browser.until("document.querySelector('#problems .actions')").await;
+        found.extend(everywhere(browser, &axe, "values of another geometry").await);
+        browser.fill("/design/pinion/face_width_mm", "900").await;
+        browser.fill("/design/gear/teeth", "many").await;
+        browser.until(&format!("{state}.includes('2 fields need attention')")).await;
+        found.extend(everywhere(browser, &axe, "problems").await);
+        accept(&found);
+    })
+    .await;
+}
+
 #[tokio::test]
 async fn the_login_page_has_no_serious_finding() {
     let axe = axe_core();
@@ -104,7 +131,7 @@ async fn the_login_page_has_no_serious_finding() {
             browser.open("/jobs").await;
             let mut found = everywhere(browser, &axe, "login").await;
             browser.element("#token").await.send_keys("not-the-token-at-all").await.unwrap();
-            browser.element("main button").await.click().await.unwrap();
+            browser.click("main button").await;
             browser.until("document.querySelector('[role=alert]')").await;
             found.extend(everywhere(browser, &axe, "login refused").await);
             accept(&found);

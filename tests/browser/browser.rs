@@ -6,6 +6,7 @@ use futures_util::FutureExt;
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, resume_unwind};
 use std::process::Command;
+use std::sync::LazyLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 use thirtyfour::prelude::*;
@@ -14,8 +15,16 @@ use tokio::sync::Mutex;
 const INSTALL: &str = "The browser tests need Chromium and its driver: run `scripts/prerequisites chromium` \
                        (on Debian: apt-get install chromium chromium-driver).";
 
-/// How long a condition on the page may take to become true.
-const PATIENCE: Duration = Duration::from_secs(30);
+/// How long a condition on the page may take to become true. Waiting costs nothing where it comes early, so the limit is
+/// that of a machine that does much else; `HERRINGBONE_BROWSER_PATIENCE_S` is another one.
+pub(crate) static PATIENCE: LazyLock<Duration> = LazyLock::new(|| {
+    let given = std::env::var("HERRINGBONE_BROWSER_PATIENCE_S").ok();
+    let seconds = given.map(|text| text.parse().expect("HERRINGBONE_BROWSER_PATIENCE_S is a number of seconds"));
+    Duration::from_secs(seconds.unwrap_or(180))
+});
+
+/// Time between two looks at a condition.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 /// One browser at a time: several would only slow each other down.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::const_new(());
@@ -48,6 +57,7 @@ pub(crate) async fn flow_against(server: impl FnOnce() -> Server, steps: impl As
         Ok(driver) => driver,
         Err(error) => panic!("Chromium could not be started: {error}. {INSTALL}"),
     };
+    driver.set_script_timeout(*PATIENCE).await.unwrap();
     let browser = Browser { driver, server, requested: AtomicUsize::new(0) };
     let outcome = AssertUnwindSafe(async {
         steps(&browser).await;
@@ -96,7 +106,17 @@ impl Browser {
     }
 
     pub(crate) async fn element(&self, selector: &str) -> WebElement {
-        self.driver.query(By::Css(selector)).first().await.unwrap_or_else(|error| panic!("{selector}: {error}"))
+        let query = self.driver.query(By::Css(selector)).wait(*PATIENCE, LOOK_EVERY);
+        query.first().await.unwrap_or_else(|error| panic!("{selector}: {error}"))
+    }
+
+    /// Clicks on an element, on the form once its check has been answered: the answer moves what is below a field.
+    pub(crate) async fn click(&self, selector: &str) {
+        self.until("!document.querySelector('#design[data-pending]')").await;
+        let element = self.element(selector).await;
+        // Away from what stays in sight at the edges of the window.
+        element.scroll_into_view().await.unwrap();
+        element.click().await.unwrap_or_else(|error| panic!("{selector}: {error}"));
     }
 
     /// The input of the field at a JSON pointer of the job document.
@@ -149,14 +169,14 @@ impl Browser {
 
     /// Waits until a job has ended, which may take longer than what a page does.
     pub(crate) async fn ended(&self, id: &str) {
-        let deadline = Instant::now() + 10 * PATIENCE;
+        let deadline = Instant::now() + 10 * *PATIENCE;
         loop {
             let job = self.fetch(&format!("/api/v1/jobs/{id}")).await;
             if ["succeeded", "failed", "canceled"].iter().any(|state| job["state"] == *state) {
                 return;
             }
             assert!(Instant::now() < deadline, "not ended: {job}");
-            tokio::time::sleep(Duration::from_millis(50)).await;
+            tokio::time::sleep(LOOK_EVERY).await;
         }
     }
 
@@ -173,6 +193,8 @@ impl Browser {
         let size = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
         self.command("Emulation.setDeviceMetricsOverride", size).await;
         assert_eq!(self.value("window.innerWidth").await, json!(width));
+        // Scripts that follow the size of elements have run then.
+        self.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))").await;
     }
 
     /// Whether the system prefers dark pages.
@@ -188,13 +210,13 @@ impl Browser {
 
     /// Waits until a JavaScript expression is true.
     pub(crate) async fn until(&self, expression: &str) {
-        let deadline = Instant::now() + PATIENCE;
+        let deadline = Instant::now() + *PATIENCE;
         while self.value(&format!("Boolean({expression})")).await != json!(true) {
             if Instant::now() > deadline {
                 let page = self.value("document.body.innerText").await;
-                panic!("not within {PATIENCE:?}: {expression}\n{}", page.as_str().unwrap_or_default());
+                panic!("not within {:?}: {expression}\n{}", *PATIENCE, page.as_str().unwrap_or_default());
             }
-            tokio::time::sleep(Duration::from_millis(50)).await;
+            tokio::time::sleep(LOOK_EVERY).await;
         }
     }
 

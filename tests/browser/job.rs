@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 /// Submits the form as it stands and returns the job's id, on whose page the browser then is.
 pub(crate) async fn submit(browser: &Browser) -> String {
-    browser.element("#submit").await.click().await.unwrap();
+    browser.click("#submit").await;
     browser.until("location.pathname.startsWith('/jobs/')").await;
     let path = browser.value("location.pathname").await;
     path.as_str().unwrap().trim_start_matches("/jobs/").to_owned()

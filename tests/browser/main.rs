@@ -7,6 +7,7 @@
 mod accessibility;
 mod browser;
 mod compare;
+mod entry;
 mod form;
 mod help;
 mod job;

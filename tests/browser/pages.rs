@@ -33,13 +33,13 @@ impl Page {
         if self.path == "/" {
             // The form keeps a draft of what was changed; here it starts as for somebody new.
             browser.open("/nowhere").await;
-            browser.value("localStorage.clear()").await;
+            browser.value("(localStorage.clear(), sessionStorage.clear())").await;
         }
         browser.open(&self.path).await;
         browser.until(self.ready).await;
         if self.spoilt {
             browser.fill("/design/helix_angle_deg", "77").await;
-            browser.element("#submit").await.click().await.unwrap();
+            browser.click("#submit").await;
             browser
                 .until("!document.querySelector('#problems').hidden && document.querySelector('[aria-invalid=true]')")
                 .await;

@@ -1,10 +1,11 @@
 //! Child processes that end with the test.
 
+use crate::browser::PATIENCE;
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// A child process whose output is read line by line; killed when dropped, with the processes that it has started
 /// itself (a driver's browser, when a page hangs and the driver cannot close it).
@@ -26,12 +27,12 @@ impl Process {
 
     /// The first thing that `find` finds in a line of output.
     pub(crate) fn wait_for<T>(&self, what: &str, find: impl Fn(&str) -> Option<T>) -> T {
-        let deadline = Instant::now() + Duration::from_secs(20);
+        let deadline = Instant::now() + *PATIENCE;
         let mut seen = Vec::new();
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
             let Ok(line) = self.lines.recv_timeout(left) else {
-                panic!("no {what} in the output within 20 s:\n{}", seen.join("\n"));
+                panic!("no {what} in the output within {:?}:\n{}", *PATIENCE, seen.join("\n"));
             };
             if let Some(found) = find(&line) {
                 return found;

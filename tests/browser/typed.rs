@@ -55,6 +55,8 @@ const NUMBERS: &[(&str, &str, Option<f64>)] = &[
 
 /// What is typed into a list, and its values.
 const LISTS: &[(&str, Option<&[f64]>)] = &[
+    ("200,5; 400,5", Some(&[200.5, 400.5])),
+    ("200,5 mm\n1\u{202f}400,5 mm\n", Some(&[200.5, 1400.5])),
     ("100,5; 200,5; 300,5", Some(&[100.5, 200.5, 300.5])),
     ("100,5;200,5;300,5", Some(&[100.5, 200.5, 300.5])),
     ("100,5\t200,5\t300,5", Some(&[100.5, 200.5, 300.5])),
@@ -87,7 +89,7 @@ async fn f08_numbers_are_read_as_they_are_meant_or_refused() {
             let refused = read["refused"].as_str().is_some_and(|why| why.contains("decimal point"));
             assert_eq!((read["value"].as_f64(), refused), (*expected, expected.is_none()), "{text} {unit}: {read}");
         }
-        let calls: Value = LISTS.iter().map(|(text, _)| json!([text])).collect();
+        let calls: Value = LISTS.iter().map(|(text, _)| json!([text, "mm"])).collect();
         let read = called(browser, module, "readList", &calls).await;
         for ((text, expected), read) in LISTS.iter().zip(read.as_array().unwrap()) {
             let refused = read["refused"].as_str().is_some_and(|why| why.contains("decimal point"));
@@ -117,7 +119,7 @@ async fn f08_a_list_with_decimal_commas_becomes_the_axis_of_a_sweep() {
         input.send_keys("pinion torque").await.unwrap();
         browser.until("document.querySelector('#axis-0-input-list .active')").await;
         input.send_keys("\u{e007}").await.unwrap();
-        browser.element("label:has([name='axis-0-mode'][value='list'])").await.click().await.unwrap();
+        browser.click("label:has([name='axis-0-mode'][value='list'])").await;
         let values = "[data-pointer='/axes/0/values']";
         for (text, expected) in [("100,5; 200,5; 300,5", [100.5, 200.5, 300.5]), ("1 000 Nm; 2 000 Nm; 3 000 Nm", [1000.0, 2000.0, 3000.0])] {
             browser.fill("/axes/0/values", text).await;
@@ -129,7 +131,7 @@ async fn f08_a_list_with_decimal_commas_becomes_the_axis_of_a_sweep() {
         // What can be read in two ways goes nowhere, and the field says why.
         browser.fill("/axes/0/values", "100,5").await;
         browser.until(&format!("document.querySelector(\"{values} .error\").textContent.includes('decimal point')")).await;
-        browser.element("#submit").await.click().await.unwrap();
+        browser.click("#submit").await;
         browser.until("document.querySelector('#problems')?.textContent.includes('decimal point')").await;
         assert_eq!(browser.value("location.pathname").await, json!("/"));
         // A column of a spreadsheet stays a list.
@@ -139,7 +141,7 @@ async fn f08_a_list_with_decimal_commas_becomes_the_axis_of_a_sweep() {
         browser.driver.execute(paste, vec![json!(format!("{values} input"))]).await.unwrap();
         assert_eq!(document(browser).await["axes"][0]["values"], json!([100.5, 200.5, 300.5]));
         // So do the ends of a range.
-        browser.element("label:has([name='axis-0-mode'][value='range'])").await.click().await.unwrap();
+        browser.click("label:has([name='axis-0-mode'][value='range'])").await;
         browser.fill("/axes/0/from", "0,5").await;
         browser.fill("/axes/0/to", "1 000 N·m").await;
         let axis = &document(browser).await["axes"][0];

@@ -4,7 +4,7 @@ mod drawing;
 
 use super::axes::check_axes;
 use super::prepare::{Prepared, geometry, prepare};
-use super::{CheckReport, demand, vibration};
+use super::{CheckReport, demand, derived, vibration};
 use crate::DocumentError;
 use crate::document::{JobDocument, JobKind};
 
@@ -59,6 +59,7 @@ impl CheckedJob {
             supports: (self.document.kind != JobKind::Mesh).then(|| self.prepared.supports.clone()),
             memory_mib: demand(&self.document, 1).total_mib(),
             warnings: self.prepared.warnings.clone(),
+            derived: derived::values(&self.document, &self.prepared),
         }
     }
 }

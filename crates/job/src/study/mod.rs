@@ -9,6 +9,7 @@ mod campbell;
 mod check;
 mod compliance;
 mod demand;
+mod derived;
 mod equations;
 mod gear_findings;
 mod hash;
@@ -36,6 +37,7 @@ use serde::{Deserialize, Serialize};
 
 pub use check::CheckedJob;
 pub use demand::{Demand, demand};
+pub use derived::DerivedValue;
 pub use hash::input_hash;
 pub use points::{LineEnd, NoPointStore, PointStore, StoredPoints};
 pub use vibration::is_channel;
@@ -161,6 +163,8 @@ pub struct CheckReport {
     pub memory_mib: f64,
     #[cfg_attr(feature = "schema", schema(value_type = Vec<crate::result::WarningEntry>))]
     pub warnings: Vec<Warning>,
+    /// Values that the rest of the document gives to fields which can be left out.
+    pub derived: Vec<DerivedValue>,
 }
 
 impl SolveError {

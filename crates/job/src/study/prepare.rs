@@ -9,7 +9,7 @@ use herringbone_physics::gear::{self, Pair, PairSpec};
 use herringbone_physics::{compliance, contact};
 
 /// Default bore as a fraction of the reference diameter, where none is given.
-const DEFAULT_BORE_FRACTION: f64 = 0.4;
+pub(super) const DEFAULT_BORE_FRACTION: f64 = 0.4;
 
 /// A document with a feasible pair: geometry, inertias and operating point in SI.
 #[derive(Debug, Clone)]
@@ -121,6 +121,12 @@ fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
     }
 }
 
+/// Bore of a gear for which none is given.
+pub(super) fn default_bore_mm(design: &doc::DesignInput, gear: &doc::GearInput) -> f64 {
+    let reference_mm = design.normal_module_mm * f64::from(gear.teeth) / design.helix_angle_deg.to_radians().cos();
+    DEFAULT_BORE_FRACTION * reference_mm
+}
+
 fn gear_spec(
     design: &doc::DesignInput,
     gear: &doc::GearInput,
@@ -128,8 +134,7 @@ fn gear_spec(
     warnings: &mut Vec<Warning>,
 ) -> gear::GearSpec {
     let bore_diameter_mm = gear.bore_diameter_mm.unwrap_or_else(|| {
-        let reference_mm = design.normal_module_mm * f64::from(gear.teeth) / design.helix_angle_deg.to_radians().cos();
-        let assumed_mm = DEFAULT_BORE_FRACTION * reference_mm;
+        let assumed_mm = default_bore_mm(design, gear);
         warnings.push(Warning {
             code: "bore-assumed".to_owned(),
             pointer: format!("{pointer}/bore_diameter_mm"),

@@ -1,5 +1,7 @@
 // Building and filling elements. Text goes in as text nodes only: nothing from a job is ever read as HTML.
 
+import { codeWords, placeOf, readable } from "./sentence.js";
+
 /**
  * The element of the page's template with this id.
  * @template {keyof TemplateElements} Id
@@ -116,10 +118,10 @@ export function notify(node, error) {
   if (!error) return;
   /** @type {ProblemBody} */
   const problem = error.problem ?? { title: String(error.message ?? error) };
-  const details = (problem.errors ?? []).map((entry) => el("li", {}, [entry.pointer, entry.detail].filter(Boolean).join(" ")));
+  const details = (problem.errors ?? []).map((entry) => el("li", {}, [placeOf(entry.pointer), readable(entry.detail)].filter(Boolean).join(" ")));
   node.replaceChildren(
     el("strong", {}, problem.title ?? "The request failed"),
-    problem.detail ? ` ${problem.detail}` : "",
+    problem.detail ? ` ${readable(problem.detail)}` : "",
     details.length ? el("ul", {}, ...details) : "",
     problem.request_id ? el("p", { class: "help" }, `Request ${problem.request_id}`) : "",
   );
@@ -133,7 +135,7 @@ export function notify(node, error) {
 export function fillWarnings(list, warnings) {
   list.replaceChildren(
     ...(warnings ?? []).map((warning) =>
-      el("li", {}, el("strong", {}, warning.code.replaceAll("-", " ")), " ", warning.detail, warning.pointer ? el("code", {}, ` ${warning.pointer}`) : null),
+      el("li", {}, el("strong", {}, codeWords(warning.code)), ` ${readable(warning.detail)}`, warning.pointer ? el("span", { class: "muted" }, ` (${placeOf(warning.pointer)})`) : null),
     ),
   );
 }

@@ -4,7 +4,7 @@ import { UNIT_SYMBOLS } from "./units.js";
 
 /** Endings of field names and the units they stand for; longer endings first. */
 const UNITS = [
-  ["_kg_m2", "kg·m²"], ["_kg_m3", "kg/m³"], ["_n_per_um", "N/µm"], ["_n_per_mm", "N/mm"], ["_m_s2", "m/s²"], ["_m_s", "m/s"],
+  ["_nm_per_rad", "N·m/rad"], ["_n_per_mm_um", "N/(mm·µm)"], ["_kg_m2", "kg·m²"], ["_kg_m3", "kg/m³"], ["_n_per_um", "N/µm"], ["_n_per_mm", "N/mm"], ["_m_s2", "m/s²"], ["_m_s", "m/s"],
   ["_percent", "%"], ["_mpa", "MPa"], ["_gpa", "GPa"], ["_deg", "°"], ["_rad", "rad"], ["_rpm", "r/min"], ["_hz", "Hz"],
   ["_nm", "N·m"], ["_mm", "mm"], ["_um", "µm"], ["_us", "µs"], ["_ms", "ms"], ["_kg", "kg"], ["_n", "N"], ["_m", "m"],
 ];

@@ -2,6 +2,7 @@
 
 import { byId, el } from "../common/dom.js";
 import { age } from "../common/format.js";
+import { readable } from "../common/sentence.js";
 import { describeState, stateBadge } from "../common/state.js";
 import { MOST } from "./address.js";
 
@@ -79,6 +80,6 @@ function facts(job) {
   const base = `${job.kind}, ${age(job.submitted_at)}`;
   if (job.state === "succeeded") return [job.kind === "mesh" ? `${base}; stages up to the impact, no vibration` : base];
   /** @type {Record<string, string>} */
-  const words = { queued: "It waits for a worker; its result appears here.", running: "Its result appears here.", failed: [job.error?.title, job.error?.detail].filter(Boolean).join(": "), canceled: "It has no result; its inputs are compared." };
+  const words = { queued: "It waits for a worker; its result appears here.", running: "Its result appears here.", failed: [job.error?.title, readable(job.error?.detail)].filter(Boolean).join(": "), canceled: "It has no result; its inputs are compared." };
   return [`${base} `, stateBadge(job), ` ${describeState(job)} `, words[job.state]];
 }

@@ -102,6 +102,35 @@ export function isDefault(field) {
   return text === field.default;
 }
 
+/** The document of a pair of which nothing is given yet. @type {() => JobInput} */
+export const emptyDocument = () => ({ design: { pinion: {}, gear: {} }, operation: {} });
+
+/** Text of a field, as it stands in its input. @param {Field} field */
+export const textOf = ({ control, input }) => (control === "boolean" ? String(input.checked) : input.value.trim());
+
+/** Text that a field has for a document. @param {Field} field @param {JobInput} document */
+export function textIn(field, document) {
+  const value = get(document, field.pointer) ?? null;
+  return field.control === "boolean" ? String(value ?? field.default === "true") : asText(field, value);
+}
+
+/** Puts a text into a field. @param {Field} field @param {string} text */
+export function putText(field, text) {
+  if (field.control === "boolean") field.input.checked = text === "true";
+  else field.input.value = text;
+}
+
+/** Whether two texts of a field mean the same. @param {Field} field @param {string} one @param {string} other */
+export function isSame(field, one, other) {
+  if (one === other) return true;
+  if (field.control === "words") return one.split(/[\s,;]+/).join() === other.split(/[\s,;]+/).join();
+  if (one === "" || other === "") return false;
+  if (field.control === "numbers") return readList(one, unitOf(field)).values?.join() === readList(other, unitOf(field)).values?.join();
+  if (field.control !== "number" && field.control !== "integer") return false;
+  const value = readField(one, field.unit).value;
+  return value !== undefined && value === readField(other, field.unit).value;
+}
+
 /** Members of documents without a field in the form: kept, so that the server reports the violations. */
 const extras = new Map();
 
@@ -131,9 +160,7 @@ export function writeDocument(form, document) {
   const known = new Set();
   for (const field of fieldsOf(form)) {
     known.add(field.pointer);
-    const value = get(document, field.pointer);
-    if (field.control === "boolean") field.input.checked = (value ?? field.default === "true") === true;
-    else field.input.value = asText(field, value ?? null);
+    putText(field, textIn(field, document));
   }
   extras.clear();
   const places = [...known];

@@ -70,6 +70,15 @@ export function initDrawing() {
     fade() {
       byId("drawing").classList.add("stale");
     },
+    /** No pair is drawn. */
+    clear() {
+      movers = [];
+      for (const root of [section, plane]) {
+        const texts = [...root.children].filter((node) => node.matches("title, desc"));
+        texts.forEach((node, index) => { node.textContent = index ? "" : "No pair yet"; });
+        root.replaceChildren(...texts);
+      }
+    },
   };
 }
 

@@ -2,10 +2,12 @@
 
 import * as api from "../common/api.js";
 import { byId, download, el, show } from "../common/dom.js";
+import { changesFrom, showChanges } from "./changes.js";
 import { initCheck } from "./check.js";
-import { applyConditions, dropExtras, extraPointers, readDocument, writeDocument } from "./document.js";
-import { keepDraft, keepSubmitted } from "./draft.js";
-import { showErrors, showReadings } from "./errors.js";
+import { initDependent } from "./dependent.js";
+import { applyConditions, dropExtras, extraPointers, fieldsOf, readDocument, textOf, writeDocument } from "./document.js";
+import { dropDraft, keepDraft, keepSubmitted } from "./draft.js";
+import { forgetEdits, linkTo, noteEdit, requireAll, say, showReadings } from "./errors.js";
 import { initHelp } from "./help.js";
 import { initStart } from "./start.js";
 import { initResets, showWhatIsSet } from "./summary.js";
@@ -13,35 +15,117 @@ import { initSweep } from "./sweep.js";
 
 const CHECK_AFTER_MS = 250;
 
+/** @typedef {import("./start.js").Contents} Contents */
+
 const form = byId("design");
-const check = initCheck(form);
+const dependent = initDependent(form, changed);
+const check = initCheck(form, { checked, refused: () => { dependent.fade(); showReadings(form); } });
 /** @type {number | undefined} */
 let timer;
 let touched = false;
+/** Number of checks that were started. */
+let checks = 0;
+/** @type {import("./draft.js").Start} */
+let started = { kind: "example", title: "the example pair", document: readDocument(form) };
+/** Name and label of the example, taken out when it became another pair. @type {Record<string, string>} */
+let takenOut = {};
+/** Whether the name of the start is wanted for a document that differs from it. */
+let nameKept = false;
+/** The document that the form was filled with, until its derived values are known. @type {JobInput | null} */
+let unsettled = null;
+/** @type {Promise<void>} */
+let settling = Promise.resolve();
+
+/** @returns {Contents} */
+const contents = () => ({ document: readDocument(form), start: started, entered: dependent.entered(), nameKept });
+
+/** A check is due or runs: the form says so until its answer is shown. */
+function awaitCheck() {
+  form.dataset.pending = "";
+  checks += 1;
+  return checks;
+}
 
 /** Brings the page in line with the fields, and starts a check a moment later. */
 function refresh() {
   applyConditions(form);
+  takeNameOut();
   showWhatIsSet(form);
   showReadings(form);
+  showChanges(form, started, dependent.stale());
   const document = readDocument(form);
   byId("document-text").textContent = JSON.stringify(document, null, 2);
   showExtras();
+  check.stop();
   clearTimeout(timer);
-  timer = setTimeout(() => {
-    if (touched) keepDraft(document);
-    check.run(document);
+  const mine = awaitCheck();
+  timer = setTimeout(async () => {
+    if (touched) keep();
+    await check.run(document);
+    if (mine === checks) delete form.dataset.pending;
   }, CHECK_AFTER_MS);
+}
+
+/** Keeps what stands in the form, unless it is what it was started with. */
+function keep() {
+  const now = contents();
+  if (JSON.stringify(now.document) === JSON.stringify(started.document)) dropDraft();
+  else keepDraft(now);
 }
 
 function changed() {
   touched = true;
+  if (unsettled) {
+    const first = unsettled;
+    unsettled = null;
+    // Of a document that is refused no derived values are known: the first that can be checked counts.
+    settling = api.validate(first).then(({ derived }) => dependent.settle(first, derived), () => {});
+  }
   refresh();
+}
+
+/** @param {CheckedDocument} report @returns {Promise<import("./document.js").Field[]>} */
+async function checked({ derived }) {
+  unsettled = null;
+  await settling;
+  dependent.update(derived);
+  showReadings(form);
+  const stale = dependent.stale();
+  showChanges(form, started, stale);
+  return stale;
+}
+
+const NAMES = ["/name", "/label"];
+
+/** Takes the example's name and label out as soon as the document is no longer the example. */
+function takeNameOut() {
+  const changes = changesFrom(form, started).map(({ field: { pointer } }) => pointer).filter((pointer) => !NAMES.includes(pointer));
+  const isExample = started.kind === "example";
+  const isOtherDesign = changes.some((pointer) => pointer.startsWith("/design/"));
+  for (const field of fieldsOf(form).filter(({ pointer }) => NAMES.includes(pointer))) {
+    const given = started.document[field.pointer.slice(1)] ?? "";
+    const isOfTheStart = given !== "" && textOf(field) === given;
+    if (isExample && changes.length && isOfTheStart && !nameKept) {
+      takenOut[field.pointer] = given;
+      field.input.value = "";
+    }
+    if (textOf(field) !== "") delete takenOut[field.pointer];
+    const back = el("button", { type: "button", class: "quiet", "aria-label": `${field.label}: Put it back` }, "Put it back");
+    back.addEventListener("click", () => {
+      nameKept = true;
+      field.input.value = given;
+      field.input.focus();
+      changed();
+    });
+    if (takenOut[field.pointer]) say(field, "stale", ["the example’s was taken out: this is no longer the example ", back]);
+    else say(field, "stale", isOfTheStart && !isExample && isOtherDesign ? [`still that of ${started.title}`] : []);
+  }
 }
 
 /** Shows the members of the document without a field: they are kept until they are removed. */
 function showExtras() {
-  const names = extraPointers();
+  const places = extraPointers().map((pointer) => pointer.split("/").filter((name) => name && !/^\d+$/.test(name)).join(" › "));
+  const names = [...new Set(places)].map((name) => `“${name}”`);
   const note = byId("extras");
   show(note, names.length > 0);
   if (!names.length) return;
@@ -54,14 +138,18 @@ function showExtras() {
   note.replaceChildren(`Not in this form, kept in the document: ${names.join(", ")} `, remove);
 }
 
-/** Fills the form from a document; without one it stays as it is. @param {JobInput} document */
-function fill(document) {
-  if (document) {
-    writeDocument(form, document);
-    changed();
-  } else {
-    refresh();
-  }
+/** Fills the form; what was chosen by hand is kept as a draft. @param {Contents} filled @param {boolean} [isChosen] */
+function fill({ document, start, entered, nameKept: kept = false }, isChosen = false) {
+  writeDocument(form, document);
+  started = start;
+  takenOut = {};
+  nameKept = kept;
+  forgetEdits();
+  dependent.reset(entered);
+  if (start.kind === "empty") check.clear();
+  unsettled = document;
+  touched = isChosen;
+  refresh();
 }
 
 /** @param {Event} event */
@@ -71,17 +159,54 @@ async function submit(event) {
   check.stop();
   const button = byId("submit");
   button.disabled = true;
+  awaitCheck();
+  requireAll();
   const document = readDocument(form);
   try {
+    const { derived } = await api.validate(document);
+    await settling;
+    dependent.update(derived);
+    if (dependent.stale().length) {
+      button.disabled = false;
+      return askAboutStale();
+    }
     const job = await api.submit(document, api.newKey());
-    keepSubmitted(document);
+    keepSubmitted({ ...contents(), document }, job.id);
     window.location.assign(`/jobs/${encodeURIComponent(job.id)}`);
   } catch (error) {
-    if (touched) keepDraft(document);
+    if (touched) keep();
     check.notSubmitted(error);
-    showErrors(form, error, { summary: true });
     button.disabled = false;
+    delete form.dataset.pending;
   }
+}
+
+/** Asks what shall become of values that were entered for another geometry, before anything is submitted. */
+async function askAboutStale() {
+  await check.run(readDocument(form));
+  const stale = dependent.stale();
+  const answer = (text, act) => {
+    const button = el("button", { type: "button" }, text);
+    button.addEventListener("click", () => {
+      act();
+      touched = true;
+      refresh();
+      form.requestSubmit();
+    });
+    return button;
+  };
+  const one = stale.length === 1;
+  const problems = byId("problems");
+  problems.replaceChildren(
+    el("strong", {}, `Not submitted yet: ${one ? "a value was" : `${stale.length} values were`} entered for another geometry.`),
+    el("ul", {}, ...stale.map((field) => el("li", {}, linkTo(field), ` ${[textOf(field), field.unit].filter(Boolean).join(" ")}`))),
+    el("p", { class: "actions" },
+      answer(one ? "Use the derived value and submit" : "Use the derived values and submit", dependent.useAll), " ",
+      answer(one ? "Keep it and submit" : "Keep them and submit", dependent.keepAll)),
+  );
+  show(problems);
+  problems.focus();
+  delete form.dataset.pending;
 }
 
 async function copyCurl() {
@@ -126,16 +251,30 @@ function pasteList(event) {
   changed();
 }
 
-/** @param {Event} event */
-const isOfAField = (event) => /** @type {Element} */ (event.target).closest("[data-pointer]") !== null;
-form.addEventListener("input", (event) => isOfAField(event) && changed());
+form.addEventListener("input", (event) => {
+  const box = /** @type {HTMLElement | null} */ (/** @type {Element} */ (event.target).closest("[data-pointer]"));
+  if (!box) return;
+  noteEdit(box.dataset.pointer ?? "");
+  changed();
+});
 form.addEventListener("paste", pasteList);
 form.addEventListener("submit", submit);
 form.addEventListener("keydown", (event) => {
-  if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) form.requestSubmit();
+  if (event.key !== "Enter") return;
+  if (event.ctrlKey || event.metaKey) {
+    event.preventDefault();
+    form.requestSubmit();
+  } else if (/** @type {Element} */ (event.target).matches("input")) {
+    // It would submit from every field.
+    event.preventDefault();
+  }
 });
 byId("copy-curl").addEventListener("click", copyCurl);
 byId("download").addEventListener("click", save);
+byId("show-problems").addEventListener("click", () => {
+  const open = byId("check-bar").classList.toggle("open");
+  byId("show-problems").setAttribute("aria-expanded", String(open));
+});
 byId("sections").addEventListener("click", (event) => {
   const link = /** @type {Element} */ (event.target).closest("a");
   if (link) /** @type {HTMLDetailsElement} */ (document.querySelector(link.hash)).open = true;
@@ -144,4 +283,11 @@ show(byId("problems"), false);
 initHelp(form);
 initResets(form, changed);
 initSweep(form, { readDocument: () => readDocument(form), changed });
-initStart({ fill, read: () => readDocument(form), failed: (error) => showErrors(form, error, { summary: true }) })();
+const start = initStart({ fill, read: contents });
+start();
+// Back from the job, where the browser has kept the page as it was.
+window.addEventListener("pageshow", (event) => {
+  if (!event.persisted) return;
+  byId("submit").disabled = false;
+  start();
+});

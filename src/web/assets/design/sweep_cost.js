@@ -59,6 +59,12 @@ function timeOf(document, axes, lengths, points) {
 
 const size = (kilobytes) => (kilobytes < 1000 ? `${number(Math.max(1, Math.round(kilobytes)))} kB` : `${number(kilobytes / 1000, 2)} MB`);
 
+/** A duration for people: two digits, seconds to hours. @param {number} seconds */
+export function durationOf(seconds) {
+  if (seconds < 0.1) return "less than 0.1 s";
+  return seconds < 10 ? `${number(seconds, 2)} s` : duration(seconds);
+}
+
 function duration(seconds) {
   if (seconds < 1) return "a fraction of a second";
   if (seconds < 90) return `${number(Math.ceil(seconds))} s`;

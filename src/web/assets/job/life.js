@@ -3,6 +3,7 @@
 import * as api from "../common/api.js";
 import { byAnyId, byId, el, fillValues, notify, show } from "../common/dom.js";
 import { instant, number, percent, seconds, sentence } from "../common/format.js";
+import { placeOf, readable } from "../common/sentence.js";
 
 const STAGES = { geometry: "Geometry", mesh: "Tooth contact", impact: "Mesh-in impact", response: "Vibration" };
 const STAGES_OF = { mesh: ["geometry", "mesh", "impact"], response: ["geometry", "mesh", "impact", "response"] };
@@ -157,7 +158,7 @@ async function showFailure({ error }) {
   if (!error || !box.hidden) return;
   show(box);
   byId("failure-title").textContent = error.title;
-  byId("failure-detail").textContent = sentence(error.detail);
+  byId("failure-detail").textContent = sentence(readable(error.detail));
   fillValues(byId("failure-values"), [
     ["Stage", STAGES[error.stage] ?? error.stage],
     ["Simulated time", typeof error.sim_time_s === "number" ? number(error.sim_time_s, 4) : null, "s"],
@@ -165,7 +166,7 @@ async function showFailure({ error }) {
     ["Code", el("a", { href: error.type }, error.code)],
     ["Request", error.request_id],
   ]);
-  byId("failure-errors").replaceChildren(...(error.errors ?? []).map((entry) => el("li", {}, [entry.pointer, entry.detail].filter(Boolean).join(" "))));
+  byId("failure-errors").replaceChildren(...(error.errors ?? []).map((entry) => el("li", {}, [placeOf(entry.pointer), readable(entry.detail)].filter(Boolean).join(" "))));
   await explain(error);
 }
 

@@ -3,6 +3,7 @@
 import * as api from "../common/api.js";
 import { el, show } from "../common/dom.js";
 import { age, dayAndTime, instant, number } from "../common/format.js";
+import { readable } from "../common/sentence.js";
 import { duration, durationOf, nameOf } from "./words.js";
 
 /**
@@ -149,7 +150,7 @@ function stageOf(job) {
   if (!api.isEnded(job) && job.cancel_requested_at) return ["canceling …", ""];
   if (job.state === "running") return [[percent(job.progress ?? 0), job.stage].filter(Boolean).join(" · "), ""];
   if (job.state === "queued" && job.attempt > 0) return ["waits to go on", "It was interrupted, and goes on when a worker is free"];
-  if (job.state === "failed") return [job.error?.title ?? "", job.error?.detail ?? ""];
+  if (job.state === "failed") return [job.error?.title ?? "", readable(job.error?.detail)];
   if (job.reused_from) return ["result of an equal job", "The input was the same: the stored result was taken"];
   return ["", ""];
 }
