@@ -78,6 +78,13 @@ export function tip(name, { help, theory }) {
 }
 
 /**
+ * A name that leads to formula, source and validity of its number.
+ * @param {Explained & { label: string, pointer: string }} scalar
+ * @param {string} [shown]
+ */
+export const theoryLink = ({ label, pointer, theory }, shown = label) => el("a", { href: `/help/theory/${theory}`, title: pointer }, shown);
+
+/**
  * A name with its "?".
  * @param {string} name
  * @param {Explained} explained

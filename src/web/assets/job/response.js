@@ -1,6 +1,6 @@
 // RMS tables, and the character of the response.
 
-import { byId, explained, fillRows, fillValues, show } from "../common/dom.js";
+import { byId, fillRows, fillValues, show, theoryLink } from "../common/dom.js";
 import { number, sentence, shownUnit } from "../common/format.js";
 import { rowsFrom, scalarAt } from "../common/scalars.js";
 import { channelWords, contactWords, regimeWords } from "./words.js";
@@ -12,7 +12,7 @@ export function showResponse({ result: { response }, catalogue, input }) {
   /** @param {{ low?: number | null, high?: number | null }} [interval] */
   const unsure = ({ low, high } = {}) => (typeof low === "number" ? ` (${number(low, 4)} to ${number(high, 4)})` : "");
   /** @param {"mesh_circumferential_acceleration_m_s2" | "pinion_axial_acceleration_m_s2"} quantity */
-  const row = (quantity) => [explained(scalarAt(`/response/rms/${quantity}/{half}`).label, scalarAt(`/response/rms/${quantity}/{half}`)), .../** @type {const} */ (["left", "right"]).map((half) => number(rms[quantity]?.[half]) + unsure(intervals?.[quantity]?.[half])), scalarAt(`/response/rms/${quantity}/{half}`).unit];
+  const row = (quantity) => [theoryLink(scalarAt(`/response/rms/${quantity}/{half}`)), .../** @type {const} */ (["left", "right"]).map((half) => number(rms[quantity]?.[half]) + unsure(intervals?.[quantity]?.[half])), scalarAt(`/response/rms/${quantity}/{half}`).unit];
   fillRows(byId("rms").tBodies[0], [row("mesh_circumferential_acceleration_m_s2"), row("pinion_axial_acceleration_m_s2")]);
   byId("rms-note").textContent = intervals ? "In brackets: where the true values lie with 95 % probability; the motion does not repeat, and the record is finite." : "";
   fillValues(byId("response-values"), responseValues(response, input));
