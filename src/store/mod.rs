@@ -38,7 +38,7 @@ pub use lifecycle::{JobId, JobState};
 pub use list::{JobFilter, JobListPage};
 pub use lookup::JobCounts;
 pub use open_error::OpenError;
-pub use points::{LineEndRow, PointBatch, PointRow, PointsDigest, RowsSummary};
+pub use points::{EndStateRow, LineEndRow, PointBatch, PointRow, PointsDigest, RowsSummary};
 pub use record::JobRecord;
 pub use result::{ReusableResult, StoredResult};
 pub use retention::RetentionConfig;
