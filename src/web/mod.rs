@@ -26,7 +26,7 @@ use axum::{Extension, Router};
 pub const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; \
                                            base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
-/// The pages `/`, `/jobs`, `/jobs/{id}`, `/jobs/{id}/report`, `/compare` and the files under `/assets/`. `has_login`:
+/// The pages `/`, `/jobs`, `/jobs/{id}`, `/jobs/{id}/report`, `/compare`, `/compare/report` and the files under `/assets/`. `has_login`:
 /// the service has a token, so that the pages offer to log out.
 pub fn routes(has_login: bool) -> Router {
     Router::new()
@@ -35,10 +35,13 @@ pub fn routes(has_login: bool) -> Router {
         .route("/jobs/{id}", get(pages::job))
         .route("/jobs/{id}/report", get(pages::report))
         .route("/compare", get(pages::compare))
+        .route("/compare/report", get(pages::compare_report))
         .route("/assets/plotly.js", get(plotly::script))
         .route("/assets/plotly.css", get(plotly::stylesheet))
         .route("/assets/presets.json", get(presets::presets))
         .route("/assets/{*file}", get(assets::file))
+        // Asked for by browsers where a page links no icon.
+        .route("/favicon.ico", get(assets::favicon))
         .layer(Extension(pages::HasLogin(has_login)))
 }
 

@@ -10,7 +10,7 @@ fn server() -> TestServer {
 
 #[tokio::test]
 async fn pages_are_html_under_the_policy() {
-    for path in ["/", "/jobs", "/jobs/0190", "/jobs/0190/report", "/compare"] {
+    for path in ["/", "/jobs", "/jobs/0190", "/jobs/0190/report", "/compare", "/compare/report"] {
         let answer = server().get(path).await;
         answer.assert_status_ok();
         assert_eq!(answer.header(header::CONTENT_TYPE), "text/html; charset=utf-8", "{path}");
@@ -29,7 +29,7 @@ async fn unknown_addresses_get_a_page_that_says_so() {
 
 #[tokio::test]
 async fn no_page_has_inline_code_or_outside_addresses() {
-    for path in ["/", "/jobs", "/jobs/0190", "/jobs/0190/report", "/compare", "/nowhere"] {
+    for path in ["/", "/jobs", "/jobs/0190", "/jobs/0190/report", "/compare", "/compare/report", "/nowhere"] {
         let text = server().get(path).await.text();
         for forbidden in ["http://", "https://", "style=", "<style", "onclick=", "javascript:"] {
             assert!(!text.contains(forbidden), "{forbidden} in {path}");
@@ -44,13 +44,22 @@ async fn no_page_has_inline_code_or_outside_addresses() {
 #[tokio::test]
 async fn everything_a_page_links_to_exists() {
     let server = server();
-    for path in ["/", "/jobs", "/jobs/0190", "/jobs/0190/report", "/compare", "/nowhere"] {
+    for path in ["/", "/jobs", "/jobs/0190", "/jobs/0190/report", "/compare", "/compare/report", "/nowhere"] {
         let text = server.get(path).await.text();
         for (start, _) in text.match_indices("\"/assets/") {
             let address = text[start + 1..].split('"').next().unwrap_or_default();
             server.get(address).await.assert_status_ok();
         }
     }
+}
+
+#[tokio::test]
+async fn browsers_find_the_icon_where_they_look_for_it() {
+    let answer = server().get("/favicon.ico").await;
+    answer.assert_status_ok();
+    assert_eq!(answer.header(header::CONTENT_TYPE), "image/vnd.microsoft.icon");
+    // The head of an icon file: reserved, type 1, number of images.
+    assert_eq!(answer.as_bytes()[..6], [0, 0, 1, 0, 3, 0]);
 }
 
 #[tokio::test]
