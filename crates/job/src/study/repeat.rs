@@ -51,24 +51,32 @@ fn motion_hash(document: &JobDocument) -> String {
     input_hash(&document)
 }
 
+/// Warning of a document with the start of a point of a sweep, but other inputs than the point has.
+pub(super) fn changed_inputs(document: &JobDocument) -> Option<Warning> {
+    let point = document.sweep_point.as_ref()?;
+    document.analysis.initial_state.as_ref()?;
+    (motion_hash(document) != point.input_hash).then(|| Warning {
+        code: "initial-state-of-other-inputs".to_owned(),
+        pointer: "/analysis/initial_state".to_owned(),
+        detail: format!(
+            "inputs were changed since the start of the motion was taken from point {} of a sweep; without the given \
+             initial state the motion is found from rest, and may be another one",
+            point.position + 1
+        ),
+    })
+}
+
 /// Warnings of a job that repeats a point of a sweep: that its motion is another one than the sweep's, that it may be,
 /// or that its start belongs to other inputs.
 pub(super) fn warnings(document: &JobDocument, result: &JobResult) -> Vec<Warning> {
     let Some(point) = &document.sweep_point else { return Vec::new() };
-    let warning = |code: &str, pointer: &str, detail: String| {
-        vec![Warning { code: code.to_owned(), pointer: pointer.to_owned(), detail }]
+    if motion_hash(document) != point.input_hash {
+        return changed_inputs(document).into_iter().collect();
+    }
+    let of_point = |code: &str, detail: String| {
+        vec![Warning { code: code.to_owned(), pointer: "/sweep_point".to_owned(), detail }]
     };
     let number = point.position + 1;
-    if motion_hash(document) != point.input_hash {
-        if document.analysis.initial_state.is_none() {
-            return Vec::new();
-        }
-        let detail = format!(
-            "inputs were changed since the start of the motion was taken from point {number} of a sweep; without the \
-             given initial state the motion is found from rest, and may be another one"
-        );
-        return warning("initial-state-of-other-inputs", "/analysis/initial_state", detail);
-    }
     let own = SweepPoint::of_result(Vec::new(), result);
     let theirs = SweepPoint {
         mesh_circumferential_acceleration_rms_m_s2: match point.mesh_circumferential_acceleration_rms_m_s2.as_deref() {
@@ -90,7 +98,7 @@ pub(super) fn warnings(document: &JobDocument, result: &JobResult) -> Vec<Warnin
             "the state from which the sweep reaches its point {number} is not stored, so that the motion is found from \
              rest; where several motions exist it may be another one than the sweep's"
         );
-        return warning("may-differ-from-sweep-point", "/sweep_point", detail);
+        return of_point("may-differ-from-sweep-point", detail);
     };
     let word = |row: &SweepPoint| row.regime.map(|regime| regime.as_str()).unwrap_or_default();
     let differ = branches::differences(&own, &theirs);
@@ -107,7 +115,7 @@ pub(super) fn warnings(document: &JobDocument, result: &JobResult) -> Vec<Warnin
         and(word(&own)),
         and(word(&theirs)),
     );
-    warning("differs-from-sweep-point", "/sweep_point", detail)
+    of_point("differs-from-sweep-point", detail)
 }
 
 #[cfg(test)]
@@ -245,6 +253,8 @@ mod tests {
                 let mut other = upper.0.clone();
                 other.operation.pinion_torque_nm += 1.0;
                 assert_eq!(codes(&solved(&other, &SolveContext::none())), ["initial-state-of-other-inputs"]);
+                let checked = CheckedJob::new(other).expect("feasible").report().warnings;
+                assert!(checked.iter().any(|warning| warning.code == "initial-state-of-other-inputs"));
                 // What is recorded does not matter.
                 let mut recorded = upper.0.clone();
                 recorded.analysis.samples_per_mesh_period = 64;
