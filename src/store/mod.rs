@@ -44,7 +44,7 @@ pub use lifecycle::{JobId, JobState};
 pub use list::{JobFilter, JobListPage, JobOrder, JobSort, ListPlace, SortValue};
 pub use lookup::JobCounts;
 pub use open_error::OpenError;
-pub use points::{LineEndRow, PointBatch, PointRow, PointsDigest, RowsSummary};
+pub use points::{EndStateRow, LineEndRow, PointBatch, PointRow, PointsDigest, RowsSummary};
 pub use record::JobRecord;
 pub use result::{ResultSummary, ReusableResult, StoredResult};
 pub use retention::RetentionConfig;

@@ -24,11 +24,20 @@ pub struct LineEndRow {
     pub state: Option<Vec<f64>>,
 }
 
+/// State of the motion at the end of a point (24 numbers in the source's order), from which its neighbour continues.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EndStateRow {
+    pub position: u64,
+    pub state: Vec<f64>,
+}
+
 /// Points that are solved and not yet stored.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PointBatch {
     pub solver_version: String,
     pub rows: Vec<PointRow>,
+    /// Of points among `rows`.
+    pub end_states: Vec<EndStateRow>,
     pub ends: Vec<LineEndRow>,
 }
 
@@ -49,6 +58,7 @@ impl PointBatch {
     pub fn append(&mut self, mut later: PointBatch) {
         self.solver_version = later.solver_version;
         self.rows.append(&mut later.rows);
+        self.end_states.append(&mut later.end_states);
         self.ends.append(&mut later.ends);
     }
 }
@@ -81,7 +91,7 @@ impl Store {
             .fetch_all(&mut *transaction)
             .await?;
         transaction.commit().await?;
-        Ok(PointBatch { solver_version: solver_version.to_owned(), rows, ends })
+        Ok(PointBatch { solver_version: solver_version.to_owned(), rows, end_states: Vec::new(), ends })
     }
 
     /// Reads up to `limit` rows of a job with positions in `from..to`, in their order.
@@ -99,6 +109,20 @@ impl Store {
         .bind(limit)
         .fetch_all(&self.reader)
         .await?)
+    }
+
+    /// Reads the state at the end of a point; `None` where none is stored.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn point_end_state(&self, id: JobId, position: u64) -> Result<Option<Vec<f64>>, StoreError> {
+        let row = sqlx::query("SELECT end_state FROM sweep_points WHERE job_id = $1 AND position = $2")
+            .bind(id.to_string())
+            .bind(i64::try_from(position).unwrap_or(i64::MAX))
+            .fetch_optional(&self.reader)
+            .await?;
+        let bytes = row.map(|row| row.try_get::<Option<Vec<u8>>, _>("end_state")).transpose()?;
+        Ok(bytes.flatten().map(|bytes| unpack_state(&bytes)))
     }
 
     /// Counts the rows of a job.
@@ -171,8 +195,8 @@ async fn copy_points_of_same_input(
     let Some(source) = source else { return Ok(()) };
     let source: String = source.try_get("id")?;
     sqlx::query(
-        "INSERT INTO sweep_points (job_id, position, solver_version, body) \
-         SELECT $2, position, solver_version, body FROM sweep_points WHERE job_id = $1 AND solver_version = $3",
+        "INSERT INTO sweep_points (job_id, position, solver_version, body, end_state) \
+         SELECT $2, position, solver_version, body, end_state FROM sweep_points WHERE job_id = $1 AND solver_version = $3",
     )
     .bind(&source)
     .bind(id.to_string())
@@ -209,9 +233,16 @@ pub(super) async fn insert_points(
         .execute(&mut **transaction)
         .await?;
     }
+    for EndStateRow { position, state } in &batch.end_states {
+        sqlx::query("UPDATE sweep_points SET end_state = $3 WHERE job_id = $1 AND position = $2")
+            .bind(&id)
+            .bind(*position as i64)
+            .bind(pack_state(state))
+            .execute(&mut **transaction)
+            .await?;
+    }
     for end in &batch.ends {
-        let state: Option<Vec<u8>> =
-            end.state.as_ref().map(|state| state.iter().flat_map(|value| value.to_le_bytes()).collect());
+        let state = end.state.as_deref().map(pack_state);
         sqlx::query(
             "INSERT INTO sweep_line_ends (job_id, line, position, state) VALUES ($1, $2, $3, $4) \
              ON CONFLICT (job_id, line) DO UPDATE SET position = excluded.position, state = excluded.state",
@@ -244,8 +275,8 @@ pub(super) async fn copy_points(
     target: JobId,
 ) -> Result<(), StoreError> {
     sqlx::query(
-        "INSERT INTO sweep_points (job_id, position, solver_version, body) \
-         SELECT $2, position, solver_version, body FROM sweep_points WHERE job_id = $1 \
+        "INSERT INTO sweep_points (job_id, position, solver_version, body, end_state) \
+         SELECT $2, position, solver_version, body, end_state FROM sweep_points WHERE job_id = $1 \
          ON CONFLICT (job_id, position) DO NOTHING",
     )
     .bind(source.to_string())
@@ -253,6 +284,15 @@ pub(super) async fn copy_points(
     .execute(&mut **transaction)
     .await?;
     Ok(())
+}
+
+/// The numbers of a state as little-endian f64.
+fn pack_state(state: &[f64]) -> Vec<u8> {
+    state.iter().flat_map(|value| value.to_le_bytes()).collect()
+}
+
+fn unpack_state(bytes: &[u8]) -> Vec<f64> {
+    bytes.as_chunks::<8>().0.iter().map(|eight| f64::from_le_bytes(*eight)).collect()
 }
 
 /// Digest of the rows of a result, added in the order of their positions: 128 bits of SHA-256, in hexadecimal.
@@ -284,7 +324,7 @@ impl<'r> FromRow<'r, SqliteRow> for LineEndRow {
         Ok(Self {
             line: row.try_get::<i64, _>("line")?.unsigned_abs(),
             position: row.try_get::<i64, _>("position")?.unsigned_abs(),
-            state: state.map(|bytes| bytes.as_chunks::<8>().0.iter().map(|eight| f64::from_le_bytes(*eight)).collect()),
+            state: state.map(|bytes| unpack_state(&bytes)),
         })
     }
 }

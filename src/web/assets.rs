@@ -44,6 +44,11 @@ pub(super) fn answer(content: Content, media_type: &str, headers: &HeaderMap) ->
     (caching, kind, content.data.into_owned()).into_response()
 }
 
+/// `/favicon.ico`
+pub(super) async fn favicon(headers: HeaderMap) -> Response {
+    file(Path("favicon.ico".to_owned()), headers).await
+}
+
 /// The text of a file.
 pub(super) fn text(name: &str) -> Option<String> {
     String::from_utf8(find(name)?.0.data.into_owned()).ok()
@@ -72,6 +77,7 @@ fn find(name: &str) -> Option<(Content, &'static str)> {
         "css" => "text/css; charset=utf-8",
         "js" => "text/javascript; charset=utf-8",
         "svg" => "image/svg+xml",
+        "ico" => "image/vnd.microsoft.icon",
         _ => return None,
     };
     let content = match made(name) {

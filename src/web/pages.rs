@@ -48,6 +48,13 @@ struct ReportPage {
 }
 
 #[derive(Template)]
+#[template(path = "compare_report.html")]
+struct CompareReportPage {
+    has_login: bool,
+    plotly_script: String,
+}
+
+#[derive(Template)]
 #[template(path = "not_found.html")]
 struct NotFoundPage {
     has_login: bool,
@@ -85,6 +92,11 @@ pub(super) async fn job(Extension(HasLogin(has_login)): Site, Path(id): Path<Str
 /// `/compare`: jobs side by side. The page's script reads their ids from the query.
 pub(super) async fn compare(Extension(HasLogin(has_login)): Site) -> Response {
     page(StatusCode::OK, &ComparePage { has_login, plotly_script: plotly::script_url() })
+}
+
+/// `/compare/report`: jobs side by side on paper.
+pub(super) async fn compare_report(Extension(HasLogin(has_login)): Site) -> Response {
+    page(StatusCode::OK, &CompareReportPage { has_login, plotly_script: plotly::script_url() })
 }
 
 /// `/jobs/{id}/report`: one job on paper.

@@ -4,12 +4,13 @@ use super::*;
 use axum::http::StatusCode;
 use axum_test::TestServer;
 
-const PAGES: [&str; 10] = [
+const PAGES: [&str; 11] = [
     "/",
     "/jobs",
     "/jobs/0190",
     "/jobs/0190/report",
     "/compare",
+    "/compare/report",
     "/help",
     "/help/results",
     "/help/inputs",
@@ -73,6 +74,15 @@ async fn everything_a_page_links_to_exists() {
             server.get(address).await.assert_status_ok();
         }
     }
+}
+
+#[tokio::test]
+async fn browsers_find_the_icon_where_they_look_for_it() {
+    let answer = server().get("/favicon.ico").await;
+    answer.assert_status_ok();
+    assert_eq!(answer.header(header::CONTENT_TYPE), "image/vnd.microsoft.icon");
+    // The head of an icon file: reserved, type 1, number of images.
+    assert_eq!(answer.as_bytes()[..6], [0, 0, 1, 0, 3, 0]);
 }
 
 #[tokio::test]

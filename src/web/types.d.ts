@@ -165,6 +165,8 @@ declare global {
   interface PlotAxes {
     x?: AxisTitle;
     y?: AxisTitle;
+    /** Part of the height that the y axis takes; all if left out. */
+    yPart?: number;
     /** A second axis on the right; traces name it by `yaxis: "y2"`. */
     y2?: AxisTitle;
     /** Quantity of a heat map, for its table. */
@@ -173,6 +175,12 @@ declare global {
     name?: string;
     /** Title inside the plot. */
     title?: string;
+    /** Quantity of the y axis where that has its unit alone; the plot's name if left out. For images. */
+    quantity?: string;
+    /** What an image is of beside its name: the page's heading if left out. */
+    subject?: string;
+    /** Colours that the page explains beside the plot: entries of the legend of an image. */
+    keys?: PlotKey[];
     /** Name of its files without ending. */
     csvName?: string;
     /** Ends of the axes; of all data if left out. */
@@ -203,10 +211,16 @@ declare global {
     shapes?: Record<string, any>[];
     annotations?: Record<string, any>[];
     layout?: Record<string, any>;
-    /** Called last with the layout and the colours of the stylesheet by name. */
-    more?: (layout: any, colour: (name: string) => string) => void;
+    /** Called last with the layout, the colours of the stylesheet by name, and the size in pixels. */
+    more?: (layout: any, colour: (name: string) => string, size: { width: number; height: number }) => void;
     /** Called with plotly's event when a point is clicked. */
     click?: (event: any) => void;
+  }
+
+  /** A colour of the stylesheet ("--regime-1") and its meaning. */
+  interface PlotKey {
+    label: string;
+    colour: string;
   }
 
   interface Plot {

@@ -16,7 +16,7 @@ use herringbone_job::document::JobDocument;
 use herringbone_job::result::JobResult;
 use herringbone_job::study::{Outcome, SolveContext, SolveError, Stage};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 use tokio::sync::{oneshot, watch};
@@ -229,11 +229,17 @@ struct SolveTask<'a> {
 impl SolveTask<'_> {
     fn solve(&self, document: JobDocument, input_hash: String, progress: &watch::Sender<Progress>) -> SolveOutcome {
         let started = Instant::now();
+        // Parts that are solved side by side report in any order: progress never goes back.
+        let furthest = Mutex::new(0.0);
         let context = SolveContext {
             stages: self.stages,
             points: self.points,
             progress: &|stage, fraction| {
-                progress.send_replace((stage, fraction));
+                let mut furthest = furthest.lock().unwrap_or_else(PoisonError::into_inner);
+                if fraction >= *furthest {
+                    *furthest = fraction;
+                    progress.send_replace((stage, fraction));
+                }
             },
             canceled: &|| self.stop.is_requested(),
             clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,

@@ -1,6 +1,6 @@
 //! The points of a running sweep: passed on by the threads of the pool, stored together with the progress.
 
-use crate::store::{LineEndRow, PointBatch, PointRow, PointsDigest, RowsSummary};
+use crate::store::{EndStateRow, LineEndRow, PointBatch, PointRow, PointsDigest, RowsSummary};
 use herringbone_job::not_finite;
 use herringbone_job::result::{NotFinite, SweepPoint};
 use herringbone_job::study::{LineEnd, PointStore, StoredPoints};
@@ -99,6 +99,9 @@ impl PointStore for RunningPoints {
         state.positions.insert(position as u64);
         state.unwritten.rows.push(PointRow { position: position as u64, body });
         if let Some(LineEnd { line, position, state: end_state }) = end {
+            let end_state_row =
+                end_state.clone().map(|end_state| EndStateRow { position: *position as u64, state: end_state });
+            state.unwritten.end_states.extend(end_state_row);
             let end = LineEndRow { line: *line as u64, position: *position as u64, state: end_state.clone() };
             // Only the last end of a line is stored.
             state.unwritten.ends.retain(|earlier| earlier.line != end.line);

@@ -340,3 +340,51 @@ async fn a_page_that_ends_where_a_piece_ends_is_whole() {
         assert_eq!(text.lines().count(), n + 1);
     }
 }
+
+#[tokio::test]
+async fn the_document_of_a_point_starts_where_the_sweep_started_it() {
+    let app = app().await;
+    let mut document = sweep("all", 6);
+    document["continuation"] = json!("up");
+    app.solver.breakpoints.hold("point 4");
+    let path = app.submit(&document).await;
+    app.solver.breakpoints.reached("point 4", 1).await;
+    written(&app, &path, 4).await;
+    let point = async |path: &str, position: u64| app.get(&format!("{path}/points/{position}/input")).await.json;
+    let start = |point: &Value| point["analysis"]["initial_state"].clone();
+    let id = path.rsplit('/').next().unwrap();
+    // From rest, from the neighbour, and from a neighbour that is not solved yet.
+    let [first, fourth, last] = [point(&path, 0).await, point(&path, 3).await, point(&path, 5).await];
+    assert_eq!((start(&first), start(&fourth), start(&last)), (Value::Null, json!(vec![2.0; 24]), Value::Null));
+    for (position, point, same_start) in [(0, &first, true), (3, &fourth, true), (5, &last, false)] {
+        let origin = &point["sweep_point"];
+        assert_eq!(
+            (origin["job"].as_str(), origin["position"].as_u64(), origin["same_start"].as_bool()),
+            (Some(id), Some(position), Some(same_start)),
+            "{origin}"
+        );
+    }
+    // A sweep that goes on with the points of a canceled one has their states, a copy of its result too.
+    app.post(&format!("{path}/cancel")).await;
+    app.ended(&path).await;
+    app.solver.breakpoints.release("point 4");
+    let (resumed, _) = app.run(&document).await;
+    assert_eq!(app.solver.breakpoints.count("point 2"), 1);
+    let (copy, job) = app.run(&document).await;
+    assert!(job["reused_from"].is_string());
+    app.delete(&path).await.assert_status(204);
+    app.delete(&resumed).await.assert_status(204);
+    for position in 1..6 {
+        assert_eq!(start(&point(&copy, position).await), json!(vec![position as f64 - 1.0; 24]));
+    }
+    // It is a document to submit, with any method.
+    for method in ["auto", "periodic", "integrate"] {
+        let mut fourth = fourth.clone();
+        fourth["analysis"]["method"] = json!(method);
+        let sent = app.get(&app.submit(&fourth).await).await.json;
+        assert_eq!(
+            app.get(sent["links"]["input"].as_str().unwrap()).await.json["analysis"]["initial_state"],
+            start(&fourth)
+        );
+    }
+}

@@ -36,7 +36,7 @@ pub(crate) async fn submit_document(browser: &Browser, document: &Value) -> Stri
 
 /// Elements that reach beyond the right edge of the window, but those that scroll inside.
 pub(crate) const STICKING_OUT: &str = "[...document.querySelectorAll('main *')].filter((node) => node.getBoundingClientRect().right > \
-     window.innerWidth && !node.closest('.scroll, .visually-hidden, defs, clipPath, dialog:not([open])')).map((node) => \
+     window.innerWidth && !node.closest('.scroll, .visually-hidden, defs, clipPath, .drawing svg > *, dialog:not([open])')).map((node) => \
      `${node.tagName} ${node.id} ${node.getAttribute('class')}`)";
 
 /// Nothing that is missing shows as a word of the programming language.

@@ -86,7 +86,9 @@ pub(crate) async fn all(browser: &Browser) -> Vec<Page> {
         Page::new("report", format!("/jobs/{response}/report"), SHOWN).with_plot(),
         Page::new("mesh", format!("/jobs/{mesh}"), SHOWN).with_plot(),
         Page::new("sweep", format!("/jobs/{sweep}"), SHOWN).with_plot(),
+        Page::new("report of a sweep", format!("/jobs/{sweep}/report"), SHOWN).with_plot(),
         Page::new("compare", format!("/compare?jobs={response},{other}"), COMPARED).with_plot(),
+        Page::new("report of a comparison", format!("/compare/report?jobs={response},{other}"), SHOWN).with_plot(),
         Page::new("compare nothing", "/compare", "document.querySelector('#compare').dataset.ready !== undefined"),
         Page::new(
             "failed job",

@@ -140,6 +140,28 @@ async fn both_branches_show_jumps_and_a_point_opens_as_a_response_of_its_own() {
         let of_row = rms(&result["sweep"]["points"][0]["mesh_circumferential_acceleration_rms_m_s2"]);
         let of_job = rms(&response["response"]["rms"]["mesh_circumferential_acceleration_m_s2"]);
         assert!((of_job / of_row - 1.0).abs() < 1e-3, "{of_job} on its own, {of_row} in the sweep");
+        // Where two motions exist the points of both branches are what they are in the sweep.
+        let points = &result["sweep"]["points"];
+        let of_point = |at: usize| rms(&points[at]["mesh_circumferential_acceleration_rms_m_s2"]);
+        let twofold: Vec<usize> = (0..21).filter(|at| of_point(*at) < 0.9 * of_point(at + 21)).collect();
+        assert!(twofold.len() > 2, "{twofold:?}");
+        for at in [twofold[0], twofold[0] + 21, twofold[twofold.len() - 1] + 21] {
+            let document = browser.fetch(&format!("/api/v1/jobs/{id}/points/{at}/input")).await;
+            let own = browser.solved(&document).await;
+            let own = browser.fetch(&format!("/api/v1/jobs/{own}/result")).await;
+            let of_job = rms(&own["response"]["rms"]["mesh_circumferential_acceleration_m_s2"]);
+            assert_eq!((of_job, &own["response"]["regime"]), (of_point(at), &points[at]["regime"]), "point {at}");
+            assert!(!own["warnings"].to_string().contains("sweep-point"), "{}", own["warnings"]);
+        }
+        // Without the start, the job says that it is another motion than the sweep's.
+        let mut from_rest = browser.fetch(&format!("/api/v1/jobs/{id}/points/{}/input", twofold[0] + 21)).await;
+        from_rest["analysis"].as_object_mut().unwrap().remove("initial_state");
+        from_rest["sweep_point"]["input_hash"] = json!("");
+        let other = browser.solved(&from_rest).await;
+        let other = browser.fetch(&format!("/api/v1/jobs/{other}/result")).await;
+        assert!(
+            rms(&other["response"]["rms"]["mesh_circumferential_acceleration_m_s2"]) < 0.9 * of_point(twofold[0] + 21)
+        );
         // The way back leads to the same point.
         browser.driver.back().await.unwrap();
         browser.until("document.querySelector('#sweep-point-title')?.textContent.includes('10 500 r/min')").await;

@@ -119,6 +119,7 @@ fn axes(document: &mut Value, is_sweep: bool) {
         ["axes", "continuation", "record"].iter().for_each(|name| drop(fields.remove(*name)));
         return;
     }
+    fields.remove("sweep_point");
     let one = json!([{"pointer": "/operation/pinion_speed_rpm", "from": 300, "to": 6000}]);
     let axes = fields.entry("axes").or_insert(Value::Null);
     if !axes.is_array() {
@@ -156,9 +157,6 @@ fn periods(analysis: &mut Value) {
     analysis["record_mesh_periods"] = json!(recorded);
     let samples = of(&analysis["samples_per_mesh_period"], 256).min(4_000_000 / recorded);
     analysis["samples_per_mesh_period"] = json!(samples);
-    if analysis["initial_state"].is_array() {
-        analysis["method"] = json!("integrate");
-    }
 }
 
 fn given(model: &mut Value) {

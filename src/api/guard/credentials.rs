@@ -13,7 +13,8 @@ use axum::response::{IntoResponse, Redirect, Response};
 use std::time::Instant;
 
 /// Paths that need no credentials: probes, and the login page with its assets.
-const PUBLIC_PATHS: [&str; 5] = ["/healthz", "/readyz", "/login", "/assets/common/style.css", "/assets/icon.svg"];
+const PUBLIC_PATHS: [&str; 6] =
+    ["/healthz", "/readyz", "/login", "/favicon.ico", "/assets/common/style.css", "/assets/icon.svg"];
 
 /// Middleware: requires the token, or a session opened with it, except on [`PUBLIC_PATHS`].
 pub(crate) async fn check_credentials(State(access): State<Access>, request: Request, next: Next) -> Response {

@@ -94,7 +94,11 @@ fn all_fields() -> Vec<FormField> {
             };
             let axes = (0..groups::AXES).map(of_axis);
             fields.extend(axes.filter_map(|axis| FormField::new(&axis, example.pointer(&axis.pointer))));
-        } else if description.pointer != "/axes" && !description.pointer.contains("/*") {
+        } else if description.pointer != "/axes"
+            && !description.pointer.contains("/*")
+            // Filled in by the interface, not by people.
+            && !is_at_or_in(&description.pointer, "/sweep_point")
+        {
             fields.extend(FormField::new(&description, example.pointer(&description.pointer)));
         }
     }

@@ -108,7 +108,7 @@ async fn not_json(#[case] body: String) {
 #[case::more_recorded_than_run(with("/analysis", json!({"mesh_periods": 10, "record_mesh_periods": 20})), "/analysis/record_mesh_periods", "conflict", None)]
 #[case::too_many_samples(with("/analysis", json!({"mesh_periods": 100_000, "record_mesh_periods": 100_000, "samples_per_mesh_period": 4096})), "/analysis/samples_per_mesh_period", "conflict", None)]
 #[case::short_state(with("/analysis", json!({"method": "integrate", "initial_state": [0, 0]})), "/analysis/initial_state", "out-of-range", Some((24.0, 24.0, "")))]
-#[case::state_without_integration(with("/analysis", json!({"initial_state": vec![0; 24]})), "/analysis/initial_state", "conflict", None)]
+#[case::point_of_a_sweep_that_is_one(with("/kind", json!("sweep")).replacen('{', "{\"sweep_point\": {\"job\": \"a\", \"position\": 0, \"input_hash\": \"b\"},", 1), "/sweep_point", "conflict", None)]
 #[case::given_without_mean(with("/model", json!({"mesh_stiffness": {"source": "given"}})), "/model/mesh_stiffness/mean_n_per_um", "missing", None)]
 #[case::given_twice(with("/model", json!({"mesh_stiffness": {"source": "given", "mean_n_per_um": 900, "samples_n_per_um": [1, 2]}})), "/model/mesh_stiffness/samples_n_per_um", "conflict", None)]
 #[case::negative_sample(with("/model", json!({"mesh_stiffness": {"source": "given", "samples_n_per_um": [900, -1]}})), "/model/mesh_stiffness/samples_n_per_um/1", "out-of-range", Some((1e-3, 1e7, "N/um")))]

@@ -3,9 +3,9 @@
 use super::Breakpoints;
 use herringbone::work::Solver;
 use herringbone_job::DocumentError;
-use herringbone_job::document::{JobDocument, JobKind};
+use herringbone_job::document::{Continuation, JobDocument, JobKind};
 use herringbone_job::result::{JobResult, Mesh, PerHalf, ResponseResult, ReusedStage, SweepPoint, SweepResult};
-use herringbone_job::study::{self, CheckedJob, Outcome, RecordedChannel, SolveContext, SolveError, Stage};
+use herringbone_job::study::{self, CheckedJob, LineEnd, Outcome, RecordedChannel, SolveContext, SolveError, Stage};
 use herringbone_physics::watch::Canceled;
 
 /// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`, `large`,
@@ -90,7 +90,10 @@ impl ScriptedSolver {
                 error: (!not_finite).then(|| "no \"response\", scripted".repeat(if is_large { 80 } else { 1 })),
                 ..SweepPoint::default()
             };
-            context.points.save(position, &row, None);
+            // With continuation, all numbers of the state at the end of a point are its position.
+            let end = LineEnd { line: 0, position, state: Some(vec![position as f64; 24]) };
+            let continued = document.continuation == Some(Continuation::Up);
+            context.points.save(position, &row, continued.then_some(&end));
             rows.insert(position, row);
         }
         let mut result = JobResult::default();

@@ -14,7 +14,7 @@ pub struct AnalysisInput {
     /// Relative error of the reported RMS values that the solver has to reach.
     #[input(min = 1e-12, max = 1e-2, default = 1e-6)]
     pub accuracy: f64,
-    /// auto (the cheapest that is right), periodic, or integrate from the initial state.
+    /// auto (the cheapest that is right), periodic, or integrate over mesh_periods.
     #[input(default = MethodInput::Auto)]
     pub method: MethodInput,
     /// Time integration: event-exact Taylor series, or the variable-step fourth-order Runge-Kutta of the source.
@@ -32,8 +32,9 @@ pub struct AnalysisInput {
     /// Channels to record as series, such as a_x_left; all when null.
     #[input(max_items = 64)]
     pub channels: Option<Vec<String>>,
-    /// 12 displacements in the source's order (m, rad), then 12 velocities.
-    #[input(unit = "SI", min = -1e6, max = 1e6, min_items = 24, max_items = 24, when = "method = integrate")]
+    /// Start of the motion: 12 displacements in the source's order (m, rad), then 12 velocities; at rest under the mean load when null.
+    /// Of several steady motions, auto and periodic report the one reached from there.
+    #[input(unit = "SI", min = -1e6, max = 1e6, min_items = 24, max_items = 24)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub initial_state: Option<Vec<f64>>,
 }
@@ -50,9 +51,6 @@ fn analysis_rules(analysis: &mut AnalysisInput, place: &ObjectPlace) {
             "times record_mesh_periods gives {samples} samples per channel; permitted: at most {MAX_SERIES_SAMPLES}"
         );
         place.conflict("samples_per_mesh_period", detail);
-    }
-    if analysis.initial_state.is_some() && analysis.method != MethodInput::Integrate {
-        place.conflict("initial_state", "needs method \"integrate\"");
     }
     analysis.record_mesh_periods = recorded.min(analysis.mesh_periods);
 }

@@ -8,6 +8,7 @@ mod analysis;
 mod design;
 mod model;
 mod sweep;
+mod sweep_point;
 
 pub use analysis::{AnalysisInput, IntegratorInput, MAX_SERIES_SAMPLES, MethodInput};
 pub use design::{
@@ -20,6 +21,7 @@ pub use model::{
     StiffnessLaw,
 };
 pub use sweep::{Axis, AxisPoints, Continuation, MAX_SWEEP_POINTS, Recorded, Spacing};
+pub use sweep_point::SweepPointInput;
 
 use super::field::{Input, Slot};
 use super::json;
@@ -85,6 +87,9 @@ pub struct JobDocument {
     #[input(group = "sweep", when = "kind = sweep")]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub record: Vec<Recorded>,
+    /// response: the point of a sweep that this job repeats. The interface fills it in where it gives the document of a point.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sweep_point: Option<SweepPointInput>,
 }
 
 /// The operating point.

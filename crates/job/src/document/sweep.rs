@@ -14,7 +14,7 @@ const MAX_RECORDED_POINTS: usize = 5_000;
 /// Most inputs that move with the first of an axis.
 const MAX_ALSO: usize = 16;
 
-/// The rules about the fields that only sweeps have.
+/// The rules about the fields that only sweeps have, or only other jobs.
 pub(super) fn of_sweeps_only(document: &mut JobDocument, place: &ObjectPlace) {
     let is_sweep = document.kind == JobKind::Sweep;
     let not_here = |name| place.conflict(name, "is given, but kind is not \"sweep\"");
@@ -24,6 +24,9 @@ pub(super) fn of_sweeps_only(document: &mut JobDocument, place: &ObjectPlace) {
         }
     } else if !is_sweep {
         not_here("axes");
+    }
+    if is_sweep && document.sweep_point.is_some() {
+        place.conflict("sweep_point", "is given, but kind is \"sweep\"");
     }
     let points: usize = document.axes.iter().map(Axis::len).product();
     if points > MAX_SWEEP_POINTS {

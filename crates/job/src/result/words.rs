@@ -127,7 +127,8 @@ impl RegimeResult {
         }
     }
 
-    fn parse(word: &str) -> Option<Self> {
+    /// The regime of a word of the result; `None` if it is none.
+    pub fn parse(word: &str) -> Option<Self> {
         let others = [Self::QuasiPeriodic, Self::Chaotic, Self::NotSettled, Self::Unstable];
         match word.strip_prefix(Self::PERIOD) {
             Some(mesh_periods) => mesh_periods.parse().ok().map(Self::Period),

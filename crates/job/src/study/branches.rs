@@ -99,7 +99,8 @@ pub(super) fn hysteresis(
     intervals
 }
 
-fn differences(a: &SweepPoint, b: &SweepPoint) -> Vec<BranchDifference> {
+/// What differs between the motions of two points; nothing where one has no motion.
+pub(super) fn differences(a: &SweepPoint, b: &SweepPoint) -> Vec<BranchDifference> {
     let Some(change) = change(a, b) else { return Vec::new() };
     let uncertain = uncertainty(a, b);
     let mut differ = Vec::new();

@@ -4,7 +4,7 @@ mod drawing;
 
 use super::axes::check_axes;
 use super::prepare::{Prepared, geometry, prepare};
-use super::{CheckReport, demand, derived, vibration};
+use super::{CheckReport, demand, derived, repeat, vibration};
 use crate::DocumentError;
 use crate::document::{JobDocument, JobKind};
 
@@ -58,7 +58,7 @@ impl CheckedJob {
             geometry: geometry(&self.prepared),
             supports: (self.document.kind != JobKind::Mesh).then(|| self.prepared.supports.clone()),
             memory_mib: demand(&self.document, 1).total_mib(),
-            warnings: self.prepared.warnings.clone(),
+            warnings: self.prepared.warnings.iter().cloned().chain(repeat::changed_inputs(&self.document)).collect(),
             derived: derived::values(&self.document, &self.prepared),
         }
     }

@@ -19,6 +19,7 @@ mod mesh_force;
 mod point;
 mod points;
 pub(crate) mod prepare;
+mod repeat;
 mod response_result;
 mod row;
 mod supports;
@@ -40,6 +41,8 @@ pub use demand::{Demand, demand};
 pub use derived::DerivedValue;
 pub use hash::input_hash;
 pub use points::{LineEnd, NoPointStore, PointStore, StoredPoints};
+pub use repeat::{PointStart, point_document};
+pub use sweep::continued_from;
 pub use vibration::is_channel;
 
 /// Version of the calculation: results and stages stored under another version are not reused.
@@ -181,7 +184,8 @@ pub fn solve(job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveE
     let document = job.document();
     let memo = MeshMemo::default();
     if document.kind != JobKind::Sweep {
-        let point = point::solve(job, context, &memo, &PointOptions::WHOLE)?;
+        let mut point = point::solve(job, context, &memo, &PointOptions::WHOLE)?;
+        point.result.warnings.extend(repeat::warnings(document, &point.result));
         return Ok(Outcome { result: point.result, series: point.series });
     }
     let started_ms = (context.clock_ms)();

@@ -5,7 +5,7 @@ use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
 use super::prepare::geometry;
 use super::{RecordedChannel, SolveContext, SolveError, Stage, accuracy, bounds, impact, vibration};
-use crate::document::{JobDocument, JobKind, Recorded};
+use crate::document::{Fidelity, JobDocument, JobKind, MeshStiffness, Recorded};
 use crate::result::{JobResult, NumericsResult, Poincare};
 use herringbone_physics::dynamics::{DynamicsError, Parameters};
 use herringbone_physics::response::Response;
@@ -63,7 +63,7 @@ pub(super) fn solve(
     memo: &MeshMemo,
     options: &PointOptions,
 ) -> Result<Point, SolveError> {
-    let progress = |stage, fraction| (context.progress)(stage, of_whole(job.document().kind, stage, fraction));
+    let progress = |stage, fraction| (context.progress)(stage, of_whole(job.document(), stage, fraction));
     let context = &SolveContext { progress: &progress, ..*context };
     let staged = stage(job, context, memo)?;
     respond(job.document(), staged, context, options)
@@ -160,8 +160,15 @@ pub(super) fn assemble(
 }
 
 /// Progress of the whole point, 0 to 1, at a fraction of one of its stages, by the usual computing times of the stages.
-fn of_whole(kind: JobKind, stage: Stage, fraction: f64) -> f64 {
-    let mesh_ends = if kind == JobKind::Mesh { 0.98 } else { 0.6 };
+fn of_whole(document: &JobDocument, stage: Stage, fraction: f64) -> f64 {
+    let has_elements =
+        matches!(&document.model.mesh_stiffness, MeshStiffness::Ltca(ltca) if ltca.fidelity == Fidelity::Fe);
+    let mesh_ends = match document.kind {
+        JobKind::Mesh => 0.98,
+        // Unless they are stored, finite elements take nearly all of the time.
+        _ if has_elements => 0.95,
+        _ => 0.6,
+    };
     let (start, end) = match stage {
         Stage::Geometry => (0.0, 0.01),
         Stage::Mesh => (0.01, mesh_ends),

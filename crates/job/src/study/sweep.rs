@@ -31,12 +31,7 @@ pub(super) fn run(
     let (first, second) = (&document.axes[0], document.axes.get(1));
     let lines = second.map_or(1, Axis::len);
     let length = first.len();
-    let ways: &[BranchDirection] = match document.continuation.unwrap_or(Continuation::None) {
-        Continuation::None => &[],
-        Continuation::Up => &[BranchDirection::Up],
-        Continuation::Down => &[BranchDirection::Down],
-        Continuation::Both => &[BranchDirection::Up, BranchDirection::Down],
-    };
+    let ways = ways(document);
     let all = lines * length * ways.len().max(1);
     let done = AtomicUsize::new(0);
     // Positions of the result, line after line; with two directions the lines of the second follow those of the first.
@@ -114,6 +109,27 @@ pub(super) fn run(
     }
     sweep.campbell = campbell::run(&base, document, context, memo)?;
     Ok(sweep)
+}
+
+/// Directions in which the branches of a sweep are followed, in the order of its rows; none without continuation.
+fn ways(document: &JobDocument) -> &'static [BranchDirection] {
+    match document.continuation.unwrap_or(Continuation::None) {
+        Continuation::None => &[],
+        Continuation::Up => &[BranchDirection::Up],
+        Continuation::Down => &[BranchDirection::Down],
+        Continuation::Both => &[BranchDirection::Up, BranchDirection::Down],
+    }
+}
+
+/// Position of the point from whose end the point at `position` continues; `None` for the first of a line, and without
+/// continuation.
+pub fn continued_from(document: &JobDocument, position: usize) -> Option<usize> {
+    let first = document.axes.first()?;
+    let lines = document.axes.get(1).map_or(1, Axis::len);
+    let (line, index) = (position / first.len(), position % first.len());
+    let order = branches::order(first, *ways(document).get(line / lines)?);
+    let place = order.iter().position(|other| *other == index)?;
+    Some(line * first.len() + order[place.checked_sub(1)?])
 }
 
 /// Solves all points without a row in parallel, but the very first before all others and the first of every line before

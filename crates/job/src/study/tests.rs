@@ -539,6 +539,27 @@ fn progress_is_that_of_the_whole_job_and_never_goes_back() {
     }
 }
 
+#[test]
+fn the_progress_of_finite_elements_follows_their_work() {
+    let mut value = example("table1");
+    value["model"]["mesh_stiffness"] = json!({"source": "ltca", "fidelity": "fe", "elements": "coarse"});
+    let reported = Mutex::new(Vec::new());
+    let progress = |stage: Stage, fraction: f64| reported.lock().expect("unpoisoned").push((stage, fraction));
+    let context = SolveContext { progress: &progress, ..SolveContext::none() };
+    solve(&document(&value), &context).expect("solved");
+    let reported = reported.into_inner().expect("unpoisoned");
+    // Nearly all of the time is that of the elements.
+    let (_, at_impact) = reported.iter().find(|(stage, _)| *stage == Stage::Impact).expect("an impact");
+    assert!(*at_impact > 0.9, "{at_impact}");
+    let mut furthest = 0.0f64;
+    let mut largest_step = 0.0f64;
+    for (_, fraction) in &reported {
+        largest_step = largest_step.max(fraction - furthest);
+        furthest = furthest.max(*fraction);
+    }
+    assert!(reported.len() > 20 && largest_step < 0.2, "{} reports, the largest step {largest_step}", reported.len());
+}
+
 /// Store of points that cancels the calculation after a number of them.
 #[derive(Default)]
 struct Points {

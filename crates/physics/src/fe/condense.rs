@@ -71,7 +71,9 @@ struct Elimination<'a> {
     /// Place of every point in the order of elimination.
     rank: Vec<usize>,
     watch: Watch<'a>,
-    done: std::sync::atomic::AtomicUsize,
+    /// Work of the whole, and of the fronts that are eliminated, in multiplications.
+    work: f64,
+    done: std::sync::atomic::AtomicU64,
     /// Progress of the elimination, from and to.
     progress: (f64, f64),
 }
@@ -95,7 +97,8 @@ pub(super) fn condense(
         rank[point] = next;
         next += 1;
     }
-    let plan = Elimination { operator, loads, rank, watch, done: Default::default(), progress };
+    let mut plan = Elimination { operator, loads, rank, watch, work: 0.0, done: Default::default(), progress };
+    (plan.work, _) = plan.work_of(tree)?;
     let inside = plan.eliminate(tree)?;
     // Direct coupling of the kept points, and the Schur complement of the inside.
     let mut index = vec![UNASSIGNED; operator.points()];
@@ -169,15 +172,45 @@ impl Elimination<'_> {
             }
             more => more.iter().map(|child| self.eliminate(child)).collect::<Result<_, _>>()?,
         };
-        let part = self.front(&tree.own, parts)?;
-        self.done.fetch_add(tree.own.len(), std::sync::atomic::Ordering::Relaxed);
-        Ok(part)
+        self.front(&tree.own, parts)
     }
 
-    fn checkpoint(&self) -> Result<(), FeError> {
-        let done = self.done.load(std::sync::atomic::Ordering::Relaxed);
-        let fraction = done as f64 / self.rank.len() as f64;
+    /// Reports the work of the fronts that are eliminated and `more` of the one in hand.
+    fn checkpoint(&self, more: f64) -> Result<(), FeError> {
+        let done = self.done.load(std::sync::atomic::Ordering::Relaxed) as f64 + more;
+        let fraction = (done / self.work.max(1.0)).min(1.0);
         Ok(self.watch.checkpoint(self.progress.0 + (self.progress.1 - self.progress.0) * fraction)?)
+    }
+
+    /// Work of the elimination of `tree`, and the points of its last front that stay.
+    fn work_of(&self, tree: &Dissection) -> Result<(f64, Vec<usize>), FeError> {
+        self.watch.checkpoint_quietly()?;
+        let children: Vec<_> = tree.children.iter().map(|child| self.work_of(child)).collect::<Result<_, _>>()?;
+        let later = self.later(&tree.own, children.iter().map(|(_, points)| points.as_slice()));
+        let own = front_work(3 * tree.own.len(), 3 * later.len());
+        Ok((own + children.iter().map(|(work, _)| work).sum::<f64>(), later))
+    }
+
+    /// Points of the front of `own` that stay, ranks rising: all later ones that its own or the `parts` are coupled to.
+    fn later<'p>(&self, own: &[usize], parts: impl Iterator<Item = &'p [usize]>) -> Vec<usize> {
+        let mut is_known = vec![false; self.rank.len()];
+        own.iter().for_each(|&point| is_known[point] = true);
+        let mut later: Vec<usize> = Vec::new();
+        let mut note = |point: usize| {
+            if !std::mem::replace(&mut is_known[point], true) {
+                later.push(point);
+            }
+        };
+        for &point in own {
+            self.operator.for_each_neighbour(point, |other, _| {
+                if self.rank[other] > self.rank[point] {
+                    note(other);
+                }
+            });
+        }
+        parts.flatten().for_each(|&point| note(point));
+        later.sort_unstable_by_key(|&point| self.rank[point]);
+        later
     }
 
     /// Lower triangle of the stiffness between `points` (ranks rising) and all that come later, where `index` has them.
@@ -201,31 +234,11 @@ impl Elimination<'_> {
     }
 
     fn front(&self, own: &[usize], parts: Vec<UpdateMatrix>) -> Result<UpdateMatrix, FeError> {
-        // Points of the front: its own, then all later ones that they or the parts are coupled to.
+        // Points of the front: its own, then the later ones.
+        let later = self.later(own, parts.iter().map(|part| part.points.as_slice()));
         let mut index = vec![UNASSIGNED; self.rank.len()];
-        for (i, &point) in own.iter().enumerate() {
+        for (i, &point) in own.iter().chain(&later).enumerate() {
             index[point] = i;
-        }
-        let mut later: Vec<usize> = Vec::new();
-        let mut note = |point: usize| {
-            if index[point] == UNASSIGNED {
-                index[point] = UNASSIGNED - 1;
-                later.push(point);
-            }
-        };
-        for &point in own {
-            self.operator.for_each_neighbour(point, |other, _| {
-                if self.rank[other] > self.rank[point] {
-                    note(other);
-                }
-            });
-        }
-        for part in &parts {
-            part.points.iter().for_each(|&point| note(point));
-        }
-        later.sort_unstable_by_key(|&point| self.rank[point]);
-        for (i, &point) in later.iter().enumerate() {
-            index[point] = own.len() + i;
         }
         let (inner, outer) = (3 * own.len(), 3 * later.len());
         let mut front = DenseMatrix::zeros(inner + outer, inner);
@@ -279,12 +292,13 @@ impl Elimination<'_> {
         }
         drop(parts);
 
-        let mut checkpoint = || self.checkpoint();
+        let work = front_work(inner, outer);
+        let mut checkpoint = |part: f64| self.checkpoint(part * work);
         factor_partly(front.as_mut(), remainder.as_mut(), "inside of a sector", &mut checkpoint)?;
         let (diagonal, below) = front.as_ref().split_at_row(inner);
         if let Some(compliance) = &mut compliance {
             let (mut top, mut bottom) = forces.as_mut().split_at_row_mut(inner);
-            solve_lower(diagonal, top.as_mut(), &mut checkpoint)?;
+            solve_lower(diagonal, top.as_mut(), &mut |_| self.checkpoint(work))?;
             matmul(bottom.as_mut(), Accum::Add, below, top.as_ref(), -1.0, Par::Seq);
             triangular_matmul(
                 compliance.as_mut(),
@@ -298,6 +312,7 @@ impl Elimination<'_> {
                 Par::Seq,
             );
         }
+        self.done.fetch_add(work as u64, std::sync::atomic::Ordering::Relaxed);
         Ok(UpdateMatrix {
             points: later,
             stiffness: remainder,
@@ -308,6 +323,12 @@ impl Elimination<'_> {
     }
 }
 
+/// Work of the elimination of `inner` unknowns of a front, with `outer` that stay, in multiplications.
+fn front_work(inner: usize, outer: usize) -> f64 {
+    let (inner, outer) = (inner as f64, outer as f64);
+    inner * (inner * inner / 3.0 + inner * outer + outer * outer)
+}
+
 /// Work between two checkpoints, in multiplications: some 30 ms for complex numbers.
 const PANEL_WORK: usize = 200_000_000;
 /// Narrower panels would leave the matrix products inefficient.
@@ -315,11 +336,12 @@ const NARROWEST_PANEL: usize = 32;
 
 /// Cholesky elimination of the first unknowns of a Hermitian matrix (lower triangle): `left` has the columns that are
 /// eliminated and becomes their factor, `right` what is below and right of it and becomes the Schur complement.
+/// `checkpoint` is given the part that is done.
 pub(super) fn factor_partly<T: ComplexField>(
     mut left: MatMut<'_, T>,
     mut right: MatMut<'_, T>,
     place: &'static str,
-    checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
+    checkpoint: &mut dyn FnMut(f64) -> Result<(), FeError>,
 ) -> Result<(), FeError> {
     let (size, inner) = (left.nrows(), left.ncols());
     let width = (PANEL_WORK / (size * size).max(1)).max(NARROWEST_PANEL);
@@ -327,7 +349,7 @@ pub(super) fn factor_partly<T: ComplexField>(
     let mut memory = MemBuffer::new(cholesky_in_place_scratch::<T>(width.min(inner), Par::Seq, params));
     let mut start = 0;
     while start < inner {
-        checkpoint()?;
+        checkpoint(start as f64 / inner as f64)?;
         let end = (start + width).min(inner);
         let (panel, rest) =
             left.as_mut().submatrix_mut(start, start, size - start, inner - start).split_at_col_mut(end - start);
@@ -353,16 +375,16 @@ pub(super) fn factor_partly<T: ComplexField>(
     Ok(())
 }
 
-/// Solves with a lower triangle, some columns at a time.
+/// Solves with a lower triangle, some columns at a time. `checkpoint` is given the part that is done.
 pub(super) fn solve_lower<T: ComplexField>(
     lower: MatRef<'_, T>,
     mut columns: MatMut<'_, T>,
-    checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
+    checkpoint: &mut dyn FnMut(f64) -> Result<(), FeError>,
 ) -> Result<(), FeError> {
     let (size, count) = (columns.nrows(), columns.ncols());
     let width = (PANEL_WORK / (size * size).max(1)).max(NARROWEST_PANEL);
     for start in (0..count).step_by(width) {
-        checkpoint()?;
+        checkpoint(start as f64 / count as f64)?;
         let some = columns.as_mut().subcols_mut(start, width.min(count - start));
         solve_lower_triangular_in_place(lower, some, Par::Seq);
     }

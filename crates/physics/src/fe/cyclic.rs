@@ -35,8 +35,8 @@ impl CutFaces<'_> {
         let f = &self.sector.forces;
         let mut y =
             Mat::<c64>::from_fn(n, f.ncols(), |i, j| c64::new(f[(i, j)] + cos * f[(n + i, j)], -sin * f[(n + i, j)]));
-        factor_partly(h.as_mut(), Mat::zeros(0, 0).as_mut(), "cut faces", checkpoint)?;
-        solve_lower(h.as_ref(), y.as_mut(), checkpoint)?;
+        factor_partly(h.as_mut(), Mat::zeros(0, 0).as_mut(), "cut faces", &mut |_| checkpoint())?;
+        solve_lower(h.as_ref(), y.as_mut(), &mut |_| checkpoint())?;
         let real = Mat::<f64>::from_fn(n, f.ncols(), |i, j| y[(i, j)].re);
         let imaginary = Mat::<f64>::from_fn(n, f.ncols(), |i, j| y[(i, j)].im);
         // Each product takes long enough for a checkpoint of its own.

@@ -28,8 +28,8 @@ pub struct FlankFlexibility {
 }
 
 /// Parts of the work by time, for the progress.
-const ELIMINATED: f64 = 0.5;
-const EXPANDED: f64 = 0.95;
+const ELIMINATED: f64 = 0.92;
+const EXPANDED: f64 = 0.99;
 
 impl FlankFlexibility {
     /// Solves the elements.

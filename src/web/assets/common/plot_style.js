@@ -8,30 +8,24 @@ const NARROW = 480;
 const DASHES = ["solid", "dash", "dot", "dashdot", "longdash"];
 const UNITS = ["N/µm", "N/mm", "kg·m²", "m/s²", "m/s", "µm", "mm", "m", "N", "N·m", "MPa", "Hz", "s", "ms", "%", "°", "rad", "rad/s", "rad/s²", "r/min", "dB", "W", "kg"];
 
-/** Names of the further colours that plots have used. */
-const NAMED = new Set();
+/** An element in the colours of paper. @type {HTMLElement | null} */
+let paperElement = null;
+
+function onPaper() {
+  if (!paperElement) {
+    paperElement = el("div", { class: "paper", hidden: true });
+    document.body.append(paperElement);
+  }
+  return paperElement;
+}
 
 /** Colours of the page, or those of paper. @param {boolean} [paper] */
 export function palette(paper = false) {
-  const source = paper ? el("div", { class: "paper", hidden: true }) : document.documentElement;
-  if (paper) document.body.append(source);
-  const style = getComputedStyle(source);
-  const value = (name) => style.getPropertyValue(name).trim();
-  const lines = ["--plot-1", "--plot-2", "--plot-3", "--plot-4", "--plot-5", "--plot-6"].map(value).filter(Boolean);
-  /**
-   * @type {{ text: string, muted: string, grid: string, surface: string, lines: string[], of: (name: string) =>
-   *   string }}
-   */
-  const colours = { of: value, text: value("--text"), muted: value("--muted"), grid: value("--line"), surface: value("--surface"), lines };
-  // Any other colour of the stylesheets by its name. Those of paper are read here,
-  // before its element is removed.
-  const known = paper ? new Map([...NAMED].map((name) => [name, value(name)])) : null;
-  colours.of = (name) => {
-    NAMED.add(name);
-    return known?.get(name) ?? value(name);
-  };
-  if (paper) source.remove();
-  return colours;
+  const style = getComputedStyle(paper ? onPaper() : document.documentElement);
+  /** Any colour of the stylesheets by its name. @param {string} name */
+  const of = (name) => style.getPropertyValue(name).trim();
+  const lines = ["--plot-1", "--plot-2", "--plot-3", "--plot-4", "--plot-5", "--plot-6"].map(of).filter(Boolean);
+  return { of, text: of("--text"), muted: of("--muted"), grid: of("--line"), surface: of("--surface"), lines };
 }
 
 /** Label and unit of an axis given as text: "Time, s", a bare unit, a bare label; or { label, unit }. */
@@ -54,12 +48,12 @@ const titleOf = (axis) => {
  * @param {Trace[]} traces
  * @param {PlotAxes} axes
  * @param {ReturnType<typeof palette>} colours
- * @param {{ width?: number }} [size]
+ * @param {{ width?: number, height?: number }} [size]
  */
-export function styled(traces, axes, colours, { width = 900 } = {}) {
+export function styled(traces, axes, colours, { width = 900, height = 320 } = {}) {
   const unified = hoverMode(traces, axes) === "x unified";
   let place = 0;
-  const drawn = traces.map((trace) => {
+  const drawn = withoutOverlaps(traces, axes, width, height).map((trace) => {
     const at = trace.colour ?? (trace.tone === "muted" ? 0 : place++);
     const colour = trace.tone === "muted" ? colours.muted : colours.lines[at % colours.lines.length];
     const { tone, colour: own, aside, unit, paint, ...rest } = trace;
@@ -69,6 +63,63 @@ export function styled(traces, axes, colours, { width = 900 } = {}) {
   // An axis is only drawn with a trace on it.
   const above = axes.top ? [{ type: "scatter", mode: "markers", x: [null], y: [null], xaxis: "x2", showlegend: false, hoverinfo: "skip" }] : [];
   return [...(axes.bands ?? []).flatMap((band, index) => filled(band, colours.lines[(band.colour ?? index) % colours.lines.length])), ...drawn, ...above];
+}
+
+/** Room of a label beside points, px. */
+const LABEL = { width: 15, height: 13 };
+
+/**
+ * The traces with the labels of points that have room; of those too near to each other the upper one keeps its own.
+ * Only where the ends of both axes are known.
+ * @param {Trace[]} traces
+ * @param {PlotAxes} axes
+ * @param {number} width
+ * @param {number} height
+ */
+function withoutOverlaps(traces, { range, yRange }, width, height) {
+  if (!range || !yRange) return traces;
+  const [across, up] = [(width - 90) / (range[1] - range[0]), (height - 90) / (yRange[1] - yRange[0])];
+  /** @param {Trace} trace */
+  const isLabelled = ({ mode, text }) => mode?.includes("text") && Array.isArray(text);
+  const labels = traces.flatMap((trace, at) => (isLabelled(trace) ? trace.x.map((/** @type {number} */ x, /** @type {number} */ index) => ({ at, index, x: x * across, y: trace.y[index] * up, text: trace.text[index] })) : []));
+  /** @type {typeof labels} */
+  const kept = [];
+  for (const label of labels.sort((a, b) => b.y - a.y)) {
+    const near = kept.find(({ x, y }) => Math.abs(x - label.x) <= LABEL.width && Math.abs(y - label.y) <= LABEL.height);
+    if (!near) kept.push(label);
+    // Two points at one place share a label.
+    else if (Math.abs(near.x - label.x) < LABEL.width / 3 && !near.text.includes(",")) near.text = `${near.text}, ${label.text}`;
+  }
+  /** @param {number} at @param {number} index */
+  const textAt = (at, index) => kept.find((label) => label.at === at && label.index === index)?.text ?? "";
+  return traces.map((trace, at) => (isLabelled(trace) ? { ...trace, text: trace.text.map((/** @type {string} */ _, /** @type {number} */ index) => textAt(at, index)) } : trace));
+}
+
+/**
+ * The marks with their labels in rows, so that none covers the one before.
+ * @param {NonNullable<PlotAxes["marks"]>} marks
+ * @param {Trace[]} traces
+ * @param {number[] | undefined} range
+ * @param {{ width: number, height: number }} size
+ */
+function inRows(marks, traces, range, { width, height }) {
+  const places = traces.flatMap(({ x = [] }) => [...x]).filter((x) => typeof x === "number");
+  const [low, high] = range ?? [places.reduce((a, b) => Math.min(a, b), Infinity), places.reduce((a, b) => Math.max(a, b), -Infinity)];
+  const scale = (width - 90) / (high - low);
+  if (!(scale > 0) || !Number.isFinite(scale)) return marks;
+  const row = 13 / Math.max(60, height - 100);
+  /** Ends of the labels by row, px. @type {Map<number, number>} */
+  const ends = new Map();
+  /** @type {Map<typeof marks[number], number>} */
+  const rows = new Map();
+  for (const mark of marks.filter(({ text }) => text).sort((a, b) => a.x - b.x)) {
+    const start = mark.x * scale;
+    let at = mark.at ?? 1;
+    while ((ends.get(Math.round(100 * at)) ?? -Infinity) > start && at > row) at -= row;
+    ends.set(Math.round(100 * at), start + 6.5 * (mark.text ?? "").length);
+    rows.set(mark, at);
+  }
+  return marks.map((mark) => (rows.has(mark) ? { ...mark, at: rows.get(mark) } : mark));
 }
 
 function filled({ x, low, high, name = "" }, colour) {
@@ -137,12 +188,12 @@ export function layoutOf(axes, traces, colours, { width, height }) {
   const layout = {
     autosize: true,
     height,
-    margin: { l: 56, r: 16, t: (title ? 36 : 14) + (top ? 38 : 0) + (top && named ? 20 : 0), b: 44 },
+    margin: { l: 56, r: 16, t: (title ? 36 + 18 * (title.split("<br>").length - 1) : 14) + (title && named ? 30 : 0) + (top ? 38 : 0) + (top && named ? 20 : 0), b: 44 },
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "rgba(0,0,0,0)",
     font: { color: colours.text, family: "system-ui, sans-serif", size: width < NARROW ? 11 : 12 },
     xaxis: { ...axis(broken(titleOf(axes.x), width - 90)), exponentformat: "none", hoverformat: ".5~g" },
-    yaxis: { ...axis(broken(titleOf(axes.y), height - 110)), type: log ? "log" : undefined },
+    yaxis: { ...axis(broken(titleOf(axes.y), (axes.yPart ?? 1) * (height - 110))), type: log ? "log" : undefined },
     legend: { orientation: "h", y: top ? 1 + 46 / Math.max(100, height - 130) : 1.02, yanchor: "bottom", x: 0 },
     showlegend: named,
     separators: ".\u202f",
@@ -151,9 +202,9 @@ export function layoutOf(axes, traces, colours, { width, height }) {
     dragmode: "zoom",
     modebar: { bgcolor: "rgba(0,0,0,0)", color: colours.muted, activecolor: colours.text, orientation: "h" },
     shapes: [...marks.map((mark) => markLine(mark, colours)), ...levels.map((level) => levelLine(level, colours)), ...(axes.shapes ?? [])],
-    annotations: [...marks.map((mark) => markText(mark, colours)), ...levels.map((level) => levelText(level, colours)), ...(axes.annotations ?? [])].filter(Boolean),
+    annotations: [...inRows(marks, traces, range, { width, height }).map((mark) => markText(mark, colours)), ...levels.map((level) => levelText(level, colours)), ...(axes.annotations ?? [])].filter(Boolean),
   };
-  if (title) layout.title = { text: title, font: { size: 13 } };
+  if (title) layout.title = { text: title, font: { size: 13 }, y: 1 - 10 / height, yref: "container", yanchor: "top", x: 0, xref: "paper", xanchor: "left" };
   if (range) layout.xaxis.range = [...range];
   if (yRange) layout.yaxis.range = [...yRange];
   if (zoomX) layout.yaxis.fixedrange = true;
@@ -169,7 +220,7 @@ export function layoutOf(axes, traces, colours, { width, height }) {
   if (axes.y2) layout.yaxis2 = { ...axis(titleOf(axes.y2)), overlaying: "y", side: "right", showgrid: false, fixedrange: Boolean(zoomX), range: y2Range && [...y2Range] };
   if (top) layout.xaxis2 = { ...axis(titleOf(top.title)), overlaying: "x", side: "top", showgrid: false, fixedrange: true, exponentformat: "none", range: range?.map((end) => end * top.factor) };
   const whole = { ...layout, ...axes.layout };
-  axes.more?.(whole, colours.of);
+  axes.more?.(whole, colours.of, { width, height });
   return whole;
 }
 

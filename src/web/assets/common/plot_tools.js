@@ -51,6 +51,25 @@ export function describe(figure) {
   if (tools.details.open) tools.fill();
 }
 
+/** What the page is about: the job's name, or that of the comparison. */
+const subject = () => /** @type {HTMLElement | null} */ (document.querySelector("[data-subject]"))?.dataset.subject ?? document.querySelector("h1")?.textContent?.trim() ?? "";
+
+/** Letters of a line of a title at most. */
+const MAX_TITLE = 110;
+
+/** A text as plotly shows it as it is. @param {string} text */
+const plain = (text) => (text.length > MAX_TITLE ? `${text.slice(0, MAX_TITLE)}…` : text).replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+
+/** The axes of an image that stands for itself: with its title, the job, and the quantity beside the unit. */
+export function axesOfFile(figure) {
+  const { axes } = figure;
+  const name = nameOf(figure);
+  const about = axes.subject ?? subject();
+  const { label, unit } = parts(axes.y);
+  const title = [plain(name), about ? `<sup>${plain(about)}</sup>` : ""].filter(Boolean).join("<br>");
+  return { ...axes, title, y: label || !unit ? axes.y : { label: axes.quantity ?? name, unit } };
+}
+
 function nameOf({ node, axes }) {
   const caption = node.closest("figure")?.querySelector("figcaption") ?? node.closest("section")?.querySelector("h2");
   return axes.name ?? axes.title ?? caption?.textContent ?? "Plot";

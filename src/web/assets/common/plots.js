@@ -5,11 +5,15 @@
 
 import { el } from "./dom.js";
 import { layoutOf, palette, styled } from "./plot_style.js";
-import { describe, toolsOf } from "./plot_tools.js";
+import { axesOfFile, describe, toolsOf } from "./plot_tools.js";
 
 export { bars, heatMap, line, points, stems } from "./plot_traces.js";
 
 const CONFIG = { displaylogo: false, displayModeBar: true, doubleClick: "autosize", modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "toImage"] };
+/** Width of a plot on paper: of A4, less its margins and what is around the plot, px. */
+const PAPER_WIDTH = 640;
+/** Whether the page is being printed: plots have the colours and the width of paper. */
+let isOnPaper = false;
 /** Distance from the window below which a plot is drawn, px. */
 const NEAR = 400;
 /** The figure of every box: its data, and whether it is drawn. @type {Map<Element, any>} */
@@ -21,7 +25,7 @@ let loading = null;
 const fit = new ResizeObserver((changes) => {
   for (const { target, contentRect } of changes) {
     const width = /** @type {any} */ (target)._fullLayout?.width;
-    if (contentRect.width > 0 && width && Math.abs(width - contentRect.width) > 1) window.Plotly.Plots.resize(target);
+    if (!isOnPaper && contentRect.width > 0 && width && Math.abs(width - contentRect.width) > 1) window.Plotly.Plots.resize(target);
   }
 });
 
@@ -71,16 +75,44 @@ function load() {
 export async function draw(node, traces, axes) {
   let figure = figures.get(node);
   if (!figure) {
-    figure = { node, tools: toolsOf(node, () => figure, (format) => picture(figure.traces, figure.axes, { format })) };
+    figure = { node, tools: toolsOf(node, () => figure, (format) => picture(figure.traces, axesOfFile(figure), { format })) };
     figures.set(node, figure);
     makeOperable(figure);
   }
   figure.traces = traces;
   figure.axes = axes;
+  figure.drawings = (figure.drawings ?? 0) + 1;
   describe(figure);
-  if (figure.drawn || isNear(node)) await render(figure);
-  else nearby.observe(node);
+  if (figure.drawn || isNear(node)) {
+    await render(figure);
+  } else {
+    nearby.observe(node);
+    drawWaiting();
+  }
   return node;
+}
+
+/** Whether a call of `drawWaiting` is due. */
+let isDue = false;
+
+/** Draws what waits to be scrolled near, one plot at each pause of the page: paper does not scroll. */
+function drawWaiting() {
+  if (isDue) return;
+  isDue = true;
+  whenIdle(async () => {
+    isDue = false;
+    const waiting = [...figures.values()].find(({ drawn, node }) => !drawn && node.clientWidth > 0);
+    if (!waiting) return;
+    nearby.unobserve(waiting.node);
+    await render(waiting);
+    drawWaiting();
+  });
+}
+
+/** @param {() => void} task */
+function whenIdle(task) {
+  if (window.requestIdleCallback) window.requestIdleCallback(task, { timeout: 2000 });
+  else setTimeout(task, 200);
 }
 
 /**
@@ -93,9 +125,15 @@ export function onZoom(node, zoomed) {
   if (figure) figure.zoomed = zoomed;
 }
 
-/** Everything that waits to be scrolled near. */
-async function drawAll() {
-  for (const waiting of figures.values()) if (!waiting.drawn) await render(waiting);
+/** Everything as on paper, also what waits to be scrolled near. */
+async function toPaper() {
+  isOnPaper = true;
+  for (const figure of figures.values()) await render(figure);
+}
+
+function toScreen() {
+  isOnPaper = false;
+  recolour();
 }
 
 /**
@@ -109,9 +147,19 @@ export async function picture(traces, axes, { format = "svg", width = 900, heigh
   const plotly = await load();
   const colours = palette(true);
   const layout = layoutOf(axes, traces, colours, { width, height });
-  const data = styled(traces, axes, colours);
+  const data = [...styled(traces, axes, colours, { width, height }), ...(axes.keys ?? []).map((key) => keyTrace(key, colours))];
+  if (axes.keys?.length) layout.showlegend = true;
   return plotly.toImage({ data, layout: { ...layout, width, height, paper_bgcolor: "#ffffff" } }, { format, width, height, scale: format === "png" ? 2 : 1, imageDataOnly: true });
 }
+
+/**
+ * An entry of the legend for a colour that no trace has.
+ * @param {PlotKey} key
+ * @param {ReturnType<typeof palette>} colours
+ */
+const keyTrace = ({ label, colour }, colours) => ({
+  type: "scatter", mode: "markers", name: label, x: [null], y: [null], showlegend: true, hoverinfo: "skip", marker: { symbol: "square", size: 11, color: colours.of(colour), line: { color: colours.text, width: 1 } },
+});
 
 const isNear = (node) => {
   const { top, bottom, width } = node.getBoundingClientRect();
@@ -121,9 +169,11 @@ const isNear = (node) => {
 async function render(figure) {
   const plotly = await load();
   const { node, traces, axes } = figure;
-  const colours = palette();
-  const size = { width: node.clientWidth || 600, height: node.clientHeight || 320 };
-  await plotly.react(node, styled(traces, axes, colours, size), layoutOf(axes, traces, colours, size), CONFIG);
+  const colours = palette(isOnPaper);
+  const size = { width: isOnPaper ? PAPER_WIDTH : node.clientWidth || 600, height: node.clientHeight || 320 };
+  // What was zoomed stays zoomed until something else is drawn.
+  const layout = { ...layoutOf(axes, traces, colours, size), uirevision: figure.drawings };
+  await plotly.react(node, styled(traces, axes, colours, size), isOnPaper ? { ...layout, autosize: false, width: size.width } : layout, CONFIG);
   if (figure.drawn) return;
   figure.drawn = true;
   fit.observe(node);
@@ -180,7 +230,8 @@ function recolour() {
 
 window.addEventListener("schemechange", recolour);
 new MutationObserver(recolour).observe(document.documentElement, { attributeFilter: ["class"] });
-window.addEventListener("beforeprint", drawAll);
+window.addEventListener("beforeprint", toPaper);
+window.addEventListener("afterprint", toScreen);
 
 // Pages that link the stylesheet themselves show it sooner.
 if (!document.querySelector('link[href="/assets/common/plots.css"]')) document.head.append(el("link", { rel: "stylesheet", href: "/assets/common/plots.css" }));

@@ -1,55 +1,60 @@
-// Follows a live job: server-sent events, and asking again and again where they do not come through.
+// Follows a live job, by its stream of server-sent events or by asking again and again.
 
 import * as api from "./api.js";
+import { followStream } from "./stream.js";
 
 const POLL_MS = 1000;
 
 /**
- * Calls `onJob` with each new state of the job until it has ended. Returns a function that stops it.
+ * Calls `onJob` with each new state of the job until it has ended, `onMode` with the way in which the page gets them,
+ * `onGone` when the job was deleted. Returns a function that stops it.
  * @param {string} id
- * @param {(job: Job) => void} onJob
+ * @param {{
+ *   onJob: (job: Job) => void,
+ *   onMode?: (mode: import("./stream.js").StreamMode) => void,
+ *   onGone?: (error: unknown) => void,
+ * }} listeners
  */
-export function watchJob(id, onJob) {
-  let stopped = false;
-  /** @type {EventSource | null} */
-  let source = null;
-  /** @type {number | undefined} */
-  let timer;
+export function watchJob(id, { onJob, onMode, onGone = () => {} }) {
+  let isStopped = false;
+  /** The last state that was told, as text. */
+  let last = "";
 
   function stop() {
-    stopped = true;
-    source?.close();
-    clearTimeout(timer);
+    isStopped = true;
+    stream.stop();
   }
 
+  /** Takes up a state of the job; whether it is news. @param {Job} job */
   function take(job) {
-    if (stopped) return;
+    const text = JSON.stringify([job.revision, job.progress]);
+    const isNews = text !== last;
+    last = text;
+    if (isStopped) return false;
     if (api.isEnded(job)) stop();
     onJob(job);
+    return isNews;
   }
 
-  async function ask() {
+  async function read() {
     try {
-      take(await api.job(id));
+      return take(await api.job(id));
     } catch (error) {
-      if (error instanceof api.Problem && error.status === 404) stop();
+      if (!(error instanceof api.Problem) || error.status !== 404) throw error;
+      stop();
+      onGone(error);
+      return false;
     }
-    if (!stopped) timer = setTimeout(ask, POLL_MS);
   }
 
-  function listen() {
-    const stream = new EventSource(`/api/v1/jobs/${encodeURIComponent(id)}/events`);
+  const stream = followStream({
+    url: `/api/v1/jobs/${encodeURIComponent(id)}/events`,
     // The data of every event is the whole job.
-    for (const name of ["state", "progress", "done"]) stream.addEventListener(name, (event) => take(JSON.parse(event.data)));
-    source = stream;
-    stream.addEventListener("error", () => {
-      // The browser reconnects by itself unless the server refused.
-      if (stopped || stream.readyState !== EventSource.CLOSED) return;
-      ask();
-    });
-  }
-
-  if (window.EventSource) listen();
-  else ask();
+    events: { state: take, progress: take, done: take },
+    read,
+    pollMs: POLL_MS,
+    checksStalls: true,
+    onMode: (mode) => isStopped || onMode?.(mode),
+  });
   return stop;
 }

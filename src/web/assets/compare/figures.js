@@ -4,7 +4,10 @@ import * as api from "../common/api.js";
 import { byAnyId, byId, el, show } from "../common/dom.js";
 import { number, shownUnit } from "../common/format.js";
 import { bars, draw, line, points, stems } from "../common/plots.js";
+import * as address from "./address.js";
 
+/** Channel that is shown at first. */
+const USUAL = "a_x";
 const PHASE = "Position in the mesh period";
 /** Points of a record that a figure shows at most. */
 const MAX_POINTS = 4000;
@@ -33,7 +36,25 @@ let drawing = 0;
 
 /** @param {(error: unknown) => void} failed */
 export function watchOptions(failed) {
-  for (const id of /** @type {const} */ (["half", "mean-removed", "channel", "periods", "spectrum-log"])) byId(id).addEventListener("change", () => update().catch(failed));
+  const isOn = (/** @type {string | null} */ word) => word === "1";
+  recall();
+  const changed = () => {
+    const { half, isMeanRemoved, channel, periods, isLogarithmic } = options();
+    address.remember({ half: half === "left" ? "" : half, mean: isMeanRemoved ? "removed" : "", channel: channel === USUAL ? "" : channel, periods: periods === 2 ? "" : String(periods), log: isLogarithmic ? "1" : "" });
+    update().catch(failed);
+  };
+  for (const id of /** @type {const} */ (["half", "mean-removed", "channel", "periods", "spectrum-log"])) byId(id).addEventListener("change", changed);
+
+  /** Restores what the address names; the channels are known later. */
+  function recall() {
+    const told = address.told();
+    const half = /** @type {HTMLInputElement | null} */ (document.querySelector(`#half input[value="${told.get("half") === "right" ? "right" : "left"}"]`));
+    if (half) half.checked = true;
+    byId("mean-removed").checked = told.get("mean") === "removed";
+    byId("spectrum-log").checked = isOn(told.get("log"));
+    const periods = byId("periods");
+    if ([...periods.options].some(({ value }) => value === told.get("periods"))) periods.value = told.get("periods") ?? "";
+  }
 }
 
 /** Draws the curves of these jobs, as far as they have them. @param {ComparedJob[]} all */
@@ -63,30 +84,49 @@ function fillChannels() {
   const known = new Map();
   for (const { channels = [] } of jobs) for (const { name, quantity, unit } of channels) if (name.endsWith("_left")) known.set(name.slice(0, -5), { quantity, unit });
   const choice = byId("channel");
-  const chosen = choice.value || "a_x";
+  const chosen = choice.value || address.told().get("channel") || USUAL;
   choice.replaceChildren(...[...known].map(([name, { quantity, unit }]) => el("option", { value: name }, `${name}${quantity ? ` – ${quantity.replaceAll("_", " ")}` : ""}, ${inUnit(unit).unit}`)));
   if (known.has(chosen)) choice.value = chosen;
-  else if (known.has("a_x")) choice.value = "a_x";
+  else if (known.has(USUAL)) choice.value = USUAL;
 }
 
 async function update() {
   const turn = ++drawing;
   const wanted = options();
-  const shown = [meshCurve("stiffness", "N/µm", (curve) => curve.stiffness_n_per_um, wanted), meshCurve("error", "µm", (curve) => curve.transmission_error_um, wanted), share(wanted), impact(), spectrum(wanted)];
-  await Promise.all([...shown, records(wanted, () => turn === drawing)]);
+  const later = records(wanted).then((figures) => Promise.all(turn === drawing ? figures.map(put) : []));
+  await Promise.all([...curves(wanted).map(put), later]);
   if (turn === drawing) byId("curves").dataset.ready = String(turn);
 }
 
 /**
- * Shows a figure, or hides it where no job has anything for it.
- * @param {string} id
- * @param {Trace[]} traces
- * @param {PlotAxes} axes
+ * A figure of all jobs that have something for it.
+ * @typedef {{ id: string, traces: Trace[], axes: PlotAxes }} Figure
+ * @type {(id: string, traces: Trace[], axes: PlotAxes) => Figure}
  */
-async function put(id, traces, axes) {
-  const present = traces.filter(({ x }) => x?.length);
-  show(byAnyId(id), present.length > 0);
-  if (present.length) await draw(plotOf(id), present, axes);
+const figure = (id, traces, axes) => ({ id, traces: traces.filter(({ x }) => x?.length), axes });
+
+/** Shows a figure, or hides it where no job has anything for it. @param {Figure} figure */
+async function put({ id, traces, axes }) {
+  show(byAnyId(id), traces.length > 0);
+  if (traces.length) await draw(plotOf(id), traces, axes);
+}
+
+/** Figures of what is read already. @param {Options} options */
+const curves = (options) => [
+  meshCurve("stiffness", "Mesh stiffness", "N/µm", (curve) => curve.stiffness_n_per_um, options), meshCurve("error", "Transmission error", "µm", (curve) => curve.transmission_error_um, options),
+  share(options), impact(), spectrum(options),
+];
+
+/** All figures of these jobs, for a report. @param {ComparedJob[]} all @param {Options} options */
+export async function figuresOf(all, options) {
+  jobs = all.filter(isSolved);
+  return [...curves(options), ...(await records(options))].filter(({ traces }) => traces.length);
+}
+
+/** The options in the address, as a report takes them. @returns {Options} */
+export function optionsTold() {
+  const told = address.told();
+  return { half: told.get("half") ?? "left", isMeanRemoved: told.get("mean") === "removed", channel: told.get("channel") ?? USUAL, periods: Number(told.get("periods") ?? 2), isLogarithmic: told.get("log") === "1" };
 }
 
 /** @type {(job: ComparedJob, trace: Trace) => Trace} */
@@ -103,8 +143,14 @@ function withoutMean(values, isMeanRemoved) {
 
 /** @typedef {ReturnType<typeof options>} Options */
 
-/** @param {string} id @param {string} unit @param {(curve: MeshCurve) => number[]} pick @param {Options} options */
-function meshCurve(id, unit, pick, { half, isMeanRemoved }) {
+/**
+ * @param {string} id
+ * @param {string} label
+ * @param {string} unit
+ * @param {(curve: MeshCurve) => number[]} pick
+ * @param {Options} options
+ */
+function meshCurve(id, label, unit, pick, { half, isMeanRemoved }) {
   const traces = jobs.map((job) => {
     const curve = curveOf(job, half);
     const values = curve ? withoutMean(pick(curve), isMeanRemoved) : [];
@@ -112,7 +158,7 @@ function meshCurve(id, unit, pick, { half, isMeanRemoved }) {
     // The period closes: its end is its beginning.
     return styledFor(job, line([...curve.phase, curve.phase[0] + 1], [...values, values[0]], job.short));
   });
-  return put(id, traces, { x: PHASE, y: isMeanRemoved ? `From the mean, ${unit}` : unit, link: "mesh", csvName: `compare-${id}` });
+  return figure(id, traces, { x: PHASE, y: { label: `${label}${isMeanRemoved ? " from the mean" : ""}`, unit }, link: "mesh", csvName: `compare-${id}` });
 }
 
 /** @param {Options} options */
@@ -123,7 +169,7 @@ function share({ half }) {
     const values = shares[half === "right" && shares.length > 1 ? 1 : 0];
     return curve && values ? styledFor(job, line(curve.load_share_phase, values, job.short)) : { x: [] };
   });
-  return put("share", traces, { x: "Base pitches from the theoretical start of contact", y: "Share", csvName: "compare-load-share" });
+  return figure("share", traces, { x: "Base pitches from the theoretical start of contact", y: "Share of the load", csvName: "compare-load-share" });
 }
 
 /** The pulses: half sines from the corner's first touch. */
@@ -137,7 +183,7 @@ function impact() {
     const steps = Array.from({ length: 61 }, (_, index) => index / 60);
     return styledFor(job, line(steps.map((step) => start + step * length), steps.map((step) => force * Math.sin(Math.PI * step)), job.short));
   });
-  return put("impact", traces, { x: "Mesh periods from the theoretical start of contact", y: "N", csvName: "compare-impact" });
+  return figure("impact", traces, { x: "Mesh periods from the theoretical start of contact", y: "Impact force, N", csvName: "compare-impact" });
 }
 
 /** @param {Options} options */
@@ -154,20 +200,15 @@ function spectrum({ isLogarithmic }) {
     const kind = areFew ? bars : isFew(lines) ? stems : line;
     return styledFor(job, { ...kind(orders, lines.amplitude_m_s2, job.short), showlegend: true });
   });
-  return put("spectrum", traces, { x: "Mesh order", y: "m/s²", log: isLogarithmic, csvName: "compare-spectrum", hover: "closest" });
+  return figure("spectrum", traces, { x: "Mesh order", y: "Amplitude of acceleration, m/s²", log: isLogarithmic, csvName: "compare-spectrum", hover: "closest" });
 }
 
-/**
- * Time series and phase plane: both need records of the motion.
- * @param {Options} options
- * @param {() => boolean} isCurrent
- */
-async function records({ half, isMeanRemoved, channel, periods }, isCurrent) {
+/** Time series and phase plane: both need records of the motion. @param {Options} options */
+async function records({ half, isMeanRemoved, channel, periods }) {
   const moving = jobs.filter(({ channels = [] }) => channels.length > 0);
   /** @param {string[]} names @param {number} count */
   const read = (names, count) => Promise.all(moving.map((job) => Promise.all(names.map((name) => record(job, `${name}_${half}`, count)))));
   const [chosen, planes] = await Promise.all([read([channel], periods), read(["x", "v_x"], PHASE_PERIODS)]);
-  if (!isCurrent()) return;
   const { unit, factor } = inUnit(moving.map((job) => channelOf(job, `${channel}_${half}`)).find(Boolean)?.unit);
   const traces = moving.map((job, index) => {
     const [found] = chosen[index];
@@ -175,7 +216,7 @@ async function records({ half, isMeanRemoved, channel, periods }, isCurrent) {
     const values = withoutMean(found.values, isMeanRemoved).map((value) => value * factor);
     return styledFor(job, line(...repeated(found, values, periods), job.short));
   });
-  await put("series", traces, { x: "Mesh periods", y: `${channel}_${half}${isMeanRemoved ? " from the mean" : ""}, ${unit}`, zoomX: true, csvName: `compare-${channel}-${half}` });
+  const series = figure("series", traces, { x: "Time in mesh periods", y: `${channel}_${half}${isMeanRemoved ? " from the mean" : ""}, ${unit}`, zoomX: true, csvName: `compare-${channel}-${half}` });
   const paths = moving.map((job, index) => {
     const [x, v] = planes[index];
     if (!x || !v) return { x: [] };
@@ -183,7 +224,8 @@ async function records({ half, isMeanRemoved, channel, periods }, isCurrent) {
     const path = (x.isPeriodic || x.values.length <= MAX_POINTS ? line : points)(close(x.values.map((value) => value * 1e6)), close(v.values), job.short);
     return styledFor(job, path);
   });
-  await put("phase", paths, { x: `x_${half}, µm`, y: `v_x_${half}, m/s`, hover: "closest", csvName: "compare-phase-plane" });
+  const plane = figure("phase", paths, { x: `x_${half}, µm`, y: `v_x_${half}, m/s`, hover: "closest", csvName: "compare-phase-plane" });
+  return [series, plane];
 }
 
 /** @param {ComparedJob} job @param {string} name */

@@ -2,8 +2,9 @@
 
 import { number, pointerLabel } from "../common/format.js";
 
-/** JSON pointers of the names of a job, which do not affect its result. */
+/** JSON pointers of what names a job, or the point of a sweep that it repeats: they do not affect its result. */
 const NAMES = ["/name", "/label"];
+const ORIGIN = "/sweep_point/";
 const PER_HALF = ["tip_relief", "lead_crowning_um", "helix_slope_um", "end_relief"];
 
 /**
@@ -12,7 +13,7 @@ const PER_HALF = ["tip_relief", "lead_crowning_um", "helix_slope_um", "end_relie
  */
 export function differing(documents) {
   const flat = documents.map((document) => leaves(withHalves(document)));
-  const pointers = [...new Set(flat.flatMap((leaf) => [...leaf.keys()]))].filter((pointer) => !NAMES.includes(pointer));
+  const pointers = [...new Set(flat.flatMap((leaf) => [...leaf.keys()]))].filter((pointer) => !NAMES.includes(pointer) && !pointer.startsWith(ORIGIN));
   const merged = pointers.filter((pointer) => !isHalf(pointer) || flat.some((leaf) => !same(leaf.get(pointer), leaf.get(otherHalf(pointer)))));
   const kept = merged.concat(bothHalves(pointers.filter((pointer) => !merged.includes(pointer))));
   const valueOf = (leaf, pointer) => (leaf.has(pointer) ? leaf.get(pointer) : leaf.get(pointer.replace(...BOTH)));

@@ -1,20 +1,17 @@
 // Two to five jobs side by side: inputs that differ, headline numbers, curves.
 
 import * as api from "../common/api.js";
-import { byId, notify } from "../common/dom.js";
+import { byId, notify, show } from "../common/dom.js";
 import { followJobs } from "../common/follow.js";
 import { nameOf } from "../jobs/words.js";
 import * as address from "./address.js";
-import { mark, showChosen } from "./chosen.js";
+import { showChosen } from "./chosen.js";
+import { LETTERS, entriesOf } from "./entries.js";
 import { describeCurves, showCurves, watchOptions } from "./figures.js";
 import { load } from "./load.js";
 import { pick } from "./picker.js";
 import { showSweeps, watchQuantity } from "./sweeps.js";
 import { saveTables, showTables } from "./tables.js";
-
-const LETTERS = "ABCDE";
-/** Length of a name in the legends, by the number of jobs: they are to leave room for the curves. */
-const NAME_LENGTHS = [34, 34, 34, 26, 20, 18];
 
 const notice = byId("notice");
 let view = address.read();
@@ -39,18 +36,10 @@ function slotOf(id) {
   return slot;
 }
 
-/** The jobs in their order, with their names and lines. @returns {ComparedJob[]} */
+/** The jobs in their order, with their names and lines. */
 function entries() {
   slots = new Map([...slots].filter(([id]) => view.ids.includes(id)));
-  return view.ids.map((id) => {
-    const found = known.get(id) ?? { id, job: null };
-    const slot = slotOf(id);
-    const letter = LETTERS[slot];
-    const name = found.job ? nameOf(found.job) : `Job …${id.slice(-6)}`;
-    const most = NAME_LENGTHS[view.ids.length];
-    const short = `${letter}  ${name.length > most ? `${name.slice(0, most - 1).trimEnd()}…` : name}`;
-    return { ...found, slot, letter, name, short, mark: () => mark(letter, slot) };
-  });
+  return entriesOf(view.ids, known, slotOf);
 }
 
 /** Reads the jobs that are not read yet, and shows all. */
@@ -74,6 +63,9 @@ async function render() {
   const reference = jobs.find(({ id }) => id === view.reference) ?? jobs[0];
   showChosen(jobs, reference, { add, replace, remove, refer });
   const names = jobs.map(({ name }) => name).join(", ");
+  byId("compare").dataset.subject = names;
+  byId("report-link").href = `/compare/report${window.location.search}`;
+  show(byId("report-link"), jobs.some(({ result, sweep }) => result || sweep));
   document.title = `${names ? `Compare ${names}` : "Compare"} · herringbone`;
   showTables(jobs, reference);
   await Promise.all([showCurves(jobs), showSweeps(jobs, reference)]);
@@ -113,7 +105,7 @@ function take(job) {
 /** Compares other jobs. @param {{ ids: string[], reference: string }} next */
 function go(next) {
   view = { surplus: 0, ...next };
-  if (!view.ids.includes(view.reference)) view.reference = view.ids[0];
+  if (!view.ids.includes(view.reference)) view.reference = address.oldest(view.ids);
   address.write(view, true);
   refresh();
 }

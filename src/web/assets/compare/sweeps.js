@@ -5,6 +5,7 @@ import { draw, line } from "../common/plots.js";
 import { withUnit } from "../sweep/axes.js";
 import { QUANTITIES } from "../sweep/quantities.js";
 import { thinned } from "../sweep/thin.js";
+import * as address from "./address.js";
 
 /** @typedef {ComparedJob & { sweep: NonNullable<ComparedJob["sweep"]> }} SweptJob */
 
@@ -19,7 +20,11 @@ const CHOICES = QUANTITIES.flatMap(({ label, unit, columns }) =>
 export function watchQuantity(failed) {
   const choice = byId("quantity");
   choice.replaceChildren(...CHOICES.map(({ name, label, unit }) => el("option", { value: name }, withUnit(label, unit))));
-  choice.addEventListener("change", () => update().catch(failed));
+  if (CHOICES.some(({ name }) => name === address.told().get("quantity"))) choice.value = address.told().get("quantity") ?? "";
+  choice.addEventListener("change", () => {
+    address.remember({ quantity: choice.value === CHOICES[0].name ? "" : choice.value });
+    update().catch(failed);
+  });
 }
 
 /** @type {(job: ComparedJob) => job is SweptJob} */
@@ -30,10 +35,7 @@ export async function showSweeps(all, reference) {
   const sweeps = all.filter(isSwept);
   show(byId("sweeps"), sweeps.length > 0);
   const single = sweeps.filter(({ sweep }) => sweep.grid.axes.length === 1);
-  const first = single.find((job) => job === reference) ?? single[0];
-  /** @param {SweptJob} job */
-  const pointerOf = ({ sweep }) => sweep.grid.axes[0].pointer;
-  jobs = single.filter((job) => pointerOf(job) === pointerOf(first));
+  jobs = drawnTogether(sweeps, reference);
   /** @param {ComparedJob[]} list */
   const letters = (list) => list.map(({ letter }) => letter).join(", ");
   const other = single.filter((job) => !jobs.includes(job));
@@ -46,13 +48,36 @@ export async function showSweeps(all, reference) {
 }
 
 async function update() {
-  const { name, label, unit } = CHOICES.find((choice) => choice.name === byId("quantity").value) ?? CHOICES[0];
-  const traces = jobs.flatMap((job) => curvesOf(job, name));
-  show(byId("sweep"), traces.length > 0);
-  if (!traces.length) return;
+  const found = figureOf(byId("quantity").value);
+  show(byId("sweep"), found !== null);
+  if (!found) return;
   const box = /** @type {HTMLElement} */ (byId("sweep").querySelector(".plot"));
-  await draw(box, traces, { x: jobs[0].sweep.grid.axes[0].title, y: unit || label, name: `Sweeps: ${label}`, csvName: `compare-sweeps-${name}` });
-  byId("sweeps").dataset.ready = name;
+  await draw(box, found.traces, found.axes);
+  byId("sweeps").dataset.ready = found.name;
+}
+
+/**
+ * A quantity of the sweeps that are drawn together; null without any.
+ * @param {string | null} wanted name of a column
+ */
+function figureOf(wanted) {
+  const { name, label, unit } = CHOICES.find((choice) => choice.name === wanted) ?? CHOICES[0];
+  const traces = jobs.flatMap((job) => curvesOf(job, name));
+  if (!traces.length) return null;
+  return { name, traces, axes: { x: jobs[0].sweep.grid.axes[0].title, y: { label, unit }, name: `Sweeps: ${label}`, csvName: `compare-sweeps-${name}` } };
+}
+
+/** The same for a report, of the quantity in the address. @param {ComparedJob[]} all @param {ComparedJob} reference */
+export function sweepFigureOf(all, reference) {
+  jobs = drawnTogether(all.filter(isSwept), reference);
+  return figureOf(address.told().get("quantity"));
+}
+
+/** Sweeps over one input, the same as the reference's. @param {SweptJob[]} sweeps @param {ComparedJob} reference */
+function drawnTogether(sweeps, reference) {
+  const single = sweeps.filter(({ sweep }) => sweep.grid.axes.length === 1);
+  const first = single.find((job) => job === reference) ?? single[0];
+  return single.filter(({ sweep }) => sweep.grid.axes[0].pointer === first.sweep.grid.axes[0].pointer);
 }
 
 /** One curve for each direction of the sweep. @param {SweptJob} job @param {string} name */
@@ -64,6 +89,6 @@ function curvesOf({ sweep: { grid, data }, short, slot }, name) {
     const kept = thinned(y, 0, y.length);
     const values = kept.map((at) => (Number.isNaN(y[at]) ? null : y[at]));
     const curve = line(kept.map((at) => x[at]), values, [short, branch].filter(Boolean).join(", "));
-    return { ...curve, colour: slot, ...(branch === "down" ? { opacity: .65 } : {}) };
+    return { ...curve, colour: slot, ...(branch ? { line: { width: branch === "down" ? 1.1 : 2.4 } } : {}) };
   });
 }

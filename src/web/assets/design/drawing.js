@@ -89,7 +89,7 @@ const PERIOD_MS = 4000;
  * @param {SVGSVGElement} root
  * @param {SectionDrawing} section
  */
-function drawSection(root, section) {
+export function drawSection(root, section) {
   const { pinion, gear, points } = section;
   /** @type {Points} */
   const at = Object.fromEntries(points.map((point) => [point.name, point]));

@@ -4,9 +4,12 @@ import * as api from "../common/api.js";
 import { byAnyId, byId, el, fillValues, notify, show } from "../common/dom.js";
 import { instant, number, percent, seconds, sentence } from "../common/format.js";
 import { placeOf, readable } from "../common/sentence.js";
+import { Bell } from "./bell.js";
+import { Remaining, leftText } from "./remaining.js";
 
 const STAGES = { geometry: "Geometry", mesh: "Tooth contact", impact: "Mesh-in impact", response: "Vibration" };
 const STAGES_OF = { mesh: ["geometry", "mesh", "impact"], response: ["geometry", "mesh", "impact", "response"] };
+const MODES = { live: "Live", polling: "Asked every second", lost: "Connection lost, trying again …" };
 const STATES = { queued: "Waiting for a worker", canceled: "Canceled" };
 
 export class Life {
@@ -20,6 +23,10 @@ export class Life {
     this.onChange = onChange;
     /** @type {Job | null} */
     this.job = null;
+    /** @type {{ job: string, position: number } | null} */
+    this.origin = null;
+    this.bell = new Bell(id);
+    this.remaining = new Remaining();
     byId("cancel").addEventListener("click", () => this.cancel());
     byId("copy-link").addEventListener("click", () => this.copyLink());
     byId("delete").addEventListener("click", () => byId("delete-dialog").showModal());
@@ -34,17 +41,20 @@ export class Life {
     const ended = api.isEnded(job);
     const title = job.name ?? `Job ${job.id.slice(-8)}`;
     byId("title").textContent = title;
-    document.title = `${title} · herringbone`;
+    document.title = `${job.state === "running" ? `${percent(job.progress)} · ` : ""}${title} · herringbone`;
     const badge = byId("state");
     if (badge.textContent !== job.state) badge.textContent = job.state;
     badge.className = `badge ${job.state}`;
     byId("stage").textContent = describe(job);
+    this.remaining.note(job, Date.now());
     this.showProgress(job);
+    this.bell.show(!ended);
+    if (ended && before && !api.isEnded(before)) this.bell.ring(job, title);
+    if (ended) show(byId("mode"), false);
     show(byId("cancel"), !ended);
     byId("cancel").disabled = Boolean(job.cancel_requested_at);
     show(byId("delete"), ended);
-    for (const name of ["compare", "download-result"]) show(byAnyId(name), job.state === "succeeded");
-    show(byId("report"), job.state === "succeeded" && job.kind !== "sweep");
+    for (const name of ["compare", "report", "download-result"]) show(byAnyId(name), job.state === "succeeded");
     byId("download-input").href = api.inputUrl(this.id);
     byId("download-result").href = api.resultUrl(this.id);
     this.showValues(job);
@@ -52,6 +62,20 @@ export class Life {
     else show(byId("life"));
     if (job.state === "queued" && before?.state !== "queued") this.askPlace();
     this.tick();
+  }
+
+  /** The point of a sweep that the job repeats. @param {{ job: string, position: number }} origin */
+  showOrigin(origin) {
+    this.origin = origin;
+    if (this.job) this.showValues(this.job);
+  }
+
+  /** Says how the page gets its news, while the job is live. @param {keyof typeof MODES} mode */
+  showMode(mode) {
+    const node = byId("mode");
+    show(node, !this.job || !api.isEnded(this.job));
+    node.dataset.mode = mode;
+    if (node.textContent !== MODES[mode]) node.textContent = MODES[mode];
   }
 
   /** @param {Job} job */
@@ -62,6 +86,7 @@ export class Life {
       ["Label", job.label],
       ["Submitted", instant(job.submitted_at)],
       ["Ended", job.ended_at ? instant(job.ended_at) : null],
+      ["Point of a sweep", this.origin && el("a", { href: `/jobs/${encodeURIComponent(this.origin.job)}#point=${this.origin.position}` }, `point ${number(this.origin.position + 1)}`)],
       ["Attempt", job.attempt > 1 ? String(job.attempt) : null],
       ["Result taken from", job.reused_from ? el("a", { href: `/jobs/${encodeURIComponent(job.reused_from)}` }, "an equal job") : null],
       ["Solved in", solved === null ? null : number(solved, 3), "s"],
@@ -89,6 +114,8 @@ export class Life {
   /** Shows the time since the start of the job, or since its submission. */
   tick() {
     const { job } = this;
+    const left = job?.state === "running" ? this.remaining.at(Date.now()) : null;
+    byId("left").textContent = left === null ? "" : leftText(left);
     if (!job || api.isEnded(job)) {
       byId("elapsed").textContent = "";
       return;
@@ -132,7 +159,7 @@ export class Life {
   }
 
   async copyLink() {
-    const link = window.location.origin + window.location.pathname;
+    const link = window.location.href;
     const note = byId("life-note");
     try {
       await navigator.clipboard.writeText(link);

@@ -126,8 +126,8 @@ export function modesPlot(response, numerics) {
     const shown = held.map((mode, at) => ({ ...mode, side: side(at) })).filter(wanted);
     const trace = stems(shown.map((mode) => mode.frequency_hz), shown.map((mode) => 100 * meshShare(mode)), look.name);
     Object.assign(trace, { ...look, mode: "markers+text", text: shown.map((mode) => String(mode.index)), textposition: shown.map((mode) => mode.side), error_y: { ...trace.error_y, thickness: 2.5 }, cliponaxis: false });
-    trace.customdata = shown.map((mode) => mode.name);
-    trace.hovertemplate = "mode %{text}: %{customdata}<br>%{x:.5~g} Hz<br>%{y:.3~g} % of its strain energy in the meshes<extra></extra>";
+    trace.customdata = shown.map((mode) => `${mode.index}: ${mode.name}`);
+    trace.hovertemplate = "mode %{customdata}<br>%{x:.5~g} Hz<br>%{y:.3~g} % of its strain energy in the meshes<extra></extra>";
     return trace;
   };
   const idle = (mode) => halvesAlike(numerics) && isOpposed(mode);

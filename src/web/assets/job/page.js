@@ -51,6 +51,7 @@ async function showResult(job) {
   /** @type {JobContext} */
   const all = { id, job, result, input, catalogue, gearData };
   fillWarnings(byId("warnings"), result.warnings);
+  if (input.sweep_point) life.showOrigin(input.sweep_point);
   showHeadline(result);
   showResponse(all);
   showGeometry(all);
@@ -75,7 +76,13 @@ function showContents() {
 try {
   const job = await api.job(id);
   follow(job);
-  if (!api.isEnded(job)) watchJob(id, follow);
+  if (!api.isEnded(job)) {
+    watchJob(id, {
+      onJob: follow,
+      onMode: (mode) => life.showMode(mode),
+      onGone: () => notify(notice, { problem: { title: "This job was deleted." } }),
+    });
+  }
 } catch (error) {
   notify(notice, error);
 }

@@ -4,6 +4,7 @@ import * as api from "../common/api.js";
 import { byId, notify, show } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { draw } from "../common/plots.js";
+import { remember, told } from "./address.js";
 import { halvesAlike, phasePlot } from "./motion_plots.js";
 
 /** Most points of a path: its two channels have to be complete over the time shown. */
@@ -34,7 +35,12 @@ export async function showPhase({ id, result: { response, numerics }, input, cat
     const [{ place, dots }] = paths;
     byId("phase-note").textContent = `${number(place.length)} samples${halves.length === 1 ? "; left and right are alike" : ""}${dots.place.length ? `; ${number(dots.place.length)} ${dots.place.length === 1 ? "point" : "points"}, one per mesh period` : ""}.`;
   };
-  choice.addEventListener("change", () => update().catch((error) => notify(byId("notice"), error)));
+  const named = told().get("plane");
+  if (named && planes.includes(named)) choice.value = named;
+  choice.addEventListener("change", () => {
+    remember({ plane: choice.value });
+    update().catch((error) => notify(byId("notice"), error));
+  });
   await update();
 }
 

@@ -6,6 +6,7 @@ import { decimal } from "../common/csv.js";
 import { byId, download, el, notify, show } from "../common/dom.js";
 import { number, sentence } from "../common/format.js";
 import { draw, line, onZoom } from "../common/plots.js";
+import { remember, told } from "./address.js";
 import { halvesAlike } from "./motion_plots.js";
 import { channelScale, channelWords } from "./words.js";
 
@@ -46,8 +47,9 @@ class SeriesPanel {
     const partner = this.first.value.replace(/left$/, "right");
     // Equal halves have the same curve.
     if (!alike && partner !== this.first.value && this.channels.has(partner)) this.second.value = partner;
-    this.first.addEventListener("change", () => this.load());
-    this.second.addEventListener("change", () => this.load());
+    this.first.addEventListener("change", () => this.change());
+    this.second.addEventListener("change", () => this.change());
+    document.getElementById("csv-decimal")?.addEventListener("change", () => this.linkFile());
     byId("whole").addEventListener("click", () => this.zoom(null));
     byId("series-csv").addEventListener("click", (event) => this.save(event));
     const frequency = response?.mesh_frequency_hz ?? 0;
@@ -60,12 +62,36 @@ class SeriesPanel {
     this.copies = repeats ? Math.max(1, Math.ceil(PERIODS / Math.max(1, response.period_mesh_periods ?? 1))) : 1;
     /** @type {Span} */
     this.whole = [t0, t0 + this.copies * this.length];
+    this.recall();
+  }
+
+  /** Restores channels and window that the address names. */
+  recall() {
+    const named = told();
+    const [first, second] = [named.get("channel"), named.get("second")];
+    if (first && this.channels.has(first)) {
+      this.first.value = first;
+      this.second.value = second && this.channels.has(second) ? second : "";
+    }
+    const [from, to] = ["from", "to"].map((name) => Number(named.get(name) ?? NaN) / 1e3);
+    if (to > from && from >= this.whole[0] - this.length && to <= this.whole[1] + this.length) this.window = [from, to];
+  }
+
+  /** Takes up other channels or another window: they stand in the address from then on. */
+  change() {
+    const [from, to] = (this.window ?? []).map((end) => String(Number((end * 1e3).toPrecision(9))));
+    remember({ channel: this.first.value, second: this.second.value, from: from ?? null, to: to ?? null });
+    return this.load();
+  }
+
+  linkFile() {
+    byId("series-csv").href = api.seriesCsvUrl(this.id, this.first.value, decimal());
   }
 
   /** Shows a window [from, to] in seconds, or all. @param {Span | null} window */
   zoom(window) {
     this.window = window;
-    return this.load();
+    return this.change();
   }
 
   async load() {
@@ -73,7 +99,7 @@ class SeriesPanel {
     this.asking = new AbortController();
     const { signal } = this.asking;
     const names = [...new Set([this.first.value, this.second.value].filter(Boolean))];
-    byId("series-csv").href = api.seriesCsvUrl(this.id, names[0], decimal());
+    this.linkFile();
     this.plot.dataset.state = "loading";
     try {
       const answers = await Promise.all(names.map((name) => this.fetch(name, signal)));

@@ -5,8 +5,6 @@ import { bodyOf, byId, el, fillRows, fillValues, fillWarnings, notify, show } fr
 import { instant, number } from "../common/format.js";
 import { gearDataOf, memberRows, pairRows, symbolOf } from "../common/gear_data.js";
 import { line } from "../common/plot_traces.js";
-import { summary } from "../common/plot_tools.js";
-import { picture } from "../common/plots.js";
 import { scalarAt } from "../common/scalars.js";
 import { accuracyTexts, headlines } from "../job/headline.js";
 import { impactRows, impactValues } from "../job/impact.js";
@@ -18,16 +16,17 @@ import { halvesAlike, modesPlot, phasePlot, spectrumPlot } from "../job/motion_p
 import { numericsValues } from "../job/numerics.js";
 import { responseValues } from "../job/response.js";
 import { channelScale, channelWords } from "../job/words.js";
+import { drawPair } from "./drawing.js";
+import { HALF, WHOLE, showFigures } from "./figures.js";
 import { inputGroups } from "./inputs.js";
+import { showSheet } from "./sheet.js";
+import { showSweep } from "./sweep.js";
 
 const id = byId("report").dataset.id ?? "";
 /** Points of a series on paper. */
 const POINTS = 1500;
 /** Mesh periods of a series on paper. */
 const PERIODS = 8;
-/** Sizes of the drawings, px: they are made smaller on paper, by about a quarter. */
-const HALF = { width: 460, height: 280 };
-const WHOLE = { width: 930, height: 250 };
 
 /** @param {Job} job */
 function showHead(job) {
@@ -37,7 +36,7 @@ function showHead(job) {
   document.title = `${name} · report`;
   byId("subtitle").textContent = "Contact, mesh-in impact and vibration of a double-helical gear pair";
   fillValues(byId("facts"), [
-    ["Kind", { mesh: "Mesh", response: "Response at one operating point" }[job.kind] ?? job.kind],
+    ["Kind", { mesh: "Mesh", response: "Response at one operating point", sweep: "Sweep" }[job.kind] ?? job.kind],
     ["Label", job.label],
     ["Computed", job.ended_at ? instant(job.ended_at) : null],
     ["Solver", `herringbone ${job.solver_version}`],
@@ -91,14 +90,7 @@ async function showPlots({ result: { geometry, mesh, impact, response, numerics 
     ["Natural modes against the harmonics of the mesh frequency", response && modesPlot(response, numerics), WHOLE],
   ];
   const drawn = plots.flatMap(([title, plot, size = HALF]) => (plot ? [{ title, ...plot, size }] : []));
-  show(byId("plots"), drawn.length > 0);
-  for (const { title, traces, axes, size } of drawn) {
-    const image = el("img", { width: size.width, height: size.height, alt: summary({ traces, axes: { ...axes, name: title } }) });
-    byId("figures").append(el("figure", { class: size === WHOLE ? "whole" : "" }, el("figcaption", {}, title), image));
-    const drawing = await picture(traces, { ...axes, name: title }, { format: "svg", ...size });
-    image.src = `data:image/svg+xml,${encodeURIComponent(drawing)}`;
-    await image.decode();
-  }
+  await showFigures(drawn);
 }
 
 /**
@@ -169,10 +161,19 @@ function modelError(accuracy) {
 async function start() {
   const job = await api.job(id);
   showHead(job);
-  if (job.state !== "succeeded" || job.kind === "sweep") {
-    throw new Error(job.kind === "sweep" ? "A report is of one operating point: this job is a sweep." : `There is a report when the job has succeeded; it is ${job.state}.`);
+  if (job.state !== "succeeded") throw new Error(`There is a report when the job has succeeded; it is ${job.state}.`);
+  showSheet(id, /** @type {Job & { notes?: string | null }} */ (job).notes ?? "");
+  const isSweep = job.kind === "sweep";
+  const [result, input, kinds, gearData] = await Promise.all([isSweep ? api.resultWithoutRows(id) : api.result(id), api.input(id), api.kinds(), gearDataOf(id)]);
+  await drawPair(input);
+  if (isSweep) {
+    fillWarnings(byId("warnings"), result.warnings);
+    show(byId("warned"), result.warnings.length > 0);
+    if (gearData) showGearData(gearData);
+    showInputs(input, kinds);
+    await showSweep({ id, job, input, result });
+    return ready();
   }
-  const [result, input, kinds, gearData] = await Promise.all([api.result(id), api.input(id), api.kinds(), gearDataOf(id)]);
   const catalogue = result.response ? (await api.catalogue(id)).items : [];
   fillRows(bodyOf(byId("headline")), headlines(result).map(([name, value, unit, note]) => [name, el("strong", {}, `${value} ${unit}`.trim()), el("span", {}, ...[note].flat())]));
   show(byId("summary"));
@@ -194,6 +195,10 @@ async function start() {
   ]);
   show(byId("numerics"));
   await showPlots({ id, job, result, input, catalogue, gearData });
+  ready();
+}
+
+function ready() {
   byId("print").disabled = false;
   byId("report").dataset.ready = "true";
 }

@@ -62,6 +62,18 @@ export class Grid {
     return [this.axes[0].values[first], ...(this.axes[1] ? [this.axes[1].values[second]] : [])];
   }
 
+  /** What varies, from where to where and in how many values, and how the points were reached. */
+  describeAxes() {
+    const told = this.axes.map((axis) => {
+      const n = axis.values.length;
+      const [least, greatest] = axis.values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
+      return n === 1 ? `${axis.label} ${valueText(axis, least)}` : `${axis.label} from ${number(least, 7)} to ${valueText(axis, greatest)} in ${number(n)} values`;
+    });
+    const [branch] = this.branches;
+    const ways = this.branches.length === 2 ? "followed up and down" : branch ? `followed ${branch}` : "each point for itself";
+    return `${told.join("; ")}; ${ways}.`;
+  }
+
   /** A point in words: "Pinion speed 2000 r/min, on the way up". @param {number} position */
   describe(position) {
     const values = this.valuesAt(position);

@@ -39,12 +39,14 @@ export function curves(sweep, view) {
     traces,
     axes: {
       x: axis.title,
-      y: quantity.unit || quantity.label,
+      y: { label: quantity.label, unit: quantity.unit },
+      yPart: 0.85 - footOf(grid),
       name: quantity.label,
       hover: "closest",
       click: view.click,
+      keys: keysOf(sweep, view),
       csvName: `${sweep.name} ${quantity.label}`,
-      more: (layout, colour) => arrange(layout, colour, { sweep, view, rows, resonances, axis, x }),
+      more: (layout, colour, { width }) => arrange(layout, colour, width, { sweep, view, rows, resonances, axis, x }),
     },
   };
 }
@@ -214,8 +216,31 @@ function strip(sweep, view, x, from, to) {
   return { traces: [heat("contact", CONTACTS, contact), heat("motion", REGIMES, regime)], labels };
 }
 
-function arrange(layout, colour, { sweep, view, rows, resonances, axis, x }) {
-  const foot = 0.05 + 0.045 * 2 * view.grid.branches.length;
+/**
+ * The kinds of motion and contact that occur, with their colours.
+ * @param {SweepState} sweep
+ * @param {SweepView} view
+ * @returns {PlotKey[]}
+ */
+function keysOf(sweep, { grid, line }) {
+  const [regime, contact, error] = ["regime", "contact", "error"].map((name) => sweep.data.column(name));
+  const positions = grid.branches.flatMap((_, b) => grid.order.map((first) => grid.at(first, line, b)));
+  /** @param {PointKind[]} kinds @param {any} words @param {string} what */
+  const seen = (kinds, words, what) => {
+    const found = new Set(positions.map((position) => kindOf(kinds, words[position], error[position])));
+    return [...kinds, FAILED].filter((_, index) => found.has(index)).map(({ label, colour }) => ({ label: `${what}: ${label}`, colour }));
+  };
+  return [...seen(REGIMES, regime, "motion"), ...seen(CONTACTS, contact, "contact").filter(({ label }) => !label.endsWith(FAILED.label))];
+}
+
+/** Part of the height that the strip takes. @param {SweepView["grid"]} grid */
+const footOf = (grid) => 0.05 + 0.045 * 2 * grid.branches.length;
+
+/** Room of a label along a line, px. */
+const LABEL_PX = 15;
+
+function arrange(layout, colour, width, { sweep, view, rows, resonances, axis, x }) {
+  const foot = footOf(view.grid);
   layout.yaxis = { ...layout.yaxis, domain: [foot + 0.04, 1], type: view.log ? "log" : "linear", rangemode: view.log ? "normal" : "tozero", ...(view.log ? { exponentformat: "power", dtick: "D2" } : {}) };
   layout.yaxis2 = { domain: [0, foot - 0.03], range: [-0.5, rows.labels.length - 0.5], anchor: "x", fixedrange: true, showgrid: false, zeroline: false, automargin: true, tickfont: { size: 11 }, tickvals: [...rows.labels.keys()], ticktext: rows.labels };
   layout.xaxis = { ...layout.xaxis, anchor: "y2", type: axis.logarithmic ? "log" : "linear" };
@@ -229,8 +254,17 @@ function arrange(layout, colour, { sweep, view, rows, resonances, axis, x }) {
     ...resonances.map(({ at }) => ({ type: "line", xref: "x", yref: "y domain", x0: at, x1: at, y0: 0, y1: 1, line: { color: colour("--muted"), width: 1, dash: "dot" }, layer: "below" })),
   ];
   const along = (value) => (axis.logarithmic ? Math.log10(value) : value);
+  // Labels with room beside the one before.
+  const apart = (LABEL_PX * (along(range[1]) - along(range[0]))) / Math.max(100, width - 100);
+  /** @type {number[]} */
+  const labelled = [];
+  const named = resonances.filter(({ at, label }) => {
+    const hasRoom = label && labelled.every((other) => Math.abs(along(at) - other) > apart);
+    if (hasRoom) labelled.push(along(at));
+    return hasRoom;
+  });
   layout.annotations =
-    resonances.filter(({ label }) => label).map(({ at, label }) => ({ x: along(at), yref: "y domain", y: 0.98, yanchor: "top", xanchor: "right", textangle: -90, showarrow: false, text: label, font: { size: 10, color: colour("--muted") } }));
+    named.map(({ at, label }) => ({ x: along(at), yref: "y domain", y: 0.98, yanchor: "top", xanchor: "right", textangle: -90, showarrow: false, text: label, font: { size: 10, color: colour("--muted") } }));
   layout.margin = { ...layout.margin, l: 70 };
 }
 

@@ -20,19 +20,24 @@ const NEAR = 0.03;
  */
 export function showFindings(sweep, view, select) {
   const { grid } = view;
-  /** @type {Finding[]} */
-  const items = [...extremes(sweep, view), ...ranges(sweep, view), ...jumps(sweep, view)];
-  const failed = sweep.data.failed();
-  if (failed.length) {
-    const text = failed.length === 1 ? "One point has no response." : `${number(failed.length)} of ${number(sweep.data.n)} points have no response.`;
-    items.push({ text, position: failed[0] });
-  }
+  const items = findingsOf(sweep, view);
   byId("sweep-findings").replaceChildren(...items.map(({ text, position }) => {
     const button = position === undefined ? null : el("button", { type: "button", class: "quiet" }, "Show");
     button?.setAttribute("aria-label", `Show ${position === undefined ? "" : grid.describe(position)}`);
     if (position !== undefined) button?.addEventListener("click", () => select(position));
     return el("li", {}, el("span", {}, text), button);
   }));
+}
+
+/** @param {SweepState} sweep @param {SweepView} view @returns {Finding[]} */
+export function findingsOf(sweep, view) {
+  const items = [...extremes(sweep, view), ...ranges(sweep, view), ...jumps(sweep, view)];
+  const failed = sweep.data.failed();
+  if (failed.length) {
+    const text = failed.length === 1 ? "One point has no response." : `${number(failed.length)} of ${number(sweep.data.n)} points have no response.`;
+    items.push({ text, position: failed[0] });
+  }
+  return items;
 }
 
 /**

@@ -55,7 +55,7 @@ export function map(sweep, view) {
   return {
     traces,
     axes: {
-      x: first.title, y: second.title, title: [what, half, branch].filter(Boolean).join(", "), csvName: `${sweep.name} map`, hover: "closest", click: view.click,
+      x: first.title, y: second.title, title: [what, half, branch].filter(Boolean).join(", "), keys: kinds ? keysOf(sweep, kinds) : undefined, csvName: `${sweep.name} map`, hover: "closest", click: view.click,
       more: (layout) => {
         if (first.logarithmic) layout.xaxis.type = "log";
         if (second.logarithmic) layout.yaxis.type = "log";
@@ -109,6 +109,18 @@ function kindMap(sweep, { name, kinds }, rows, base, where) {
     text: rows((position) => words[position] ?? (errors[position] ? FAILED.label : "")), hovertemplate: `${where}<br>%{text}<extra></extra>`,
     paint: (/** @type {(name: string) => string} */ of) => ({ colorscale: steps(all.map(({ colour }) => of(colour))) }),
   };
+}
+
+/**
+ * The kinds that occur, with their colours.
+ * @param {SweepState} sweep
+ * @param {typeof KINDS[number]} kind
+ * @returns {PlotKey[]}
+ */
+function keysOf(sweep, { name, kinds }) {
+  const errors = sweep.data.column("error");
+  const found = new Set(sweep.data.column(name).map((/** @type {string | null} */ word, /** @type {number} */ position) => kindOf(kinds, word, errors[position])));
+  return [...kinds, FAILED].filter((_, index) => found.has(index)).map(({ label, colour }) => ({ label, colour }));
 }
 
 /**
@@ -172,7 +184,7 @@ export function section(sweep, view, along) {
   return {
     traces,
     axes: {
-      x: axis.title, y: quantity.unit || quantity.label, csvName: `${sweep.name} section`, hover: "closest", click: view.click,
+      x: axis.title, y: { label: quantity.label, unit: quantity.unit }, csvName: `${sweep.name} section`, hover: "closest", click: view.click,
       more: (layout, colour) => {
         layout.xaxis.type = axis.logarithmic ? "log" : "linear";
         layout.yaxis.type = view.log ? "log" : "linear";

@@ -2,7 +2,6 @@
 
 import * as api from "../common/api.js";
 import { byAnyId, byId, el, fillWarnings, notify, show } from "../common/dom.js";
-import { number } from "../common/format.js";
 import { draw, onZoom } from "../common/plots.js";
 import { Grid, valueText } from "./axes.js";
 import { SPECTRUM, STATES, bifurcation, spectra } from "./clouds.js";
@@ -84,7 +83,7 @@ class Panel {
     this.fillControls();
     this.recall();
     byId("sweep-resume").addEventListener("click", () => this.resume());
-    byId("sweep-axes").textContent = this.describeAxes();
+    byId("sweep-axes").textContent = this.grid.describeAxes();
     // Warnings come when the sweep has ended: below it, so that nothing moves.
     byId("sweep").after(byId("warnings"));
     show(byId("sweep"));
@@ -95,9 +94,10 @@ class Panel {
     const { view } = this;
     const told = {
       view: view.name, quantity: view.kind ?? view.quantity.name, state: view.state.name, line: view.line, branch: view.branch, halves: view.halves, point: view.selected,
+      from: view.range?.[0] ?? null, to: view.range?.[1] ?? null,
       ...Object.fromEntries(SWITCHES.map((name) => [name, Number(view[name])])),
     };
-    const uses = new Set(["view", "point", ...VIEWS[view.name].controls]);
+    const uses = new Set(["view", "point", ...(view.name === "curves" ? ["from", "to"] : []), ...VIEWS[view.name].controls]);
     const kept = Object.entries(told).filter(([name, value]) => uses.has(name) && value !== null).map(([name, value]) => [name, String(value)]);
     window.history.replaceState(window.history.state, "", `#${new URLSearchParams(kept)}`);
   }
@@ -121,18 +121,9 @@ class Panel {
     const halves = told.get("halves");
     if (halves === "left" || halves === "right") view.halves = halves;
     for (const name of SWITCHES) if (told.has(name)) view[name] = told.get(name) === "1";
+    const [from, to] = ["from", "to"].map((name) => Number(told.get(name) ?? NaN));
+    if (view.name === "curves" && to > from) view.range = [from, to];
     this.recalled = within("point", grid.total);
-  }
-
-  describeAxes() {
-    const told = this.grid.axes.map((axis) => {
-      const n = axis.values.length;
-      const [least, greatest] = axis.values.reduce(([low, high], value) => [Math.min(low, value), Math.max(high, value)], [Infinity, -Infinity]);
-      return n === 1 ? `${axis.label} ${valueText(axis, least)}` : `${axis.label} from ${number(least, 7)} to ${valueText(axis, greatest)} in ${number(n)} values`;
-    });
-    const [branch] = this.grid.branches;
-    const ways = this.grid.branches.length === 2 ? "followed up and down" : branch ? `followed ${branch}` : "each point for itself";
-    return `${told.join("; ")}; ${ways}.`;
   }
 
   fillControls() {

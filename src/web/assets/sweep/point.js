@@ -52,8 +52,8 @@ export class PointPanel {
   noteOf(first, second, view) {
     const value = this.grid.axes[0].values[first];
     const twofold = hysteresisAt(this.sweep, { ...view, line: second }).some(({ from, to }) => value >= from && value <= to);
-    const told = "This point was reached by following the motion from its neighbour; opened on its own it is solved from rest.";
-    return twofold ? `${told} Two motions exist here, so that it may show the other one.` : `${told} Where two motions exist it may show the other one.`;
+    const told = "This point was reached by following the motion from its neighbour; opened on its own it starts from the same state, and shows the same motion.";
+    return twofold ? `${told} Two motions exist here.` : told;
   }
 
   /** @param {(name: string) => any} value of a column; undefined while the point is not solved */
@@ -81,7 +81,8 @@ export class PointPanel {
     button.disabled = true;
     try {
       const document = await api.pointInput(this.sweep.id, this.position);
-      document.name = `${this.sweep.name}: ${this.grid.describe(this.position)}`.slice(0, NAME_LENGTH);
+      const place = `: ${this.grid.describe(this.position)}`;
+      document.name = `${this.sweep.name.slice(0, NAME_LENGTH - place.length)}${place}`;
       const job = await api.submit(document, api.newKey());
       window.location.assign(`/jobs/${encodeURIComponent(job.id)}`);
     } catch (error) {
@@ -101,7 +102,7 @@ export class PointPanel {
 export function showLegend(node, kinds, seen) {
   node.replaceChildren(...kinds.filter((_, index) => seen.has(index)).map(({ label, detail, colour }) => {
     const swatch = el("span", { class: "swatch" });
-    swatch.style.background = `var(${colour})`;
+    swatch.style.color = `var(${colour})`;
     return el("li", { title: detail }, swatch, `${label}: `, el("span", { class: "detail" }, detail));
   }));
 }

@@ -29,7 +29,7 @@ fn influence_is_symmetric_and_positive() {
             assert!((total[(i, j)] - total[(j, i)]).abs() < 1e-12 * largest, "{i}, {j}");
         }
     }
-    let positive = factor_partly(total.as_mut(), faer::Mat::zeros(0, 0).as_mut(), "influence", &mut || Ok(()));
+    let positive = factor_partly(total.as_mut(), faer::Mat::zeros(0, 0).as_mut(), "influence", &mut |_| Ok(()));
     assert_eq!(positive, Ok(()));
 }
 
