@@ -28,6 +28,8 @@ pub enum Unavailable {
     ReadOnly,
     /// There was not enough memory.
     Memory,
+    /// The file, or its log, was moved or deleted.
+    Lost,
 }
 
 impl fmt::Display for Unavailable {
@@ -38,6 +40,7 @@ impl fmt::Display for Unavailable {
             Unavailable::Disk => "the disk failed to read or write",
             Unavailable::ReadOnly => "the database may not be written",
             Unavailable::Memory => "there is not enough memory",
+            Unavailable::Lost => "a file of the database was moved or deleted",
         })
     }
 }

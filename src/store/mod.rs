@@ -10,6 +10,7 @@ mod connect;
 mod error;
 mod examine;
 mod failure;
+mod file;
 mod finish;
 mod ids;
 mod lifecycle;

@@ -65,11 +65,13 @@ impl SizeLimit {
 }
 
 impl Store {
-    /// Checks that the size limit permits another job; notifies [`Store::space_needed`] if not.
+    /// Checks that the database file is in its place and that the size limit permits another job; notifies
+    /// [`Store::space_needed`] if the limit does not.
     ///
     /// # Errors
-    /// [`StoreError::LimitReached`], or the database cannot be read.
+    /// [`StoreError::LimitReached`], the file was moved or deleted, or the database cannot be read.
     pub async fn admit(&self) -> Result<(), StoreError> {
+        self.check_file()?;
         let Some(limit) = &self.limit else { return Ok(()) };
         let used = self.usage().await?.used_bytes;
         if used <= limit.admission_bytes() {
