@@ -141,10 +141,11 @@ impl DatabaseFile {
     }
 
     fn lost_file(&self) -> Option<LostFile> {
-        let (name, found) =
-            self.members.iter().map(|(name, id)| (name, id, FileId::at(name))).find_map(|(name, id, found)| {
-                (found != Some(*id)).then(|| (name.clone(), found))
-            })?;
+        let (name, found) = self
+            .members
+            .iter()
+            .map(|(name, id)| (name, id, FileId::at(name)))
+            .find_map(|(name, id, found)| (found != Some(*id)).then(|| (name.clone(), found)))?;
         Some(match (name == self.path, found) {
             (false, _) => LostFile::Log(name),
             (true, None) => LostFile::Database(name),

@@ -7,6 +7,7 @@
 mod backup;
 mod cancel;
 mod connect;
+mod dataset;
 mod error;
 mod examine;
 mod failure;
@@ -44,7 +45,7 @@ pub use record::JobRecord;
 pub use result::{ReusableResult, StoredResult};
 pub use retention::RetentionConfig;
 pub use run::{Claim, Recovery, ReleaseReason, WorkClass};
-pub use series::{PackedSeries, SeriesEntry};
+pub use series::{PackedSeries, SampleBatch, SeriesEntry};
 pub use submit::{NewJob, Submission};
 pub use usage::DatabaseUsage;
 

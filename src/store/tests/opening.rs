@@ -262,6 +262,8 @@ async fn a_file_cut_off_is_damaged() {
 #[tokio::test]
 async fn an_overwritten_page_is_reported_after_an_unclean_end() {
     let (directory, path) = closed().await;
+    // What free pages contain does not matter.
+    run(&path, "PRAGMA incremental_vacuum").await;
     let whole = fs::read(&path).unwrap();
     // A log without valid content, as a killed process may leave it.
     let log = directory.path().join("jobs.db-wal");
