@@ -1,7 +1,7 @@
 //! Errors of opening a database. Each message is one sentence with the path and a remedy.
 
 use super::error::{
-    SQLITE_BUSY, SQLITE_CANTOPEN, SQLITE_CORRUPT, SQLITE_FULL, SQLITE_LOCKED, SQLITE_NOTADB, SQLITE_READONLY,
+    SQLITE_BUSY, SQLITE_CANTOPEN, SQLITE_CORRUPT, SQLITE_LOCKED, SQLITE_NOTADB, SQLITE_READONLY, is_no_room,
     primary_code,
 };
 use std::io;
@@ -95,10 +95,12 @@ impl OpenError {
     /// The error of opening that an error of SQLite amounts to.
     pub(super) fn of_database(path: &Path, source: sqlx::Error) -> Self {
         let path = path.to_owned();
+        if is_no_room(&source) {
+            return Self::NoRoom(path);
+        }
         match primary_code(&source) {
             Some(SQLITE_BUSY | SQLITE_LOCKED) => Self::Locked(path),
             Some(SQLITE_READONLY | SQLITE_CANTOPEN) => Self::ReadOnly(path),
-            Some(SQLITE_FULL) => Self::NoRoom(path),
             Some(SQLITE_NOTADB) => Self::NotADatabase(path),
             Some(SQLITE_CORRUPT) => Self::Damaged { path, finding: "its pages contradict each other".to_owned() },
             _ => Self::Database { path, source },

@@ -6,6 +6,7 @@
 mod config;
 mod database_stages;
 mod failure;
+mod file_watch;
 mod hub;
 mod job_run;
 mod jobs;
@@ -21,6 +22,7 @@ mod solver;
 mod stop_signal;
 
 pub use config::WorkConfig;
+pub use file_watch::run_file_watch;
 pub use hub::{JobEvent, JobEventListener, JobSubscription};
 pub use jobs::{Jobs, SubmitError, SubmitRequest, Submitted};
 pub use local_queue::LocalQueue;
