@@ -92,7 +92,8 @@ fn usable_source(database: &Path) -> Result<PathBuf, BackupError> {
 fn refuse_own_file(database: &Path, target: &Path) -> Result<(), BackupError> {
     let target_id = FileId::at(target);
     let target_name = absolute(target);
-    let is_target = |own: &Path| target_name == absolute(own) || target_id.is_some_and(|id| FileId::at(own) == Some(id));
+    let is_target =
+        |own: &Path| target_name == absolute(own) || target_id.is_some_and(|id| FileId::at(own) == Some(id));
     if is_target(database) {
         return Err(BackupError::SameFile(target.to_owned()));
     }
@@ -113,23 +114,31 @@ fn directory(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Removes the unfinished copies for this target that killed processes left behind: those that nobody has locked.
+/// Removes the unfinished copies for this target, and for this target with a number, that killed processes left behind:
+/// those that nobody has locked.
 pub(super) fn remove_partial_copies(target: &Path) {
     let Some(name) = target.file_name() else { return };
     let Ok(entries) = fs::read_dir(directory(target)) else { return };
     for entry in entries.filter_map(Result::ok).filter(|entry| is_partial_of(&entry.file_name(), name)) {
         let path = entry.path();
         let file = OpenOptions::new().write(true).open(&path);
-        if file.is_ok_and(|file| file::try_lock(&file).unwrap_or(false)) && fs::remove_file(&path).is_ok() {
-            tracing::info!(path = %path.display(), "unfinished copy removed");
+        if file.is_ok_and(|file| file::try_lock(&file).unwrap_or(false)) {
+            let _ = fs::remove_file(with_suffix(&path, JOURNAL));
+            if fs::remove_file(&path).is_ok() {
+                tracing::info!(path = %path.display(), "unfinished copy removed");
+            }
         }
     }
 }
 
+/// Whether a file is named `TARGET.partial-PID`, or so with a number behind `TARGET`.
 fn is_partial_of(name: &OsStr, target: &OsStr) -> bool {
-    let rest = name.as_encoded_bytes().strip_prefix(target.as_encoded_bytes());
-    let process = rest.and_then(|rest| rest.strip_prefix(PARTIAL.as_bytes()));
-    process.is_some_and(|process| !process.is_empty() && process.iter().all(u8::is_ascii_digit))
+    let (Some(name), Some(target)) = (name.to_str(), target.to_str()) else { return false };
+    let Some((number, process)) = name.strip_prefix(target).and_then(|rest| rest.rsplit_once(PARTIAL)) else {
+        return false;
+    };
+    let is_digit = |byte: u8| byte.is_ascii_digit();
+    number.bytes().all(|byte| is_digit(byte) || byte == b'.') && !process.is_empty() && process.bytes().all(is_digit)
 }
 
 /// Whether a copy has the same jobs in the same states as the database, as far as their numbers tell: every change of a

@@ -1,8 +1,8 @@
 //! Opening the database: one connection that writes, several that read, write-ahead log.
 
 use super::backup::{self, BackupError};
-use super::error::Unavailable;
 pub(super) use super::error::StoreError;
+use super::error::Unavailable;
 use super::examine::{OPEN_WAIT, examine, with_suffix};
 use super::file::{DatabaseFile, LostFile};
 use super::ids::IdGenerator;
@@ -28,6 +28,8 @@ pub(super) static MIGRATIONS: Migrator = sqlx::migrate!("./migrations");
 const BUSY_WAIT: Duration = Duration::from_secs(10);
 /// Longest wait for the connection that writes.
 const WRITER_WAIT: Duration = Duration::from_secs(15);
+/// Suffix of a copy made before an upgrade, followed by the schema to which that led.
+const BEFORE_SCHEMA: &str = ".before-schema-";
 /// Size to which the write-ahead log is cut after a checkpoint.
 const LOG_BYTES: u64 = 64 << 20;
 
@@ -90,6 +92,7 @@ impl Store {
     pub(super) async fn open_with(config: &StoreConfig, migrations: &Migrator) -> Result<Self, OpenError> {
         let mut file = DatabaseFile::open(&config.database)?;
         let path = file.path();
+        backup::remove_partial_copies(&with_suffix(path, BEFORE_SCHEMA));
         let found = examine(path, migrations).await?;
         let open_error = |error| OpenError::of_database(path, error);
         let limit = config.retention.limit(found.page_bytes);
@@ -202,8 +205,7 @@ async fn copy_before_upgrade(path: &Path, to: i64) -> Result<(), OpenError> {
         BackupError::File { path, source } => OpenError::of_file(&path, source),
         other => OpenError::Upgrade { path: path.to_owned(), to, source: Box::new(other) },
     };
-    let mut copy = with_suffix(path, &format!(".before-schema-{to}"));
-    backup::remove_partial_copies(&copy);
+    let mut copy = with_suffix(path, &format!("{BEFORE_SCHEMA}{to}"));
     let mut number = 1;
     while fs::symlink_metadata(&copy).is_ok() {
         if backup::has_same_jobs(path, &copy).await.map_err(of_backup)? {
@@ -211,7 +213,7 @@ async fn copy_before_upgrade(path: &Path, to: i64) -> Result<(), OpenError> {
             return Ok(());
         }
         number += 1;
-        copy = with_suffix(path, &format!(".before-schema-{to}.{number}"));
+        copy = with_suffix(path, &format!("{BEFORE_SCHEMA}{to}.{number}"));
     }
     let copied = backup::copy(path, &copy).await.map_err(of_backup)?;
     tracing::info!(copy = %copy.display(), bytes = copied.bytes, "copy made before the upgrade of the database");
