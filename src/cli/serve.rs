@@ -80,8 +80,10 @@ async fn serve(arguments: &ServeArguments) -> anyhow::Result<()> {
     let store = Store::open(&arguments.store).await?;
     let jobs = Jobs::start(store, work, Arc::new(StudySolver), Arc::new(Timestamp::now))
         .await
-        .map_err(anyhow::Error::from_boxed)?;
+        .map_err(anyhow::Error::from_boxed)
+        .with_context(|| format!("the database {}", arguments.store.database.display()))?;
     tokio::spawn(work::run_retention(jobs.clone(), arguments.store.retention, Arc::new(Timestamp::now)));
+    tokio::spawn(work::run_file_watch(jobs.clone()));
     let state = AppState::new(jobs.clone(), Timestamp::now());
     let app = api::router(state, http, &access, pages(access.has_token()));
     let address = listener.local_addr()?;

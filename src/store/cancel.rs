@@ -1,6 +1,7 @@
 //! Canceling and deleting jobs.
 
 use super::connect::{Store, StoreError};
+use super::dataset::delete_ended;
 use super::lifecycle::JobId;
 use super::record::{JobRecord, job_columns, record_event};
 use jiff::Timestamp;
@@ -70,25 +71,22 @@ impl Store {
         })
     }
 
-    /// Deletes an ended job with its result, series and history.
+    /// Deletes an ended job with its result, history, and series and rows that no other job shares.
     ///
     /// # Errors
     /// The database cannot be written.
     pub async fn delete(&self, id: JobId) -> Result<Deletion, StoreError> {
         let mut transaction = self.begin_with_reserve().await?;
-        let deleted = sqlx::query("DELETE FROM jobs WHERE id = $1 AND state IN ('succeeded', 'failed', 'canceled')")
-            .bind(id.to_string())
-            .execute(&mut *transaction)
-            .await?;
+        let deleted = delete_ended(&mut transaction, id).await?;
         let live = sqlx::query("SELECT 1 FROM jobs WHERE id = $1")
             .bind(id.to_string())
             .fetch_optional(&mut *transaction)
             .await?;
         transaction.commit().await?;
-        Ok(match (deleted.rows_affected(), live) {
-            (0, None) => Deletion::NotFound,
-            (0, Some(_)) => Deletion::NotEnded,
-            _ => Deletion::Deleted,
+        Ok(match (deleted, live) {
+            (true, _) => Deletion::Deleted,
+            (false, None) => Deletion::NotFound,
+            (false, Some(_)) => Deletion::NotEnded,
         })
     }
 }

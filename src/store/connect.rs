@@ -1,8 +1,10 @@
 //! Opening the database: one connection that writes, several that read, write-ahead log.
 
-use super::backup;
+use super::backup::{self, BackupError};
 pub(super) use super::error::StoreError;
+use super::error::Unavailable;
 use super::examine::{OPEN_WAIT, examine, with_suffix};
+use super::file::{DatabaseFile, LostFile};
 use super::ids::IdGenerator;
 use super::open_error::OpenError;
 use super::queued_count::QueuedCount;
@@ -12,8 +14,8 @@ use sqlx::migrate::{MigrateError, Migrator};
 use sqlx::sqlite::{
     SqliteAutoVacuum, SqliteConnectOptions, SqliteJournalMode, SqlitePool, SqlitePoolOptions, SqliteSynchronous,
 };
-use sqlx::{Connection, Sqlite, Transaction};
-use std::fs::{File, OpenOptions};
+use sqlx::{ConnectOptions, Connection, Sqlite, Transaction};
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -26,6 +28,8 @@ pub(super) static MIGRATIONS: Migrator = sqlx::migrate!("./migrations");
 const BUSY_WAIT: Duration = Duration::from_secs(10);
 /// Longest wait for the connection that writes.
 const WRITER_WAIT: Duration = Duration::from_secs(15);
+/// Suffix of a copy made before an upgrade, followed by the schema to which that led.
+const BEFORE_SCHEMA: &str = ".before-schema-";
 /// Size to which the write-ahead log is cut after a checkpoint.
 const LOG_BYTES: u64 = 64 << 20;
 
@@ -67,12 +71,12 @@ pub struct Store {
     pub(super) queued_count: QueuedCount,
     pub(super) ids: IdGenerator,
     pub(super) limit: Option<SizeLimit>,
-    pub(super) path: Arc<Path>,
     /// Notified when a job was refused for want of space.
     pub(super) space_needed: Arc<Notify>,
     /// The last write probe.
     pub(super) probe: Arc<Mutex<Option<WriteProbe>>>,
-    _lock: Arc<File>,
+    /// Dropped after the connections, as it holds the lock.
+    pub(super) file: Arc<DatabaseFile>,
 }
 
 impl Store {
@@ -86,8 +90,9 @@ impl Store {
     }
 
     pub(super) async fn open_with(config: &StoreConfig, migrations: &Migrator) -> Result<Self, OpenError> {
-        let path = config.database.as_path();
-        let lock = lock(path)?;
+        let mut file = DatabaseFile::open(&config.database)?;
+        let path = file.path();
+        backup::remove_partial_copies(&with_suffix(path, BEFORE_SCHEMA));
         let found = examine(path, migrations).await?;
         let open_error = |error| OpenError::of_database(path, error);
         let limit = config.retention.limit(found.page_bytes);
@@ -106,12 +111,10 @@ impl Store {
             // Effective only before the first table is created.
             let new = found.schema.is_none().then_some(SqliteAutoVacuum::Incremental);
             let options = new.into_iter().fold(options.clone(), SqliteConnectOptions::auto_vacuum);
-            let pool = SqlitePoolOptions::new().max_connections(1).connect_with(options).await.map_err(open_error)?;
-            let applied = migrations.run(&pool).await;
-            pool.close().await;
-            applied.map_err(|error| upgrade_error(path, migrations, error))?;
+            upgrade(&options, migrations).await.map_err(|error| upgrade_error(path, migrations, error))?;
         }
-        let options = options.busy_timeout(BUSY_WAIT);
+        // A connection that is made later must not make a file either.
+        let options = options.busy_timeout(BUSY_WAIT).create_if_missing(false);
         let permanent = || SqlitePoolOptions::new().idle_timeout(None).max_lifetime(None);
         // After a rollback by SQLite itself (a full disk at the commit), the driver still counts the transaction as
         // open; such a connection cannot write again and is not reused.
@@ -121,15 +124,18 @@ impl Store {
             .before_acquire(|connection, _| Box::pin(async { Ok(!connection.is_in_transaction()) }));
         let writer = writer.connect_with(options.clone()).await.map_err(open_error)?;
         check_writable(&writer).await.map_err(open_error)?;
+        // All are made at once: they go on reading the file when it is moved, and never open another one.
         let reader = permanent()
+            .min_connections(config.database_readers)
             .max_connections(config.database_readers)
-            .connect_with(options.read_only(true).create_if_missing(false))
+            .connect_with(options.read_only(true))
             .await
             .map_err(open_error)?;
         let stage_cache_bytes =
             (i64::from(config.stage_cache_mib) << 20).min(SizeLimit::stage_cache_bytes(limit.as_ref()));
         let queued_count = QueuedCount::read(&writer).await.map_err(open_error)?;
         let ids = IdGenerator::after_stored(&writer).await.map_err(open_error)?;
+        file.add_log();
         Ok(Self {
             writer,
             reader,
@@ -137,10 +143,9 @@ impl Store {
             queued_count,
             ids,
             limit,
-            path: path.into(),
             space_needed: Arc::default(),
             probe: Arc::default(),
-            _lock: Arc::new(lock),
+            file: Arc::new(file),
         })
     }
 
@@ -156,6 +161,7 @@ impl Store {
     }
 
     async fn begin_within(&self, max_pages: Option<u64>) -> Result<Transaction<'static, Sqlite>, StoreError> {
+        self.check_file()?;
         let mut transaction = self.writer.begin_with("BEGIN IMMEDIATE").await?;
         if let Some(max_pages) = max_pages {
             // The bound belongs to the connection and stays until the next transaction sets its own.
@@ -163,6 +169,16 @@ impl Store {
             sqlx::query(sqlx::AssertSqlSafe(pragma)).execute(&mut *transaction).await?;
         }
         Ok(transaction)
+    }
+
+    /// Checks that the database file and its log are still found under their names. Nothing is written to files that have
+    /// lost theirs: it would be gone with the process. The check costs microseconds.
+    ///
+    /// # Errors
+    /// [`Unavailable::Lost`].
+    pub fn check_file(&self) -> Result<(), StoreError> {
+        let lost = |lost: LostFile| StoreError::Unavailable { cause: Unavailable::Lost, detail: lost.to_string() };
+        self.file.check().map_err(lost)
     }
 
     /// Executes a trivial query.
@@ -181,36 +197,37 @@ impl Store {
     }
 }
 
-/// Locks the database against other processes of the service, each of which would treat the others' running jobs as
-/// lost.
-fn lock(database: &Path) -> Result<File, OpenError> {
-    let path = with_suffix(database, ".lock");
-    if database.is_dir() {
-        return Err(OpenError::NotAFile(database.to_owned()));
-    }
-    // The error about a missing directory names the database, others the lock file.
-    let lock_error = |error: std::io::Error| match OpenError::of_file(&path, error) {
-        OpenError::NoDirectory(_) => OpenError::NoDirectory(database.to_owned()),
-        other => other,
-    };
-    let file = OpenOptions::new().write(true).create(true).truncate(false).open(&path).map_err(lock_error)?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(std::fs::TryLockError::WouldBlock) => Err(OpenError::InUse(database.to_owned())),
-        Err(std::fs::TryLockError::Error(source)) => Err(OpenError::of_file(&path, source)),
-    }
-}
-
-/// Copies the database before an upgrade, as older versions of the service do not read the new schema.
+/// Copies the database before an upgrade, as older versions of the service do not read the new schema. An earlier copy
+/// is never overwritten: it is taken for this upgrade if it has the same jobs, else another name is found.
 async fn copy_before_upgrade(path: &Path, to: i64) -> Result<(), OpenError> {
-    let copy = with_suffix(path, &format!(".before-schema-{to}"));
-    let copied = backup::copy(path, &copy).await.map_err(|error| match error {
-        backup::BackupError::Database { source, .. } => OpenError::of_database(path, source),
-        backup::BackupError::File { path, source } => OpenError::of_file(&path, source),
+    let of_backup = |error| match error {
+        BackupError::Database { source, .. } => OpenError::of_database(path, source),
+        BackupError::File { path, source } => OpenError::of_file(&path, source),
         other => OpenError::Upgrade { path: path.to_owned(), to, source: Box::new(other) },
-    })?;
+    };
+    let mut copy = with_suffix(path, &format!("{BEFORE_SCHEMA}{to}"));
+    let mut number = 1;
+    while fs::symlink_metadata(&copy).is_ok() {
+        if backup::has_same_jobs(path, &copy).await.map_err(of_backup)? {
+            tracing::info!(copy = %copy.display(), "the copy of an interrupted upgrade of the database is kept");
+            return Ok(());
+        }
+        number += 1;
+        copy = with_suffix(path, &format!("{BEFORE_SCHEMA}{to}.{number}"));
+    }
+    let copied = backup::copy(path, &copy).await.map_err(of_backup)?;
     tracing::info!(copy = %copy.display(), bytes = copied.bytes, "copy made before the upgrade of the database");
     Ok(())
+}
+
+/// Applies the pending migrations in one transaction (each is a savepoint of it): a database never stays between two
+/// schemas.
+async fn upgrade(options: &SqliteConnectOptions, migrations: &Migrator) -> Result<(), MigrateError> {
+    let mut connection = options.connect().await?;
+    let mut transaction = connection.begin_with("BEGIN IMMEDIATE").await?;
+    migrations.run(&mut *transaction).await?;
+    transaction.commit().await?;
+    Ok(connection.close().await?)
 }
 
 fn upgrade_error(path: &Path, migrations: &Migrator, error: MigrateError) -> OpenError {

@@ -28,6 +28,8 @@ pub enum Unavailable {
     ReadOnly,
     /// There was not enough memory.
     Memory,
+    /// The file, or its log, was moved or deleted.
+    Lost,
 }
 
 impl fmt::Display for Unavailable {
@@ -38,6 +40,7 @@ impl fmt::Display for Unavailable {
             Unavailable::Disk => "the disk failed to read or write",
             Unavailable::ReadOnly => "the database may not be written",
             Unavailable::Memory => "there is not enough memory",
+            Unavailable::Lost => "a file of the database was moved or deleted",
         })
     }
 }
@@ -69,12 +72,14 @@ fn temporary_cause(error: &sqlx::Error) -> Option<Unavailable> {
         sqlx::Error::Io(_) => return Some(Unavailable::Disk),
         _ => {}
     }
+    if is_no_room(error) {
+        return Some(Unavailable::Full);
+    }
     match primary_code(error)? {
         SQLITE_BUSY | SQLITE_LOCKED => Some(Unavailable::Busy),
         SQLITE_NOMEM => Some(Unavailable::Memory),
         SQLITE_READONLY => Some(Unavailable::ReadOnly),
         SQLITE_IOERR | SQLITE_CANTOPEN => Some(Unavailable::Disk),
-        SQLITE_FULL => Some(Unavailable::Full),
         _ => None,
     }
 }
@@ -87,12 +92,23 @@ pub(super) const SQLITE_READONLY: i32 = 8;
 pub(super) const SQLITE_INTERRUPT: i32 = 9;
 pub(super) const SQLITE_IOERR: i32 = 10;
 pub(super) const SQLITE_CORRUPT: i32 = 11;
-pub(super) const SQLITE_FULL: i32 = 13;
+const SQLITE_FULL: i32 = 13;
 pub(super) const SQLITE_CANTOPEN: i32 = 14;
 pub(super) const SQLITE_NOTADB: i32 = 26;
 
+/// The index of the write-ahead log could not be extended.
+const SQLITE_IOERR_SHMSIZE: i32 = SQLITE_IOERR | 19 << 8;
+
 /// The primary result code of SQLite.
 pub(super) fn primary_code(error: &sqlx::Error) -> Option<i32> {
-    let code: i32 = error.as_database_error()?.code()?.parse().ok()?;
-    Some(code & 0xff)
+    extended_code(error).map(|code| code & 0xff)
+}
+
+/// Whether an error of SQLite means that the disk is full, or the database by its limit.
+pub(super) fn is_no_room(error: &sqlx::Error) -> bool {
+    extended_code(error).is_some_and(|code| code & 0xff == SQLITE_FULL || code == SQLITE_IOERR_SHMSIZE)
+}
+
+fn extended_code(error: &sqlx::Error) -> Option<i32> {
+    error.as_database_error()?.code()?.parse().ok()
 }

@@ -1,6 +1,7 @@
 //! Examination of a database file before it is opened for writing; reads only.
 
 use super::error::{SQLITE_INTERRUPT, primary_code};
+use super::file::WAL;
 use super::open_error::OpenError;
 use sqlx::migrate::Migrator;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
@@ -45,7 +46,7 @@ pub(super) async fn examine(path: &Path, migrations: &Migrator) -> Result<Examin
     let file = File::open(path).map_err(|error| OpenError::of_file(path, error))?;
     file.take(HEADER_BYTES as u64).read_to_end(&mut header).map_err(|error| OpenError::of_file(path, error))?;
     let Some(header) = Header::parse(&header) else { return Err(OpenError::NotADatabase(path.to_owned())) };
-    let has_log = fs::metadata(with_suffix(path, "-wal")).is_ok_and(|wal| wal.len() > 0);
+    let has_log = fs::metadata(with_suffix(path, WAL)).is_ok_and(|wal| wal.len() > 0);
     // Pages that the file lacks may be in the write-ahead log.
     if !has_log && length < header.bytes() {
         let finding = format!("{length} bytes instead of {}", header.bytes());

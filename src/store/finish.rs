@@ -1,13 +1,14 @@
 //! The transitions from running to succeeded and failed.
 
 use super::connect::{Store, StoreError};
+use super::dataset::{dataset_of, drop_unused_dataset, ensure_dataset};
 use super::failure::Failure;
 use super::headline::Headline;
 use super::lifecycle::JobId;
-use super::points::{PointBatch, RowsSummary, copy_points, drop_line_ends, insert_points};
+use super::points::{PointBatch, RowsSummary, drop_line_ends, insert_points};
 use super::record::{JobRecord, job_columns, record_event};
 use super::result::etag_of;
-use super::series::PackedSeries;
+use super::series::{SampleBatch, SeriesEntry, drop_samples};
 use jiff::Timestamp;
 use sqlx::{Sqlite, Transaction};
 
@@ -18,18 +19,21 @@ pub struct Completion {
     pub body: String,
     pub input_hash: String,
     pub solver_version: String,
-    pub series: Vec<PackedSeries>,
+    /// Descriptions of the recorded channels.
+    pub series: Vec<SeriesEntry>,
+    /// Samples that are not yet stored.
+    pub samples: SampleBatch,
     /// Summary of the rows of a sweep, which are stored apart from the body.
     pub rows: Option<RowsSummary>,
     /// Rows that are not yet stored.
     pub unwritten: PointBatch,
-    /// The job whose result this is; its series and rows are copied.
+    /// The job whose result this is; its series and rows are shared.
     pub reused_from: Option<JobId>,
 }
 
 impl Store {
-    /// Stores the result of a running job (running → succeeded). `None` when the job no longer belongs to this attempt,
-    /// or when the job whose result is to be reused was deleted.
+    /// Stores the result of a running job (running → succeeded). `None` when the job no longer belongs to this attempt or
+    /// is to be canceled, or when the job whose result is to be reused was deleted.
     ///
     /// # Errors
     /// The database cannot be written.
@@ -89,6 +93,7 @@ pub(super) async fn fail_in(
     .await?;
     if let Some(job) = &failed {
         record_event(transaction, job, now).await?;
+        drop_samples(transaction, id).await?;
     }
     Ok(failed)
 }
@@ -107,7 +112,7 @@ pub(super) async fn complete(
          ended_at_us = MAX($3, COALESCE(started_at_us, submitted_at_us)), \
          solver_version = $4, input_hash = $5, reused_from = $6, \
          mesh_acceleration_rms_m_s2 = $7, dynamic_factor = $8, transmission_error_pp_um = $9 \
-         WHERE id = $1 AND attempt = $2 AND state = 'running' RETURNING ",
+         WHERE id = $1 AND attempt = $2 AND state = 'running' AND cancel_requested_at_us IS NULL RETURNING ",
         job_columns!()
     ))
     .bind(id.to_string())
@@ -123,10 +128,20 @@ pub(super) async fn complete(
     .await?;
     let Some(job) = done else { return Ok(None) };
     record_event(transaction, &job, now).await?;
+    let dataset = match completion.reused_from {
+        None => id,
+        Some(source) => match dataset_of(transaction, source).await? {
+            Some(dataset) => dataset,
+            None => return Ok(None),
+        },
+    };
+    if dataset == id {
+        ensure_dataset(transaction, id).await?;
+    }
     let rows = completion.rows.as_ref();
     sqlx::query(
-        "INSERT INTO results (job_id, body, etag, input_hash, solver_version, points_n, points_digest) \
-         VALUES ($1, $2, $3, $4, $5, $6, $7)",
+        "INSERT INTO results (job_id, body, etag, input_hash, solver_version, points_n, points_digest, dataset_id) \
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
     )
     .bind(id.to_string())
     .bind(&completion.body)
@@ -135,47 +150,19 @@ pub(super) async fn complete(
     .bind(&completion.solver_version)
     .bind(rows.map(|rows| rows.count as i64))
     .bind(rows.map(|rows| &rows.digest))
+    .bind(dataset.to_string())
     .execute(&mut **transaction)
     .await?;
-    insert_points(transaction, id, &completion.unwritten).await?;
     drop_line_ends(transaction, id).await?;
-    match completion.reused_from {
-        Some(source) => {
-            if !copy_results(transaction, source, id).await? {
-                return Ok(None);
-            }
-        }
-        None => {
-            for (position, series) in completion.series.iter().enumerate() {
-                series.insert(transaction, id, position).await?;
-            }
-        }
+    if dataset != id {
+        // Of an earlier attempt, before there was a result to be reused.
+        drop_unused_dataset(transaction, id).await?;
+        return Ok(Some(job));
+    }
+    insert_points(transaction, id, &completion.unwritten).await?;
+    completion.samples.insert(transaction, id).await?;
+    for (position, entry) in completion.series.iter().enumerate() {
+        entry.insert(transaction, id, position).await?;
     }
     Ok(Some(job))
-}
-
-/// Copies series and rows from one job to another. False when the source was deleted.
-async fn copy_results(
-    transaction: &mut Transaction<'static, Sqlite>,
-    source: JobId,
-    target: JobId,
-) -> Result<bool, StoreError> {
-    let result = sqlx::query("SELECT 1 FROM results WHERE job_id = $1")
-        .bind(source.to_string())
-        .fetch_optional(&mut **transaction)
-        .await?;
-    if result.is_none() {
-        return Ok(false);
-    }
-    copy_points(transaction, source, target).await?;
-    sqlx::query(
-        "INSERT INTO series (job_id, position, channel, quantity, unit, n, t0_s, dt_s, min, max, rms, samples) \
-         SELECT $2, position, channel, quantity, unit, n, t0_s, dt_s, min, max, rms, samples FROM series \
-         WHERE job_id = $1",
-    )
-    .bind(source.to_string())
-    .bind(target.to_string())
-    .execute(&mut **transaction)
-    .await?;
-    Ok(true)
 }

@@ -7,11 +7,13 @@
 mod backup;
 mod cancel;
 mod connect;
+mod dataset;
 mod describe;
 mod durations;
 mod error;
 mod examine;
 mod failure;
+mod file;
 mod finish;
 mod headline;
 mod ids;
@@ -49,7 +51,7 @@ pub use record::JobRecord;
 pub use result::{ResultSummary, ReusableResult, StoredResult};
 pub use retention::RetentionConfig;
 pub use run::{Claim, Recovery, ReleaseReason, WorkClass};
-pub use series::{PackedSeries, SeriesEntry};
+pub use series::{PackedSeries, SampleBatch, SeriesEntry};
 pub use submit::{NewJob, Submission};
 pub use usage::DatabaseUsage;
 

@@ -1,7 +1,7 @@
 //! Errors of opening a database. Each message is one sentence with the path and a remedy.
 
 use super::error::{
-    SQLITE_BUSY, SQLITE_CANTOPEN, SQLITE_CORRUPT, SQLITE_FULL, SQLITE_LOCKED, SQLITE_NOTADB, SQLITE_READONLY,
+    SQLITE_BUSY, SQLITE_CANTOPEN, SQLITE_CORRUPT, SQLITE_LOCKED, SQLITE_NOTADB, SQLITE_READONLY, is_no_room,
     primary_code,
 };
 use std::io;
@@ -16,6 +16,30 @@ pub enum OpenError {
     NoDirectory(PathBuf),
     #[error("the database {path} is in use by another herringbone: stop that one, or name another file", path = .0.display())]
     InUse(PathBuf),
+    #[error(
+        "the file system of {path} has no locks ({source}), so that two services could not be kept apart: put the \
+         database on a local disk",
+        path = .path.display()
+    )]
+    NoLocks { path: PathBuf, source: io::Error },
+    #[error(
+        "the database {path} is a link to {target}, which does not exist: put the file there (is its disk mounted?), \
+         or remove the link",
+        path = .path.display(), target = .target.display()
+    )]
+    BrokenLink { path: PathBuf, target: PathBuf },
+    #[error(
+        "the database {path} has {names} names (hard links), and its log is found under one of them only: keep the \
+         name that has a file -wal beside it, or any one when none has, and remove the others (find -samefile)",
+        path = .path.display()
+    )]
+    SeveralNames { path: PathBuf, names: u64 },
+    #[error(
+        "the database {path} is missing or empty, but its log {log} is there, with jobs that are in no other file: put \
+         the database back under this name, or move the log away to begin with an empty one",
+        path = .path.display(), log = .log.display()
+    )]
+    OrphanedLog { path: PathBuf, log: PathBuf },
     #[error("the database {path} is locked by another program: close it there, then start again", path = .0.display())]
     Locked(PathBuf),
     #[error("{path} cannot be written: give this user the right to write the database and its directory", path = .0.display())]
@@ -71,10 +95,12 @@ impl OpenError {
     /// The error of opening that an error of SQLite amounts to.
     pub(super) fn of_database(path: &Path, source: sqlx::Error) -> Self {
         let path = path.to_owned();
+        if is_no_room(&source) {
+            return Self::NoRoom(path);
+        }
         match primary_code(&source) {
             Some(SQLITE_BUSY | SQLITE_LOCKED) => Self::Locked(path),
             Some(SQLITE_READONLY | SQLITE_CANTOPEN) => Self::ReadOnly(path),
-            Some(SQLITE_FULL) => Self::NoRoom(path),
             Some(SQLITE_NOTADB) => Self::NotADatabase(path),
             Some(SQLITE_CORRUPT) => Self::Damaged { path, finding: "its pages contradict each other".to_owned() },
             _ => Self::Database { path, source },

@@ -1,6 +1,7 @@
 //! Rows of sweeps: one for each solved point, stored while the sweep runs and served unchanged.
 
 use super::connect::{Store, StoreError};
+use super::dataset::{ensure_dataset, is_current};
 use super::lifecycle::JobId;
 use sha2::{Digest, Sha256};
 use sqlx::sqlite::SqliteRow;
@@ -63,6 +64,13 @@ impl PointBatch {
     }
 }
 
+/// The dataset with the rows of the job `$1`: that of its result, or its own. A literal for `concat!`.
+macro_rules! dataset_of_job {
+    () => {
+        "COALESCE((SELECT dataset_id FROM results WHERE job_id = $1), $1)"
+    };
+}
+
 impl Store {
     /// The rows and line ends from which an attempt resumes: those stored by an earlier attempt or, where there are
     /// none, those of the newest failed or canceled job with the same input. Rows of another solver version are
@@ -82,7 +90,7 @@ impl Store {
             drop_other_versions(&mut transaction, id, solver_version).await?;
             copy_points_of_same_input(&mut transaction, id, input_hash, solver_version).await?;
         }
-        let rows = sqlx::query_as("SELECT position, body FROM sweep_points WHERE job_id = $1 ORDER BY position")
+        let rows = sqlx::query_as("SELECT position, body FROM sweep_points WHERE dataset_id = $1 ORDER BY position")
             .bind(id.to_string())
             .fetch_all(&mut *transaction)
             .await?;
@@ -99,10 +107,11 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn points(&self, id: JobId, from: u64, to: u64, limit: u32) -> Result<Vec<PointRow>, StoreError> {
-        Ok(sqlx::query_as(
-            "SELECT position, body FROM sweep_points WHERE job_id = $1 AND position >= $2 AND position < $3 \
-             ORDER BY position LIMIT $4",
-        )
+        Ok(sqlx::query_as(concat!(
+            "SELECT position, body FROM sweep_points WHERE dataset_id = ",
+            dataset_of_job!(),
+            " AND position >= $2 AND position < $3 ORDER BY position LIMIT $4"
+        ))
         .bind(id.to_string())
         .bind(i64::try_from(from).unwrap_or(i64::MAX))
         .bind(i64::try_from(to).unwrap_or(i64::MAX))
@@ -116,11 +125,15 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn point_end_state(&self, id: JobId, position: u64) -> Result<Option<Vec<f64>>, StoreError> {
-        let row = sqlx::query("SELECT end_state FROM sweep_points WHERE job_id = $1 AND position = $2")
-            .bind(id.to_string())
-            .bind(i64::try_from(position).unwrap_or(i64::MAX))
-            .fetch_optional(&self.reader)
-            .await?;
+        let row = sqlx::query(concat!(
+            "SELECT end_state FROM sweep_points WHERE dataset_id = ",
+            dataset_of_job!(),
+            " AND position = $2"
+        ))
+        .bind(id.to_string())
+        .bind(i64::try_from(position).unwrap_or(i64::MAX))
+        .fetch_optional(&self.reader)
+        .await?;
         let bytes = row.map(|row| row.try_get::<Option<Vec<u8>>, _>("end_state")).transpose()?;
         Ok(bytes.flatten().map(|bytes| unpack_state(&bytes)))
     }
@@ -130,7 +143,7 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn point_count(&self, id: JobId) -> Result<u64, StoreError> {
-        let row = sqlx::query("SELECT COUNT(*) AS n FROM sweep_points WHERE job_id = $1")
+        let row = sqlx::query(concat!("SELECT COUNT(*) AS n FROM sweep_points WHERE dataset_id = ", dataset_of_job!()))
             .bind(id.to_string())
             .fetch_one(&self.reader)
             .await?;
@@ -138,26 +151,12 @@ impl Store {
     }
 }
 
-/// Whether this attempt of the job is running.
-async fn is_current(
-    transaction: &mut Transaction<'static, Sqlite>,
-    id: JobId,
-    attempt: i64,
-) -> Result<bool, StoreError> {
-    let row = sqlx::query("SELECT 1 FROM jobs WHERE id = $1 AND attempt = $2 AND state = 'running'")
-        .bind(id.to_string())
-        .bind(attempt)
-        .fetch_optional(&mut **transaction)
-        .await?;
-    Ok(row.is_some())
-}
-
 async fn drop_other_versions(
     transaction: &mut Transaction<'static, Sqlite>,
     id: JobId,
     solver_version: &str,
 ) -> Result<(), StoreError> {
-    let dropped = sqlx::query("DELETE FROM sweep_points WHERE job_id = $1 AND solver_version <> $2")
+    let dropped = sqlx::query("DELETE FROM sweep_points WHERE dataset_id = $1 AND solver_version <> $2")
         .bind(id.to_string())
         .bind(solver_version)
         .execute(&mut **transaction)
@@ -175,7 +174,7 @@ async fn copy_points_of_same_input(
     input_hash: &str,
     solver_version: &str,
 ) -> Result<(), StoreError> {
-    let own = sqlx::query("SELECT 1 FROM sweep_points WHERE job_id = $1 LIMIT 1")
+    let own = sqlx::query("SELECT 1 FROM sweep_points WHERE dataset_id = $1 LIMIT 1")
         .bind(id.to_string())
         .fetch_optional(&mut **transaction)
         .await?;
@@ -184,7 +183,7 @@ async fn copy_points_of_same_input(
     }
     let source = sqlx::query(
         "SELECT id FROM jobs WHERE input_hash = $1 AND id <> $2 AND state IN ('failed', 'canceled') \
-         AND EXISTS (SELECT 1 FROM sweep_points WHERE job_id = jobs.id AND solver_version = $3) \
+         AND EXISTS (SELECT 1 FROM sweep_points WHERE dataset_id = jobs.id AND solver_version = $3) \
          ORDER BY id DESC LIMIT 1",
     )
     .bind(input_hash)
@@ -194,9 +193,11 @@ async fn copy_points_of_same_input(
     .await?;
     let Some(source) = source else { return Ok(()) };
     let source: String = source.try_get("id")?;
+    ensure_dataset(transaction, id).await?;
     sqlx::query(
-        "INSERT INTO sweep_points (job_id, position, solver_version, body, end_state) \
-         SELECT $2, position, solver_version, body, end_state FROM sweep_points WHERE job_id = $1 AND solver_version = $3",
+        "INSERT INTO sweep_points (dataset_id, position, solver_version, body, end_state) \
+         SELECT $2, position, solver_version, body, end_state FROM sweep_points \
+         WHERE dataset_id = $1 AND solver_version = $3",
     )
     .bind(&source)
     .bind(id.to_string())
@@ -220,11 +221,14 @@ pub(super) async fn insert_points(
     id: JobId,
     batch: &PointBatch,
 ) -> Result<(), StoreError> {
+    if !batch.rows.is_empty() {
+        ensure_dataset(transaction, id).await?;
+    }
     let id = id.to_string();
     for row in &batch.rows {
         sqlx::query(
-            "INSERT INTO sweep_points (job_id, position, solver_version, body) VALUES ($1, $2, $3, $4) \
-             ON CONFLICT (job_id, position) DO NOTHING",
+            "INSERT INTO sweep_points (dataset_id, position, solver_version, body) VALUES ($1, $2, $3, $4) \
+             ON CONFLICT (dataset_id, position) DO NOTHING",
         )
         .bind(&id)
         .bind(row.position as i64)
@@ -234,7 +238,7 @@ pub(super) async fn insert_points(
         .await?;
     }
     for EndStateRow { position, state } in &batch.end_states {
-        sqlx::query("UPDATE sweep_points SET end_state = $3 WHERE job_id = $1 AND position = $2")
+        sqlx::query("UPDATE sweep_points SET end_state = $3 WHERE dataset_id = $1 AND position = $2")
             .bind(&id)
             .bind(*position as i64)
             .bind(pack_state(state))
@@ -265,24 +269,6 @@ pub(super) async fn drop_line_ends(
         .bind(id.to_string())
         .execute(&mut **transaction)
         .await?;
-    Ok(())
-}
-
-/// Copies the rows of one job to another.
-pub(super) async fn copy_points(
-    transaction: &mut Transaction<'static, Sqlite>,
-    source: JobId,
-    target: JobId,
-) -> Result<(), StoreError> {
-    sqlx::query(
-        "INSERT INTO sweep_points (job_id, position, solver_version, body, end_state) \
-         SELECT $2, position, solver_version, body, end_state FROM sweep_points WHERE job_id = $1 \
-         ON CONFLICT (job_id, position) DO NOTHING",
-    )
-    .bind(source.to_string())
-    .bind(target.to_string())
-    .execute(&mut **transaction)
-    .await?;
     Ok(())
 }
 

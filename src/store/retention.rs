@@ -1,7 +1,10 @@
 //! Deletion of ended jobs by age and by size of the database. Jobs that have not ended are never deleted.
 
 use super::connect::{Store, StoreError};
+use super::dataset::delete_ended;
+use super::record::parse_column;
 use jiff::Timestamp;
+use sqlx::Row;
 use tokio::sync::Notify;
 
 /// Settings of retention.
@@ -65,11 +68,13 @@ impl SizeLimit {
 }
 
 impl Store {
-    /// Checks that the size limit permits another job; notifies [`Store::space_needed`] if not.
+    /// Checks that the database file is in its place and that the size limit permits another job; notifies
+    /// [`Store::space_needed`] if the limit does not.
     ///
     /// # Errors
-    /// [`StoreError::LimitReached`], or the database cannot be read.
+    /// [`StoreError::LimitReached`], the file was moved or deleted, or the database cannot be read.
     pub async fn admit(&self) -> Result<(), StoreError> {
+        self.check_file()?;
         let Some(limit) = &self.limit else { return Ok(()) };
         let used = self.usage().await?.used_bytes;
         if used <= limit.admission_bytes() {
@@ -117,15 +122,19 @@ impl Store {
 
     async fn delete_oldest(&self, ended_before_us: i64, limit: u32) -> Result<u64, StoreError> {
         let mut transaction = self.begin_with_reserve().await?;
-        let deleted = sqlx::query(
-            "DELETE FROM jobs WHERE state IN ('succeeded', 'failed', 'canceled') AND id IN \
-             (SELECT id FROM jobs WHERE ended_at_us IS NOT NULL AND ended_at_us < $1 ORDER BY ended_at_us, id LIMIT $2)",
+        let oldest = sqlx::query(
+            "SELECT id FROM jobs WHERE ended_at_us IS NOT NULL AND ended_at_us < $1 ORDER BY ended_at_us, id LIMIT $2",
         )
         .bind(ended_before_us)
         .bind(limit)
-        .execute(&mut *transaction)
+        .fetch_all(&mut *transaction)
         .await?;
+        let mut deleted = 0;
+        for row in oldest {
+            let id = parse_column("id", row.try_get("id")?)?;
+            deleted += u64::from(delete_ended(&mut transaction, id).await?);
+        }
         transaction.commit().await?;
-        Ok(deleted.rows_affected())
+        Ok(deleted)
     }
 }

@@ -5,6 +5,7 @@ use super::failure::Failure;
 use super::lifecycle::{JobId, JobState};
 use super::points::{PointBatch, insert_points};
 use super::record::{JobRecord, job_columns, record_event};
+use super::series::drop_samples;
 use jiff::Timestamp;
 use sqlx::{FromRow, Row, Sqlite, Transaction};
 use std::time::Duration;
@@ -223,6 +224,7 @@ async fn release_in(
     .await?;
     if let Some(job) = &released {
         record_event(transaction, job, now).await?;
+        drop_samples(transaction, id).await?;
     }
     Ok(released)
 }

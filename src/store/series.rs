@@ -1,11 +1,16 @@
 //! Recorded channels.
 
 use super::connect::{Store, StoreError};
+use super::dataset::{ensure_dataset, is_current};
 use super::lifecycle::JobId;
 use herringbone_job::study::RecordedChannel;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{FromRow, Row, Sqlite, Transaction};
 
+/// Largest number of samples in a part, 2 MiB: compressed in some ten milliseconds.
+const PART_SAMPLES: usize = 1 << 18;
+/// Compressed samples that are stored in one transaction, for which other writers wait.
+const BATCH_BYTES: usize = 2 << 20;
 /// Compression level of zstd; series of doubles gain little from higher ones.
 const ZSTD_LEVEL: i32 = 3;
 
@@ -33,21 +38,44 @@ impl SeriesEntry {
     }
 }
 
-/// A channel with its samples compressed (zstd, f64 little-endian).
+/// A channel with its samples compressed, in parts (zstd, f64 little-endian).
 #[derive(Debug, Clone, PartialEq)]
 pub struct PackedSeries {
     pub entry: SeriesEntry,
+    parts: Vec<Vec<u8>>,
+}
+
+/// A compressed part of the samples of a channel.
+#[derive(Debug, Clone, PartialEq)]
+struct SamplePart {
+    /// Index of the channel.
+    position: usize,
+    /// Index of the part in its channel.
+    part: usize,
     samples: Vec<u8>,
 }
 
+/// Samples of channels that are stored in one transaction.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SampleBatch(Vec<SamplePart>);
+
 impl PackedSeries {
-    /// Compresses a channel. Takes milliseconds per million samples: not for async threads.
+    /// Compresses a channel; `None` when `is_stopped` becomes true, which is asked before each part. Takes milliseconds
+    /// per million samples: not for async threads.
     ///
     /// # Errors
     /// The compression fails, for want of memory.
-    pub fn pack(channel: &RecordedChannel) -> Result<Self, StoreError> {
-        let bytes: Vec<u8> = channel.values.iter().flat_map(|value| value.to_le_bytes()).collect();
-        let samples = zstd::bulk::compress(&bytes, ZSTD_LEVEL).map_err(|error| corrupt(&error))?;
+    pub fn pack(channel: &RecordedChannel, is_stopped: &dyn Fn() -> bool) -> Result<Option<Self>, StoreError> {
+        let mut parts = Vec::new();
+        // A channel without samples has one part without content.
+        let chunks = channel.values.chunks(PART_SAMPLES).chain(channel.values.is_empty().then_some(&[][..]));
+        for values in chunks {
+            if is_stopped() {
+                return Ok(None);
+            }
+            let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+            parts.push(zstd::bulk::compress(&bytes, ZSTD_LEVEL).map_err(|error| corrupt(&error))?);
+        }
         let finite = || channel.values.iter().copied().filter(|value| value.is_finite());
         let entry = SeriesEntry {
             channel: channel.name.clone(),
@@ -60,7 +88,7 @@ impl PackedSeries {
             max: finite().reduce(f64::max),
             rms: Some(channel.rms).filter(|value| value.is_finite()),
         };
-        Ok(Self { entry, samples })
+        Ok(Some(Self { entry, parts }))
     }
 
     /// Decompresses the samples. Takes milliseconds per million: not for async threads.
@@ -68,41 +96,102 @@ impl PackedSeries {
     /// # Errors
     /// [`StoreError::Corrupt`] when the stored bytes are damaged.
     pub fn unpack(&self) -> Result<Vec<f64>, StoreError> {
-        let size = self.entry.n as usize * 8;
-        let bytes = zstd::bulk::decompress(&self.samples, size).map_err(|error| corrupt(&error))?;
-        if bytes.len() != size {
-            return Err(corrupt(&format!("{} bytes instead of {size}", bytes.len())));
+        let n = self.entry.n as usize;
+        let mut values = Vec::with_capacity(n);
+        for part in &self.parts {
+            let left = n - values.len();
+            let bytes = zstd::bulk::decompress(part, left * 8).map_err(|error| corrupt(&error))?;
+            let (chunks, rest) = bytes.as_chunks::<8>();
+            if !rest.is_empty() {
+                return Err(corrupt(&"a part ends within a sample"));
+            }
+            values.extend(chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)));
         }
-        let (chunks, _) = bytes.as_chunks::<8>();
-        Ok(chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect())
+        if values.len() != n {
+            return Err(corrupt(&format!("{} samples instead of {n}", values.len())));
+        }
+        Ok(values)
+    }
+}
+
+impl SampleBatch {
+    /// The descriptions of channels in their order, and their samples in batches of about two megabytes.
+    pub fn split(series: Vec<PackedSeries>) -> (Vec<SeriesEntry>, Vec<SampleBatch>) {
+        let (mut entries, mut batches, mut bytes) = (Vec::new(), vec![SampleBatch::default()], 0);
+        for (position, PackedSeries { entry, parts }) in series.into_iter().enumerate() {
+            entries.push(entry);
+            for (part, samples) in parts.into_iter().enumerate() {
+                if bytes + samples.len() > BATCH_BYTES && bytes > 0 {
+                    batches.push(SampleBatch::default());
+                    bytes = 0;
+                }
+                bytes += samples.len();
+                if let Some(SampleBatch(batch)) = batches.last_mut() {
+                    batch.push(SamplePart { position, part, samples });
+                }
+            }
+        }
+        (entries, batches)
     }
 
+    /// Stores the samples in the dataset of a job, in a transaction that has checked that the job belongs to this
+    /// attempt. Parts that are stored are left as they are.
     pub(super) async fn insert(
         &self,
         transaction: &mut Transaction<'static, Sqlite>,
-        job: JobId,
+        dataset: JobId,
+    ) -> Result<(), StoreError> {
+        for SamplePart { position, part, samples } in &self.0 {
+            sqlx::query(
+                "INSERT INTO series_samples (dataset_id, position, part, samples) VALUES ($1, $2, $3, $4) \
+                 ON CONFLICT (dataset_id, position, part) DO NOTHING",
+            )
+            .bind(dataset.to_string())
+            .bind(*position as i64)
+            .bind(*part as i64)
+            .bind(samples)
+            .execute(&mut **transaction)
+            .await?;
+        }
+        Ok(())
+    }
+}
+
+impl SeriesEntry {
+    pub(super) async fn insert(
+        &self,
+        transaction: &mut Transaction<'static, Sqlite>,
+        dataset: JobId,
         position: usize,
     ) -> Result<(), StoreError> {
         sqlx::query(
-            "INSERT INTO series (job_id, position, channel, quantity, unit, n, t0_s, dt_s, min, max, rms, samples) \
-             VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12)",
+            "INSERT INTO series (dataset_id, position, channel, quantity, unit, n, t0_s, dt_s, min, max, rms) \
+             VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)",
         )
-        .bind(job.to_string())
+        .bind(dataset.to_string())
         .bind(position as i64)
-        .bind(&self.entry.channel)
-        .bind(&self.entry.quantity)
-        .bind(&self.entry.unit)
-        .bind(self.entry.n as i64)
-        .bind(self.entry.t0_s)
-        .bind(self.entry.dt_s)
-        .bind(self.entry.min)
-        .bind(self.entry.max)
-        .bind(self.entry.rms)
-        .bind(&self.samples)
+        .bind(&self.channel)
+        .bind(&self.quantity)
+        .bind(&self.unit)
+        .bind(self.n as i64)
+        .bind(self.t0_s)
+        .bind(self.dt_s)
+        .bind(self.min)
+        .bind(self.max)
+        .bind(self.rms)
         .execute(&mut **transaction)
         .await?;
         Ok(())
     }
+}
+
+/// Deletes the samples of a job that was stopped or failed before it succeeded.
+pub(super) async fn drop_samples(transaction: &mut Transaction<'static, Sqlite>, id: JobId) -> Result<(), StoreError> {
+    sqlx::query("DELETE FROM series_samples WHERE dataset_id = $1")
+        .bind(id.to_string())
+        .execute(&mut **transaction)
+        .await?;
+    Ok(())
 }
 
 impl<'r> FromRow<'r, SqliteRow> for SeriesEntry {
@@ -122,35 +211,54 @@ impl<'r> FromRow<'r, SqliteRow> for SeriesEntry {
 }
 
 impl Store {
-    /// Reads the descriptions of the channels of a job, in the order of recording.
+    /// Stores samples of a running job before its result; they do not count until it succeeds. False, and nothing
+    /// stored, when the job no longer belongs to this attempt or is to be canceled.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn save_samples(&self, id: JobId, attempt: i64, batch: &SampleBatch) -> Result<bool, StoreError> {
+        let mut transaction = self.begin().await?;
+        if !is_current(&mut transaction, id, attempt).await? {
+            return Ok(false);
+        }
+        ensure_dataset(&mut transaction, id).await?;
+        batch.insert(&mut transaction, id).await?;
+        transaction.commit().await?;
+        Ok(true)
+    }
+
+    /// Reads the descriptions of the channels of a job that succeeded, in the order of recording.
     ///
     /// # Errors
     /// The database cannot be read.
     pub async fn series_catalogue(&self, id: JobId) -> Result<Vec<SeriesEntry>, StoreError> {
         Ok(sqlx::query_as(
-            "SELECT channel, quantity, unit, n, t0_s, dt_s, min, max, rms FROM series WHERE job_id = $1 \
-             ORDER BY position",
+            "SELECT channel, quantity, unit, n, t0_s, dt_s, min, max, rms FROM series \
+             WHERE dataset_id = (SELECT dataset_id FROM results WHERE job_id = $1) ORDER BY position",
         )
         .bind(id.to_string())
         .fetch_all(&self.reader)
         .await?)
     }
 
-    /// Reads one channel of a job.
+    /// Reads one channel of a job that succeeded.
     ///
     /// # Errors
     /// The database cannot be read.
     pub async fn series(&self, id: JobId, channel: &str) -> Result<Option<PackedSeries>, StoreError> {
-        let row = sqlx::query(
-            "SELECT channel, quantity, unit, n, t0_s, dt_s, min, max, rms, samples FROM series \
-             WHERE job_id = $1 AND channel = $2",
+        let rows = sqlx::query(
+            "SELECT channel, quantity, unit, n, t0_s, dt_s, min, max, rms, samples \
+             FROM series JOIN series_samples USING (dataset_id, position) \
+             WHERE dataset_id = (SELECT dataset_id FROM results WHERE job_id = $1) AND channel = $2 ORDER BY part",
         )
         .bind(id.to_string())
         .bind(channel)
-        .fetch_optional(&self.reader)
+        .fetch_all(&self.reader)
         .await?;
-        row.map(|row| Ok(PackedSeries { entry: SeriesEntry::from_row(&row)?, samples: row.try_get("samples")? }))
-            .transpose()
+        let Some(first) = rows.first() else { return Ok(None) };
+        let entry = SeriesEntry::from_row(first)?;
+        let parts = rows.into_iter().map(|row| row.try_get("samples")).collect::<Result<_, _>>()?;
+        Ok(Some(PackedSeries { entry, parts }))
     }
 }
 

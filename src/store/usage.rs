@@ -2,6 +2,7 @@
 
 use super::connect::{Store, StoreError};
 use super::examine::with_suffix;
+use super::file::WAL;
 use sqlx::{Row, SqliteConnection};
 use std::time::Duration;
 
@@ -36,7 +37,7 @@ impl Store {
     pub async fn usage(&self) -> Result<DatabaseUsage, StoreError> {
         let mut reader = self.reader.acquire().await?;
         let (pages, free, page_bytes) = page_numbers(&mut reader).await?;
-        let log_bytes = std::fs::metadata(with_suffix(&self.path, "-wal")).map_or(0, |log| log.len());
+        let log_bytes = std::fs::metadata(with_suffix(self.file.path(), WAL)).map_or(0, |log| log.len());
         let (file_bytes, used_bytes) = (pages * page_bytes, pages.saturating_sub(free) * page_bytes);
         Ok(DatabaseUsage { used_bytes, file_bytes, log_bytes })
     }
@@ -45,8 +46,9 @@ impl Store {
     /// keeps its length; its free pages are reused.
     ///
     /// # Errors
-    /// The database cannot be written.
+    /// The database cannot be written, or its file was moved or deleted.
     pub async fn release_space(&self) -> Result<(), StoreError> {
+        self.check_file()?;
         let mut last_free = u64::MAX;
         loop {
             let mut writer = self.writer.acquire().await?;

@@ -17,7 +17,7 @@ impl Store {
     /// Checks that jobs can be stored, with a small write at most every two seconds.
     ///
     /// # Errors
-    /// The size limit is reached, or the database cannot be written.
+    /// The size limit is reached, the file was moved or deleted, or the database cannot be written.
     pub async fn writable(&self) -> Result<(), StoreError> {
         self.admit().await?;
         let mut last = self.probe.lock().await;

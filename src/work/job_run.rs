@@ -10,7 +10,8 @@ use super::running_points::RunningPoints;
 use super::solver::Solver;
 use super::stop_signal::{StopReason, StopSignal};
 use crate::store::{
-    Completion, Failure, JobRecord, JobState, PackedSeries, PointBatch, ReleaseReason, StoreError, WorkClass,
+    Completion, Failure, JobRecord, JobState, PackedSeries, PointBatch, ReleaseReason, SampleBatch, StoreError,
+    WorkClass,
 };
 use herringbone_job::document::JobDocument;
 use herringbone_job::result::JobResult;
@@ -33,9 +34,16 @@ type Progress = (Stage, f64);
 
 /// The outcome of a calculation.
 enum SolveOutcome {
-    Solved(Box<Completion>),
+    Solved(Box<SolvedJob>),
     Stopped,
     Failed(Failure),
+}
+
+/// The result of a calculation, to be stored.
+struct SolvedJob {
+    completion: Completion,
+    /// Samples that are stored before it, as one transaction would hold up other writers.
+    batches: Vec<SampleBatch>,
 }
 
 /// One run of a job on a worker.
@@ -84,11 +92,7 @@ impl JobRun<'_> {
         let progress = watch::Sender::new((Stage::Geometry, self.job.progress));
         let mut updates = progress.subscribe();
         match self.calculate(document, input_hash, &points, progress, &mut updates, started).await {
-            SolveOutcome::Solved(completion) => {
-                if self.retry_until_stored(|| self.recorder.succeed(&self.job, &completion)).await == Some(false) {
-                    tracing::warn!("a result came too late and was dropped");
-                }
-            }
+            SolveOutcome::Solved(solved) => self.store_result(*solved, started).await,
             SolveOutcome::Failed(failure) => {
                 let last = *updates.borrow();
                 self.store_points(&points, last).await;
@@ -127,6 +131,7 @@ impl JobRun<'_> {
             let outcome = catch_unwind(AssertUnwindSafe(|| task.solve(document, input_hash, &progress)));
             let _ = send.send(outcome.unwrap_or_else(|panic| SolveOutcome::Failed(panic_failure(panic.as_ref()))));
         });
+        let mut is_refused = false;
         loop {
             // The outcome ends the wait for the next update; short jobs store no progress.
             tokio::select! {
@@ -138,10 +143,15 @@ impl JobRun<'_> {
             let batch = points.take_unwritten();
             if updates.has_changed().unwrap_or(false) || !batch.is_empty() {
                 let (stage, fraction) = *updates.borrow_and_update();
-                if let Err(error) = self.recorder.progress(&self.job, stage.as_str(), fraction, &batch).await {
-                    tracing::warn!(%error, "progress not written");
+                let written = self.recorder.progress(&self.job, stage.as_str(), fraction, &batch).await;
+                if let Err(error) = &written {
+                    // Four times a second would fill the log.
+                    if !is_refused {
+                        tracing::warn!(%error, "progress not written");
+                    }
                     points.restore(batch);
                 }
+                is_refused = written.is_err();
             }
             self.stop_when_due(started).await;
         }
@@ -160,6 +170,34 @@ impl JobRun<'_> {
                 Ok(false) => {}
                 Err(error) => tracing::warn!(%error, "not known whether others wait"),
             }
+        }
+    }
+
+    /// Stores the result of a calculation, unless the job is stopped before the last write.
+    async fn store_result(&self, solved: SolvedJob, started: Instant) {
+        let SolvedJob { completion, batches } = solved;
+        for batch in batches {
+            if self.stop.is_requested() {
+                return self.finish_stopped(started.elapsed()).await;
+            }
+            match self.retry_unless_stopped(|| self.recorder.save_samples(&self.job, &batch)).await {
+                Some(true) => {}
+                Some(false) => return self.drop_late_result(started.elapsed()).await,
+                None => return self.finish_stopped(started.elapsed()).await,
+            }
+        }
+        match self.retry_unless_stopped(|| self.recorder.succeed(&self.job, &completion)).await {
+            Some(true) => {}
+            Some(false) => self.drop_late_result(started.elapsed()).await,
+            None => self.finish_stopped(started.elapsed()).await,
+        }
+    }
+
+    /// Ends a job that is to be canceled although it is solved. One that no longer belongs to this attempt stays as it is.
+    async fn drop_late_result(&self, computed: Duration) {
+        let release = || self.recorder.release(&self.job, ReleaseReason::Shutdown, computed);
+        if self.retry_until_stored(release).await == Some(None) {
+            tracing::warn!("a result came too late and was dropped");
         }
     }
 
@@ -197,23 +235,41 @@ impl JobRun<'_> {
     }
 
     /// Retries an operation until it succeeds; `None` when the service closes before that.
-    async fn retry_until_stored<T, F>(&self, mut attempt: impl FnMut() -> F) -> Option<T>
+    async fn retry_until_stored<T, F>(&self, attempt: impl FnMut() -> F) -> Option<T>
     where
         F: Future<Output = Result<T, StoreError>>,
     {
-        let mut pause = RETRY_AFTER;
-        loop {
-            match attempt().await {
-                Ok(done) => return Some(done),
-                Err(error) => tracing::error!(%error, "not written; it is tried again"),
-            }
-            tokio::select! {
-                () = tokio::time::sleep(pause) => pause = (2 * pause).min(MAX_RETRY_AFTER),
-                () = self.closing.cancelled() => {
-                    tracing::error!("what became of the job is not written; it runs again after the restart");
-                    return None;
-                }
-            }
+        let done = retry(attempt, self.closing.cancelled()).await;
+        if done.is_none() {
+            tracing::error!("what became of the job is not written; it runs again after the restart");
+        }
+        done
+    }
+
+    /// Retries an operation until it succeeds; `None` when the job is stopped before that.
+    async fn retry_unless_stopped<T, F>(&self, attempt: impl FnMut() -> F) -> Option<T>
+    where
+        F: Future<Output = Result<T, StoreError>>,
+    {
+        retry(attempt, self.stop.requested()).await
+    }
+}
+
+/// Retries an operation at growing intervals until it succeeds; `None` when `given_up` ends first.
+async fn retry<T, F>(mut attempt: impl FnMut() -> F, given_up: impl Future<Output = ()>) -> Option<T>
+where
+    F: Future<Output = Result<T, StoreError>>,
+{
+    let mut given_up = std::pin::pin!(given_up);
+    let mut pause = RETRY_AFTER;
+    loop {
+        match attempt().await {
+            Ok(done) => return Some(done),
+            Err(error) => tracing::error!(%error, "not written; it is tried again"),
+        }
+        tokio::select! {
+            () = tokio::time::sleep(pause) => pause = (2 * pause).min(MAX_RETRY_AFTER),
+            () = &mut given_up => return None,
         }
     }
 }
@@ -246,32 +302,43 @@ impl SolveTask<'_> {
         };
         let solved = self.solver.check(document).map_err(SolveError::from);
         match solved.and_then(|job| self.solver.solve(&job, &context)) {
-            Ok(outcome) => self
-                .complete(outcome, input_hash)
-                .unwrap_or_else(|error| SolveOutcome::Failed(internal_failure(&error))),
+            Ok(outcome) => match self.complete(outcome, input_hash) {
+                Ok(Some(solved)) => SolveOutcome::Solved(Box::new(solved)),
+                Ok(None) => SolveOutcome::Stopped,
+                Err(error) => SolveOutcome::Failed(internal_failure(&error)),
+            },
             Err(SolveError::Canceled(_)) => SolveOutcome::Stopped,
             Err(error) => SolveOutcome::Failed(solve_failure(error)),
         }
     }
 
-    /// The completion of a solved job, with its series compressed.
-    fn complete(&self, outcome: Outcome, input_hash: String) -> Result<SolveOutcome, String> {
+    /// The completion of a solved job, with its series compressed; `None` when it is stopped meanwhile.
+    fn complete(&self, outcome: Outcome, input_hash: String) -> Result<Option<SolvedJob>, String> {
         let Outcome { mut result, series } = outcome;
+        let is_stopped = || self.stop.is_requested();
         measure::record_stages(&result.numerics);
         let points = result.sweep.as_mut().map(|sweep| std::mem::take(&mut sweep.points));
         result.note_not_finite();
         let body = serde_json::to_string::<JobResult>(&result).map_err(|error| error.to_string())?;
-        let rows = points.map(|points| self.points.finish(&points)).transpose().map_err(|error| error.to_string())?;
-        let (unwritten, rows) = rows.unzip();
-        let packed: Result<Vec<_>, _> = series.iter().map(PackedSeries::pack).collect();
-        Ok(SolveOutcome::Solved(Box::new(Completion {
-            body,
-            input_hash,
-            solver_version: self.solver.version().to_owned(),
-            series: packed.map_err(|error| error.to_string())?,
-            rows,
-            unwritten: unwritten.unwrap_or_default(),
-            reused_from: None,
-        })))
+        let (unwritten, rows) = match points {
+            None => (PointBatch::default(), None),
+            Some(points) => match self.points.finish(&points, &is_stopped).map_err(|error| error.to_string())? {
+                None => return Ok(None),
+                Some((unwritten, rows)) => (unwritten, Some(rows)),
+            },
+        };
+        let mut packed = Vec::with_capacity(series.len());
+        for channel in series {
+            match PackedSeries::pack(&channel, &is_stopped).map_err(|error| error.to_string())? {
+                None => return Ok(None),
+                Some(channel) => packed.push(channel),
+            }
+        }
+        let (series, mut batches) = SampleBatch::split(packed);
+        // The last batch, often the only one, goes with the result.
+        let samples = batches.pop().unwrap_or_default();
+        let (solver_version, reused_from) = (self.solver.version().to_owned(), None);
+        let completion = Completion { body, input_hash, solver_version, series, samples, rows, unwritten, reused_from };
+        Ok(Some(SolvedJob { completion, batches }))
     }
 }

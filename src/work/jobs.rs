@@ -21,8 +21,12 @@ use herringbone_job::study::CheckedJob;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
 use std::time::Duration;
+use tokio::sync::watch;
 use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
+
+/// Pause before jobs of an earlier process are recovered again.
+const RECOVER_AFTER: Duration = Duration::from_secs(1);
 
 /// A job to be submitted.
 #[derive(Debug, Clone)]
@@ -67,7 +71,8 @@ struct JobsShared {
 }
 
 impl Jobs {
-    /// Recovers the jobs of an earlier process and starts the workers.
+    /// Recovers the jobs of an earlier process and starts the workers. While the database cannot be written for a reason
+    /// that may pass, a full disk, the workers wait; what is stored can be read.
     ///
     /// # Errors
     /// The database cannot be written, or the threads cannot be started.
@@ -77,20 +82,37 @@ impl Jobs {
         solver: Arc<dyn Solver>,
         clock: Clock,
     ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
-        let recovery = store.recover(config.max_losses, clock()).await?;
-        if recovery.queued > 0 || recovery.given_up > 0 || recovery.canceled > 0 {
-            let (waiting, requeued, given_up) = (recovery.queued, recovery.requeued, recovery.given_up);
-            tracing::info!(
-                waiting,
-                requeued,
-                given_up,
-                canceled = recovery.canceled,
-                "jobs of an earlier run taken up"
-            );
-        }
         let recorder = JobRecorder::new(store, clock);
-        let queue = LocalQueue::start(config, recorder.clone(), Arc::clone(&solver))?;
-        Ok(Self::with_queue(recorder, solver, Arc::new(queue), config))
+        let is_recovered = watch::Sender::new(false);
+        let refusal = match recover(&recorder, config.max_losses).await {
+            Ok(()) => None,
+            Err(error) if error.unavailable().is_some() => Some(error),
+            Err(error) => return Err(error.into()),
+        };
+        is_recovered.send_replace(refusal.is_none());
+        let queue = LocalQueue::start(config, recorder.clone(), Arc::clone(&solver), is_recovered.subscribe())?;
+        let jobs = Self::with_queue(recorder, solver, Arc::new(queue), config);
+        if let Some(error) = refusal {
+            tracing::error!(%error, "jobs of an earlier run not taken up; none runs until the database can be written");
+            tokio::spawn(jobs.clone().recover_later(config.max_losses, is_recovered));
+        }
+        Ok(jobs)
+    }
+
+    /// Tries to recover the jobs of an earlier process until that succeeds, then lets the workers begin.
+    async fn recover_later(self, max_losses: u32, is_recovered: watch::Sender<bool>) {
+        loop {
+            tokio::select! {
+                () = tokio::time::sleep(RECOVER_AFTER) => {}
+                () = self.0.closing.cancelled() => return,
+            }
+            match recover(&self.0.recorder, max_losses).await {
+                Ok(()) => break,
+                Err(error) => tracing::debug!(%error, "jobs of an earlier run not taken up"),
+            }
+        }
+        self.publish_resync();
+        is_recovered.send_replace(true);
     }
 
     /// Jobs with a queue that is running already.
@@ -291,6 +313,16 @@ impl Jobs {
         self.0.closing.cancel();
         self.0.queue.close(self.0.drain).await
     }
+}
+
+/// Takes up the jobs that were running or queued when the last process ended.
+async fn recover(recorder: &JobRecorder, max_losses: u32) -> Result<(), StoreError> {
+    let recovery = recorder.store().recover(max_losses, recorder.now()).await?;
+    if recovery.queued > 0 || recovery.given_up > 0 || recovery.canceled > 0 {
+        let (waiting, requeued, given_up) = (recovery.queued, recovery.requeued, recovery.given_up);
+        tracing::info!(waiting, requeued, given_up, canceled = recovery.canceled, "jobs of an earlier run taken up");
+    }
+    Ok(())
 }
 
 /// An accepted job.

@@ -11,7 +11,7 @@ use crate::store::{Claim, JobId, WorkClass};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
-use tokio::sync::Notify;
+use tokio::sync::{Notify, watch};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 use tracing::Instrument;
@@ -37,6 +37,7 @@ struct QueueShared {
     config: WorkConfig,
     recorder: JobRecorder,
     solver: Arc<dyn Solver>,
+    is_recovered: watch::Receiver<bool>,
     single_wake: Notify,
     sweep_wake: Notify,
     closing: CancellationToken,
@@ -46,7 +47,7 @@ struct QueueShared {
 type RunningJobs = HashMap<JobId, (WorkClass, Arc<StopSignal>)>;
 
 impl LocalQueue {
-    /// Starts the workers, which claim queued jobs at once.
+    /// Starts the workers, which claim queued jobs as soon as those of an earlier process are recovered.
     ///
     /// # Errors
     /// The threads cannot be started.
@@ -54,6 +55,7 @@ impl LocalQueue {
         config: &WorkConfig,
         recorder: JobRecorder,
         solver: Arc<dyn Solver>,
+        is_recovered: watch::Receiver<bool>,
     ) -> Result<Self, rayon::ThreadPoolBuildError> {
         let (singles, sweeps) = (config.worker_count(), config.sweep_workers as usize);
         let shared_pool = Arc::new(pool(config, "solve")?);
@@ -65,6 +67,7 @@ impl LocalQueue {
             config: config.clone(),
             recorder,
             solver,
+            is_recovered,
             single_wake: Notify::new(),
             sweep_wake: Notify::new(),
             closing: CancellationToken::new(),
@@ -117,17 +120,29 @@ impl Queue for LocalQueue {
 
 impl QueueShared {
     async fn run_worker(self: Arc<Self>, class: WorkClass, pool: Arc<rayon::ThreadPool>) {
+        let mut is_recovered = self.is_recovered.clone();
+        self.pause(async { drop(is_recovered.wait_for(|is_recovered| *is_recovered).await) }).await;
+        let mut refusal = String::new();
         while !self.closing.is_cancelled() {
             match self.recorder.claim_next(class).await {
                 Ok(Some(claim)) => {
+                    refusal.clear();
                     // Several jobs may have caused one notification: each worker that claims a job wakes the next.
                     self.wake(class).notify_one();
                     let span = measure::span(&claim.job);
                     self.run_job(claim, class, &pool).instrument(span).await;
                 }
-                Ok(None) => self.pause(self.wake(class).notified()).await,
+                Ok(None) => {
+                    refusal.clear();
+                    self.pause(self.wake(class).notified()).await;
+                }
                 Err(error) => {
-                    tracing::error!(%error, "next job not read");
+                    // Logged once for each reason in a row: it is tried again every second.
+                    let reason = error.to_string();
+                    if refusal != reason {
+                        tracing::error!(%error, "next job not read");
+                        refusal = reason;
+                    }
                     measure::record_claim_retry();
                     self.pause(tokio::time::sleep(RETRY_AFTER)).await;
                 }

@@ -7,6 +7,7 @@ mod config;
 mod database_stages;
 mod estimate;
 mod failure;
+mod file_watch;
 mod hub;
 mod job_run;
 mod jobs;
@@ -23,6 +24,7 @@ mod stop_signal;
 
 pub use config::WorkConfig;
 pub use estimate::Estimate;
+pub use file_watch::run_file_watch;
 pub use hub::{JobEvent, JobEventListener, JobSubscription};
 pub use jobs::{Jobs, SubmitError, SubmitRequest, Submitted};
 pub use local_queue::LocalQueue;

@@ -4,7 +4,7 @@ use super::hub::{Hub, JobEventListener, JobSubscription};
 use super::measure;
 use crate::store::{
     Cancellation, Claim, Completion, Deletion, Described, Failure, JobDescription, JobId, JobRecord, JobState,
-    PointBatch, ReleaseReason, Store, StoreError, WorkClass,
+    PointBatch, ReleaseReason, SampleBatch, Store, StoreError, WorkClass,
 };
 use jiff::Timestamp;
 use std::sync::Arc;
@@ -112,8 +112,17 @@ impl JobRecorder {
         Ok(())
     }
 
+    /// Stores samples of a running job before its result. False when the job no longer belongs to this attempt, or is to
+    /// be canceled.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn save_samples(&self, job: &JobRecord, batch: &SampleBatch) -> Result<bool, StoreError> {
+        self.store.save_samples(job.id, job.attempt, batch).await
+    }
+
     /// Stores the result of a running job. False when the job whose result was to be reused was deleted, or when the
-    /// job no longer belongs to this attempt.
+    /// job no longer belongs to this attempt or is to be canceled.
     ///
     /// # Errors
     /// The database cannot be written.

@@ -1,6 +1,6 @@
 //! Reuse of stored results for the same input.
 
-use crate::store::{Completion, PointBatch, Store, StoreError};
+use crate::store::{Completion, PointBatch, SampleBatch, Store, StoreError};
 use herringbone_job::result::ReusedStage;
 use serde_json::{Value, json};
 
@@ -19,6 +19,7 @@ pub(super) async fn stored_completion(
         input_hash: input_hash.to_owned(),
         solver_version: solver_version.to_owned(),
         series: Vec::new(),
+        samples: SampleBatch::default(),
         rows: stored.rows,
         unwritten: PointBatch::default(),
         reused_from: Some(stored.job),

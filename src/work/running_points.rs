@@ -54,22 +54,31 @@ impl RunningPoints {
         state.unwritten = batch;
     }
 
-    /// The batch of points of a finished sweep that are not yet stored, and the summary of all its rows.
+    /// The batch of points of a finished sweep that are not yet stored, and the summary of all its rows; `None` when
+    /// `is_stopped` becomes true, which is asked before each row.
     ///
     /// # Errors
     /// A point cannot be written as JSON.
-    pub(super) fn finish(&self, points: &[SweepPoint]) -> serde_json::Result<(PointBatch, RowsSummary)> {
+    pub(super) fn finish(
+        &self,
+        points: &[SweepPoint],
+        is_stopped: &dyn Fn() -> bool,
+    ) -> serde_json::Result<Option<(PointBatch, RowsSummary)>> {
         let mut batch = self.take_unwritten();
         let positions = std::mem::take(&mut self.lock().positions);
         let mut digest = PointsDigest::default();
         for (position, point) in (0u64..).zip(points) {
+            if is_stopped() {
+                self.restore(batch);
+                return Ok(None);
+            }
             let body = to_json(point)?;
             digest.add(&body);
             if !positions.contains(&position) {
                 batch.rows.push(PointRow { position, body });
             }
         }
-        Ok((batch, RowsSummary { count: points.len() as u64, digest: digest.finish() }))
+        Ok(Some((batch, RowsSummary { count: points.len() as u64, digest: digest.finish() })))
     }
 
     fn lock(&self) -> MutexGuard<'_, PointsState> {

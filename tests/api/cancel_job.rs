@@ -32,6 +32,19 @@ async fn a_running_job_is_asked_and_stops() {
     app.get(&format!("{path}/result")).await.assert_problem(409, "job-not-succeeded");
 }
 
+/// The calculation was past its last checkpoint; its result is not yet written.
+#[tokio::test]
+async fn a_cancel_that_was_accepted_is_never_followed_by_a_result() {
+    let app = app().await;
+    app.solver.breakpoints.hold("at its end");
+    let path = app.submit(&scripted("at its end")).await;
+    app.solver.breakpoints.reached("at its end", 1).await;
+    assert_eq!(app.post(&format!("{path}/cancel")).await.status, 202);
+    app.solver.breakpoints.release("at its end");
+    assert_eq!(app.ended(&path).await["state"], "canceled");
+    app.get(&format!("{path}/series")).await.assert_problem(409, "job-not-succeeded");
+}
+
 #[tokio::test]
 async fn an_ended_job_stays_as_it_is() {
     let app = app().await;

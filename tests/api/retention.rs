@@ -1,7 +1,7 @@
 //! Retention: responses of a full database, and its recovery.
 
 use crate::support::*;
-use herringbone::store::{Completion, JobId, NewJob, PointBatch, RetentionConfig, Store, StoreConfig};
+use herringbone::store::{Completion, JobId, NewJob, PointBatch, RetentionConfig, SampleBatch, Store, StoreConfig};
 use herringbone::work::{RetentionPass, run_retention, run_retention_pass};
 use jiff::Timestamp;
 use serde_json::json;
@@ -82,6 +82,7 @@ async fn filled(database: &Path, jobs: i64, until: Timestamp) -> Vec<JobId> {
             input_hash: format!("{number}"),
             solver_version: "test".into(),
             series: Vec::new(),
+            samples: SampleBatch::default(),
             rows: None,
             unwritten: PointBatch::default(),
             reused_from: None,

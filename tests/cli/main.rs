@@ -185,6 +185,22 @@ fn a_cache_keeps_the_contact_analysis() {
 }
 
 #[test]
+fn unfinished_files_of_killed_processes_are_removed_from_the_cache() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let (old, young) = (directory.path().join("a.4000001.partial"), directory.path().join("b.4000001.partial"));
+    for path in [&old, &young] {
+        std::fs::write(path, "part").expect("written");
+    }
+    let yesterday = std::time::SystemTime::now() - std::time::Duration::from_secs(86_400);
+    std::fs::File::options().write(true).open(&old).and_then(|file| file.set_modified(yesterday)).expect("set");
+    let document = example("given_stiffness.json");
+    let options = ["--cache", directory.path().to_str().expect("UTF-8")];
+    let output = herringbone(&[&["solve", document.to_str().expect("UTF-8")], &options[..]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!((old.exists(), young.exists()), (false, true));
+}
+
+#[test]
 fn the_table_is_for_people() {
     let output = herringbone(&["solve", example("table1.json").to_str().expect("UTF-8"), "--table"]);
     let text = String::from_utf8(output.stdout).expect("UTF-8");

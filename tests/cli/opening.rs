@@ -29,7 +29,10 @@ fn as_somebody(directory: &Path) -> Command {
     if fs::metadata(directory).is_ok_and(|metadata| std::os::unix::fs::MetadataExt::uid(&metadata) == 0) {
         // The program itself lies where others may not look, perhaps: run a copy.
         let copy = directory.join("herringbone");
-        fs::copy(env!("CARGO_BIN_EXE_herringbone"), &copy).expect("copied");
+        // Copied by a process of its own: a file that this process has open for writing may be inherited by what other
+        // tests start meanwhile, and such a program cannot be run.
+        let copied = Command::new("cp").args([Path::new(env!("CARGO_BIN_EXE_herringbone")), &copy]).status();
+        assert!(copied.expect("cp runs").success());
         command = Command::new(copy);
         command.uid(65_534).gid(65_534);
     }

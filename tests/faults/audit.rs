@@ -77,6 +77,7 @@ impl Audit<'_> {
         self.each_ended_once(&jobs).await;
         self.results_are_those_of_succeeded_jobs(&jobs).await;
         self.sweeps_are_whole(&jobs).await;
+        self.datasets_have_jobs().await;
         self.findings
     }
 
@@ -174,16 +175,34 @@ impl Audit<'_> {
         }
     }
 
+    /// What was recorded belongs to a result, or is the rows of a sweep that did not succeed.
+    async fn datasets_have_jobs(&mut self) {
+        let sql = "SELECT 'the dataset ' || id || ' has no job' FROM datasets WHERE id NOT IN (SELECT dataset_id FROM results WHERE dataset_id IS NOT NULL) \
+                   AND id NOT IN (SELECT id FROM jobs WHERE state <> 'succeeded') \
+                   UNION ALL SELECT DISTINCT dataset_id || ' has samples and no result' FROM series_samples \
+                   WHERE dataset_id NOT IN (SELECT dataset_id FROM results WHERE dataset_id IS NOT NULL) \
+                   UNION ALL SELECT job_id || ' has a result without a dataset' FROM results WHERE dataset_id IS NULL \
+                   UNION ALL SELECT dataset_id || ' has no samples of ' || channel FROM series WHERE NOT EXISTS \
+                   (SELECT 1 FROM series_samples AS part WHERE part.dataset_id = series.dataset_id \
+                   AND part.position = series.position)";
+        for row in self.rows(sql).await {
+            self.breaks(row.get(0));
+        }
+    }
+
     /// The rows of a finished sweep are all its points, without gaps, and those that its result was made of.
     async fn sweeps_are_whole(&mut self, jobs: &HashMap<String, Job>) {
         let sql = "SELECT points_n, points_digest, json_extract(body, '$.numerics.reused') AS reused FROM results WHERE job_id = $1";
         let sweeps: Vec<_> = jobs.iter().filter(|(_, job)| job.kind == "sweep").collect();
         for (id, job) in sweeps {
-            let rows = sqlx::query("SELECT position, body FROM sweep_points WHERE job_id = $1 ORDER BY position")
-                .bind(id)
-                .fetch_all(&mut *self.connection)
-                .await
-                .expect("rows");
+            let rows = sqlx::query(
+                "SELECT position, body FROM sweep_points \
+                 WHERE dataset_id = COALESCE((SELECT dataset_id FROM results WHERE job_id = $1), $1) ORDER BY position",
+            )
+            .bind(id)
+            .fetch_all(&mut *self.connection)
+            .await
+            .expect("rows");
             self.findings.points += rows.len();
             let document = herringbone_job::parse(job.input.as_bytes()).expect("the stored document is valid");
             let wanted = document.sweep_points();

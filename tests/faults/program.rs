@@ -77,6 +77,15 @@ impl Program {
         }
     }
 
+    /// Starts it and kills it after this time, wherever it is then.
+    pub(crate) fn start_and_kill(&self, after: Duration) {
+        let mut process =
+            self.command().stdout(Stdio::null()).stderr(Stdio::null()).stdin(Stdio::null()).spawn().expect("a process");
+        std::thread::sleep(after);
+        process.kill().expect("killed");
+        process.wait().expect("it ends");
+    }
+
     /// Everything that was logged since the first start.
     pub(crate) fn log(&self) -> String {
         std::fs::read_to_string(self.directory.join("log")).unwrap_or_default()

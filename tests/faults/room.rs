@@ -85,6 +85,61 @@ fn a_file_that_may_not_grow_refuses_jobs_until_it_may() {
     assert_eq!(audit(program.database(), &accepted).broken, [""; 0]);
 }
 
+/// The process died with a running sweep, and there is no room to take it up again: what is stored is served.
+#[test]
+fn a_start_without_room_serves_what_is_stored_and_goes_on_when_there_is_room() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let program = Program::at(directory.path());
+    let service = program.start();
+    let done = service.submit(&documents::response());
+    service.ended(&done);
+    let sweep = service.submit(&documents::sweep(400));
+    service.until(&sweep, |answer| answer.json()["progress"].as_f64() > Some(0.02));
+    service.kill();
+    // Room for the index of the log, 32 KiB, and not for another page of the log itself.
+    let length = std::fs::metadata(directory.path().join("jobs.db-wal")).expect("a log").len();
+    assert!(length > 40_000, "{length} bytes");
+    let command = ["prlimit", "--fsize=40000:unlimited", "sh", "-c", "trap '' XFSZ; exec \"$@\"", "sh"];
+    let service = program.clone().under(&command).start();
+    assert_eq!(service.get(&done)["state"], "succeeded");
+    assert_eq!(service.send("GET", &format!("{done}/result"), "").status, 200);
+    assert_eq!(service.get(&sweep)["state"], "running", "as the killed process left it");
+    service.until("/readyz", |answer| answer.is_problem(503, "storage-unavailable"));
+    let answer = service.send("POST", "/api/v1/jobs", &documents::response().to_string());
+    assert!(answer.is_problem(503, "storage-unavailable"), "{}", answer.text);
+    assert!(program.log().contains("jobs of an earlier run not taken up"), "{}", program.log());
+    let id = service.id().to_string();
+    let made = Command::new("prlimit").args(["--pid", &id, "--fsize=unlimited"]).status().expect("prlimit runs");
+    assert!(made.success());
+    service.until("/readyz", |answer| answer.status == 200);
+    assert_eq!(service.ended(&sweep)["state"], "succeeded");
+    assert_eq!(service.ended(&service.submit(&documents::response()))["state"], "succeeded");
+    assert!(service.end().0.success());
+    assert_eq!(audit(program.database(), &Accepted::default()).broken, [""; 0]);
+}
+
+/// Not even the index of the log can be made: one sentence with the path.
+#[test]
+fn a_start_without_any_room_names_the_database_and_the_remedy() {
+    let Some(mut command) = namespace() else { return };
+    let directory = tempfile::tempdir().expect("a directory");
+    let mount = directory.path().join("mount");
+    std::fs::create_dir(&mount).expect("a directory");
+    let program = Program::at(directory.path());
+    let service = program.start();
+    service.ended(&service.submit(&documents::response()));
+    assert!(service.end().0.success());
+    let script = "mount -t tmpfs -o size=8m tmpfs \"$0\" && cp \"$1\" \"$0\" && head -c 9000000 /dev/zero > \"$0/filler\"; \
+                  shift; exec \"$@\"";
+    let (place, database) = (mount.to_string_lossy(), program.database().to_string_lossy());
+    command.extend(["sh", "-c", script, &place, &database].map(str::to_owned));
+    let command: Vec<_> = command.iter().map(String::as_str).collect();
+    let status = program.clone().over(&mount.join("jobs.db")).under(&command).try_start().err().expect("not served");
+    let log = program.log();
+    assert_eq!(status.code(), Some(1), "{log}");
+    assert!(log.contains(&format!("no room on the disk for the database {place}/jobs.db")), "{log}");
+}
+
 /// Writes fail with ENOSPC on a file system of a few MB in a mount namespace of its own.
 #[test]
 fn a_full_disk_refuses_jobs_until_there_is_room() {

@@ -77,6 +77,7 @@ fn public_detail(cause: Unavailable) -> &'static str {
         Unavailable::Disk => "The disk did not read or write.",
         Unavailable::ReadOnly => "The database may not be written.",
         Unavailable::Memory => "There is not enough memory.",
+        Unavailable::Lost => "The database file was moved or deleted.",
     }
 }
 

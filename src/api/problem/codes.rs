@@ -318,8 +318,8 @@ pub(crate) const CODES: [CodeEntry; 34] = [
         "storage-unavailable",
         503,
         "The database cannot be written at the moment",
-        "There is no room left, or the database is locked or its file system fails. Nothing was accepted and nothing is \
-         lost; running jobs keep their results until they can be written. Try again after `Retry-After`, or make room: \
+        "There is no room left, or the database is locked, its file was moved, or its file system fails. Nothing was \
+         accepted and nothing is lost; running jobs keep their results until they can be written. Try again after `Retry-After`, or make room: \
          delete jobs, or ask whoever runs the service.",
     ),
 ];

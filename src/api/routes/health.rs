@@ -30,7 +30,7 @@ pub(super) async fn read_liveness() -> Json<Health> {
     get, path = "/readyz", tag = "operation",
     responses(
         (status = 200, description = "The database answers and can be written: jobs are taken.", body = Health),
-        (status = 503, description = "`shutting-down`, or `storage-unavailable`: the database is full, locked or failing."),
+        (status = 503, description = "`shutting-down`, or `storage-unavailable`: the database is full, locked, moved or failing."),
     )
 )]
 pub(super) async fn read_readiness(State(state): State<AppState>) -> Result<Json<Health>, ApiError> {

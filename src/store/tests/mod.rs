@@ -46,6 +46,7 @@ pub(super) fn completion(hash: &str) -> Completion {
         input_hash: hash.into(),
         solver_version: "test-1".into(),
         series: Vec::new(),
+        samples: SampleBatch::default(),
         rows: None,
         unwritten: PointBatch::default(),
         reused_from: None,

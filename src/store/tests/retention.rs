@@ -82,7 +82,7 @@ async fn the_oldest_jobs_are_deleted_down_to_nine_tenths_and_the_file_shrinks() 
     store.release_space().await.unwrap();
     let after = store.usage().await.unwrap();
     assert!(after.used_bytes < 9_000_000 && after.free_bytes() == 0 && after.log_bytes == 0, "{after:?}");
-    let on_disk = std::fs::metadata(&*store.path).unwrap().len();
+    let on_disk = std::fs::metadata(store.file.path()).unwrap().len();
     assert_eq!(on_disk, after.file_bytes);
 }
 

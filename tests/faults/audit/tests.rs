@@ -48,6 +48,13 @@ fn a_key_with_two_jobs_is_found() {
 #[case::without_result("DELETE FROM results", "and has 0 results")]
 #[case::a_gap("DELETE FROM sweep_points WHERE position = 2", "are not 0 to 5")]
 #[case::other_points("UPDATE sweep_points SET body = '{}' WHERE position = 2", "are not those of its result")]
+#[case::a_dataset_without_jobs("INSERT INTO datasets VALUES ('0')", "the dataset 0 has no job")]
+#[case::a_result_without_dataset("UPDATE results SET dataset_id = NULL", "a result without a dataset")]
+#[case::a_channel_without_samples("DELETE FROM series_samples", "has no samples of a_x_left")]
+#[case::samples_without_a_result(
+    "DELETE FROM results WHERE dataset_id IN (SELECT dataset_id FROM series)",
+    "samples and no result"
+)]
 fn what_was_doctored_is_found(#[case] doctored: &'static str, #[case] found: &str) {
     let (directory, accepted) = sound();
     let database = directory.path().join("jobs.db");
