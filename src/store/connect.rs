@@ -171,8 +171,8 @@ impl Store {
         Ok(transaction)
     }
 
-    /// Checks that the database file and its log are still found under their names. Nothing is written to files that have
-    /// lost theirs: it would be gone with the process. The check costs microseconds.
+    /// Checks that the database file and its log are still found under their names. Nothing is written to files that
+    /// have lost theirs: it would be gone with the process. The check costs microseconds.
     ///
     /// # Errors
     /// [`Unavailable::Lost`].

@@ -1,5 +1,5 @@
-//! Datasets: what a calculation recorded, series and rows of a sweep. A reused result has the dataset of its source, which
-//! stays until the last job with it is deleted.
+//! Datasets: what a calculation recorded, series and rows of a sweep. A reused result has the dataset of its source,
+//! which stays until the last job with it is deleted.
 
 use super::connect::StoreError;
 use super::lifecycle::JobId;

@@ -90,9 +90,9 @@ impl fmt::Display for LostFile {
 }
 
 impl DatabaseFile {
-    /// Opens the database file, or creates an empty one where there is none, and locks it against other processes of the
-    /// service, each of which would treat the others' running jobs as lost. The lock belongs to the file, not to one of
-    /// its names; older versions lock only a file beside the name, so that is locked too.
+    /// Opens the database file, or creates an empty one where there is none, and locks it against other processes of
+    /// the service, each of which would treat the others' running jobs as lost. The lock belongs to the file, not to
+    /// one of its names; older versions lock only a file beside the name, so that is locked too.
     ///
     /// # Errors
     /// The file is in use, cannot be written, has several names, or is missing beside its log.

@@ -32,8 +32,8 @@ pub struct Completion {
 }
 
 impl Store {
-    /// Stores the result of a running job (running → succeeded). `None` when the job no longer belongs to this attempt or
-    /// is to be canceled, or when the job whose result is to be reused was deleted.
+    /// Stores the result of a running job (running → succeeded). `None` when the job no longer belongs to this attempt
+    /// or is to be canceled, or when the job whose result is to be reused was deleted.
     ///
     /// # Errors
     /// The database cannot be written.

@@ -193,7 +193,8 @@ impl JobRun<'_> {
         }
     }
 
-    /// Ends a job that is to be canceled although it is solved. One that no longer belongs to this attempt stays as it is.
+    /// Ends a job that is to be canceled although it is solved. One that no longer belongs to this attempt stays as it
+    /// is.
     async fn drop_late_result(&self, computed: Duration) {
         let release = || self.recorder.release(&self.job, ReleaseReason::Shutdown, computed);
         if self.retry_until_stored(release).await == Some(None) {

@@ -71,8 +71,8 @@ struct JobsShared {
 }
 
 impl Jobs {
-    /// Recovers the jobs of an earlier process and starts the workers. While the database cannot be written for a reason
-    /// that may pass, a full disk, the workers wait; what is stored can be read.
+    /// Recovers the jobs of an earlier process and starts the workers. While the database cannot be written for a
+    /// reason that may pass, a full disk, the workers wait; what is stored can be read.
     ///
     /// # Errors
     /// The database cannot be written, or the threads cannot be started.

@@ -112,8 +112,8 @@ impl JobRecorder {
         Ok(())
     }
 
-    /// Stores samples of a running job before its result. False when the job no longer belongs to this attempt, or is to
-    /// be canceled.
+    /// Stores samples of a running job before its result. False when the job no longer belongs to this attempt, or is
+    /// to be canceled.
     ///
     /// # Errors
     /// The database cannot be written.

@@ -225,8 +225,8 @@ fn a_second_service_on_the_same_file_is_refused_whatever_its_name() {
     assert_eq!(Program::at(elsewhere.path()).over(&symbolic).start().get(&path)["state"], "succeeded");
 }
 
-/// An upgrade over all steps is killed at many moments: the database is of the first schema or of the last, and the copy
-/// made before it is never replaced.
+/// An upgrade over all steps is killed at many moments: the database is of the first schema or of the last, and the
+/// copy made before it is never replaced.
 #[test]
 fn an_upgrade_that_is_killed_keeps_the_copy_made_before() {
     let directory = tempfile::tempdir().expect("a directory");

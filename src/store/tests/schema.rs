@@ -82,7 +82,7 @@ async fn series_and_rows_of_a_database_with_copies_are_shared_after_the_upgrade(
     let config = StoreConfig::at(directory.path().join("jobs.db"));
     let mut before = database_of_schema(5, &config).await;
     let ids: Vec<String> = (0..6).map(|_| JobId::new().to_string()).collect();
-    // A result and two that reused it, one after the other; one whose source is gone; a sweep that failed; one that waits.
+    // A result and two that reused it, one after the other; one whose source is gone; a failed sweep; one that waits.
     let gone = JobId::new().to_string();
     let jobs = [
         ("succeeded", None),
