@@ -125,10 +125,14 @@ export function isSame(field, one, other) {
   if (one === other) return true;
   if (field.control === "words") return one.split(/[\s,;]+/).join() === other.split(/[\s,;]+/).join();
   if (one === "" || other === "") return false;
-  if (field.control === "numbers") return readList(one, unitOf(field)).values?.join() === readList(other, unitOf(field)).values?.join();
+  const unit = unitOf(field);
+  if (field.control === "numbers") {
+    const values = readList(one, unit).values;
+    return values !== undefined && values.join() === readList(other, unit).values?.join();
+  }
   if (field.control !== "number" && field.control !== "integer") return false;
-  const value = readField(one, field.unit).value;
-  return value !== undefined && value === readField(other, field.unit).value;
+  const { value } = readField(one, unit);
+  return value !== undefined && value === readField(other, unit).value;
 }
 
 /** Members of documents without a field in the form: kept, so that the server reports the violations. */

@@ -155,9 +155,11 @@ function fill({ document, start, entered, nameKept: kept = false }, isChosen = f
 /** @param {Event} event */
 async function submit(event) {
   event.preventDefault();
+  const button = byId("submit");
+  // Keys can ask again while it is submitted.
+  if (button.disabled) return;
   clearTimeout(timer);
   check.stop();
-  const button = byId("submit");
   button.disabled = true;
   awaitCheck();
   requireAll();
