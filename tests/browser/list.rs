@@ -280,6 +280,17 @@ async fn among_many_jobs_one_is_found_sorted_and_described() {
         assert_eq!(browser.text(&format!("{} .notes", row(&quiet))).await, "<b>checked</b> by Anna");
         browser.element("#filter-search").await.send_keys("anna").await.unwrap();
         browser.until(&format!("{rows} === 1 && {first} === '{quiet}'")).await;
+        // On its own page as well.
+        click(browser, &format!("{} th a", row(&quiet))).await;
+        browser.until("document.querySelector('#notes').textContent === '<b>checked</b> by Anna'").await;
+        click(browser, "#describe").await;
+        browser.until("document.activeElement.id === 'describe-name'").await;
+        browser.element("#describe-notes").await.clear().await.unwrap();
+        browser.element("#describe-notes").await.send_keys("by Anna and Bert").await.unwrap();
+        click(browser, ".describe .primary").await;
+        browser.until("document.querySelector('#notes').textContent === 'by Anna and Bert'").await;
+        browser.driver.back().await.unwrap();
+        browser.until(&format!("{rows} === 1 && {first} === '{quiet}'")).await;
         // Deleted here, the place is filled there.
         click(browser, &format!("{} .row-actions button:not([hidden])", row(&quiet))).await;
         browser.until("document.querySelector('#confirm').open").await;

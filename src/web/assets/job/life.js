@@ -1,6 +1,7 @@
 // The state of a job: its stages, its failure, and its actions.
 
 import * as api from "../common/api.js";
+import { describeJob } from "../common/describe.js";
 import { byAnyId, byId, el, fillValues, notify, show } from "../common/dom.js";
 import { instant, number, percent, seconds, sentence } from "../common/format.js";
 import { placeOf, readable } from "../common/sentence.js";
@@ -28,6 +29,7 @@ export class Life {
     this.bell = new Bell(id);
     this.remaining = new Remaining();
     byId("cancel").addEventListener("click", () => this.cancel());
+    byId("describe").addEventListener("click", () => this.describe());
     byId("copy-link").addEventListener("click", () => this.copyLink());
     byId("delete").addEventListener("click", () => byId("delete-dialog").showModal());
     byId("delete-dialog").addEventListener("close", () => byId("delete-dialog").returnValue === "delete" && this.remove());
@@ -64,6 +66,14 @@ export class Life {
     this.tick();
   }
 
+  /** Opens the window in which name, label and notes are changed. */
+  async describe() {
+    if (!this.job) return;
+    const described = await describeJob(this.job);
+    if (described) this.show(described);
+    byId("describe").focus();
+  }
+
   /** The point of a sweep that the job repeats. @param {{ job: string, position: number }} origin */
   showOrigin(origin) {
     this.origin = origin;
@@ -91,6 +101,8 @@ export class Life {
       ["Result taken from", job.reused_from ? el("a", { href: `/jobs/${encodeURIComponent(job.reused_from)}` }, "an equal job") : null],
       ["Solved in", solved === null ? null : number(solved, 3), "s"],
     ]);
+    byId("notes").textContent = job.notes ?? "";
+    show(byId("notes"), Boolean(job.notes));
   }
 
   /** @param {Job} job */
