@@ -15,8 +15,8 @@ use tokio::sync::Mutex;
 const INSTALL: &str = "The browser tests need Chromium and its driver: run `scripts/prerequisites chromium` \
                        (on Debian: apt-get install chromium chromium-driver).";
 
-/// How long a condition on the page may take to become true. Waiting costs nothing where it comes early, so the limit is
-/// that of a machine that does much else; `HERRINGBONE_BROWSER_PATIENCE_S` is another one.
+/// How long a condition on the page may take to become true. Waiting costs nothing where it comes early, so the limit
+/// is that of a machine that does much else; `HERRINGBONE_BROWSER_PATIENCE_S` is another one.
 pub(crate) static PATIENCE: LazyLock<Duration> = LazyLock::new(|| {
     let given = std::env::var("HERRINGBONE_BROWSER_PATIENCE_S").ok();
     let seconds = given.map(|text| text.parse().expect("HERRINGBONE_BROWSER_PATIENCE_S is a number of seconds"));

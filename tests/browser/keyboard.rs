@@ -98,8 +98,8 @@ async fn type_over(browser: &Browser, text: &str) {
         .unwrap();
 }
 
-/// An own pair from an empty form: numbers as people type them, an error found by the list beside the status, a value of
-/// another geometry, and the question before it is submitted.
+/// An own pair from an empty form: numbers as people type them, an error found by the list beside the status, a value
+/// of another geometry, and the question before it is submitted.
 #[tokio::test]
 async fn an_own_pair_is_entered_from_an_empty_form_by_keyboard_alone() {
     flow(async |browser| {

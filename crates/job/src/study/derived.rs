@@ -68,7 +68,7 @@ fn center_distance_mm(document: &JobDocument, pair: &Pair) -> Option<f64> {
     if document.design.center_distance_mm.is_none() {
         return Some(without_error(pair));
     }
-    let fitting = Pair::new(&PairSpec { center_distance_m: None, ..pair.spec.clone() }).ok()?;
+    let fitting = Pair::new(&PairSpec { center_distance_m: None, ..pair.spec }).ok()?;
     Some(without_error(&fitting.0))
 }
 
