@@ -79,17 +79,10 @@ export function tip(name, { help, theory }) {
 
 /**
  * A name that leads to formula, source and validity of its number.
- * @param {Explained & { label: string, pointer: string }} scalar
- * @param {string} [shown]
+ * @param {import("./quantities.js").Quantity} scalar
+ * @param {Child} [shown]
  */
 export const theoryLink = ({ label, pointer, theory }, shown = label) => el("a", { href: `/help/theory/${theory}`, title: pointer }, shown);
-
-/**
- * A name with its "?".
- * @param {string} name
- * @param {Explained} explained
- */
-export const explained = (name, explained) => el("span", { class: "explained" }, name, " ", tip(name, explained));
 
 /**
  * Fills a `dl` with [term, value, unit, meaning] rows; rows without a value are left out.

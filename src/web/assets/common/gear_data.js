@@ -7,6 +7,7 @@ import { GEAR_DATA } from "./quantities.js";
 import { valueOf } from "./scalars.js";
 
 /** @typedef {import("./scalars.js").Scalar} Scalar */
+/** @typedef {import("./quantities.js").Quantity} Quantity */
 
 /**
  * The gear data of a job; null where this version refuses the pair of an older one.
@@ -25,7 +26,7 @@ export async function gearDataOf(id) {
 const PAIR = GEAR_DATA.filter(({ pointer }) => !/^\/(pinion|gear)\//.test(pointer));
 const MEMBERS = GEAR_DATA.filter(({ pointer }) => pointer.startsWith("/pinion/"));
 
-/** Symbol, name, unit and meaning of a scalar. @param {import("./quantities.js").Quantity} scalar */
+/** Symbol, name, unit and meaning of a scalar. @param {Quantity} scalar */
 function namesOf(scalar) {
   const { symbol, label, unit } = scalar;
   const [letter, index = ""] = symbol.split("_");
@@ -35,7 +36,7 @@ function namesOf(scalar) {
 /**
  * Rows of the pair's data; members without a value are left out.
  * @param {GearData} data
- * @returns {{ symbol: [string, string], name: string, value: number, unit: string, meaning: Explained }[]}
+ * @returns {{ symbol: [string, string], name: string, value: number, unit: string, meaning: Quantity }[]}
  */
 export function pairRows(data) {
   return PAIR.flatMap((scalar) => {

@@ -1,6 +1,6 @@
 // The mesh-in impact: the forces beside each other, the pulse, and the quantities from which they are calculated.
 
-import { byId, explained, fillRows, fillValues, show, showFigureOf } from "../common/dom.js";
+import { byId, fillRows, fillValues, show, showFigureOf, theoryLink } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { draw } from "../common/plots.js";
 import { rowsFrom, scalarAt } from "../common/scalars.js";
@@ -31,8 +31,8 @@ export function impactRows(impact) {
   const calculated = typeof impact.zhou2008_force_n === "number";
   const first = impact.source === "given" ? "Given" : "Corner contact, buffered by the pairs in mesh";
   return [
-    [explained(first, scalarAt("/impact/force_n")), `${number(impact.force_n)} N`],
-    ...(calculated ? [[explained("Zhou 2008, unbuffered", scalarAt("/impact/zhou2008_force_n")), `${number(impact.zhou2008_force_n)} N`], [explained("Reduction", scalarAt("/impact/reduction_percent")), `${number(impact.reduction_percent, 4)} %`]] : []),
+    [theoryLink(scalarAt("/impact/force_n"), first), `${number(impact.force_n)} N`],
+    ...(calculated ? [[theoryLink(scalarAt("/impact/zhou2008_force_n"), "Zhou 2008, unbuffered"), `${number(impact.zhou2008_force_n)} N`], [theoryLink(scalarAt("/impact/reduction_percent"), "Reduction"), `${number(impact.reduction_percent, 4)} %`]] : []),
   ];
 }
 
