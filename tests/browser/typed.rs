@@ -228,8 +228,10 @@ async fn f12_csv_files_have_decimal_commas_when_this_browser_is_told_so() {
         succeeded(browser).await;
         browser.until("document.querySelector('#csv-decimal').value === 'comma'").await;
         browser.until("document.querySelector('#series-csv').href.endsWith('decimal=comma')").await;
-        let script = "const done = arguments[0]; HTMLAnchorElement.prototype.click = function () {}; \
-                      URL.createObjectURL = (blob) => { blob.arrayBuffer().then((bytes) => done([...new Uint8Array(bytes)])); return ''; }; \
+        // The script of the plots makes blobs of its own when it arrives.
+        let script = "const done = arguments[0]; HTMLAnchorElement.prototype.click = function () {}; const make = URL.createObjectURL; \
+                      URL.createObjectURL = (blob) => { if (blob.type.startsWith('text/csv')) \
+                        blob.arrayBuffer().then((bytes) => done([...new Uint8Array(bytes)])); return make.call(URL, blob); }; \
                       document.querySelector('#series-csv').dispatchEvent(new MouseEvent('click', {bubbles: true, cancelable: true}));";
         let saved = browser.driver.execute_async(script, vec![]).await.unwrap();
         let bytes: Vec<u8> = serde_json::from_value(saved.json().clone()).unwrap();
