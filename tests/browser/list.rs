@@ -248,7 +248,7 @@ async fn among_many_jobs_one_is_found_sorted_and_described() {
         browser.until(&format!("{place} === '51 to 62 of 62 jobs' && {rows} === 12")).await;
         // Sorted by a headline number, by the head of its column; jobs without one come last.
         click(browser, "th[data-sort^='mesh_circ'] button").await;
-        let first = "document.querySelector('#jobs tbody tr').dataset.id";
+        let first = "document.querySelector('#jobs tbody tr')?.dataset.id";
         browser.until(&format!("{first} === '{loud}'")).await;
         let sorted = "document.querySelector(\"th[data-sort^='mesh_circ']\").getAttribute('aria-sort')";
         assert_eq!(browser.value(sorted).await, json!("descending"));
