@@ -42,15 +42,16 @@ pub(super) fn find(
     if let Some(compliance) = kept {
         return Ok(Found { compliance, elements_reused: false, done: 0.0 });
     }
+    let watch = Watch::new(&|_| {}, context.canceled);
     let (compliance, elements_reused, done) = match case.fidelity {
-        Fidelity::Analytic => (Compliance::analytic(pair, &case.settings), false, 0.0),
+        Fidelity::Analytic => (Compliance::analytic(pair, &case.settings, watch)?, false, 0.0),
         Fidelity::Uniform => (Compliance::uniform(pair, &case.settings, case.line_stiffness_n_per_m2), false, 0.0),
         Fidelity::Fe => {
             let inputs = Compliance::finite_element_inputs(pair, &case.settings, case.resolution);
             let (pinion, pinion_reused) = flank(&inputs[0], context, (0.0, 0.4 * ELEMENTS_PART))?;
             let (gear, gear_reused) = flank(&inputs[1], context, (0.4 * ELEMENTS_PART, ELEMENTS_PART))?;
             let reused = pinion_reused && gear_reused;
-            let compliance = Compliance::finite_elements(pair, &case.settings, [&pinion, &gear]);
+            let compliance = Compliance::finite_elements(pair, &case.settings, [&pinion, &gear], watch)?;
             (compliance, reused, if reused { 0.0 } else { ELEMENTS_PART })
         }
     };

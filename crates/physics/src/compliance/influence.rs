@@ -7,6 +7,7 @@
 
 use crate::numerics::interpolation::lagrange;
 use crate::simd::vectorised;
+use crate::watch::{Canceled, Meter, Watch};
 
 /// Normal approach of both members per normal force. It depends on neither load, modification nor assembly.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,25 +57,42 @@ pub(crate) struct LineWeights {
 impl Influence {
     /// Tabulates `entry(offset, (response station, place), (load station, place))`: both on one tooth pair (offset 0),
     /// or the response on the pair that entered `offset` pitches before the loaded one. Places and stations ascend; at
-    /// least four stations.
+    /// least four stations. An entry takes some `entry_operations`.
+    ///
+    /// # Errors
+    /// [`Canceled`].
     pub(crate) fn new(
         path_nodes_m: Vec<f64>,
         stations_m: Vec<f64>,
         offsets: usize,
+        (entry_operations, watch): (usize, Watch),
         mut entry: impl FnMut(usize, (usize, usize), (usize, usize)) -> f64,
-    ) -> Influence {
+    ) -> Result<Influence, Canceled> {
+        let mut meter = Meter::new(watch);
         let (p, s) = (path_nodes_m.len(), stations_m.len());
         let mut table = Vec::with_capacity((offsets + 1) * s * s * p * p);
         for offset in 0..=offsets {
             for i in 0..s {
                 for a in 0..p {
+                    meter.count(p * s * entry_operations)?;
                     for b in 0..p {
                         table.extend((0..s).map(|j| entry(offset, (i, a), (j, b))));
                     }
                 }
             }
         }
-        Influence { path_nodes_m, stations_m, offsets, table }
+        Ok(Influence { path_nodes_m, stations_m, offsets, table })
+    }
+
+    /// Multiplications of [`Self::between`].
+    pub(crate) fn operations(&self, response: &LineWeights, load: &LineWeights) -> usize {
+        self.path_nodes_m.len() * (self.path_nodes_m.len() + 1) * response.count * load.count
+    }
+
+    /// No flexibility, over `stations_m`.
+    pub(crate) fn rigid(path_node_m: f64, stations_m: Vec<f64>) -> Influence {
+        let table = vec![0.0; stations_m.len() * stations_m.len()];
+        Influence { path_nodes_m: vec![path_node_m], stations_m, offsets: 0, table }
     }
 
     /// Weights of the stations about `entry_m`.

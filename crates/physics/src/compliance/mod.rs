@@ -42,6 +42,7 @@ use self::influence::stencil;
 use self::member::MemberCompliance;
 use crate::fe::{FlankFlexibility, FlankFlexibilityInput, Resolution};
 use crate::gear::{MemberId, Pair};
+use crate::watch::{Canceled, Watch};
 
 /// Corner contact is looked for this far beyond the path, in base pitches: gaps there are beyond any deflection that a
 /// tooth survives.
@@ -62,29 +63,33 @@ const DEPTHS: usize = 33;
 const PATH_NODES: usize = 7;
 
 impl Compliance {
-    /// Fidelity `analytic`: beams, plates and rings, in milliseconds.
-    pub fn analytic(pair: &Pair, settings: &Settings) -> Compliance {
+    /// Fidelity `analytic`: beams, plates and rings, in milliseconds unless hundreds of pairs are in mesh.
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    pub fn analytic(pair: &Pair, settings: &Settings, watch: Watch) -> Result<Compliance, Canceled> {
         let stations = settings.station_count(pair);
         let offsets = pair_offsets(pair, settings.corner_contact);
         let (pinion, gear) = rayon::join(
-            || MemberCompliance::new(pair, 1.0, settings.body, stations, offsets),
-            || MemberCompliance::new(pair, -1.0, settings.body, stations, offsets),
+            || MemberCompliance::new(pair, 1.0, settings.body, stations, offsets, watch),
+            || MemberCompliance::new(pair, -1.0, settings.body, stations, offsets, watch),
         );
+        let (pinion, gear) = (pinion?, gear?);
         // Places of both members are Chebyshev nodes of the same path, run through in opposite directions.
         let path_nodes_m = pinion.path_nodes_m().to_vec();
         let last = path_nodes_m.len() - 1;
         let step = pair.spec.face_width_m / stations as f64;
         let stations_m = (0..stations).map(|i| (i as f64 + 0.5) * step).collect();
-        let influence = Influence::new(path_nodes_m, stations_m, offsets, |offset, (i, a), (j, b)| {
+        let influence = Influence::new(path_nodes_m, stations_m, offsets, (4, watch), |offset, (i, a), (j, b)| {
             pinion.bulk.entry(offset, (i, a), (j, b)) + gear.bulk.entry(offset, (i, last - a), (j, last - b))
-        });
+        })?;
         let depths = (0..DEPTHS)
             .map(|i| {
                 let x = pair.path_start_m + (pair.path_end_m - pair.path_start_m) * i as f64 / (DEPTHS - 1) as f64;
                 [pinion.at(x).depth_m, gear.at(pair.line_of_action_m - x).depth_m]
             })
             .collect();
-        Compliance { influence, local: LocalModel::CenterlineDepth(depths), slices: settings.slice_count(pair) }
+        Ok(Compliance { influence, local: LocalModel::CenterlineDepth(depths), slices: settings.slice_count(pair) })
     }
 
     /// Fidelity `uniform`: the contact lines as a uniform elastic foundation of so much force per length of line and
@@ -93,7 +98,7 @@ impl Compliance {
         let stations = 4;
         let step = pair.spec.face_width_m / stations as f64;
         let stations_m = (0..stations).map(|i| (i as f64 + 0.5) * step).collect();
-        let influence = Influence::new(vec![pair.pitch_point_m()], stations_m, 0, |_, _, _| 0.0);
+        let influence = Influence::rigid(pair.pitch_point_m(), stations_m);
         let local = LocalModel::Foundation { line_stiffness_n_per_m2 };
         Compliance { influence, local, slices: settings.slice_count(pair) }
     }
@@ -115,7 +120,15 @@ impl Compliance {
     ///
     /// A force on the line of contact goes to the hats of the load grid about it and the displacement there is read
     /// between them; a hat is represented by its centre of gravity.
-    pub fn finite_elements(pair: &Pair, settings: &Settings, flanks: [&FlankFlexibility; 2]) -> Compliance {
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    pub fn finite_elements(
+        pair: &Pair,
+        settings: &Settings,
+        flanks: [&FlankFlexibility; 2],
+        watch: Watch,
+    ) -> Result<Compliance, Canceled> {
         let path_nodes_m: Vec<f64> = (0..PATH_NODES)
             .map(|i| {
                 let angle = std::f64::consts::PI * (2 * i + 1) as f64 / (2 * PATH_NODES) as f64;
@@ -144,28 +157,31 @@ impl Compliance {
             (own != stations_m).then(|| stations_m.iter().map(|z| stencil(&own, z + margin_m)).collect())
         });
         let offsets = flanks[0].offsets().min(flanks[1].offsets());
-        let influence = Influence::new(path_nodes_m, stations_m, offsets, |offset, (i, a), (j, b)| {
-            (0..2)
-                .map(|side| {
-                    let nodes = flanks[side].nodes();
-                    let Some(bulk) = flanks[side].bulk(offset) else { return 0.0 };
-                    let (pa, pb) = (&profiles[side][a], &profiles[side][b]);
-                    let stations = flanks[side].stations_m().len();
-                    if let Some(across) = &across[side] {
-                        return between(bulk, (stations, nodes), [pa, pb], [&across[i], &across[j]]);
-                    }
-                    let mut sum = 0.0;
-                    for (k, wa) in pa.weights.iter().enumerate() {
-                        let row = &bulk[((pa.first + k) * stations + i) * nodes..];
-                        for (l, wb) in pb.weights.iter().enumerate() {
-                            sum += wa * wb * row[(pb.first + l) * stations + j];
+        // Four by four hats of either member, of which each may stand between four stations.
+        let operations = if across.iter().any(Option::is_some) { 512 } else { 32 };
+        let influence =
+            Influence::new(path_nodes_m, stations_m, offsets, (operations, watch), |offset, (i, a), (j, b)| {
+                (0..2)
+                    .map(|side| {
+                        let nodes = flanks[side].nodes();
+                        let Some(bulk) = flanks[side].bulk(offset) else { return 0.0 };
+                        let (pa, pb) = (&profiles[side][a], &profiles[side][b]);
+                        let stations = flanks[side].stations_m().len();
+                        if let Some(across) = &across[side] {
+                            return between(bulk, (stations, nodes), [pa, pb], [&across[i], &across[j]]);
                         }
-                    }
-                    sum
-                })
-                .sum()
-        });
-        Compliance { influence, local: LocalModel::HalfSpace, slices: settings.slice_count(pair) }
+                        let mut sum = 0.0;
+                        for (k, wa) in pa.weights.iter().enumerate() {
+                            let row = &bulk[((pa.first + k) * stations + i) * nodes..];
+                            for (l, wb) in pb.weights.iter().enumerate() {
+                                sum += wa * wb * row[(pb.first + l) * stations + j];
+                            }
+                        }
+                        sum
+                    })
+                    .sum()
+            })?;
+        Ok(Compliance { influence, local: LocalModel::HalfSpace, slices: settings.slice_count(pair) })
     }
 
     /// Number of width slices that the contact lines are cut into.
