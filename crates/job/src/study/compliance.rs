@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(super) struct ComplianceMemo(Mutex<HashMap<String, Arc<Compliance>>>);
 
 /// Largest number of compliances kept: a sweep over the teeth does not use old ones again.
-const KEPT: usize = 8;
+pub(super) const KEPT: usize = 8;
 
 /// Fraction of the progress of the mesh stage assigned to the solution of the finite elements.
 const ELEMENTS_PART: f64 = 0.95;

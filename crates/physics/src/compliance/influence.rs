@@ -38,6 +38,11 @@ impl Stencil {
     }
 }
 
+/// Size of a table of so many places, stations and offsets.
+pub(super) fn table_bytes(places: f64, stations: f64, offsets: f64) -> f64 {
+    8.0 * (offsets + 1.0) * (places * stations).powi(2)
+}
+
 /// Extrapolation beyond the outermost places, as a part of the path.
 const OVERHANG: f64 = 0.05;
 
@@ -84,9 +89,11 @@ impl Influence {
         Ok(Influence { path_nodes_m, stations_m, offsets, table })
     }
 
-    /// Multiplications of [`Self::between`].
+    /// Cost of [`Self::between`] and of writing its block into a large matrix, row by row and column by column, in
+    /// multiplications.
     pub(crate) fn operations(&self, response: &LineWeights, load: &LineWeights) -> usize {
-        self.path_nodes_m.len() * (self.path_nodes_m.len() + 1) * response.count * load.count
+        let places = self.path_nodes_m.len();
+        (places * (places + 1) + 16) * response.count * load.count + 512
     }
 
     /// No flexibility, over `stations_m`.

@@ -41,7 +41,7 @@ pub fn hold_radius_m(member: &Member, hold: BodyHold, normal_module_m: f64) -> f
 
 /// Degree of the Legendre functions along the face, by the face width in normal modules: about six per wavelength of
 /// the shortest wave that teeth and ring follow, four modules.
-fn width_order(width_modules: f64) -> usize {
+pub(super) fn width_order(width_modules: f64) -> usize {
     (4.0 + 0.5 * width_modules).ceil().clamp(5.0, 26.0) as usize
 }
 

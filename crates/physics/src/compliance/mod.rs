@@ -19,6 +19,7 @@ mod hertz;
 mod influence;
 mod local;
 mod member;
+mod memory;
 mod plate;
 mod ring;
 mod ring_influence;
@@ -37,6 +38,8 @@ pub use settings::Settings;
 pub(crate) use hertz::LineContact;
 pub(crate) use influence::{Influence, LineWeights, STENCIL, Stencil};
 pub(crate) use local::{Indentation, LocalModel, line_contact};
+pub(crate) use memory::{compliance_memory, offsets, station_count};
+pub(crate) use settings::slices;
 
 use self::influence::stencil;
 use self::member::MemberCompliance;
@@ -59,6 +62,8 @@ pub struct Compliance {
 
 /// Points of the table of centreline depths.
 const DEPTHS: usize = 33;
+/// Stations of the uniform foundation, which has no flexibility between them.
+const UNIFORM_STATIONS: usize = 4;
 /// Places of the path at which finite-element flexibilities are taken over.
 const PATH_NODES: usize = 7;
 
@@ -95,7 +100,7 @@ impl Compliance {
     /// Fidelity `uniform`: the contact lines as a uniform elastic foundation of so much force per length of line and
     /// approach, both along the flank normal; everything else is rigid. A model with exact solutions, for comparisons.
     pub fn uniform(pair: &Pair, settings: &Settings, line_stiffness_n_per_m2: f64) -> Compliance {
-        let stations = 4;
+        let stations = UNIFORM_STATIONS;
         let step = pair.spec.face_width_m / stations as f64;
         let stations_m = (0..stations).map(|i| (i as f64 + 0.5) * step).collect();
         let influence = Influence::rigid(pair.pitch_point_m(), stations_m);
@@ -211,6 +216,5 @@ fn hat_centers(nodes: &[f64]) -> Vec<f64> {
 /// Tooth pairs that can be in contact at once lie up to this many pitches apart: points lie within the path and, with
 /// corner contact, half a base pitch beyond either end.
 fn pair_offsets(pair: &Pair, corner_contact: bool) -> usize {
-    let reach = if corner_contact { 2.0 * CORNER_REACH } else { 0.0 };
-    (pair.total_contact_ratio() + reach + 1e-6).floor() as usize
+    offsets(pair.total_contact_ratio(), corner_contact)
 }

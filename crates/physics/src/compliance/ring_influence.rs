@@ -116,6 +116,25 @@ struct Twist {
     products: Vec<f64>,
 }
 
+/// Points for functions up to the degree `order` and a highest wave that turns by `half_turn` radians from the middle of
+/// the face to its ends.
+fn twist_points(order: usize, half_turn: f64) -> usize {
+    order + 6 + (0.6 * half_turn).ceil() as usize
+}
+
+/// Memory of the flexibility of a ring of `face_modules` normal modules under teeth up to `offsets` pitches apart, over
+/// functions up to the degree `order`: what is kept, and what is there in between besides.
+pub(super) fn ring_bytes(order: usize, face_modules: f64, helix_angle_rad: f64, offsets: f64) -> (f64, f64) {
+    let size = (order + 1) as f64;
+    let kept = 8.0 * (offsets + 1.0) * (KINDS as f64 * size).powi(2);
+    // Root radius over base radius: below 1.2 with pressure angles up to 35°.
+    let half_turn = 0.5 * RING_WAVES_PER_MODULE.1 * face_modules * helix_angle_rad.sin() * 1.2;
+    let twist = 8.0 * 0.5 * size * (size + 1.0) * twist_points(order, half_turn) as f64;
+    // Elements: three matrices of both parities over three nodes and three components, of twenty radial elements.
+    let elements = 8.0 * 20.0 * 6.0 * (3.0 * 1.5 * size).powi(2);
+    (kept, twist + elements)
+}
+
 /// Multiplications per point of a node of the quadrature (some Newton steps, a division each), and per sine and cosine.
 const NODE_OPERATIONS: usize = 20;
 
@@ -128,8 +147,7 @@ impl Twist {
         meter: &mut Meter,
     ) -> Result<Twist, Canceled> {
         // Enough points for the products of the functions and for the highest wave.
-        let half_turn = 0.5 * width_m * twist_per_m * f64::from(highest);
-        let points = basis.order + 6 + (0.6 * half_turn).ceil() as usize;
+        let points = twist_points(basis.order, 0.5 * width_m * twist_per_m * f64::from(highest));
         let size = basis.order + 1;
         let mut angles = Vec::with_capacity(points);
         let mut products = vec![0.0; size * (size + 1) / 2 * points];

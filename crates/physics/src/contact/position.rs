@@ -105,7 +105,7 @@ pub(super) struct PositionSolver<'a> {
 }
 
 /// Parts of a corner contact.
-const PARTS_PER_CORNER_WIDTH: f64 = 12.0;
+pub(super) const PARTS_PER_CORNER_WIDTH: f64 = 12.0;
 /// Stiffness per face width by which the deflection is estimated that decides the width of a corner contact, as a part
 /// of Young's modulus: 14 N/(mm µm) for steel (ISO 6336-1).
 const PAIR_STIFFNESS: f64 = 14e9 / 206e9;

@@ -10,6 +10,8 @@ use crate::numerics::PeriodicMonotoneCubic;
 const COARSE: usize = 16;
 /// Most positions of one period.
 const MOST: usize = 256;
+/// Positions that are reached at most: a round that begins below [`MOST`] is finished, and doubles what there is.
+pub(super) const MOST_STATES: usize = (COARSE + 3) * 16;
 /// Smallest interval.
 const FINEST: f64 = 1.0 / 1024.0;
 

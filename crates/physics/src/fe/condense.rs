@@ -285,18 +285,8 @@ impl Elimination<'_> {
         if let Some(compliance) = &mut compliance {
             let (mut top, mut bottom) = forces.as_mut().split_at_row_mut(inner);
             solve_lower(diagonal, top.as_mut(), &mut checkpoint)?;
-            matmul(bottom.as_mut(), Accum::Add, below, top.as_ref(), -1.0, Par::Seq);
-            triangular_matmul(
-                compliance.as_mut(),
-                BlockStructure::TriangularLower,
-                Accum::Add,
-                top.as_ref().transpose(),
-                BlockStructure::Rectangular,
-                top.as_ref(),
-                BlockStructure::Rectangular,
-                1.0,
-                Par::Seq,
-            );
+            product(bottom.as_mut(), Accum::Add, below, top.as_ref(), -1.0, &mut checkpoint)?;
+            add_square(compliance.as_mut(), top.as_ref().transpose(), 1.0, &mut checkpoint)?;
         }
         Ok(UpdateMatrix {
             points: later,
@@ -345,9 +335,9 @@ pub(super) fn factor_partly<T: ComplexField>(
         let (mut triangle, rectangle) =
             rest.submatrix_mut(end - start, 0, size - end, inner - end).split_at_row_mut(inner - end);
         let minus = -T::one_impl();
-        subtract_square(triangle.as_mut(), near);
-        matmul(rectangle, Accum::Add, far, near.adjoint(), minus, Par::Seq);
-        subtract_square(right.as_mut(), far);
+        add_square(triangle.as_mut(), near, minus.clone(), checkpoint)?;
+        matmul(rectangle, Accum::Add, far, near.adjoint(), minus.clone(), Par::Seq);
+        add_square(right.as_mut(), far, minus, checkpoint)?;
         start = end;
     }
     Ok(())
@@ -369,17 +359,52 @@ pub(super) fn solve_lower<T: ComplexField>(
     Ok(())
 }
 
-/// Takes `factor · factorᴴ` from the lower triangle of `matrix`.
-fn subtract_square<T: ComplexField>(matrix: MatMut<'_, T>, factor: MatRef<'_, T>) {
-    triangular_matmul(
-        matrix,
-        BlockStructure::TriangularLower,
-        Accum::Add,
-        factor,
-        BlockStructure::Rectangular,
-        factor.adjoint(),
-        BlockStructure::Rectangular,
-        -T::one_impl(),
-        Par::Seq,
-    );
+/// `target` with `scale · left · right` added to it or in its place, some columns at a time.
+pub(super) fn product(
+    mut target: MatMut<'_, f64>,
+    accum: Accum,
+    left: MatRef<'_, f64>,
+    right: MatRef<'_, f64>,
+    scale: f64,
+    checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
+) -> Result<(), FeError> {
+    let count = target.ncols();
+    let width = (PANEL_WORK / (left.nrows() * left.ncols()).max(1)).max(NARROWEST_PANEL);
+    for start in (0..count).step_by(width) {
+        checkpoint()?;
+        let some = width.min(count - start);
+        matmul(target.as_mut().subcols_mut(start, some), accum, left, right.subcols(start, some), scale, Par::Seq);
+    }
+    Ok(())
+}
+
+/// Adds `scale · factor · factorᴴ` to the lower triangle of `matrix`, some columns at a time.
+fn add_square<T: ComplexField>(
+    mut matrix: MatMut<'_, T>,
+    factor: MatRef<'_, T>,
+    scale: T,
+    checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
+) -> Result<(), FeError> {
+    let size = matrix.nrows();
+    let width = (PANEL_WORK / (size * factor.ncols()).max(1)).max(NARROWEST_PANEL);
+    for start in (0..size).step_by(width) {
+        checkpoint()?;
+        let some = width.min(size - start);
+        let columns = matrix.as_mut().submatrix_mut(start, start, size - start, some);
+        let (diagonal, below) = columns.split_at_row_mut(some);
+        let (near, far) = factor.subrows(start, size - start).split_at_row(some);
+        triangular_matmul(
+            diagonal,
+            BlockStructure::TriangularLower,
+            Accum::Add,
+            near,
+            BlockStructure::Rectangular,
+            near.adjoint(),
+            BlockStructure::Rectangular,
+            scale.clone(),
+            Par::Seq,
+        );
+        matmul(below, Accum::Add, far, near.adjoint(), scale.clone(), Par::Seq);
+    }
+    Ok(())
 }
