@@ -72,7 +72,7 @@ fn contact_over_hundreds_of_pitches_keeps_every_limit() {
         let document = documents::wide_contact(face_width_mm).to_string();
         let refused = service.send("POST", "/api/v1/jobs", &document);
         assert_eq!(refused.status, 422, "{}", refused.text);
-        let violation = &refused.json()["violations"][0];
+        let violation = &refused.json()["errors"][0];
         assert_eq!(violation["pointer"], "/design/face_width_mm", "{}", refused.text);
         assert!(violation["detail"].as_str().is_some_and(|detail| detail.contains("MiB")), "{}", refused.text);
     }

@@ -28,7 +28,7 @@ pub(crate) fn offsets(total_contact_ratio: f64, corner_contact: bool) -> usize {
 /// Stations of the bulk flexibility.
 pub(crate) fn station_count(sizes: &ContactSizes) -> usize {
     match sizes.compliance {
-        ComplianceModel::Analytic => stations(sizes.face_modules),
+        ComplianceModel::Analytic => stations(sizes.face_modules, 1.0),
         ComplianceModel::FiniteElements(resolution) => grid(sizes, resolution).1,
         ComplianceModel::Uniform => UNIFORM_STATIONS,
     }

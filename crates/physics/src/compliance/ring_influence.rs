@@ -248,7 +248,7 @@ impl RingFlexibility {
                     if weight > 0.0 {
                         harmonics.set(n);
                         meter.count(sum.operations())?;
-                        sum.add(n, weight, &harmonics.between, &solver.rows, layout, &mut offsets, &mut meter)?;
+                        sum.add((n, weight), &harmonics.between, &solver.rows, layout, &mut offsets, &mut meter)?;
                     }
                 }
                 Ok(())
@@ -331,8 +331,7 @@ impl HarmonicSum {
     #[inline(always)]
     fn add(
         &mut self,
-        n: u32,
-        weight: f64,
+        (n, weight): (u32, f64),
         flexibility: &[Vec<f64>; 2],
         rows: &[Vec<(usize, usize)>; 2],
         layout: &ToothLayout,

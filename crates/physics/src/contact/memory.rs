@@ -85,7 +85,7 @@ impl ContactSizes {
 
     /// Points of one line of contact: slices on the path, and parts of slices at either corner.
     fn points_per_line(&self) -> f64 {
-        let slices = slices(self.slices, self.face_modules, self.overlap_ratio()) as f64;
+        let slices = slices(self.slices, self.face_modules, 1.0, self.overlap_ratio()) as f64;
         let on_path = slices * self.part_of_face(self.transverse_contact_ratio) + 2.0;
         if !self.corner_contact {
             return on_path;
@@ -112,9 +112,10 @@ impl ContactSizes {
         let points_per_line = self.points_per_line();
         // Flexibility, matrix of the Newton step and, with coupled points, the weights of the stations; per line the
         // coupling, its factor, and the columns of the stations.
-        let (matrices, coupled) = match of_elements {
-            true => (3.0, points_per_line * (2.0 * points_per_line + stations_per_line + 2.0)),
-            false => (2.0, 0.0),
+        let (matrices, coupled) = if of_elements {
+            (3.0, points_per_line * (2.0 * points_per_line + stations_per_line + 2.0))
+        } else {
+            (2.0, 0.0)
         };
         let points = lines * points_per_line;
         let point_bytes = (size_of::<ContactPoint>() + size_of::<f64>()) as f64;

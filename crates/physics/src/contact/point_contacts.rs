@@ -29,14 +29,12 @@ impl PointContacts {
     ///
     /// # Errors
     /// [`Canceled`].
-    #[expect(clippy::too_many_arguments, reason = "borrows of parts of one solver")]
     pub(super) fn prepare(
         &mut self,
         pair: &Pair,
         model: &LocalModel,
         force_n: f64,
-        points: &[ContactPoint],
-        lines: &[std::ops::Range<usize>],
+        (points, lines): (&[ContactPoint], &[std::ops::Range<usize>]),
         coupling: &mut Vec<Vec<f64>>,
         meter: &mut Meter,
     ) -> Result<(), Canceled> {

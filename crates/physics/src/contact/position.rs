@@ -361,7 +361,7 @@ impl<'a> PositionSolver<'a> {
             row += response.count;
         }
         let model = &self.compliance.local;
-        self.local.prepare(pair, model, force_n, &self.points, &self.lines, &mut self.coupling, &mut meter)
+        self.local.prepare(pair, model, force_n, (&self.points, &self.lines), &mut self.coupling, &mut meter)
     }
 }
 
