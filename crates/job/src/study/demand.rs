@@ -96,10 +96,9 @@ fn finite_elements_mib(document: &JobDocument) -> f64 {
     measured_mib * below * above
 }
 
-/// Values of a field of the design over the points of a sweep, on top of its own.
+/// Values of a field of the design or of the contact analysis over the points of a sweep, on top of its own.
 fn values<'a>(document: &'a JobDocument, name: &'a str) -> impl Iterator<Item = f64> + 'a {
-    let is_field =
-        move |pointer: &str| pointer.strip_prefix("/design/").is_some_and(|rest| rest.rsplit('/').next() == Some(name));
+    let is_field = move |pointer: &str| pointer.rsplit('/').next() == Some(name);
     let swept = document.axes.iter().filter(move |axis| axis.pointers().any(is_field));
     swept.flat_map(|axis: &Axis| (0..axis.len()).map(|index| axis.value(index)))
 }
@@ -150,6 +149,9 @@ fn contact_sizes(document: &JobDocument, ltca: &Ltca) -> ContactSizes {
     let gears = [&design.pinion, &design.gear];
     let least = |name, own: f64| values(document, name).fold(own, f64::min);
     let most = |name, own: f64| values(document, name).fold(own, f64::max);
+    let count = |name, own: Option<u32>| {
+        values(document, name).map(|value| value as usize).chain(own.map(|own| own as usize)).max()
+    };
     let magnitude = |name, own: [f64; 2]| values(document, name).chain(own).fold(0.0f64, |most, v| most.max(v.abs()));
     let normal_module_mm = least("normal_module_mm", design.normal_module_mm);
     let helix_angle_rad = most("helix_angle_deg", design.helix_angle_deg).to_radians();
@@ -168,8 +170,8 @@ fn contact_sizes(document: &JobDocument, ltca: &Ltca) -> ContactSizes {
         helix_angle_rad,
         transverse_contact_ratio,
         gaps_per_deflection: gaps_per_deflection(document),
-        slices: ltca.slices.map(|slices| slices as usize),
-        positions: ltca.positions.map(|positions| positions as usize),
+        slices: count("slices", ltca.slices),
+        positions: count("positions", ltca.positions),
         corner_contact: ltca.corner_contact,
         tooth_height_modules: addendum + dedendum + alteration,
         compliance: match ltca.fidelity {
@@ -211,7 +213,7 @@ fn gaps_per_deflection(document: &JobDocument) -> f64 {
     }
     let members = [&design.pinion, &design.gear].map(|gear| gear.material.as_ref().unwrap_or(&design.material));
     let stiffest_pa = members.iter().fold(0.0f64, |most, material| most.max(1e9 * material.youngs_modulus_gpa));
-    // The base circle is never smaller than half of the reference circle.
+    // At the reference circle; at the base circle, which is smaller, the force is larger.
     let radius_m =
         5e-4 * design.normal_module_mm * f64::from(design.pinion.teeth) / design.helix_angle_deg.to_radians().cos();
     let force_n = 0.5 * document.operation.pinion_torque_nm.abs() / radius_m;

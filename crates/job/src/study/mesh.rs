@@ -201,6 +201,7 @@ fn loaded_contact(
     let (contact, reused) = match stored {
         Some(contact) => (contact, vec![ReusedStage::Mesh]),
         None => {
+            (context.progress)(Stage::Mesh, 0.0);
             let compliances = compliance::find(case, pair, context, &memo.compliances)?;
             let contact = solve_contact(case, pair, &compliances, context)?;
             context.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&contact).unwrap_or_default());
