@@ -57,17 +57,10 @@ const PROMPT: Duration = Duration::from_secs(10);
 #[test]
 fn contact_over_hundreds_of_pitches_keeps_every_limit() {
     let directory = tempfile::tempdir().expect("a directory");
-    let program = Program::at(directory.path()).with(&[
-        "--job-memory-mib",
-        "1024",
-        "--job-time-limit-s",
-        &LIMIT_S.to_string(),
-        "--drain-s",
-        &DRAIN_S.to_string(),
-        "--workers",
-        "2",
-    ]);
-    let service = program.start();
+    let unlimited = Program::at(directory.path()).with(&["--job-memory-mib", "1024", "--workers", "2"]);
+    let unlimited = unlimited.with(&["--drain-s", &DRAIN_S.to_string()]);
+    let limited = unlimited.clone().with(&["--job-time-limit-s", &LIMIT_S.to_string()]);
+    let service = limited.start();
     for face_width_mm in [500.0, 2000.0] {
         let document = documents::wide_contact(face_width_mm).to_string();
         let refused = service.send("POST", "/api/v1/jobs", &document);
@@ -76,16 +69,10 @@ fn contact_over_hundreds_of_pitches_keeps_every_limit() {
         assert_eq!(violation["pointer"], "/design/face_width_mm", "{}", refused.text);
         assert!(violation["detail"].as_str().is_some_and(|detail| detail.contains("MiB")), "{}", refused.text);
     }
-    let submit = || [0, 1].map(|_| service.submit(&documents::wide_contact(150.0)));
-    let running = |paths: &[String; 2]| {
-        for path in paths {
-            service.until(path, |answer| answer.json()["stage"] == "mesh");
-        }
-    };
+    let wide_contact = || documents::wide_contact(150.0);
     // Nobody stops them, and another job waits behind them.
-    let wide = submit();
+    let wide = [0, 1].map(|_| service.submit(&wide_contact()));
     let began = Instant::now();
-    running(&wide);
     let waiting = service.submit(&documents::response());
     for path in &wide {
         let job = service.ended(path);
@@ -98,9 +85,17 @@ fn contact_over_hundreds_of_pitches_keeps_every_limit() {
     let ran = began.elapsed();
     assert!(ran < Duration::from_secs(LIMIT_S) + PROMPT, "both ran for {ran:?}");
     assert_eq!(service.ended(&waiting)["state"], "succeeded");
+    assert!(service.end().0.success());
+    let service = unlimited.start();
+    let running = || {
+        let paths = [0, 1].map(|_| service.submit(&wide_contact()));
+        for path in &paths {
+            service.until(path, |answer| answer.json()["stage"] == "mesh");
+        }
+        paths
+    };
     // Canceled.
-    let wide = submit();
-    running(&wide);
+    let wide = running();
     let asked = Instant::now();
     for path in &wide {
         assert_eq!(service.send("POST", &format!("{path}/cancel"), "").status, 202);
@@ -110,12 +105,11 @@ fn contact_over_hundreds_of_pitches_keeps_every_limit() {
     }
     assert!(asked.elapsed() < PROMPT, "canceled after {:?}", asked.elapsed());
     // Shut down.
-    let wide = submit();
-    running(&wide);
+    let wide = running();
     let (status, took) = service.end();
-    assert!(status.success(), "{status}: {}", program.log());
+    assert!(status.success(), "{status}: {}", limited.log());
     assert!(took < Duration::from_secs(DRAIN_S), "the shutdown took {took:?}");
-    let service = program.start();
+    let service = limited.start();
     for path in &wide {
         let job = service.ended(path);
         // Begun again from the start, and stopped by the time limit.
