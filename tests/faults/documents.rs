@@ -65,6 +65,21 @@ pub(crate) fn elements() -> Value {
     document
 }
 
+/// A face hundreds of pitches wide: so many lines of contact at once that one position of the mesh takes seconds.
+pub(crate) fn wide_contact(face_width_mm: f64) -> Value {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let torque_nm = 1.0 + 1e-3 * f64::from(COUNT.fetch_add(1, Ordering::Relaxed));
+    json!({
+        "kind": "mesh",
+        "design": {
+            "normal_module_mm": 0.1, "helix_angle_deg": 45.0, "face_width_mm": face_width_mm,
+            "pinion": {"teeth": 30}, "gear": {"teeth": 60},
+        },
+        "operation": {"pinion_speed_rpm": 1000.0, "pinion_torque_nm": torque_nm},
+        "model": {"mesh_stiffness": {"source": "ltca"}},
+    })
+}
+
 /// Many wide teeth in mesh, finely sliced.
 pub(crate) fn contact() -> Value {
     let mut document = mesh();

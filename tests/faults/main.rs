@@ -5,6 +5,7 @@ mod audit;
 mod chance;
 mod client;
 mod clock;
+mod corners;
 mod database;
 mod documents;
 mod kill;

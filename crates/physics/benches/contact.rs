@@ -36,19 +36,23 @@ fn elements(pair: &Pair, settings: &Settings, resolution: Resolution) -> [FlankF
         .map(|input| FlankFlexibility::new(&input, Watch::none()).expect("the example has a mesh"))
 }
 
+fn compliance(pair: &Pair, settings: &Settings) -> Compliance {
+    Compliance::analytic(pair, settings, Watch::none()).expect("not canceled")
+}
+
 fn analytic(criterion: &mut Criterion) {
     let pair = example();
     let adaptive = Settings::default();
     let equal = Settings { positions: Some(64), ..adaptive };
     let mut group = criterion.benchmark_group("analytic");
     group.bench_function("cold, 64 positions", |b| {
-        b.iter(|| solve(&pair, &Compliance::analytic(black_box(&pair), &equal), &equal));
+        b.iter(|| solve(&pair, &compliance(black_box(&pair), &equal), &equal));
     });
     group.bench_function("cold, positions by accuracy", |b| {
-        b.iter(|| solve(&pair, &Compliance::analytic(black_box(&pair), &adaptive), &adaptive));
+        b.iter(|| solve(&pair, &compliance(black_box(&pair), &adaptive), &adaptive));
     });
-    group.bench_function("compliance alone", |b| b.iter(|| Compliance::analytic(black_box(&pair), &adaptive)));
-    let compliance = Compliance::analytic(&pair, &adaptive);
+    group.bench_function("compliance alone", |b| b.iter(|| compliance(black_box(&pair), &adaptive)));
+    let compliance = compliance(&pair, &adaptive);
     group.bench_function("contact alone, 64 positions", |b| b.iter(|| solve(black_box(&pair), &compliance, &equal)));
     group.bench_function("contact alone, positions by accuracy", |b| {
         b.iter(|| solve(black_box(&pair), &compliance, &adaptive));
@@ -56,7 +60,7 @@ fn analytic(criterion: &mut Criterion) {
     let force_n = TORQUE_NM / pair.pinion.base_radius_m;
     group.bench_function("one position alone", |b| {
         b.iter(|| {
-            let mut contact = HalfContact::new(black_box(&pair), Half::Left, &compliance, &adaptive);
+            let mut contact = HalfContact::new(black_box(&pair), Half::Left, &compliance, &adaptive, Watch::none());
             contact.at(0.3, force_n).expect("the example solves")
         });
     });
@@ -71,7 +75,8 @@ fn finite_elements(criterion: &mut Criterion) {
     let flanks = elements(&pair, &settings, Resolution::Medium);
     group.bench_function("medium, from stored flanks, positions by accuracy", |b| {
         b.iter(|| {
-            let compliance = Compliance::finite_elements(black_box(&pair), &settings, flanks.each_ref());
+            let compliance = Compliance::finite_elements(black_box(&pair), &settings, flanks.each_ref(), Watch::none())
+                .expect("not canceled");
             solve(&pair, &compliance, &settings)
         });
     });

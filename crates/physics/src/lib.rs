@@ -35,7 +35,7 @@
 //! // 800 N m at 2000 r/min.
 //! let operation = OperatingPoint { pinion_speed_rad_s: 209.44, pinion_torque_nm: 800.0 };
 //! let settings = Settings::default();
-//! let compliance = Compliance::analytic(&pair, &settings);
+//! let compliance = Compliance::analytic(&pair, &settings, Watch::none()).expect("not canceled");
 //! let contact = solve_pair_of_halves(&pair, 800.0, 0.0, &compliance, &settings, Watch::none())?;
 //! let mounting = Mounting {
 //!     lateral_n_per_m: [600e6; 2],

@@ -46,3 +46,60 @@ impl<'a> Watch<'a> {
         Ok(())
     }
 }
+
+/// Multiplications and additions of a dense calculation between two checkpoints: some milliseconds of work.
+const OPERATIONS_PER_CHECKPOINT: usize = 1 << 22;
+
+/// Checkpoints of a calculation by the number of its operations.
+#[derive(Clone, Copy)]
+pub(crate) struct Meter<'a> {
+    watch: Watch<'a>,
+    since_checkpoint: usize,
+}
+
+impl<'a> Meter<'a> {
+    /// A meter that passes the quiet checkpoints of `watch`.
+    pub(crate) fn new(watch: Watch<'a>) -> Meter<'a> {
+        Meter { watch, since_checkpoint: 0 }
+    }
+
+    /// Counts `operations`, and passes a checkpoint when enough have come together.
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    #[inline(always)]
+    pub(crate) fn count(&mut self, operations: usize) -> Result<(), Canceled> {
+        self.since_checkpoint += operations;
+        if self.since_checkpoint >= OPERATIONS_PER_CHECKPOINT { self.checkpoint() } else { Ok(()) }
+    }
+
+    /// Passes a checkpoint.
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    pub(crate) fn checkpoint(&mut self) -> Result<(), Canceled> {
+        self.since_checkpoint = 0;
+        self.watch.checkpoint_quietly()
+    }
+
+    /// Number of pieces of so many operations each between two checkpoints, at least one.
+    #[inline(always)]
+    pub(crate) fn pieces(operations: usize) -> usize {
+        (OPERATIONS_PER_CHECKPOINT / operations.max(1)).max(1)
+    }
+
+    /// Makes `values` so many zeros; a large vector's pages are taken piece by piece.
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    pub(crate) fn zeros(&mut self, values: &mut Vec<f64>, len: usize) -> Result<(), Canceled> {
+        values.clear();
+        values.reserve_exact(len);
+        while values.len() < len {
+            let next = (values.len() + OPERATIONS_PER_CHECKPOINT).min(len);
+            self.count(next - values.len())?;
+            values.resize(next, 0.0);
+        }
+        Ok(())
+    }
+}

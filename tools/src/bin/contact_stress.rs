@@ -79,11 +79,11 @@ const SLOW_MS: f64 = 500.0;
 
 fn compliance(pair: &Pair, settings: &Settings, elements: bool) -> Result<Compliance, String> {
     if !elements {
-        return Ok(Compliance::analytic(pair, settings));
+        return Compliance::analytic(pair, settings, Watch::none()).map_err(|error| error.to_string());
     }
     let [pinion, gear] = Compliance::finite_element_inputs(pair, settings, Resolution::Coarse)
         .map(|input| FlankFlexibility::new(&input, Watch::none()).map_err(|e| e.to_string()));
-    Ok(Compliance::finite_elements(pair, settings, [&pinion?, &gear?]))
+    Compliance::finite_elements(pair, settings, [&pinion?, &gear?], Watch::none()).map_err(|error| error.to_string())
 }
 
 fn main() -> Result<(), Failure> {

@@ -67,7 +67,7 @@ fn main() -> Result<(), Failure> {
         let force = number("torque_nm") / pair.pinion.base_radius_m;
         let mut begin = Instant::now();
         let compliance = match resolution {
-            None => Compliance::analytic(&pair, &settings),
+            None => Compliance::analytic(&pair, &settings, Watch::none())?,
             Some(resolution) => {
                 let key = (format!("{:?}", settings.body), settings.corner_contact);
                 if !kept.iter().any(|(k, _)| *k == key) {
@@ -78,7 +78,7 @@ fn main() -> Result<(), Failure> {
                 }
                 let flanks = &kept.iter().find(|(k, _)| *k == key).expect("kept").1;
                 begin = Instant::now();
-                Compliance::finite_elements(&pair, &settings, [&flanks[0], &flanks[1]])
+                Compliance::finite_elements(&pair, &settings, [&flanks[0], &flanks[1]], Watch::none())?
             }
         };
         let cycle = match solve_half(&pair, Half::Left, force, &compliance, &settings, Watch::none()) {

@@ -64,9 +64,9 @@ fn error(members: [(u32, f64); 2], helix_deg: f64, width: f64, resolution: Resol
     let settings = Settings { positions: Some(32), ..Settings::default() };
     let [pinion, gear] = Compliance::finite_element_inputs(&pair, &settings, resolution)
         .map(|input| FlankFlexibility::new(&input, Watch::none()));
-    let elements = Compliance::finite_elements(&pair, &settings, [&pinion?, &gear?]);
+    let elements = Compliance::finite_elements(&pair, &settings, [&pinion?, &gear?], Watch::none())?;
     let exact = solve(&pair, &elements, &settings)?.stiffness.mean;
-    let analytic = solve(&pair, &Compliance::analytic(&pair, &settings), &settings)?.stiffness.mean;
+    let analytic = solve(&pair, &Compliance::analytic(&pair, &settings, Watch::none())?, &settings)?.stiffness.mean;
     Ok(Some(100.0 * (analytic / exact - 1.0)))
 }
 

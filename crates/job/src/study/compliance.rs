@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(super) struct ComplianceMemo(Mutex<HashMap<String, Arc<Compliance>>>);
 
 /// Largest number of compliances kept: a sweep over the teeth does not use old ones again.
-const KEPT: usize = 8;
+pub(super) const KEPT: usize = 8;
 
 /// Fraction of the progress of the mesh stage assigned to the solution of the finite elements.
 const ELEMENTS_PART: f64 = 0.95;
@@ -42,15 +42,16 @@ pub(super) fn find(
     if let Some(compliance) = kept {
         return Ok(Found { compliance, elements_reused: false, done: 0.0 });
     }
+    let watch = Watch::new(&|_| {}, context.canceled);
     let (compliance, elements_reused, done) = match case.fidelity {
-        Fidelity::Analytic => (Compliance::analytic(pair, &case.settings), false, 0.0),
+        Fidelity::Analytic => (Compliance::analytic(pair, &case.settings, watch)?, false, 0.0),
         Fidelity::Uniform => (Compliance::uniform(pair, &case.settings, case.line_stiffness_n_per_m2), false, 0.0),
         Fidelity::Fe => {
             let inputs = Compliance::finite_element_inputs(pair, &case.settings, case.resolution);
             let (pinion, pinion_reused) = flank(&inputs[0], context, (0.0, 0.4 * ELEMENTS_PART))?;
             let (gear, gear_reused) = flank(&inputs[1], context, (0.4 * ELEMENTS_PART, ELEMENTS_PART))?;
             let reused = pinion_reused && gear_reused;
-            let compliance = Compliance::finite_elements(pair, &case.settings, [&pinion, &gear]);
+            let compliance = Compliance::finite_elements(pair, &case.settings, [&pinion, &gear], watch)?;
             (compliance, reused, if reused { 0.0 } else { ELEMENTS_PART })
         }
     };

@@ -75,6 +75,15 @@ pub(super) struct ContactCase<'a> {
     pub settings: Settings,
 }
 
+pub(super) fn resolution(elements: Elements) -> Resolution {
+    match elements {
+        Elements::Coarse => Resolution::Coarse,
+        Elements::Medium => Resolution::Medium,
+        Elements::Standard => Resolution::Standard,
+        Elements::Fine => Resolution::Fine,
+    }
+}
+
 impl<'a> ContactCase<'a> {
     /// F_bt of one half.
     pub(super) fn half_force_n(&self, pair: &Pair) -> f64 {
@@ -92,12 +101,7 @@ impl<'a> ContactCase<'a> {
                 Fidelity::Uniform => ltca.line_stiffness_n_per_mm_um * 1e9,
                 Fidelity::Analytic | Fidelity::Fe => 0.0,
             },
-            resolution: match ltca.elements {
-                Elements::Coarse => Resolution::Coarse,
-                Elements::Medium => Resolution::Medium,
-                Elements::Standard => Resolution::Standard,
-                Elements::Fine => Resolution::Fine,
-            },
+            resolution: resolution(ltca.elements),
             settings: Settings {
                 positions: ltca.positions.map(|positions| positions as usize),
                 accuracy: ltca.accuracy,
@@ -120,6 +124,9 @@ pub(super) struct MeshMemo {
     pub(super) compliances: ComplianceMemo,
 }
 
+/// Largest number of outcomes kept.
+pub(super) const KEPT: usize = 64;
+
 /// Outcomes by the hash of their inputs.
 pub(super) struct Memo<T>(Mutex<HashMap<String, Arc<T>>>);
 
@@ -137,7 +144,7 @@ impl<T> Memo<T> {
     pub(super) fn put(&self, key: String, outcome: Arc<T>) {
         let mut map = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         // A sweep over the teeth does not use old entries again; one over the speed has a single entry.
-        if map.len() >= 64 {
+        if map.len() >= KEPT {
             map.clear();
         }
         map.insert(key, outcome);
@@ -194,6 +201,7 @@ fn loaded_contact(
     let (contact, reused) = match stored {
         Some(contact) => (contact, vec![ReusedStage::Mesh]),
         None => {
+            (context.progress)(Stage::Mesh, 0.0);
             let compliances = compliance::find(case, pair, context, &memo.compliances)?;
             let contact = solve_contact(case, pair, &compliances, context)?;
             context.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&contact).unwrap_or_default());

@@ -11,8 +11,9 @@ use super::plate::PlateModes;
 use super::ring::WidthBasis;
 use super::ring_influence::{KINDS, RingFlexibility};
 use super::tooth::{ProfilePoint, RootRemainder};
-use crate::numerics::dense::{add_product, cholesky, cholesky_solve, lu_solve};
+use crate::numerics::dense::{add_product, cholesky_inlined, cholesky_solve, lu_solve};
 use crate::simd::vectorised;
+use crate::watch::{Canceled, Meter, Watch};
 
 /// Places of the profile between which the compliance is interpolated (Chebyshev nodes, a polynomial through all).
 pub(super) const NODES: usize = 4;
@@ -56,19 +57,22 @@ pub(super) struct BulkInput<'a> {
 
 impl BulkCompliance {
     /// Puts the parts together.
-    pub(super) fn new(parts: &BulkInput<'_>) -> BulkCompliance {
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    pub(super) fn new(parts: &BulkInput<'_>, watch: Watch) -> Result<BulkCompliance, Canceled> {
         let count = parts.ring.offsets.len() * (NODES * parts.slices).pow(2);
         let mut bulk = BulkCompliance { slices: parts.slices, table: vec![0.0; count] };
         vectorised(
             #[inline(always)]
-            || bulk.fill(parts),
-        );
+            || bulk.fill(parts, &mut Meter::new(watch)),
+        )?;
         bulk.mirror();
-        bulk
+        Ok(bulk)
     }
 
     #[inline(always)]
-    fn fill(&mut self, parts: &BulkInput<'_>) {
+    fn fill(&mut self, parts: &BulkInput<'_>, meter: &mut Meter) -> Result<(), Canceled> {
         let size = parts.basis.order + 1;
         let n = parts.slices;
         let shapes =
@@ -76,13 +80,14 @@ impl BulkCompliance {
         let [forces, moments] = [0, 1].map(|which| parts.places.map(|place| parts.plate.root(which, place.lever_m)));
         let loads: [RootLoad; NODES] = std::array::from_fn(|a| parts.root_load(a, &forces[a], &moments[a]));
         let remainder = parts.remainder();
-        let ribbed = parts.with_rib(&loads, &remainder);
+        let ribbed = parts.with_rib(&loads, &remainder, meter)?;
         let mut joint = vec![0.0; size * size];
         let mut half = vec![0.0; KINDS * size * size];
         let mut slices = vec![0.0; n * size];
         for (k, flexibility) in parts.ring.offsets.iter().enumerate() {
             let turned = transposed(flexibility, KINDS * size);
             for b in 0..NODES {
+                meter.count((KINDS * size).pow(2) * size + NODES * size * (KINDS * size * size + n * (size + n)))?;
                 half.fill(0.0);
                 add_product(&mut half, 1.0, &turned, &ribbed[b].ring, KINDS * size);
                 let answer = if k == 0 { product(&remainder, &ribbed[b].local, 3 * size) } else { Vec::new() };
@@ -110,6 +115,7 @@ impl BulkCompliance {
                 }
             }
         }
+        Ok(())
     }
 
     /// The other half of one tooth's own table.
@@ -208,7 +214,7 @@ impl BulkInput<'_> {
                 k[p * size + q] = self.basis.stiff(p, q) * self.root.decay_m.powi(2) + f64::from(u8::from(p == q));
             }
         }
-        cholesky(&mut k, size);
+        cholesky_inlined(&mut k, size);
         let mut out = vec![0.0; 9 * size * size];
         let mut column = vec![0.0; size];
         for p in 0..size {
@@ -228,7 +234,12 @@ impl BulkInput<'_> {
 
     /// The loads of all places with what the tooth itself takes back as a rib.
     #[inline(always)]
-    fn with_rib(&self, loads: &[RootLoad; NODES], remainder: &[f64]) -> [RootLoad; NODES] {
+    fn with_rib(
+        &self,
+        loads: &[RootLoad; NODES],
+        remainder: &[f64],
+        meter: &mut Meter,
+    ) -> Result<[RootLoad; NODES], Canceled> {
         let size = self.basis.order + 1;
         let (sin_f, cos_f) = self.root_helix_angle_rad.sin_cos();
         let side = self.places[0].axial.signum();
@@ -255,10 +266,10 @@ impl BulkInput<'_> {
             system[i * 2 * size + i] += 1.0;
         }
         let mut reaction = resistance;
-        if !lu_solve(&mut system, &mut reaction, 2 * size) {
+        if !lu_solve(&mut system, &mut reaction, 2 * size, meter)? {
             reaction.fill(0.0);
         }
-        std::array::from_fn(|a| {
+        Ok(std::array::from_fn(|a| {
             let taken = product(&reaction, &joint(&loads[a]), 2 * size);
             let less = |load: &[f64], unit: &[f64]| {
                 let mut out = load.to_vec();
@@ -268,7 +279,7 @@ impl BulkInput<'_> {
                 out
             };
             RootLoad { ring: less(&loads[a].ring, &rib.ring), local: less(&loads[a].local, &rib.local) }
-        })
+        }))
     }
 
     /// The tooth's plate and its compression.

@@ -7,6 +7,7 @@
 
 use crate::numerics::interpolation::lagrange;
 use crate::simd::vectorised;
+use crate::watch::{Canceled, Meter, Watch};
 
 /// Normal approach of both members per normal force. It depends on neither load, modification nor assembly.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +38,11 @@ impl Stencil {
     }
 }
 
+/// Size of a table of so many places, stations and offsets.
+pub(super) fn table_bytes(places: f64, stations: f64, offsets: f64) -> f64 {
+    8.0 * (offsets + 1.0) * (places * stations).powi(2)
+}
+
 /// Extrapolation beyond the outermost places, as a part of the path.
 const OVERHANG: f64 = 0.05;
 
@@ -56,25 +62,44 @@ pub(crate) struct LineWeights {
 impl Influence {
     /// Tabulates `entry(offset, (response station, place), (load station, place))`: both on one tooth pair (offset 0),
     /// or the response on the pair that entered `offset` pitches before the loaded one. Places and stations ascend; at
-    /// least four stations.
+    /// least four stations. An entry takes some `entry_operations`.
+    ///
+    /// # Errors
+    /// [`Canceled`].
     pub(crate) fn new(
         path_nodes_m: Vec<f64>,
         stations_m: Vec<f64>,
         offsets: usize,
+        (entry_operations, watch): (usize, Watch),
         mut entry: impl FnMut(usize, (usize, usize), (usize, usize)) -> f64,
-    ) -> Influence {
+    ) -> Result<Influence, Canceled> {
+        let mut meter = Meter::new(watch);
         let (p, s) = (path_nodes_m.len(), stations_m.len());
         let mut table = Vec::with_capacity((offsets + 1) * s * s * p * p);
         for offset in 0..=offsets {
             for i in 0..s {
                 for a in 0..p {
+                    meter.count(p * s * entry_operations)?;
                     for b in 0..p {
                         table.extend((0..s).map(|j| entry(offset, (i, a), (j, b))));
                     }
                 }
             }
         }
-        Influence { path_nodes_m, stations_m, offsets, table }
+        Ok(Influence { path_nodes_m, stations_m, offsets, table })
+    }
+
+    /// Cost of [`Self::between`] and of writing its block into a large matrix, row by row and column by column, in
+    /// multiplications.
+    pub(crate) fn operations(&self, response: &LineWeights, load: &LineWeights) -> usize {
+        let places = self.path_nodes_m.len();
+        (places * (places + 1) + 16) * response.count * load.count + 512
+    }
+
+    /// No flexibility, over `stations_m`.
+    pub(crate) fn rigid(path_node_m: f64, stations_m: Vec<f64>) -> Influence {
+        let table = vec![0.0; stations_m.len() * stations_m.len()];
+        Influence { path_nodes_m: vec![path_node_m], stations_m, offsets: 0, table }
     }
 
     /// Weights of the stations about `entry_m`.

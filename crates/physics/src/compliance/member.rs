@@ -8,6 +8,7 @@ use super::ring::{Ring, WidthBasis};
 use super::ring_influence::{RingFlexibility, ToothLayout, ring_weight};
 use super::tooth::{ProfilePoint, RootRemainder, Tooth, ToothProfile, compression, plate};
 use crate::gear::{Member, Pair};
+use crate::watch::{Canceled, Watch};
 
 /// Surface on which the gear bodies are held (all displacements zero on a cylinder over the face width, end faces
 /// free).
@@ -40,7 +41,7 @@ pub fn hold_radius_m(member: &Member, hold: BodyHold, normal_module_m: f64) -> f
 
 /// Degree of the Legendre functions along the face, by the face width in normal modules: about six per wavelength of
 /// the shortest wave that teeth and ring follow, four modules.
-fn width_order(width_modules: f64) -> usize {
+pub(super) fn width_order(width_modules: f64) -> usize {
     (4.0 + 0.5 * width_modules).ceil().clamp(5.0, 26.0) as usize
 }
 
@@ -57,7 +58,17 @@ pub(super) struct MemberCompliance {
 impl MemberCompliance {
     /// The pinion (`side` +1) or the gear (`side` -1) of `pair`, for `slices` of the common face width and teeth up to
     /// `offsets` pitches apart. Tooth and ring have the member's own width, with the common one in their middle.
-    pub(super) fn new(pair: &Pair, side: f64, hold: BodyHold, slices: usize, offsets: usize) -> MemberCompliance {
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    pub(super) fn new(
+        pair: &Pair,
+        side: f64,
+        hold: BodyHold,
+        slices: usize,
+        offsets: usize,
+        watch: Watch,
+    ) -> Result<MemberCompliance, Canceled> {
         let member = if side > 0.0 { &pair.pinion } else { &pair.gear };
         let rolls = if side > 0.0 {
             (pair.path_start_m, pair.path_end_m)
@@ -104,10 +115,10 @@ impl MemberCompliance {
         let basis = WidthBasis::new(width_order(member.face_width_m / module), member.face_width_m);
         // Excess width of the member over the bearing part, at either end.
         let margin_m = 0.5 * (member.face_width_m - pair.spec.face_width_m);
-        let bulk = BulkCompliance::new(&BulkInput {
+        let input = BulkInput {
             plate: &plate(&form, nu, &basis),
             root: &RootRemainder::new(&form, nu, &|wave| 1.0 - ring_weight(wave, module)),
-            ring: &RingFlexibility::new(&ring, &basis, &layout, offsets),
+            ring: &RingFlexibility::new(&ring, &basis, &layout, offsets, watch)?,
             ends: EndFaces::new(pair.base_helix_angle_rad, side, (pair.spec.face_width_m, margin_m), slices, (e, nu)),
             basis: &basis,
             places: &places,
@@ -117,8 +128,9 @@ impl MemberCompliance {
             root_helix_angle_rad: layout.root_helix_angle_rad,
             slices,
             bearing_m: (margin_m, pair.spec.face_width_m),
-        });
-        MemberCompliance { tooth, bulk, side, path_nodes_m }
+        };
+        let bulk = BulkCompliance::new(&input, watch)?;
+        Ok(MemberCompliance { tooth, bulk, side, path_nodes_m })
     }
 
     /// Rolls between which the flexibility is interpolated.

@@ -19,6 +19,7 @@ mod hertz;
 mod influence;
 mod local;
 mod member;
+mod memory;
 mod plate;
 mod ring;
 mod ring_influence;
@@ -37,11 +38,14 @@ pub use settings::Settings;
 pub(crate) use hertz::LineContact;
 pub(crate) use influence::{Influence, LineWeights, STENCIL, Stencil};
 pub(crate) use local::{Indentation, LocalModel, line_contact};
+pub(crate) use memory::{compliance_memory, offsets, station_count};
+pub(crate) use settings::slices;
 
 use self::influence::stencil;
 use self::member::MemberCompliance;
 use crate::fe::{FlankFlexibility, FlankFlexibilityInput, Resolution};
 use crate::gear::{MemberId, Pair};
+use crate::watch::{Canceled, Watch};
 
 /// Corner contact is looked for this far beyond the path, in base pitches: gaps there are beyond any deflection that a
 /// tooth survives.
@@ -58,42 +62,48 @@ pub struct Compliance {
 
 /// Points of the table of centreline depths.
 const DEPTHS: usize = 33;
+/// Stations of the uniform foundation, which has no flexibility between them.
+const UNIFORM_STATIONS: usize = 4;
 /// Places of the path at which finite-element flexibilities are taken over.
 const PATH_NODES: usize = 7;
 
 impl Compliance {
-    /// Fidelity `analytic`: beams, plates and rings, in milliseconds.
-    pub fn analytic(pair: &Pair, settings: &Settings) -> Compliance {
+    /// Fidelity `analytic`: beams, plates and rings, in milliseconds unless hundreds of pairs are in mesh.
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    pub fn analytic(pair: &Pair, settings: &Settings, watch: Watch) -> Result<Compliance, Canceled> {
         let stations = settings.station_count(pair);
         let offsets = pair_offsets(pair, settings.corner_contact);
         let (pinion, gear) = rayon::join(
-            || MemberCompliance::new(pair, 1.0, settings.body, stations, offsets),
-            || MemberCompliance::new(pair, -1.0, settings.body, stations, offsets),
+            || MemberCompliance::new(pair, 1.0, settings.body, stations, offsets, watch),
+            || MemberCompliance::new(pair, -1.0, settings.body, stations, offsets, watch),
         );
+        let (pinion, gear) = (pinion?, gear?);
         // Places of both members are Chebyshev nodes of the same path, run through in opposite directions.
         let path_nodes_m = pinion.path_nodes_m().to_vec();
         let last = path_nodes_m.len() - 1;
         let step = pair.spec.face_width_m / stations as f64;
         let stations_m = (0..stations).map(|i| (i as f64 + 0.5) * step).collect();
-        let influence = Influence::new(path_nodes_m, stations_m, offsets, |offset, (i, a), (j, b)| {
+        let influence = Influence::new(path_nodes_m, stations_m, offsets, (4, watch), |offset, (i, a), (j, b)| {
             pinion.bulk.entry(offset, (i, a), (j, b)) + gear.bulk.entry(offset, (i, last - a), (j, last - b))
-        });
+        })?;
         let depths = (0..DEPTHS)
             .map(|i| {
                 let x = pair.path_start_m + (pair.path_end_m - pair.path_start_m) * i as f64 / (DEPTHS - 1) as f64;
                 [pinion.at(x).depth_m, gear.at(pair.line_of_action_m - x).depth_m]
             })
             .collect();
-        Compliance { influence, local: LocalModel::CenterlineDepth(depths), slices: settings.slice_count(pair) }
+        Ok(Compliance { influence, local: LocalModel::CenterlineDepth(depths), slices: settings.slice_count(pair) })
     }
 
     /// Fidelity `uniform`: the contact lines as a uniform elastic foundation of so much force per length of line and
     /// approach, both along the flank normal; everything else is rigid. A model with exact solutions, for comparisons.
     pub fn uniform(pair: &Pair, settings: &Settings, line_stiffness_n_per_m2: f64) -> Compliance {
-        let stations = 4;
+        let stations = UNIFORM_STATIONS;
         let step = pair.spec.face_width_m / stations as f64;
         let stations_m = (0..stations).map(|i| (i as f64 + 0.5) * step).collect();
-        let influence = Influence::new(vec![pair.pitch_point_m()], stations_m, 0, |_, _, _| 0.0);
+        let influence = Influence::rigid(pair.pitch_point_m(), stations_m);
         let local = LocalModel::Foundation { line_stiffness_n_per_m2 };
         Compliance { influence, local, slices: settings.slice_count(pair) }
     }
@@ -115,7 +125,15 @@ impl Compliance {
     ///
     /// A force on the line of contact goes to the hats of the load grid about it and the displacement there is read
     /// between them; a hat is represented by its centre of gravity.
-    pub fn finite_elements(pair: &Pair, settings: &Settings, flanks: [&FlankFlexibility; 2]) -> Compliance {
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    pub fn finite_elements(
+        pair: &Pair,
+        settings: &Settings,
+        flanks: [&FlankFlexibility; 2],
+        watch: Watch,
+    ) -> Result<Compliance, Canceled> {
         let path_nodes_m: Vec<f64> = (0..PATH_NODES)
             .map(|i| {
                 let angle = std::f64::consts::PI * (2 * i + 1) as f64 / (2 * PATH_NODES) as f64;
@@ -144,28 +162,31 @@ impl Compliance {
             (own != stations_m).then(|| stations_m.iter().map(|z| stencil(&own, z + margin_m)).collect())
         });
         let offsets = flanks[0].offsets().min(flanks[1].offsets());
-        let influence = Influence::new(path_nodes_m, stations_m, offsets, |offset, (i, a), (j, b)| {
-            (0..2)
-                .map(|side| {
-                    let nodes = flanks[side].nodes();
-                    let Some(bulk) = flanks[side].bulk(offset) else { return 0.0 };
-                    let (pa, pb) = (&profiles[side][a], &profiles[side][b]);
-                    let stations = flanks[side].stations_m().len();
-                    if let Some(across) = &across[side] {
-                        return between(bulk, (stations, nodes), [pa, pb], [&across[i], &across[j]]);
-                    }
-                    let mut sum = 0.0;
-                    for (k, wa) in pa.weights.iter().enumerate() {
-                        let row = &bulk[((pa.first + k) * stations + i) * nodes..];
-                        for (l, wb) in pb.weights.iter().enumerate() {
-                            sum += wa * wb * row[(pb.first + l) * stations + j];
+        // Four by four hats of either member, of which each may stand between four stations.
+        let operations = if across.iter().any(Option::is_some) { 512 } else { 32 };
+        let influence =
+            Influence::new(path_nodes_m, stations_m, offsets, (operations, watch), |offset, (i, a), (j, b)| {
+                (0..2)
+                    .map(|side| {
+                        let nodes = flanks[side].nodes();
+                        let Some(bulk) = flanks[side].bulk(offset) else { return 0.0 };
+                        let (pa, pb) = (&profiles[side][a], &profiles[side][b]);
+                        let stations = flanks[side].stations_m().len();
+                        if let Some(across) = &across[side] {
+                            return between(bulk, (stations, nodes), [pa, pb], [&across[i], &across[j]]);
                         }
-                    }
-                    sum
-                })
-                .sum()
-        });
-        Compliance { influence, local: LocalModel::HalfSpace, slices: settings.slice_count(pair) }
+                        let mut sum = 0.0;
+                        for (k, wa) in pa.weights.iter().enumerate() {
+                            let row = &bulk[((pa.first + k) * stations + i) * nodes..];
+                            for (l, wb) in pb.weights.iter().enumerate() {
+                                sum += wa * wb * row[(pb.first + l) * stations + j];
+                            }
+                        }
+                        sum
+                    })
+                    .sum()
+            })?;
+        Ok(Compliance { influence, local: LocalModel::HalfSpace, slices: settings.slice_count(pair) })
     }
 
     /// Number of width slices that the contact lines are cut into.
@@ -195,6 +216,5 @@ fn hat_centers(nodes: &[f64]) -> Vec<f64> {
 /// Tooth pairs that can be in contact at once lie up to this many pitches apart: points lie within the path and, with
 /// corner contact, half a base pitch beyond either end.
 fn pair_offsets(pair: &Pair, corner_contact: bool) -> usize {
-    let reach = if corner_contact { 2.0 * CORNER_REACH } else { 0.0 };
-    (pair.total_contact_ratio() + reach + 1e-6).floor() as usize
+    offsets(pair.total_contact_ratio(), corner_contact)
 }

@@ -6,8 +6,9 @@ use std::f64::consts::PI;
 use super::annulus::arc_shapes;
 use super::ring::{Ring, RingSolver, WidthBasis};
 use crate::numerics::dense::{add_product, dot};
-use crate::numerics::gauss::gauss_legendre;
+use crate::numerics::gauss::gauss_legendre_nodes;
 use crate::simd::vectorised;
+use crate::watch::{Canceled, Meter, Watch};
 
 /// Waves across the tooth longer than the first (in multiples of the normal module per radian) belong wholly to the
 /// ring, shorter than the second wholly to the tooth's own root; between them they share. A tooth pitch is π m_n, so
@@ -64,16 +65,20 @@ struct Harmonics {
 const EVERY_HARMONIC: f64 = 4.0;
 
 impl Harmonics {
-    fn new(solver: &RingSolver, highest: u32) -> Harmonics {
+    fn new(solver: &RingSolver, highest: u32, watch: Watch) -> Result<Harmonics, Canceled> {
         let mut orders = vec![0.0];
         let mut n = 0.0;
         while n < f64::from(highest) {
             n += if n < EVERY_HARMONIC { 1.0 } else { (n / 3.0).ceil() };
             orders.push(n);
         }
-        let computed: Vec<_> = orders.iter().map(|&n| solver.flexibility(n)).collect();
+        let flexibility = |&n: &f64| {
+            watch.checkpoint_quietly()?;
+            Ok(solver.flexibility(n))
+        };
+        let computed: Vec<_> = orders.iter().map(flexibility).collect::<Result<_, Canceled>>()?;
         let between = computed[0].clone();
-        Harmonics { orders, computed, between }
+        Ok(Harmonics { orders, computed, between })
     }
 
     /// Sets `between` to harmonic `n`.
@@ -111,16 +116,44 @@ struct Twist {
     products: Vec<f64>,
 }
 
+/// Points for functions up to the degree `order` and a highest wave that turns by `half_turn` radians from the middle of
+/// the face to its ends.
+fn twist_points(order: usize, half_turn: f64) -> usize {
+    order + 6 + (0.6 * half_turn).ceil() as usize
+}
+
+/// Memory of the flexibility of a ring of `face_modules` normal modules under teeth up to `offsets` pitches apart, over
+/// functions up to the degree `order`: what is kept, and what is there in between besides.
+pub(super) fn ring_bytes(order: usize, face_modules: f64, helix_angle_rad: f64, offsets: f64) -> (f64, f64) {
+    let size = (order + 1) as f64;
+    let kept = 8.0 * (offsets + 1.0) * (KINDS as f64 * size).powi(2);
+    // Root radius over base radius: below 1.2 with pressure angles up to 35°.
+    let half_turn = 0.5 * RING_WAVES_PER_MODULE.1 * face_modules * helix_angle_rad.sin() * 1.2;
+    let twist = 8.0 * 0.5 * size * (size + 1.0) * twist_points(order, half_turn) as f64;
+    // Elements: three matrices of both parities over three nodes and three components, of twenty radial elements.
+    let elements = 8.0 * 20.0 * 6.0 * (3.0 * 1.5 * size).powi(2);
+    (kept, twist + elements)
+}
+
+/// Multiplications per point of a node of the quadrature (some Newton steps, a division each), and per sine and cosine.
+const NODE_OPERATIONS: usize = 20;
+
 impl Twist {
-    fn new(basis: &WidthBasis, width_m: f64, twist_per_m: f64, highest: u32) -> Twist {
+    fn new(
+        basis: &WidthBasis,
+        width_m: f64,
+        twist_per_m: f64,
+        highest: u32,
+        meter: &mut Meter,
+    ) -> Result<Twist, Canceled> {
         // Enough points for the products of the functions and for the highest wave.
-        let half_turn = 0.5 * width_m * twist_per_m * f64::from(highest);
-        let points = basis.order + 6 + (0.6 * half_turn).ceil() as usize;
+        let points = twist_points(basis.order, 0.5 * width_m * twist_per_m * f64::from(highest));
         let size = basis.order + 1;
         let mut angles = Vec::with_capacity(points);
         let mut products = vec![0.0; size * (size + 1) / 2 * points];
         let mut values = vec![0.0; size];
-        for (i, (x, w)) in gauss_legendre(points).into_iter().map(|(x, w)| (-x, w)).enumerate() {
+        for (i, (x, w)) in gauss_legendre_nodes(points).map(|(x, w)| (-x, w)).enumerate() {
+            meter.count(NODE_OPERATIONS * points)?;
             angles.push(0.5 * width_m * x * twist_per_m);
             basis.values(0.5 * width_m * (1.0 + x), &mut values);
             let mut row = 0;
@@ -131,7 +164,12 @@ impl Twist {
                 }
             }
         }
-        Twist { points, angles, products }
+        Ok(Twist { points, angles, products })
+    }
+
+    /// Multiplications of [`Self::at`].
+    fn operations(&self) -> usize {
+        self.products.len() + NODE_OPERATIONS * self.points
     }
 
     /// Fills `out`: for even and odd degrees p of the ring, rows over the sorted degrees q of the tooth; the integral
@@ -183,12 +221,23 @@ impl ParityOrder {
 
 impl RingFlexibility {
     /// Flexibility over the functions of `basis`, for teeth up to `offsets` pitches apart.
-    pub(super) fn new(ring: &Ring, basis: &WidthBasis, layout: &ToothLayout, offsets: usize) -> RingFlexibility {
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    pub(super) fn new(
+        ring: &Ring,
+        basis: &WidthBasis,
+        layout: &ToothLayout,
+        offsets: usize,
+        watch: Watch,
+    ) -> Result<RingFlexibility, Canceled> {
+        let mut meter = Meter::new(watch);
         let reach = ring.outer_radius_m * layout.root_helix_angle_rad.cos();
         let highest = (RING_WAVES_PER_MODULE.1 / layout.normal_module_m * reach).ceil().max(3.0) as u32;
         let solver = RingSolver::new(ring, basis);
-        let mut harmonics = Harmonics::new(&solver, highest);
-        let mut sum = HarmonicSum::new(basis, Twist::new(basis, ring.face_width_m, layout.twist_per_m, highest));
+        let mut harmonics = Harmonics::new(&solver, highest, watch)?;
+        let twist = Twist::new(basis, ring.face_width_m, layout.twist_per_m, highest, &mut meter)?;
+        let mut sum = HarmonicSum::new(basis, twist);
         let sorted = ParityOrder { size: basis.order + 1 };
         let mut offsets = vec![vec![0.0; (KINDS * sorted.size).pow(2)]; offsets + 1];
         vectorised(
@@ -198,12 +247,19 @@ impl RingFlexibility {
                     let weight = ring_weight(f64::from(n) / reach, layout.normal_module_m);
                     if weight > 0.0 {
                         harmonics.set(n);
-                        sum.add(n, weight, &harmonics.between, &solver.rows, layout, &mut offsets);
+                        meter.count(sum.operations())?;
+                        sum.add((n, weight), &harmonics.between, &solver.rows, layout, &mut offsets, &mut meter)?;
                     }
                 }
+                Ok(())
             },
-        );
-        RingFlexibility { size: sorted.size, offsets: offsets.iter().map(|o| natural(o, sorted)).collect() }
+        )?;
+        // One after the other, so that both forms of all of them are never there at once.
+        for offset in &mut offsets {
+            meter.count(offset.len())?;
+            *offset = natural(offset, sorted);
+        }
+        Ok(RingFlexibility { size: sorted.size, offsets })
     }
 }
 
@@ -275,13 +331,13 @@ impl HarmonicSum {
     #[inline(always)]
     fn add(
         &mut self,
-        n: u32,
-        weight: f64,
+        (n, weight): (u32, f64),
         flexibility: &[Vec<f64>; 2],
         rows: &[Vec<(usize, usize)>; 2],
         layout: &ToothLayout,
         offsets: &mut [Vec<f64>],
-    ) {
+        meter: &mut Meter,
+    ) -> Result<(), Canceled> {
         let n = f64::from(n);
         self.twist.at(n, self.sorted, &mut self.waves, &mut self.twisted);
         self.multiply(flexibility, rows, layout.side);
@@ -292,6 +348,7 @@ impl HarmonicSum {
         let kinds = [(1, uniform, 1i32), (0, -linear, 1), (0, uniform, 0), (2, uniform, 0)];
         let pitch = 2.0 * PI / f64::from(layout.teeth);
         for (k, target) in offsets.iter_mut().enumerate() {
+            meter.count(target.len())?;
             let (sin, cos) = (n * layout.side * k as f64 * pitch).sin_cos();
             for (a, &(ca, fa, ta)) in kinds.iter().enumerate() {
                 for (b, &(cb, fb, tb)) in kinds.iter().enumerate() {
@@ -310,6 +367,12 @@ impl HarmonicSum {
                 }
             }
         }
+        Ok(())
+    }
+
+    /// Multiplications of [`Self::add`] before the offsets.
+    fn operations(&self) -> usize {
+        self.twist.operations() + 6 * self.sorted.size.pow(3)
     }
 
     /// Twists the flexibility over `rows` from the ring's functions to the teeth's.

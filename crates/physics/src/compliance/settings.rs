@@ -33,14 +33,24 @@ impl Settings {
     /// to 140. The contact lines' ends are cut exactly and corner contacts finer, so that more change the mean
     /// stiffness by less than 0.1 %.
     pub fn slice_count(&self, pair: &Pair) -> usize {
-        let per_width = 3.5 * pair.spec.face_width_m / pair.spec.normal_module_m;
-        let per_overlap = 16.0 * pair.overlap_ratio;
-        self.slices.unwrap_or(per_width.max(per_overlap).ceil().clamp(28.0, 140.0) as usize).clamp(4, 256)
+        slices(self.slices, pair.spec.face_width_m, pair.spec.normal_module_m, pair.overlap_ratio)
     }
 
     /// Stations of the bulk flexibility over the face width: one and a half per normal module, 10 to 48; four for every
     /// wave of the analytic model's Legendre functions. Its decay along the face is one and a half normal modules.
     pub fn station_count(&self, pair: &Pair) -> usize {
-        (1.5 * pair.spec.face_width_m / pair.spec.normal_module_m).ceil().clamp(10.0, 48.0) as usize
+        stations(pair.spec.face_width_m, pair.spec.normal_module_m)
     }
+}
+
+/// [`Settings::slice_count`] for a face width and a normal module in one unit and an overlap ratio.
+pub(crate) fn slices(given: Option<usize>, face_width: f64, normal_module: f64, overlap_ratio: f64) -> usize {
+    let per_width = 3.5 * face_width / normal_module;
+    let per_overlap = 16.0 * overlap_ratio;
+    given.unwrap_or(per_width.max(per_overlap).ceil().clamp(28.0, 140.0) as usize).clamp(4, 256)
+}
+
+/// [`Settings::station_count`] for a face width and a normal module in one unit.
+pub(crate) fn stations(face_width: f64, normal_module: f64) -> usize {
+    (1.5 * face_width / normal_module).ceil().clamp(10.0, 48.0) as usize
 }

@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 use super::fixtures::{pair, spec};
 use super::member::{BodyHold, MemberCompliance};
 use crate::gear::Pair;
+use crate::watch::Watch;
 use herringbone_oracle::Tolerance::Relative;
 use herringbone_oracle::{check, check_worst};
 
@@ -55,7 +56,7 @@ fn plane_teeth_are_within_nine_percent_of_finite_elements() {
         let limit = if z == 17 { 0.08 } else { 0.05 };
         let n = 32;
         let pair = shifted_spur(z, x, h, 24.0);
-        let flank = MemberCompliance::new(&pair, 1.0, BodyHold::Bore, n, 1);
+        let flank = MemberCompliance::new(&pair, 1.0, BodyHold::Bore, n, 1, Watch::none()).expect("not canceled");
         for (r, expected) in table {
             let w = flank.weights(roll_m(&pair, r));
             let middle = n / 2;
@@ -78,7 +79,7 @@ fn neighbouring_teeth_couple_as_in_finite_elements() {
     ] {
         let n = 32;
         let pair = spur(z, h, 24.0);
-        let flank = MemberCompliance::new(&pair, 1.0, BodyHold::Bore, n, 1);
+        let flank = MemberCompliance::new(&pair, 1.0, BodyHold::Bore, n, 1, Watch::none()).expect("not canceled");
         let (a, b) = (flank.weights(roll_m(&pair, low)), flank.weights(roll_m(&pair, high)));
         let sum = |wa, wb| {
             let line: f64 = (0..n).map(|j| flank.bulk.between(1, n / 2, j, wa, wb)).sum();
@@ -101,7 +102,7 @@ fn waves_along_the_face_decay_as_in_finite_elements() {
     ] {
         let pair = spur(25, 1.4, 24.0);
         let n = 96;
-        let flank = MemberCompliance::new(&pair, 1.0, BodyHold::Bore, n, 1);
+        let flank = MemberCompliance::new(&pair, 1.0, BodyHold::Bore, n, 1, Watch::none()).expect("not canceled");
         let w = flank.weights(roll_m(&pair, r));
         let mut errors = Vec::new();
         for (k, expected) in ks.into_iter().zip(table) {
@@ -143,7 +144,7 @@ fn helical_teeth_under_uniform_load_are_within_nine_percent_of_finite_elements()
     let pair = helical();
     let n = 36;
     for (side, table) in [1.0, -1.0].into_iter().zip(TABLE) {
-        let flank = MemberCompliance::new(&pair, side, BodyHold::Bore, n, 1);
+        let flank = MemberCompliance::new(&pair, side, BodyHold::Bore, n, 1, Watch::none()).expect("not canceled");
         for (roll, bulk, next) in table {
             let (at, w) = (flank.at(roll * 1e-3), flank.weights(roll * 1e-3));
             let mean = |offset: usize| {
@@ -188,7 +189,8 @@ fn helical_teeth_under_a_load_in_the_middle_are_within_twelve_percent_of_finite_
     ];
     let pair = helical();
     let (n, step, reach) = (90, 0.5e-3, 2.3196e-3);
-    let flanks = [1.0, -1.0].map(|side| MemberCompliance::new(&pair, side, BodyHold::Bore, n, 1));
+    let flanks = [1.0, -1.0]
+        .map(|side| MemberCompliance::new(&pair, side, BodyHold::Bore, n, 1, Watch::none()).expect("not canceled"));
     let hat: Vec<f64> = (0..n).map(|i| (1.0 - (((i as f64 + 0.5) * step - 22.5e-3) / reach).abs()).max(0.0)).collect();
     let sum: f64 = hat.iter().sum();
     for (member, roll, bulk) in TABLE {

@@ -9,6 +9,7 @@ use super::refine::RefinedPositions;
 use crate::compliance::line_contact;
 use crate::gear::Pair;
 use crate::numerics::{PeriodicMonotoneCubic, interpolation};
+use crate::watch::{Canceled, Watch};
 
 /// Mean, least and largest value over the mesh period (arithmetic mean over the positions).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -197,10 +198,11 @@ impl<'a> CycleBuilder<'a> {
         let secant = column(&|s| s.1 / s.2.approach_m);
         let error = column(&|s| s.2.approach_m);
         let pairs_in_contact = states.iter().map(|s| carrying(&s.2).len() as u32).collect();
-        let (load_share_phase, load_share) = self.path();
+        let watch = contact.watch();
+        let (load_share_phase, load_share) = self.path(watch)?;
         let mesh_in = contact.at(MESH_IN_PHASE, force_at(MESH_IN_PHASE))?;
         let load_begins_and_ends = self.carrying_range(contact, force_at, &load_share_phase, &load_share)?;
-        let [max_line_load, max_interior, max_pressure] = self.extremes();
+        let [max_line_load, max_interior, max_pressure] = self.extremes(watch)?;
         let entry = self.entry(contact, force_at)?;
         Ok(HalfCycle {
             phase,
@@ -221,7 +223,7 @@ impl<'a> CycleBuilder<'a> {
             max_line_load_n_per_m: max_line_load,
             max_line_load_interior_n_per_m: max_interior,
             max_hertz_pressure_pa: max_pressure,
-            flank_map: self.map(),
+            flank_map: self.map(watch)?,
             entry,
             positions: states.len(),
             slices: self.slices,
@@ -232,13 +234,21 @@ impl<'a> CycleBuilder<'a> {
     }
 
     /// Path of one pair put together from all pairs of all positions.
-    fn path(&self) -> (Vec<f64>, Vec<f64>) {
+    fn path(&self, watch: Watch<'_>) -> Result<(Vec<f64>, Vec<f64>), Canceled> {
         let pairs = self.states.iter().flat_map(|s| s.2.points.iter().map(|p| p.pair));
         let (low, high) = pairs.fold((0, 0), |(l, h), k| (l.min(k), h.max(k)));
-        let mut path: Vec<(f64, f64)> =
-            (low..=high).flat_map(|k| self.states.iter().map(move |s| (s.0 + f64::from(k), s.2.share(k)))).collect();
+        let mut shares = Vec::with_capacity(self.states.len());
+        for state in &self.states {
+            watch.checkpoint_quietly()?;
+            shares.push(state.2.shares(low, high));
+        }
+        let mut path = Vec::with_capacity((high - low + 1) as usize * self.states.len());
+        for (line, k) in (low..=high).enumerate() {
+            watch.checkpoint_quietly()?;
+            path.extend(self.states.iter().zip(&shares).map(|(s, shares)| (s.0 + f64::from(k), shares[line])));
+        }
         path.sort_by(|a, b| a.0.total_cmp(&b.0));
-        path.into_iter().unzip()
+        Ok(path.into_iter().unzip())
     }
 
     /// First and last path position with load, refined between the positions by bisection.
@@ -273,12 +283,13 @@ impl<'a> CycleBuilder<'a> {
     }
 
     /// Largest line load, largest away from the ends of the lines, largest pressure.
-    fn extremes(&self) -> [f64; 3] {
+    fn extremes(&self, watch: Watch<'_>) -> Result<[f64; 3], Canceled> {
         let cos = self.pair.base_helix_angle_rad.cos();
         let sliver = 0.5 * self.pair.spec.face_width_m / self.slices as f64;
         let end = LINE_END_MODULES * self.pair.spec.normal_module_m * cos;
         let mut largest = [0.0f64; 3];
         for (_, _, state) in &self.states {
+            watch.checkpoint_quietly()?;
             let mut forces = state.forces_n.as_slice();
             for line in state.points.chunk_by(|a, b| a.pair == b.pair) {
                 let (own, others) = forces.split_at(line.len());
@@ -298,7 +309,7 @@ impl<'a> CycleBuilder<'a> {
                 }
             }
         }
-        largest
+        Ok(largest)
     }
 
     /// Change of stiffness and transmission error with half as many slices, at a few of the positions.
@@ -320,7 +331,7 @@ impl<'a> CycleBuilder<'a> {
         Ok(sums.map(|[change, whole]| change / whole.max(f64::MIN_POSITIVE)).into_iter().fold(0.0, f64::max))
     }
 
-    fn map(&self) -> FlankMap {
+    fn map(&self, watch: Watch<'_>) -> Result<FlankMap, Canceled> {
         let (start, end) = (self.pair.path_start_m, self.pair.path_end_m);
         let b = self.pair.spec.face_width_m;
         let cos = self.pair.base_helix_angle_rad.cos();
@@ -329,6 +340,7 @@ impl<'a> CycleBuilder<'a> {
         let mut length = vec![0.0; MAP_ROWS * columns];
         let bin = |value: f64, count: usize| ((value * count as f64) as usize).min(count - 1);
         for (_, _, state) in &self.states {
+            watch.checkpoint_quietly()?;
             for (p, f) in state.points.iter().zip(&state.forces_n) {
                 if p.zone != 1 {
                     continue;
@@ -340,11 +352,11 @@ impl<'a> CycleBuilder<'a> {
             }
         }
         let middle = |i: usize, count: usize| (i as f64 + 0.5) / count as f64;
-        FlankMap {
+        Ok(FlankMap {
             roll_m: (0..MAP_ROWS).map(|i| start + (end - start) * middle(i, MAP_ROWS)).collect(),
             face_m: (0..columns).map(|i| b * middle(i, columns)).collect(),
             line_load_n_per_m: force.iter().zip(&length).map(|(f, l)| if *l > 0.0 { f / l } else { 0.0 }).collect(),
-        }
+        })
     }
 
     /// Deflection before entry, up to where the corner gap exceeds it by half (at most half a base pitch).

@@ -10,6 +10,7 @@
 //! active-set method that never leaves f >= 0.
 
 use super::system::{ContactSystem, LEAST_FORCE, LocalApproach, SystemWorkspace};
+use crate::watch::{Canceled, Meter};
 
 /// A converged distribution.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,13 +25,23 @@ pub(super) struct Distribution {
     pub iterations: u32,
 }
 
-/// Error of an iteration that did not converge.
+/// Errors of a distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct NotConverged {
-    /// Newton iterations.
-    pub iterations: u32,
-    /// Largest relative change of a force in the last iteration.
-    pub change: f64,
+pub(super) enum DistributionError {
+    /// The iteration did not converge.
+    NotConverged {
+        /// Newton iterations.
+        iterations: u32,
+        /// Largest relative change of a force in the last iteration.
+        change: f64,
+    },
+    Canceled(Canceled),
+}
+
+impl From<Canceled> for DistributionError {
+    fn from(canceled: Canceled) -> Self {
+        DistributionError::Canceled(canceled)
+    }
 }
 
 const NEWTON_ITERATIONS: u32 = 30;
@@ -54,7 +65,8 @@ pub(super) fn distribute<L: LocalApproach>(
     prescribed: Prescribed,
     start: &[f64],
     work: &mut SystemWorkspace,
-) -> Result<Distribution, NotConverged> {
+    meter: &mut Meter,
+) -> Result<Distribution, DistributionError> {
     let n = system.gaps.len();
     let total = match prescribed {
         Prescribed::Force(force) => force,
@@ -80,8 +92,9 @@ pub(super) fn distribute<L: LocalApproach>(
     let mut change = f64::INFINITY;
     for iteration in 1..=limit {
         let primal = iteration > NEWTON_ITERATIONS;
-        let Some((approach, stiffness)) = system.newton((total, above_datum), datum, &forces, &active, work) else {
-            return Err(NotConverged { iterations: iteration, change });
+        let step = system.newton((total, above_datum), datum, &forces, &active, work, meter)?;
+        let Some((approach, stiffness)) = step else {
+            return Err(DistributionError::NotConverged { iterations: iteration, change });
         };
         let mut same = true;
         change = 0.0;
@@ -120,7 +133,7 @@ pub(super) fn distribute<L: LocalApproach>(
         // Points outside that would penetrate come in.
         let slack = 1e-10 * approach.abs().max(1e-30);
         work.entering.clear();
-        system.station_shifts(&forces, work);
+        system.station_shifts(&forces, work, meter)?;
         for (line, range) in system.lines.iter().enumerate() {
             for j in range.clone() {
                 if active[j] {
@@ -157,7 +170,7 @@ pub(super) fn distribute<L: LocalApproach>(
             return Ok(Distribution { forces, approach: approach + datum, stiffness, iterations: iteration });
         }
     }
-    Err(NotConverged { iterations: limit, change })
+    Err(DistributionError::NotConverged { iterations: limit, change })
 }
 
 /// Force up to `most` under which point `i` approaches by `approach`, to a factor of two.
@@ -176,6 +189,7 @@ fn force_for(local: &impl LocalApproach, i: usize, approach: f64, most: f64) -> 
 mod tests {
     use super::*;
     use crate::compliance::{STENCIL, Stencil};
+    use crate::watch::Watch;
     use herringbone_oracle::Tolerance::Relative;
     use herringbone_oracle::check;
 
@@ -221,7 +235,10 @@ mod tests {
                     coupling: &coupling,
                     local: &local,
                 };
-                let got = distribute(&system, Prescribed::Force(total), &[], &mut SystemWorkspace::default()).unwrap();
+                let mut meter = Meter::new(Watch::none());
+                let got =
+                    distribute(&system, Prescribed::Force(total), &[], &mut SystemWorkspace::default(), &mut meter)
+                        .unwrap();
                 let mean = total / width;
                 // The largest load at the very edge, from the approach there.
                 let factor = got.approach * c / mean;

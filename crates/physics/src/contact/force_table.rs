@@ -65,7 +65,7 @@ struct Sampler<'a> {
 
 impl Sampler<'_> {
     fn contact(&self) -> HalfContact<'_> {
-        HalfContact::new(self.pair, self.half, self.compliance, self.settings)
+        HalfContact::new(self.pair, self.half, self.compliance, self.settings, self.watch)
     }
 
     /// The curves at all phases, on the threads of the pool.

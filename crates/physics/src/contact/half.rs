@@ -1,9 +1,11 @@
 //! Loaded contact of one helix half at any phase of the mesh period.
 
+use super::distribution::DistributionError;
 use super::error::ContactError;
 use super::position::{ForceCurve, LoadedPosition, PositionError, PositionSolver};
 use crate::compliance::{Compliance, Settings};
 use crate::gear::{Half, Pair};
+use crate::watch::Watch;
 
 /// One half under one force.
 pub struct HalfContact<'a> {
@@ -16,9 +18,20 @@ pub struct HalfContact<'a> {
 const ALL_PAIRS: i32 = i32::MIN;
 
 impl<'a> HalfContact<'a> {
-    /// The half `half` of `pair` with its compliance.
-    pub fn new(pair: &'a Pair, half: Half, compliance: &'a Compliance, settings: &Settings) -> HalfContact<'a> {
-        HalfContact { pair, half, solver: PositionSolver::new(pair, half, compliance, settings.corner_contact) }
+    /// The half `half` of `pair` with its compliance. Every solution passes the checkpoints of `watch` quietly.
+    pub fn new(
+        pair: &'a Pair,
+        half: Half,
+        compliance: &'a Compliance,
+        settings: &Settings,
+        watch: Watch<'a>,
+    ) -> HalfContact<'a> {
+        HalfContact { pair, half, solver: PositionSolver::new(pair, half, compliance, settings.corner_contact, watch) }
+    }
+
+    /// The watch whose checkpoints are passed.
+    pub(super) fn watch(&self) -> Watch<'a> {
+        self.solver.watch()
     }
 
     /// The loaded state when pair 0 is `phase` base pitches after its first theoretical contact.
@@ -69,8 +82,9 @@ impl<'a> HalfContact<'a> {
 fn to_contact_error(error: PositionError, half: Half, phase: f64) -> ContactError {
     match error {
         PositionError::NoContact => ContactError::NoContact { half, phase },
-        PositionError::NotConverged(s) => {
-            ContactError::NotConverged { half, phase, iterations: s.iterations, change: s.change }
+        PositionError::Distribution(DistributionError::NotConverged { iterations, change }) => {
+            ContactError::NotConverged { half, phase, iterations, change }
         }
+        PositionError::Distribution(DistributionError::Canceled(canceled)) => canceled.into(),
     }
 }

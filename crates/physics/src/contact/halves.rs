@@ -53,7 +53,8 @@ pub fn solve_half(
     check(force_bt_n * pair.pinion.base_radius_m, settings)?;
     watch.checkpoint(0.0)?;
     let mut progress = |fraction: f64| watch.checkpoint(fraction).map_err(ContactError::from);
-    solve_period(pair, half, compliance, 0.0, force_bt_n, settings, &mut progress)
+    let mut contact = HalfContact::new(pair, half, compliance, settings, watch);
+    solve_period(&mut contact, pair, compliance, 0.0, force_bt_n, settings, &mut progress)
 }
 
 /// Solves both halves of `pair` under the pinion's whole torque. `half_stagger` (part of a transverse pitch) advances
@@ -88,13 +89,16 @@ pub(super) fn solve_from(
     let tan = pair.base_helix_angle_rad.tan();
     let halves = if same_gaps && stagger == 0.0 {
         let mut progress = |fraction: f64| watch.checkpoint(fraction).map_err(ContactError::from);
-        let left = solve_period(pair, Half::Left, compliance, from, force, settings, &mut progress)?;
+        let mut contact = HalfContact::new(pair, Half::Left, compliance, settings, watch);
+        let left = solve_period(&mut contact, pair, compliance, from, force, settings, &mut progress)?;
         [left.clone(), left]
     } else if pair.spec.helix_angle_rad.abs() > SPUR {
         let mut first = |fraction: f64| watch.checkpoint(0.5 * fraction).map_err(ContactError::from);
-        let left = solve_period(pair, Half::Left, compliance, from, force, settings, &mut first)?;
+        let mut contact = HalfContact::new(pair, Half::Left, compliance, settings, watch);
+        let left = solve_period(&mut contact, pair, compliance, from, force, settings, &mut first)?;
         let mut second = |fraction: f64| watch.checkpoint(0.5 + 0.5 * fraction).map_err(ContactError::from);
-        let right = solve_period(pair, Half::Right, compliance, right_from, force, settings, &mut second)?;
+        let mut contact = HalfContact::new(pair, Half::Right, compliance, settings, watch);
+        let right = solve_period(&mut contact, pair, compliance, right_from, force, settings, &mut second)?;
         [left, right]
     } else {
         share_torque(pair, compliance, [from, right_from], 2.0 * force, settings, watch)?
@@ -137,15 +141,14 @@ pub fn same_gaps(pair: &Pair) -> bool {
 }
 
 fn solve_period(
+    contact: &mut HalfContact<'_>,
     pair: &Pair,
-    half: Half,
     compliance: &Compliance,
     from: f64,
     force: f64,
     settings: &Settings,
     progress: &mut dyn FnMut(f64) -> Result<(), ContactError>,
 ) -> Result<HalfCycle, ContactError> {
-    let mut contact = HalfContact::new(pair, half, compliance, settings);
     let builder = match settings.positions {
         Some(count) => {
             let mut states = Vec::with_capacity(count);
@@ -171,7 +174,7 @@ fn solve_period(
             CycleBuilder::refined(pair, compliance.slices(), positions, force, from)
         }
     };
-    builder.finish(&mut contact, &|_| force)
+    builder.finish(contact, &|_| force)
 }
 
 /// Halves without axial coupling: equal deflection, found by Newton on the split of the force. The halves' curves start
@@ -184,7 +187,7 @@ fn share_torque(
     settings: &Settings,
     watch: Watch<'_>,
 ) -> Result<[HalfCycle; 2], ContactError> {
-    let mut contacts = Half::BOTH.map(|half| HalfContact::new(pair, half, compliance, settings));
+    let mut contacts = Half::BOTH.map(|half| HalfContact::new(pair, half, compliance, settings, watch));
     let count = settings.positions.unwrap_or(CURVE_POSITIONS);
     let mut states = [(); 2].map(|()| Vec::with_capacity(count));
     let mut left_part: f64 = 0.5;

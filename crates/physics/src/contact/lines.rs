@@ -28,7 +28,7 @@ pub struct ContactPoint {
 }
 
 /// Most parts of a slice beyond the path.
-const MOST_PARTS_PER_SLICE: f64 = 8.0;
+pub(super) const MOST_PARTS_PER_SLICE: f64 = 8.0;
 
 /// Range of the pairs that are considered, and of the contact beyond the path.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -16,6 +16,7 @@ mod force_table;
 mod half;
 mod halves;
 mod lines;
+mod memory;
 mod point_contacts;
 mod position;
 mod refine;
@@ -30,6 +31,7 @@ pub use force_table::ForceTable;
 pub use half::HalfContact;
 pub use halves::{LoadedContact, same_gaps, solve_half, solve_pair_of_halves};
 pub use lines::ContactPoint;
+pub use memory::{ComplianceModel, ContactMemory, ContactSizes};
 pub use position::LoadedPosition;
 pub use short_face::{SHORT_FACE_NOTICE, stiffness_excess};
 

@@ -4,6 +4,7 @@ use super::lines::ContactPoint;
 use super::system::LocalApproach;
 use crate::compliance::{Indentation, LocalModel};
 use crate::gear::Pair;
+use crate::watch::{Canceled, Meter};
 
 /// Local contact of the points of one position.
 #[derive(Debug, Clone, Default)]
@@ -25,15 +26,18 @@ struct PointContact {
 impl PointContacts {
     /// Sets up the contacts of `points` under the normal force `force_n` in all; `coupling` receives what couples the
     /// points of each of `lines`, nothing for plane strain.
+    ///
+    /// # Errors
+    /// [`Canceled`].
     pub(super) fn prepare(
         &mut self,
         pair: &Pair,
         model: &LocalModel,
         force_n: f64,
-        points: &[ContactPoint],
-        lines: &[std::ops::Range<usize>],
+        (points, lines): (&[ContactPoint], &[std::ops::Range<usize>]),
         coupling: &mut Vec<Vec<f64>>,
-    ) {
+        meter: &mut Meter,
+    ) -> Result<(), Canceled> {
         let cos = pair.base_helix_angle_rad.cos();
         let length = points.iter().filter(|p| p.zone == 1).map(|p| p.width_m).sum::<f64>() / cos;
         let mean = force_n / length.max(1e-3 * pair.spec.face_width_m);
@@ -52,18 +56,27 @@ impl PointContacts {
         if *model == LocalModel::HalfSpace {
             // The band of the neighbours is that of the mean load: its width matters only where segments are as short
             // as it is wide.
-            coupling.extend(
-                lines
-                    .iter()
-                    .map(|line| half_space_coupling(&self.contacts[line.clone()], &points[line.clone()], cos, mean)),
-            );
+            for line in lines {
+                let (contacts, points) = (&self.contacts[line.clone()], &points[line.clone()]);
+                coupling.push(half_space_coupling(contacts, points, cos, mean, meter)?);
+            }
         }
+        Ok(())
     }
 }
 
+/// Cost of the coupling of two points, in multiplications.
+const KERNEL_OPERATIONS: usize = 100;
+
 /// Displacement of every point of a line per force on every other (zero on the diagonal, whose part depends on the
 /// load).
-fn half_space_coupling(contacts: &[PointContact], points: &[ContactPoint], cos: f64, mean: f64) -> Vec<f64> {
+fn half_space_coupling(
+    contacts: &[PointContact],
+    points: &[ContactPoint],
+    cos: f64,
+    mean: f64,
+    meter: &mut Meter,
+) -> Result<Vec<f64>, Canceled> {
     let n = points.len();
     let mut matrix = vec![0.0; n * n];
     let middle = |i: usize| points[i].entry_m / cos;
@@ -72,6 +85,7 @@ fn half_space_coupling(contacts: &[PointContact], points: &[ContactPoint], cos: 
         (middle(i) - half, middle(i) + half)
     };
     for i in 0..n {
+        meter.count(KERNEL_OPERATIONS * i)?;
         for j in 0..i {
             // The distances of unequal segments from each other's middles differ slightly: the mean keeps the symmetry.
             let shorter = points[i].width_m.min(points[j].width_m) / cos;
@@ -82,7 +96,7 @@ fn half_space_coupling(contacts: &[PointContact], points: &[ContactPoint], cos: 
             matrix[j * n + i] = value;
         }
     }
-    matrix
+    Ok(matrix)
 }
 
 impl PointContact {

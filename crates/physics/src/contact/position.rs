@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use super::distribution::{Distribution, NotConverged, Prescribed, distribute};
+use super::distribution::{Distribution, DistributionError, Prescribed, distribute};
 use super::lines::{ContactPoint, CornerGaps, PairRange, collect, reference_roll_m};
 use super::point_contacts::PointContacts;
 use super::system::{ContactSystem, SystemWorkspace};
 use crate::compliance::{CORNER_REACH, Compliance, LineWeights, Stencil};
 use crate::gear::{Half, Pair};
+use crate::watch::{Canceled, Meter, Watch};
 
 /// The loaded points of one position.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +31,19 @@ impl LoadedPosition {
         let of_pair: f64 = self.points.iter().zip(&self.forces_n).filter(|(p, _)| p.pair == k).map(|(_, f)| f).sum();
         of_pair / self.forces_n.iter().sum::<f64>()
     }
+
+    /// [`Self::share`] of the pairs `low` to `high`, which are all that have points.
+    pub(super) fn shares(&self, low: i32, high: i32) -> Vec<f64> {
+        let all: f64 = self.forces_n.iter().sum();
+        let mut shares = vec![std::iter::empty::<f64>().sum::<f64>() / all; (high - low + 1) as usize];
+        let mut forces = self.forces_n.as_slice();
+        for line in self.points.chunk_by(|a, b| a.pair == b.pair) {
+            let (own, others) = forces.split_at(line.len());
+            forces = others;
+            shares[(line[0].pair - low) as usize] = own.iter().sum::<f64>() / all;
+        }
+        shares
+    }
 }
 
 /// Force over approach at one position. Along the transverse base tangent.
@@ -45,7 +59,19 @@ pub struct ForceCurve {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum PositionError {
     NoContact,
-    NotConverged(NotConverged),
+    Distribution(DistributionError),
+}
+
+impl From<DistributionError> for PositionError {
+    fn from(error: DistributionError) -> Self {
+        PositionError::Distribution(error)
+    }
+}
+
+impl From<Canceled> for PositionError {
+    fn from(canceled: Canceled) -> Self {
+        PositionError::Distribution(canceled.into())
+    }
 }
 
 /// Solves positions one after the other, each from the one before.
@@ -71,6 +97,7 @@ pub(super) struct PositionSolver<'a> {
     local: PointContacts,
     coupling: Vec<Vec<f64>>,
     work: SystemWorkspace,
+    watch: Watch<'a>,
     /// Largest corner gap that was worth looking at so far.
     corner_gap_m: f64,
     /// Axial width of a corner contact under the force it was found for.
@@ -78,7 +105,7 @@ pub(super) struct PositionSolver<'a> {
 }
 
 /// Parts of a corner contact.
-const PARTS_PER_CORNER_WIDTH: f64 = 12.0;
+pub(super) const PARTS_PER_CORNER_WIDTH: f64 = 12.0;
 /// Stiffness per face width by which the deflection is estimated that decides the width of a corner contact, as a part
 /// of Young's modulus: 14 N/(mm µm) for steel (ISO 6336-1).
 const PAIR_STIFFNESS: f64 = 14e9 / 206e9;
@@ -93,6 +120,7 @@ impl<'a> PositionSolver<'a> {
         half: Half,
         compliance: &'a Compliance,
         corner_contact: bool,
+        watch: Watch<'a>,
     ) -> PositionSolver<'a> {
         PositionSolver {
             pair,
@@ -114,6 +142,7 @@ impl<'a> PositionSolver<'a> {
             local: PointContacts::default(),
             coupling: Vec::new(),
             work: SystemWorkspace::default(),
+            watch,
             corner_gap_m: 0.0,
             corner_width: None,
         }
@@ -138,6 +167,11 @@ impl<'a> PositionSolver<'a> {
         let width_m = high / self.pair.base_helix_angle_rad.tan().max(1e-6);
         self.corner_width = Some((force_bt_n, width_m));
         width_m
+    }
+
+    /// The watch whose checkpoints are passed.
+    pub(super) fn watch(&self) -> Watch<'a> {
+        self.watch
     }
 
     /// Cuts the contact lines into `slices` from here on.
@@ -165,13 +199,14 @@ impl<'a> PositionSolver<'a> {
         for _ in 0..8 {
             let corner_gap_m = if self.corner_contact { self.corner_gap_m } else { 0.0 };
             let reach = PairRange { lowest_pair, corner_gap_m, least_part_m };
+            self.watch.checkpoint_quietly()?;
             collect(self.pair, &self.corners, self.half, phase, self.slices.min(most), &reach, &mut self.points);
             if self.points.is_empty() {
                 return Err(PositionError::NoContact);
             }
-            self.assemble(phase, force_bt_n / cos);
+            self.assemble(phase, force_bt_n / cos)?;
             self.start_from_previous();
-            let solved = self.distribute(Prescribed::Force(force_bt_n / cos)).map_err(PositionError::NotConverged)?;
+            let solved = self.distribute(Prescribed::Force(force_bt_n / cos))?;
             let approach_m = solved.approach / cos;
             store_forces(&mut self.previous, &self.points, &solved.forces);
             if self.corner_contact && approach_m > self.corner_gap_m {
@@ -206,6 +241,7 @@ impl<'a> PositionSolver<'a> {
         let mut corner_gap_m = if self.corner_contact { highest_m } else { 0.0 };
         let free_m = loop {
             let reach = PairRange { lowest_pair: i32::MIN, corner_gap_m, least_part_m };
+            self.watch.checkpoint_quietly()?;
             collect(self.pair, &self.corners, self.half, phase, self.slices.min(most), &reach, &mut self.points);
             let free_m = self.points.iter().map(|p| p.gap_m - 0.5 * p.gap_spread_m).fold(f64::INFINITY, f64::min);
             if !free_m.is_finite() {
@@ -216,7 +252,7 @@ impl<'a> PositionSolver<'a> {
             }
             corner_gap_m = 1.01 * (free_m + highest_m);
         };
-        self.assemble(phase, force_bt_n / cos);
+        self.assemble(phase, force_bt_n / cos)?;
         let stiffness = PAIR_STIFFNESS * self.pair.reduced_youngs_modulus_pa() * self.pair.spec.face_width_m;
         let mut expected_force = stiffness * highest_m;
         let mut samples = vec![(0.0, 0.0); approaches_m.len()];
@@ -231,9 +267,7 @@ impl<'a> PositionSolver<'a> {
                 break;
             }
             let approach = (free_m + approach_m) * cos;
-            let solved = self
-                .distribute(Prescribed::Approach { approach, expected_force })
-                .map_err(PositionError::NotConverged)?;
+            let solved = self.distribute(Prescribed::Approach { approach, expected_force })?;
             let force = solved.forces.iter().sum::<f64>();
             *sample = (force * cos, solved.stiffness * cos * cos);
             above = Some((approach_m, force, solved.stiffness * cos));
@@ -260,7 +294,7 @@ impl<'a> PositionSolver<'a> {
         }
     }
 
-    fn distribute(&mut self, prescribed: Prescribed) -> Result<Distribution, NotConverged> {
+    fn distribute(&mut self, prescribed: Prescribed) -> Result<Distribution, DistributionError> {
         let system = ContactSystem {
             gaps: &self.gaps,
             stencils: &self.stencils,
@@ -270,11 +304,12 @@ impl<'a> PositionSolver<'a> {
             coupling: &self.coupling,
             local: &self.local,
         };
-        distribute(&system, prescribed, &self.start, &mut self.work)
+        distribute(&system, prescribed, &self.start, &mut self.work, &mut Meter::new(self.watch))
     }
 
     /// Lines, gaps, bulk flexibility and local contacts of the current points.
-    fn assemble(&mut self, phase: f64, force_n: f64) {
+    fn assemble(&mut self, phase: f64, force_n: f64) -> Result<(), Canceled> {
+        let mut meter = Meter::new(self.watch);
         let pair = self.pair;
         let influence = &self.compliance.influence;
         let cos = pair.base_helix_angle_rad.cos();
@@ -304,12 +339,12 @@ impl<'a> PositionSolver<'a> {
             from = to;
         }
         self.weights.truncate(self.lines.len());
-        self.bulk.clear();
-        self.bulk.resize(stations * stations, 0.0);
+        meter.zeros(&mut self.bulk, stations * stations)?;
         let (mut row, n) = (0, stations);
         for (p, response) in self.weights.iter().enumerate() {
             let mut column = 0;
             for load in &self.weights[..=p] {
+                meter.count(influence.operations(response, load))?;
                 // Lines come in the order of the pairs, so that the first is never the later one.
                 influence.between(response, load, &mut self.scratch, &mut self.block);
                 for (i, values) in self.block.chunks_exact(load.count).enumerate() {
@@ -325,7 +360,8 @@ impl<'a> PositionSolver<'a> {
             }
             row += response.count;
         }
-        self.local.prepare(pair, &self.compliance.local, force_n, &self.points, &self.lines, &mut self.coupling);
+        let model = &self.compliance.local;
+        self.local.prepare(pair, model, force_n, (&self.points, &self.lines), &mut self.coupling, &mut meter)
     }
 }
 

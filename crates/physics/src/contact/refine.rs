@@ -10,6 +10,8 @@ use crate::numerics::PeriodicMonotoneCubic;
 const COARSE: usize = 16;
 /// Most positions of one period.
 const MOST: usize = 256;
+/// Positions that are reached at most: a round that begins below [`MOST`] is finished, and doubles what there is.
+pub(super) const MOST_STATES: usize = (COARSE + 3) * 16;
 /// Smallest interval.
 const FINEST: f64 = 1.0 / 1024.0;
 
@@ -39,7 +41,7 @@ pub(super) fn refine(
     // Phases whose states only confirmed the interpolation of the others.
     let mut confirming = Vec::new();
     while !pending.is_empty() && states.len() < MOST {
-        let curves = PositionCurves::new(&states);
+        let curves = PositionCurves::new(states.iter());
         let mut next = Vec::new();
         let mut fresh = Vec::with_capacity(pending.len());
         for &(from, to) in &pending {
@@ -58,8 +60,8 @@ pub(super) fn refine(
         states.sort_by(|a, b| a.0.total_cmp(&b.0));
         pending = next;
     }
-    let without: Vec<_> = states.iter().filter(|s| !confirming.contains(&s.0)).cloned().collect();
-    let error = PositionCurves::new(&states).coefficient_change(&PositionCurves::new(&without));
+    let without = states.iter().filter(|s| !confirming.contains(&s.0));
+    let error = PositionCurves::new(states.iter()).coefficient_change(&PositionCurves::new(without));
     Ok(RefinedPositions { states, error })
 }
 
@@ -89,10 +91,10 @@ struct PositionCurves {
 const SAMPLES: usize = 128;
 
 impl PositionCurves {
-    fn new(states: &[(f64, LoadedPosition)]) -> PositionCurves {
-        let phase: Vec<f64> = states.iter().map(|s| s.0).collect();
-        let n = states.len() as f64;
-        let of = |f: fn(&LoadedPosition) -> f64| states.iter().map(|s| f(&s.1)).collect::<Vec<_>>();
+    fn new<'s>(states: impl Iterator<Item = &'s (f64, LoadedPosition)> + Clone) -> PositionCurves {
+        let phase: Vec<f64> = states.clone().map(|s| s.0).collect();
+        let n = phase.len() as f64;
+        let of = |f: fn(&LoadedPosition) -> f64| states.clone().map(|s| f(&s.1)).collect::<Vec<_>>();
         let (k, e) = (of(|s| s.stiffness_n_per_m), of(|s| s.approach_m));
         let mean = [k.iter().sum::<f64>() / n, e.iter().map(|v| v.abs()).sum::<f64>() / n];
         PositionCurves {

@@ -89,12 +89,13 @@ mod tests {
         let settings = Settings { positions: Some(16), ..Settings::default() };
         let flanks = Compliance::finite_element_inputs(pair, &settings, resolution)
             .map(|input| FlankFlexibility::new(&input, Watch::none()).expect("a flexibility"));
-        let elements = Compliance::finite_elements(pair, &settings, [&flanks[0], &flanks[1]]);
+        let elements = Compliance::finite_elements(pair, &settings, [&flanks[0], &flanks[1]], Watch::none())
+            .expect("not canceled");
         let force_n = 20e6 * pair.spec.face_width_m * pair.spec.normal_module_m;
         let mean = |compliance: &Compliance| {
             solve_half(pair, Half::Left, force_n, compliance, &settings, Watch::none()).expect("a cycle").stiffness.mean
         };
-        mean(&Compliance::analytic(pair, &settings)) / mean(&elements) - 1.0
+        mean(&Compliance::analytic(pair, &settings, Watch::none()).expect("not canceled")) / mean(&elements) - 1.0
     }
 
     /// Pairs that are not in the table, between its nodes too: what it says is what coarse elements find, within 3 % of

@@ -8,6 +8,7 @@ use std::ops::Range;
 use crate::compliance::{STENCIL, Stencil};
 use crate::numerics::dense::{cholesky, cholesky_solve, dot, forward_solve, lu_solve};
 use crate::simd::vectorised;
+use crate::watch::{Canceled, Meter};
 
 /// Approach of one point under its own force.
 pub(super) trait LocalApproach {
@@ -62,6 +63,10 @@ const BAND: usize = 2 * STENCIL - 1;
 impl<L: LocalApproach> ContactSystem<'_, L> {
     /// One Newton step on the active points: their new forces into `work.new_forces`; returns approach and stiffness.
     /// `total` is the sum of the forces (their size, where the approach above the datum is `prescribed` instead).
+    /// `None` where the system is singular.
+    ///
+    /// # Errors
+    /// [`Canceled`].
     pub(super) fn newton(
         &self,
         (total, prescribed): (f64, Option<f64>),
@@ -69,7 +74,9 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         forces: &[f64],
         active: &[bool],
         work: &mut SystemWorkspace,
-    ) -> Option<(f64, f64)> {
+        meter: &mut Meter,
+    ) -> Result<Option<(f64, f64)>, Canceled> {
+        meter.checkpoint()?;
         let (n, r) = (self.gaps.len(), self.stations);
         let floor = LEAST_FORCE * total / n as f64;
         work.slope.resize(n, 1.0);
@@ -86,18 +93,18 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         work.sides.clear();
         work.sides.resize(2 * r, 0.0);
         if self.coupling.is_empty() {
-            self.add_points(active, work);
-        } else {
-            self.add_lines(active, work)?;
+            self.add_points(active, work, meter)?;
+        } else if !self.add_lines(active, work, meter)? {
+            return Ok(None);
         }
         let (unit, target) = work.sides.split_at_mut(r);
         for side in [unit, target] {
             work.station_force.clear();
             work.station_force.extend_from_slice(side);
-            multiply(self.bulk, &work.station_force, side);
+            multiply(self.bulk, &work.station_force, side, meter)?;
         }
-        if !lu_solve(&mut work.matrix, &mut work.sides, r) {
-            return None;
+        if !lu_solve(&mut work.matrix, &mut work.sides, r, meter)? {
+            return Ok(None);
         }
         work.new_forces.clear();
         work.new_forces.resize(n, 0.0);
@@ -110,16 +117,16 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         };
         let approach = prescribed.unwrap_or_else(|| (total - rest) / stiffness);
         if !approach.is_finite() {
-            return None;
+            return Ok(None);
         }
         for (f, u) in work.new_forces.iter_mut().zip(&work.unit) {
             *f += approach * u;
         }
-        Some((approach, stiffness))
+        Ok(Some((approach, stiffness)))
     }
 
     /// I + B W and the right-hand sides when D is diagonal: W is banded.
-    fn add_points(&self, active: &[bool], work: &mut SystemWorkspace) {
+    fn add_points(&self, active: &[bool], work: &mut SystemWorkspace, meter: &mut Meter) -> Result<(), Canceled> {
         let r = self.stations;
         work.weight.clear();
         work.weight.resize(BAND * r, 0.0);
@@ -139,19 +146,19 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
                 }
             }
         }
-        work.matrix.clear();
-        work.matrix.resize(r * r, 0.0);
+        meter.zeros(&mut work.matrix, r * r)?;
         vectorised(
             #[inline(always)]
-            || self.identity_and_product(&work.weight, &mut work.matrix),
-        );
+            || self.identity_and_product(&work.weight, &mut work.matrix, meter),
+        )
     }
 
     /// Adds I + B W to `matrix`, W by its diagonals.
     #[inline(always)]
-    fn identity_and_product(&self, diagonals: &[f64], matrix: &mut [f64]) {
+    fn identity_and_product(&self, diagonals: &[f64], matrix: &mut [f64], meter: &mut Meter) -> Result<(), Canceled> {
         let r = self.stations;
         for i in 0..r {
+            meter.count(BAND * r)?;
             let source = &self.bulk[i * r..(i + 1) * r];
             let target = &mut matrix[i * r..(i + 1) * r];
             for d in 0..BAND {
@@ -166,6 +173,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
             }
             target[i] += 1.0;
         }
+        Ok(())
     }
 
     fn forces_of_points(&self, active: &[bool], work: &mut SystemWorkspace) -> (f64, f64) {
@@ -186,15 +194,13 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
     }
 
     /// The same when the points of a line are coupled: D is a full block per line, factored in `work.block`;
-    /// `work.columns` keeps L⁻¹ [1, c, P].
-    fn add_lines(&self, active: &[bool], work: &mut SystemWorkspace) -> Option<()> {
+    /// `work.columns` keeps L⁻¹ [1, c, P]. `false` where a block is not positive definite.
+    fn add_lines(&self, active: &[bool], work: &mut SystemWorkspace, meter: &mut Meter) -> Result<bool, Canceled> {
         let r = self.stations;
-        work.matrix.clear();
-        work.matrix.resize(r * r, 0.0);
+        meter.zeros(&mut work.matrix, r * r)?;
         work.block.clear();
         work.columns.clear();
-        work.weight.clear();
-        work.weight.resize(r * r, 0.0);
+        meter.zeros(&mut work.weight, r * r)?;
         for (line, range) in self.lines.iter().enumerate() {
             work.line_points.clear();
             work.line_points.extend(range.clone().filter(|&i| active[i]));
@@ -206,6 +212,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
             let size = range.len();
             let start = work.block.len();
             for &i in &work.line_points {
+                meter.count(m)?;
                 let row = &coupling[(i - range.start) * size..(i - range.start + 1) * size];
                 let from = work.block.len();
                 work.block.extend(work.line_points.iter().map(|&j| row[j - range.start]));
@@ -213,8 +220,8 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
                 work.block[own] += work.slope[i];
             }
             let block = &mut work.block[start..];
-            if !cholesky(block, m) {
-                return None;
+            if !cholesky(block, m, meter)? {
+                return Ok(false);
             }
             let stations = self.span(&work.line_points);
             let width = stations.len();
@@ -230,10 +237,12 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
                 }
             }
             for column in columns.chunks_exact_mut(m) {
+                meter.count(m * m / 2)?;
                 forward_solve(block, column, m);
             }
             let column = |k: usize| &columns[k * m..(k + 1) * m];
             for a in 0..width {
+                meter.count(a * m)?;
                 let row = stations.start + a;
                 work.sides[row] += dot(column(2 + a), column(0));
                 work.sides[r + row] += dot(column(2 + a), column(1));
@@ -247,6 +256,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
             }
             // I + B W, by the columns of this line.
             for i in 0..r {
+                meter.count(width * width)?;
                 let target = &mut work.matrix[i * r + stations.start..i * r + stations.end];
                 for k in stations.clone() {
                     let factor = self.bulk[i * r + k];
@@ -258,7 +268,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         for i in 0..r {
             work.matrix[i * r + i] += 1.0;
         }
-        Some(())
+        Ok(true)
     }
 
     fn forces_of_lines(&self, active: &[bool], work: &mut SystemWorkspace) -> (f64, f64) {
@@ -299,7 +309,15 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
     }
 
     /// Bulk displacement of the stations under `forces`, into `work.station_shift`.
-    pub(super) fn station_shifts(&self, forces: &[f64], work: &mut SystemWorkspace) {
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    pub(super) fn station_shifts(
+        &self,
+        forces: &[f64],
+        work: &mut SystemWorkspace,
+        meter: &mut Meter,
+    ) -> Result<(), Canceled> {
         work.station_force.clear();
         work.station_force.resize(self.stations, 0.0);
         for (stencil, f) in self.stencils.iter().zip(forces) {
@@ -309,7 +327,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         }
         work.station_shift.clear();
         work.station_shift.resize(self.stations, 0.0);
-        multiply(self.bulk, &work.station_force, &mut work.station_shift);
+        multiply(self.bulk, &work.station_force, &mut work.station_shift, meter)
     }
 
     /// Displacement of point `j` of `line` by the forces of all other points.
@@ -333,8 +351,10 @@ impl Stencil {
 }
 
 /// y = A x, A square and row-major.
-fn multiply(a: &[f64], x: &[f64], y: &mut [f64]) {
+fn multiply(a: &[f64], x: &[f64], y: &mut [f64], meter: &mut Meter) -> Result<(), Canceled> {
     for (value, row) in y.iter_mut().zip(a.chunks_exact(x.len().max(1))) {
+        meter.count(x.len())?;
         *value = dot(row, x);
     }
+    Ok(())
 }

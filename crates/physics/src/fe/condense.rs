@@ -298,19 +298,11 @@ impl Elimination<'_> {
         let (diagonal, below) = front.as_ref().split_at_row(inner);
         if let Some(compliance) = &mut compliance {
             let (mut top, mut bottom) = forces.as_mut().split_at_row_mut(inner);
-            solve_lower(diagonal, top.as_mut(), &mut |_| self.checkpoint(work))?;
-            matmul(bottom.as_mut(), Accum::Add, below, top.as_ref(), -1.0, Par::Seq);
-            triangular_matmul(
-                compliance.as_mut(),
-                BlockStructure::TriangularLower,
-                Accum::Add,
-                top.as_ref().transpose(),
-                BlockStructure::Rectangular,
-                top.as_ref(),
-                BlockStructure::Rectangular,
-                1.0,
-                Par::Seq,
-            );
+            // The work of the front is that of its factors.
+            let mut factored = || self.checkpoint(work);
+            solve_lower(diagonal, top.as_mut(), &mut factored)?;
+            product(bottom.as_mut(), Accum::Add, below, top.as_ref(), -1.0, &mut factored)?;
+            add_square(compliance.as_mut(), top.as_ref().transpose(), 1.0, &mut factored)?;
         }
         self.done.fetch_add(work as u64, std::sync::atomic::Ordering::Relaxed);
         Ok(UpdateMatrix {
@@ -349,7 +341,8 @@ pub(super) fn factor_partly<T: ComplexField>(
     let mut memory = MemBuffer::new(cholesky_in_place_scratch::<T>(width.min(inner), Par::Seq, params));
     let mut start = 0;
     while start < inner {
-        checkpoint(start as f64 / inner as f64)?;
+        let mut checkpoint = || checkpoint(start as f64 / inner as f64);
+        checkpoint()?;
         let end = (start + width).min(inner);
         let (panel, rest) =
             left.as_mut().submatrix_mut(start, start, size - start, inner - start).split_at_col_mut(end - start);
@@ -367,41 +360,76 @@ pub(super) fn factor_partly<T: ComplexField>(
         let (mut triangle, rectangle) =
             rest.submatrix_mut(end - start, 0, size - end, inner - end).split_at_row_mut(inner - end);
         let minus = -T::one_impl();
-        subtract_square(triangle.as_mut(), near);
-        matmul(rectangle, Accum::Add, far, near.adjoint(), minus, Par::Seq);
-        subtract_square(right.as_mut(), far);
+        add_square(triangle.as_mut(), near, minus.clone(), &mut checkpoint)?;
+        matmul(rectangle, Accum::Add, far, near.adjoint(), minus.clone(), Par::Seq);
+        add_square(right.as_mut(), far, minus, &mut checkpoint)?;
         start = end;
     }
     Ok(())
 }
 
-/// Solves with a lower triangle, some columns at a time. `checkpoint` is given the part that is done.
+/// Solves with a lower triangle, some columns at a time.
 pub(super) fn solve_lower<T: ComplexField>(
     lower: MatRef<'_, T>,
     mut columns: MatMut<'_, T>,
-    checkpoint: &mut dyn FnMut(f64) -> Result<(), FeError>,
+    checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
 ) -> Result<(), FeError> {
     let (size, count) = (columns.nrows(), columns.ncols());
     let width = (PANEL_WORK / (size * size).max(1)).max(NARROWEST_PANEL);
     for start in (0..count).step_by(width) {
-        checkpoint(start as f64 / count as f64)?;
+        checkpoint()?;
         let some = columns.as_mut().subcols_mut(start, width.min(count - start));
         solve_lower_triangular_in_place(lower, some, Par::Seq);
     }
     Ok(())
 }
 
-/// Takes `factor · factorᴴ` from the lower triangle of `matrix`.
-fn subtract_square<T: ComplexField>(matrix: MatMut<'_, T>, factor: MatRef<'_, T>) {
-    triangular_matmul(
-        matrix,
-        BlockStructure::TriangularLower,
-        Accum::Add,
-        factor,
-        BlockStructure::Rectangular,
-        factor.adjoint(),
-        BlockStructure::Rectangular,
-        -T::one_impl(),
-        Par::Seq,
-    );
+/// `target` with `scale · left · right` added to it or in its place, some columns at a time.
+pub(super) fn product(
+    mut target: MatMut<'_, f64>,
+    accum: Accum,
+    left: MatRef<'_, f64>,
+    right: MatRef<'_, f64>,
+    scale: f64,
+    checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
+) -> Result<(), FeError> {
+    let count = target.ncols();
+    let width = (PANEL_WORK / (left.nrows() * left.ncols()).max(1)).max(NARROWEST_PANEL);
+    for start in (0..count).step_by(width) {
+        checkpoint()?;
+        let some = width.min(count - start);
+        matmul(target.as_mut().subcols_mut(start, some), accum, left, right.subcols(start, some), scale, Par::Seq);
+    }
+    Ok(())
+}
+
+/// Adds `scale · factor · factorᴴ` to the lower triangle of `matrix`, some columns at a time.
+fn add_square<T: ComplexField>(
+    mut matrix: MatMut<'_, T>,
+    factor: MatRef<'_, T>,
+    scale: T,
+    checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
+) -> Result<(), FeError> {
+    let size = matrix.nrows();
+    let width = (PANEL_WORK / (size * factor.ncols()).max(1)).max(NARROWEST_PANEL);
+    for start in (0..size).step_by(width) {
+        checkpoint()?;
+        let some = width.min(size - start);
+        let columns = matrix.as_mut().submatrix_mut(start, start, size - start, some);
+        let (diagonal, below) = columns.split_at_row_mut(some);
+        let (near, far) = factor.subrows(start, size - start).split_at_row(some);
+        triangular_matmul(
+            diagonal,
+            BlockStructure::TriangularLower,
+            Accum::Add,
+            near,
+            BlockStructure::Rectangular,
+            near.adjoint(),
+            BlockStructure::Rectangular,
+            scale.clone(),
+            Par::Seq,
+        );
+        matmul(below, Accum::Add, far, near.adjoint(), scale.clone(), Par::Seq);
+    }
+    Ok(())
 }

@@ -1,11 +1,10 @@
 //! From one condensed sector to the whole gear: all sectors are alike, so displacements are sums over circumferential
 //! phases θ_n = 2πn/N (Thomas, Int. J. Numer. Methods Eng. 14 (1979) 81).
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par, c64};
+use faer::{Accum, Mat, c64};
 use rayon::prelude::*;
 
-use super::condense::{Condensed, factor_partly, solve_lower};
+use super::condense::{Condensed, factor_partly, product, solve_lower};
 use super::input::FeError;
 use crate::watch::Watch;
 
@@ -36,20 +35,15 @@ impl CutFaces<'_> {
         let mut y =
             Mat::<c64>::from_fn(n, f.ncols(), |i, j| c64::new(f[(i, j)] + cos * f[(n + i, j)], -sin * f[(n + i, j)]));
         factor_partly(h.as_mut(), Mat::zeros(0, 0).as_mut(), "cut faces", &mut |_| checkpoint())?;
-        solve_lower(h.as_ref(), y.as_mut(), &mut |_| checkpoint())?;
+        solve_lower(h.as_ref(), y.as_mut(), checkpoint)?;
         let real = Mat::<f64>::from_fn(n, f.ncols(), |i, j| y[(i, j)].re);
         let imaginary = Mat::<f64>::from_fn(n, f.ncols(), |i, j| y[(i, j)].im);
-        // Each product takes long enough for a checkpoint of its own.
-        checkpoint()?;
         let mut even = self.sector.compliance.clone();
-        matmul(even.as_mut(), Accum::Add, real.transpose(), real.as_ref(), 1.0, Par::Seq);
-        checkpoint()?;
-        matmul(even.as_mut(), Accum::Add, imaginary.transpose(), imaginary.as_ref(), 1.0, Par::Seq);
-        checkpoint()?;
+        product(even.as_mut(), Accum::Add, real.transpose(), real.as_ref(), 1.0, checkpoint)?;
+        product(even.as_mut(), Accum::Add, imaginary.transpose(), imaginary.as_ref(), 1.0, checkpoint)?;
         let mut odd = Mat::<f64>::zeros(f.ncols(), f.ncols());
-        matmul(odd.as_mut(), Accum::Replace, real.transpose(), imaginary.as_ref(), 1.0, Par::Seq);
-        checkpoint()?;
-        matmul(odd.as_mut(), Accum::Add, imaginary.transpose(), real.as_ref(), -1.0, Par::Seq);
+        product(odd.as_mut(), Accum::Replace, real.transpose(), imaginary.as_ref(), 1.0, checkpoint)?;
+        product(odd.as_mut(), Accum::Add, imaginary.transpose(), real.as_ref(), -1.0, checkpoint)?;
         Ok((even, odd))
     }
 }
@@ -98,6 +92,7 @@ pub(super) fn expand(
         let parts = at(&phases, 0.5 * some[0] as f64 / (direct + 1) as f64)?;
         for (&n, parts) in some.iter().zip(&parts) {
             for (m, sum) in sums.iter_mut().enumerate() {
+                watch.checkpoint_quietly()?;
                 let (sin, cos) = angle(m, n).sin_cos();
                 add(sum, parts, weight(n) * cos, weight(n) * sin);
             }
@@ -148,6 +143,7 @@ pub(super) fn expand(
     }
     for (sum, shares) in sums.iter_mut().zip(&shares) {
         for (part, &(cos, sin)) in parts.iter().zip(shares) {
+            watch.checkpoint_quietly()?;
             add(sum, part, cos, sin);
         }
     }

@@ -73,14 +73,18 @@ impl FlankFlexibility {
         let half_space =
             half_space(&involute, &grid, body.twist_per_m, (body.youngs_pa, body.nu), watch, (EXPANDED, 1.0))?;
         let n = grid.len();
-        let mut bulk: Vec<Vec<f64>> =
-            total.iter().map(|matrix| (0..n * n).map(|k| matrix[(k / n, k % n)]).collect()).collect();
+        let mut bulk: Vec<Vec<f64>> = Vec::with_capacity(total.len());
+        for matrix in total {
+            watch.checkpoint_quietly()?;
+            bulk.push((0..n * n).map(|k| matrix[(k / n, k % n)]).collect());
+        }
         for (b, h) in bulk[0].iter_mut().zip(&half_space) {
             *b -= h;
         }
         if key.side == crate::gear::MemberId::Gear {
             // The sector's angle grows towards the loaded flank, which on the gear is towards the teeth behind.
             for matrix in &mut bulk[1..] {
+                watch.checkpoint_quietly()?;
                 transpose(matrix, n);
             }
         }

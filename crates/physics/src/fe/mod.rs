@@ -27,6 +27,7 @@ mod surface;
 
 pub use flexibility::FlankFlexibility;
 pub use input::{FeError, FlankFlexibilityInput, FlankKey, MESH_VERSION, Resolution};
+pub(crate) use sizes::load_grid_size;
 
 #[cfg(test)]
 mod tests;

@@ -86,3 +86,10 @@ impl Sizes {
         (cells(length, self.profile_cell, (4, 20)), cells(width, self.station_cell, (4, 64)))
     }
 }
+
+/// Nodes of the load grid along the profile and along the face, for a length of the involute and a face width in normal
+/// modules.
+pub(crate) fn load_grid_size(resolution: Resolution, involute_modules: f64, face_modules: f64) -> (usize, usize) {
+    let (profile, stations) = Sizes::new(resolution).load_cells(involute_modules, face_modules);
+    (profile + 1, stations + 1)
+}

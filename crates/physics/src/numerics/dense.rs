@@ -1,6 +1,7 @@
 //! Small dense linear algebra on flat row-major slices: what the tooth contact needs, without allocation.
 
 use crate::simd::vectorised;
+use crate::watch::{Canceled, Meter};
 
 /// Solves the n×n system by Gaussian elimination with partial pivoting; `a` is destroyed, `rhs` becomes the solution.
 pub(crate) fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {
@@ -31,15 +32,18 @@ pub(crate) fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {
 
 /// Solves A X = B for several right-hand sides, which follow one another in `sides`, by LU with partial pivoting; `a`
 /// is destroyed. `false` when a pivot vanishes.
-pub(crate) fn lu_solve(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
+///
+/// # Errors
+/// [`Canceled`].
+pub(crate) fn lu_solve(a: &mut [f64], sides: &mut [f64], n: usize, meter: &mut Meter) -> Result<bool, Canceled> {
     vectorised(
         #[inline(always)]
-        || lu_solve_inlined(a, sides, n),
+        || lu_solve_inlined(a, sides, n, meter),
     )
 }
 
 #[inline(always)]
-fn lu_solve_inlined(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
+fn lu_solve_inlined(a: &mut [f64], sides: &mut [f64], n: usize, meter: &mut Meter) -> Result<bool, Canceled> {
     for k in 0..n {
         let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs())).unwrap_or(k);
         if pivot != k {
@@ -51,51 +55,76 @@ fn lu_solve_inlined(a: &mut [f64], sides: &mut [f64], n: usize) -> bool {
         let head = &upper[k * n..];
         let d = head[k];
         if d == 0.0 || !d.is_finite() {
-            return false;
+            return Ok(false);
         }
-        for row in lower.chunks_exact_mut(n) {
-            let factor = row[k] / d;
-            row[k] = factor;
-            row[k + 1..].iter_mut().zip(&head[k + 1..]).for_each(|(r, h)| *r -= factor * h);
+        for rows in lower.chunks_mut(n * Meter::pieces(n - k)) {
+            meter.count(rows.len() / n * (n - k))?;
+            for row in rows.chunks_exact_mut(n) {
+                let factor = row[k] / d;
+                row[k] = factor;
+                row[k + 1..].iter_mut().zip(&head[k + 1..]).for_each(|(r, h)| *r -= factor * h);
+            }
         }
     }
     for side in sides.chunks_exact_mut(n) {
         for i in 1..n {
+            meter.count(i)?;
             let (done, rest) = side.split_at_mut(i);
             rest[0] -= dot(&a[i * n..i * n + i], done);
         }
         for i in (0..n).rev() {
+            meter.count(n - i)?;
             let (rest, done) = side.split_at_mut(i + 1);
             rest[i] = (rest[i] - dot(&a[i * n + i + 1..(i + 1) * n], done)) / a[i * n + i];
+        }
+    }
+    Ok(true)
+}
+
+/// Cholesky factor L (lower triangle, in place) of a symmetric positive definite n×n matrix given by its lower
+/// triangle. `false` when a pivot is not positive.
+///
+/// # Errors
+/// [`Canceled`].
+pub(crate) fn cholesky(a: &mut [f64], n: usize, meter: &mut Meter) -> Result<bool, Canceled> {
+    vectorised(
+        #[inline(always)]
+        || {
+            for i in 0..n {
+                meter.count(i * i / 2)?;
+                if !cholesky_row(a, n, i) {
+                    return Ok(false);
+                }
+            }
+            Ok(true)
+        },
+    )
+}
+
+/// [`cholesky`] of a small matrix, to be inlined into something vectorised.
+#[inline(always)]
+pub(crate) fn cholesky_inlined(a: &mut [f64], n: usize) -> bool {
+    for i in 0..n {
+        if !cholesky_row(a, n, i) {
+            return false;
         }
     }
     true
 }
 
-/// Cholesky factor L (lower triangle, in place) of a symmetric positive definite n×n matrix given by its lower
-/// triangle. `false` when a pivot is not positive.
-pub(crate) fn cholesky(a: &mut [f64], n: usize) -> bool {
-    vectorised(
-        #[inline(always)]
-        || cholesky_inlined(a, n),
-    )
-}
-
-/// [`cholesky`] to be inlined into something vectorised.
+/// Row `i` of a factor whose rows above are done.
 #[inline(always)]
-pub(crate) fn cholesky_inlined(a: &mut [f64], n: usize) -> bool {
-    for i in 0..n {
-        let (above, row) = a.split_at_mut(i * n);
-        for j in 0..i {
-            let other = &above[j * n..j * n + j + 1];
-            row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
-        }
-        let d = row[i] - dot(&row[..i], &row[..i]);
-        if d.is_nan() || d <= 0.0 {
-            return false;
-        }
-        row[i] = d.sqrt();
+fn cholesky_row(a: &mut [f64], n: usize, i: usize) -> bool {
+    let (above, row) = a.split_at_mut(i * n);
+    for j in 0..i {
+        let other = &above[j * n..j * n + j + 1];
+        row[j] = (row[j] - dot(&row[..j], &other[..j])) / other[j];
     }
+    let d = row[i] - dot(&row[..i], &row[..i]);
+    if d.is_nan() || d <= 0.0 {
+        return false;
+    }
+    row[i] = d.sqrt();
     true
 }
 

@@ -27,8 +27,13 @@ pub(crate) fn gauss_12() -> impl Iterator<Item = (f64, f64)> {
 /// Abscissae and weights of the rule of `points` points on [-1, 1], abscissae descending; exact for polynomials up to
 /// degree 2 `points` - 1.
 pub(crate) fn gauss_legendre(points: usize) -> Vec<(f64, f64)> {
+    gauss_legendre_nodes(points).collect()
+}
+
+/// [`gauss_legendre`] one after the other: each costs some steps over all points.
+pub(crate) fn gauss_legendre_nodes(points: usize) -> impl Iterator<Item = (f64, f64)> {
     let n = points.max(1);
-    (0..n).map(|i| node(n, i, 100, 1e-15)).collect()
+    (0..n).map(move |i| node(n, i, 100, 1e-15))
 }
 
 /// The rule of N points on [0, 1], abscissae ascending.

@@ -7,6 +7,7 @@ use herringbone_physics::gear::Half;
 use crate::cases::Case;
 use crate::rungs::{force_bt_n, settings, solve};
 use crate::tables::seconds;
+use herringbone_physics::watch::Watch;
 use herringbone_tools::Failure;
 use herringbone_tools::stopwatch::median_time;
 
@@ -28,10 +29,13 @@ fn table(case: &Case, what: &str, lines: &[Line]) -> Result<(), Failure> {
     let mut places = Vec::new();
     let mut answers = Vec::new();
     for (count, settings) in lines {
-        let (compliance, compliance_s) = median_time(5, || Compliance::analytic(&case.pair, settings));
+        let (compliance, compliance_s) = median_time(5, || Compliance::analytic(&case.pair, settings, Watch::none()));
+        let compliance = compliance?;
         let (cycle, contact_s) = median_time(5, || solve(case, settings, &compliance));
-        let points =
-            HalfContact::new(&case.pair, Half::Left, &compliance, settings).at(0.5, force_bt_n(case))?.points.len();
+        let points = HalfContact::new(&case.pair, Half::Left, &compliance, settings, Watch::none())
+            .at(0.5, force_bt_n(case))?
+            .points
+            .len();
         let positions = settings.positions.unwrap_or(1);
         places.push([(*count as f64).ln(), contact_s.ln()]);
         answers.push((

@@ -88,8 +88,8 @@ pub(crate) fn answers(cases: &[Case], keep: Option<&Path>) -> Result<Vec<Answer>
         for (i, &(_, slices, positions, accuracy)) in ANALYTIC.iter().enumerate() {
             let settings = Settings { slices, positions, accuracy, ..settings(case) };
             let (cycle, cold_s) =
-                median_time(5, || solve(case, &settings, &Compliance::analytic(&case.pair, &settings)));
-            let compliance = Compliance::analytic(&case.pair, &settings);
+                median_time(5, || solve(case, &settings, &Compliance::analytic(&case.pair, &settings, Watch::none())?));
+            let compliance = Compliance::analytic(&case.pair, &settings, Watch::none())?;
             let (_, stored_s) = median_time(5, || solve(case, &settings, &compliance));
             answers.push(compare(Rung::Analytic(i), number, [cold_s, stored_s], &cycle?, reference));
         }
@@ -97,7 +97,11 @@ pub(crate) fn answers(cases: &[Case], keep: Option<&Path>) -> Result<Vec<Answer>
             let (flanks, solved_s) = solved(case, resolution, &mut elements, None)?;
             let settings = settings(case);
             let (cycle, stored_s) = median_time(5, || {
-                solve(case, &settings, &Compliance::finite_elements(&case.pair, &settings, [&flanks[0], &flanks[1]]))
+                solve(
+                    case,
+                    &settings,
+                    &Compliance::finite_elements(&case.pair, &settings, [&flanks[0], &flanks[1]], Watch::none())?,
+                )
             });
             answers.push(compare(
                 Rung::Elements(resolution),
@@ -133,7 +137,7 @@ pub(crate) fn solve(
 fn reference(case: &Case, elements: &mut HashMap<String, Solved>, keep: Option<&Path>) -> Result<Reference, Failure> {
     let (flanks, _) = solved(case, Resolution::Fine, elements, keep)?;
     let settings = Settings { positions: Some(128), ..settings(case) };
-    let compliance = Compliance::finite_elements(&case.pair, &settings, [&flanks[0], &flanks[1]]);
+    let compliance = Compliance::finite_elements(&case.pair, &settings, [&flanks[0], &flanks[1]], Watch::none())?;
     let at = |part: f64| solve(&Case { torque_nm: part * case.torque_nm, ..case.clone() }, &settings, &compliance);
     let [below, cycle, above] = [at(0.99)?, at(1.0)?, at(1.01)?];
     let steps = above.transmission_error_m.iter().zip(&below.transmission_error_m).map(|(a, b)| a - b);

@@ -17,9 +17,10 @@ pub(crate) fn measure() -> Result<(), Failure> {
     let service = Service::start(&directory.path().join("cancel.db"), &[])?;
     let mut connection = service.connect()?;
     println!("| canceled while in | median of {RUNS} | longest |\n|---|---|---|");
-    let stages: [Case; 5] = [
+    let stages: [Case; 6] = [
         ("finite elements (`fine`)", "mesh", documents::elements),
         ("contact (wide teeth, 200 slices, 1024 positions)", "mesh", documents::contact),
+        ("contact (a face of 450 pitches)", "mesh", || documents::wide_contact(200.0)),
         ("response (10 million periods, one motion)", "response", || documents::integration(10_000_000)),
         ("sweep (100 000 periodic points)", "sweep", || documents::sweep(100_000)),
         ("sweep (integrated points, side by side)", "sweep", integrated_sweep),

@@ -33,12 +33,12 @@ fn unlike() -> PairSpec {
 }
 
 fn coast(pair: &Pair, torque_nm: f64, stagger: f64) -> LoadedContact {
-    let compliance = Compliance::analytic(pair, &settings());
+    let compliance = Compliance::analytic(pair, &settings(), Watch::none()).expect("not canceled");
     solve_coast_halves(pair, torque_nm, stagger, &compliance, &settings(), Watch::none()).unwrap()
 }
 
 fn drive(pair: &Pair, torque_nm: f64, stagger: f64) -> LoadedContact {
-    let compliance = Compliance::analytic(pair, &settings());
+    let compliance = Compliance::analytic(pair, &settings(), Watch::none()).expect("not canceled");
     solve_pair_of_halves(pair, torque_nm, stagger, &compliance, &settings(), Watch::none()).unwrap()
 }
 
@@ -107,11 +107,11 @@ fn coasting_is_the_exchanged_pair_driving() {
 fn every_phase_is_that_of_the_mirrored_pair() {
     let real = pair(&unlike());
     let mirrored = real.coast();
-    let compliance = Compliance::analytic(&real, &settings());
+    let compliance = Compliance::analytic(&real, &settings(), Watch::none()).expect("not canceled");
     let got = solve_coast_halves(&real, 300.0, 0.0, &compliance, &settings(), Watch::none()).unwrap();
     let force = 150.0 / real.pinion.base_radius_m;
     for (half, side) in got.halves.iter().zip(crate::gear::Half::BOTH) {
-        let mut contact = crate::contact::HalfContact::new(&mirrored, side, &compliance, &settings());
+        let mut contact = crate::contact::HalfContact::new(&mirrored, side, &compliance, &settings(), Watch::none());
         let errors = half.phase.iter().zip(&half.transmission_error_m).step_by(5).map(|(phase, error)| {
             let state = contact.at(real.coast_phase(*phase), force).unwrap();
             error / state.approach_m - 1.0

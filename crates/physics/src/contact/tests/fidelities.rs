@@ -19,8 +19,9 @@ fn analytic_compliance_follows_finite_elements() {
             .map(|input| FlankFlexibility::new(&input, Watch::none()).unwrap());
         let force = 5e3 * width / 40e-3;
         let [truth, analytic] = [
-            Compliance::finite_elements(&pair, &settings, [&flanks[0], &flanks[1]]),
-            Compliance::analytic(&pair, &settings),
+            Compliance::finite_elements(&pair, &settings, [&flanks[0], &flanks[1]], Watch::none())
+                .expect("not canceled"),
+            Compliance::analytic(&pair, &settings, Watch::none()).expect("not canceled"),
         ]
         .map(|compliance| solve_half(&pair, Half::Left, force, &compliance, &settings, Watch::none()).unwrap());
         let of = |what: &str| format!("{what}, z {}/{}, helix {helix}°", teeth[0], teeth[1]);

@@ -10,7 +10,7 @@ use crate::contact::lines::{CornerGaps, PairRange, collect, reference_roll_m};
 use crate::contact::system::{ContactSystem, LocalApproach, SystemWorkspace};
 use crate::contact::{HalfContact, solve_half, solve_pair_of_halves};
 use crate::gear::{Half, ReliefShape, TipRelief};
-use crate::watch::Watch;
+use crate::watch::{Meter, Watch};
 use herringbone_oracle::Tolerance::Relative;
 use herringbone_oracle::{check, check_worst};
 
@@ -26,8 +26,8 @@ fn forces_balance_and_never_pull() {
     let (mut balance, mut least) = (Vec::new(), f64::INFINITY);
     for body in [BodyHold::Rim, BodyHold::Bore] {
         let settings = Settings { body, ..quick() };
-        let compliance = Compliance::analytic(&pair, &settings);
-        let mut contact = HalfContact::new(&pair, Half::Left, &compliance, &settings);
+        let compliance = Compliance::analytic(&pair, &settings, Watch::none()).expect("not canceled");
+        let mut contact = HalfContact::new(&pair, Half::Left, &compliance, &settings, Watch::none());
         for force in [0.1, 4e3, 4e6] {
             for i in 0..16 {
                 let state = contact.at(f64::from(i) / 16.0, force).unwrap();
@@ -45,8 +45,15 @@ fn forces_balance_and_never_pull() {
 #[test]
 fn equal_halves_are_solved_once_and_share_equally() {
     let pair = pair(&spec([29, 67], 30.0, 45e-3));
-    let both = solve_pair_of_halves(&pair, 500.0, 0.0, &Compliance::analytic(&pair, &quick()), &quick(), Watch::none())
-        .unwrap();
+    let both = solve_pair_of_halves(
+        &pair,
+        500.0,
+        0.0,
+        &Compliance::analytic(&pair, &quick(), Watch::none()).expect("not canceled"),
+        &quick(),
+        Watch::none(),
+    )
+    .unwrap();
     assert!(both.equal_halves);
     assert_eq!(both.halves[0], both.halves[1]);
     assert!(both.axial_shift_m.iter().all(|&u| u == 0.0));
@@ -58,9 +65,15 @@ fn equal_halves_are_solved_once_and_share_equally() {
 #[test]
 fn a_stagger_moves_the_right_half_along_its_own_curve() {
     let pair = pair(&spec([29, 67], 30.0, 45e-3));
-    let both =
-        solve_pair_of_halves(&pair, 500.0, 0.25, &Compliance::analytic(&pair, &quick()), &quick(), Watch::none())
-            .unwrap();
+    let both = solve_pair_of_halves(
+        &pair,
+        500.0,
+        0.25,
+        &Compliance::analytic(&pair, &quick(), Watch::none()).expect("not canceled"),
+        &quick(),
+        Watch::none(),
+    )
+    .unwrap();
     let [left, right] = &both.halves;
     let mut errors = Vec::new();
     for i in 0..16 {
@@ -75,8 +88,15 @@ fn spur_halves_without_axial_coupling_deflect_equally() {
     let mut spec = spec([29, 67], 0.0, 30e-3);
     spec.pinion.flanks[1].lead_crowning_m = 10e-6;
     let pair = pair(&spec);
-    let both = solve_pair_of_halves(&pair, 200.0, 0.0, &Compliance::analytic(&pair, &quick()), &quick(), Watch::none())
-        .unwrap();
+    let both = solve_pair_of_halves(
+        &pair,
+        200.0,
+        0.0,
+        &Compliance::analytic(&pair, &quick(), Watch::none()).expect("not canceled"),
+        &quick(),
+        Watch::none(),
+    )
+    .unwrap();
     let [left, right] = &both.halves;
     let total = 200.0 / pair.pinion.base_radius_m;
     let (mut deflections, mut forces) = (Vec::new(), Vec::new());
@@ -92,8 +112,15 @@ fn spur_halves_without_axial_coupling_deflect_equally() {
 #[test]
 fn shares_of_all_pairs_make_one() {
     let pair = pair(&spec([29, 67], 30.0, 45e-3));
-    let cycle =
-        solve_half(&pair, Half::Left, 4e3, &Compliance::analytic(&pair, &quick()), &quick(), Watch::none()).unwrap();
+    let cycle = solve_half(
+        &pair,
+        Half::Left,
+        4e3,
+        &Compliance::analytic(&pair, &quick(), Watch::none()).expect("not canceled"),
+        &quick(),
+        Watch::none(),
+    )
+    .unwrap();
     let sums = (0..16).map(|i| {
         let sum: f64 = cycle.load_share.iter().skip(i).step_by(16).sum();
         sum - 1.0
@@ -113,8 +140,15 @@ fn integer_overlap_gives_a_nearly_constant_stiffness() {
     let other = pair(&spec([40, 60], helix, 0.8 * width));
     let spread = |pair| {
         let settings = Settings { corner_contact: false, positions: Some(16), slices: Some(48), ..Settings::default() };
-        let cycle = solve_half(pair, Half::Left, 1e4, &Compliance::analytic(pair, &settings), &settings, Watch::none())
-            .unwrap();
+        let cycle = solve_half(
+            pair,
+            Half::Left,
+            1e4,
+            &Compliance::analytic(pair, &settings, Watch::none()).expect("not canceled"),
+            &settings,
+            Watch::none(),
+        )
+        .unwrap();
         (cycle.stiffness.max - cycle.stiffness.min) / cycle.stiffness.mean
     };
     let (flat, wavy) = (spread(&constant), spread(&other));
@@ -126,7 +160,17 @@ fn integer_overlap_gives_a_nearly_constant_stiffness() {
 fn a_canceled_analysis_stops() {
     let pair = pair(&spec([29, 67], 30.0, 45e-3));
     let watch = Watch::new(&|_| {}, &|| true);
-    assert!(solve_half(&pair, Half::Left, 1e3, &Compliance::analytic(&pair, &quick()), &quick(), watch).is_err());
+    assert!(
+        solve_half(
+            &pair,
+            Half::Left,
+            1e3,
+            &Compliance::analytic(&pair, &quick(), Watch::none()).expect("not canceled"),
+            &quick(),
+            watch
+        )
+        .is_err()
+    );
 }
 
 /// Gu, Velex, Sainsot and Bruyère (2015), uniform stiffness per length of contact line:
@@ -196,7 +240,10 @@ fn a_constant_foundation_gives_the_length_of_the_lines_and_relief_unloads_it() {
                 local: &local,
             };
             let total = 4e3;
-            let found = distribute(&system, Prescribed::Force(total), &[], &mut SystemWorkspace::default()).unwrap();
+            let found = {
+                let mut meter = Meter::new(Watch::none());
+                distribute(&system, Prescribed::Force(total), &[], &mut SystemWorkspace::default(), &mut meter).unwrap()
+            };
             if relief_m == 0.0 {
                 let length: f64 = pair.contact_lines(reference_roll_m(&pair, phase)).iter().map(|l| l.width_m()).sum();
                 lengths.push(found.stiffness / (STIFFNESS * length) - 1.0);

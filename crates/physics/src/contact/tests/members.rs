@@ -26,14 +26,15 @@ fn settings() -> Settings {
 }
 
 fn analytic(pair: &Pair, force_n: f64) -> HalfCycle {
-    let compliance = Compliance::analytic(pair, &settings());
+    let compliance = Compliance::analytic(pair, &settings(), Watch::none()).expect("not canceled");
     solve_half(pair, Half::Left, force_n, &compliance, &settings(), Watch::none()).unwrap()
 }
 
 fn elements(pair: &Pair, force_n: f64) -> HalfCycle {
     let flanks = Compliance::finite_element_inputs(pair, &settings(), Resolution::Coarse)
         .map(|input| FlankFlexibility::new(&input, Watch::none()).unwrap());
-    let compliance = Compliance::finite_elements(pair, &settings(), [&flanks[0], &flanks[1]]);
+    let compliance =
+        Compliance::finite_elements(pair, &settings(), [&flanks[0], &flanks[1]], Watch::none()).expect("not canceled");
     solve_half(pair, Half::Left, force_n, &compliance, &settings(), Watch::none()).unwrap()
 }
 

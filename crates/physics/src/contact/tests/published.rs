@@ -22,8 +22,13 @@ fn published(module_m: f64, helix_deg: f64, width_m: f64, [pinion, gear]: [(u32,
 /// Normal forces along all lines at one position: their sum, N.
 fn normal_force_n(pair: &Pair, force_n: f64) -> f64 {
     let settings = Settings { positions: Some(8), slices: Some(12), ..Settings::default() };
-    let compliance = Compliance::analytic(pair, &settings);
-    HalfContact::new(pair, Half::Left, &compliance, &settings).at(0.3, force_n).unwrap().forces_n.iter().sum()
+    let compliance = Compliance::analytic(pair, &settings, Watch::none()).expect("not canceled");
+    HalfContact::new(pair, Half::Left, &compliance, &settings, Watch::none())
+        .at(0.3, force_n)
+        .unwrap()
+        .forces_n
+        .iter()
+        .sum()
 }
 
 /// RIKOR test 001 (FVA 30): forces of one helix under 8962.5 N m. Pressure angle and helix are inferred from them; the
@@ -38,7 +43,7 @@ fn rikor_001_forces() {
     check(topic, "the same over the width, N/mm", force_n / p.spec.face_width_m / 1e3, 1319.34, Absolute(5e-3));
     check(topic, "sum of the normal forces, N", normal_force_n(&p, force_n), 170_316.0, Absolute(0.5));
     let settings = Settings { positions: Some(8), slices: Some(12), ..Settings::default() };
-    let compliance = Compliance::analytic(&p, &settings);
+    let compliance = Compliance::analytic(&p, &settings, Watch::none()).expect("not canceled");
     let both = solve_pair_of_halves(&p, 2.0 * torque_nm, 0.0, &compliance, &settings, Watch::none()).unwrap();
     check(topic, "axial force, N", both.axial_force_n[0], 30_538.0, Absolute(0.5));
 }
@@ -71,8 +76,8 @@ fn ross_spur_pair_lies_between_rim_and_bore() {
     check(topic, "transverse contact ratio", p.transverse_contact_ratio, 1.789_779_866_833_0, Absolute(5e-13));
     let stiffness = |body| {
         let settings = Settings { body, positions: Some(8), corner_contact: false, ..Settings::default() };
-        let compliance = Compliance::analytic(&p, &settings);
-        let mut contact = HalfContact::new(&p, Half::Left, &compliance, &settings);
+        let compliance = Compliance::analytic(&p, &settings, Watch::none()).expect("not canceled");
+        let mut contact = HalfContact::new(&p, Half::Left, &compliance, &settings, Watch::none());
         contact.at(0.0, 100e3 * p.spec.face_width_m).unwrap().stiffness_n_per_m / 1e6
     };
     let reference = 396.622_921;

@@ -38,7 +38,7 @@ proptest! {
             corner_contact,
         };
         let torque = 10f64.powf(torque_exponent);
-        let both = solve_pair_of_halves(&pair, torque, 0.3, &Compliance::analytic(&pair, &settings), &settings, Watch::none());
+        let both = solve_pair_of_halves(&pair, torque, 0.3, &Compliance::analytic(&pair, &settings, Watch::none()).expect("not canceled"), &settings, Watch::none());
         let both = both.map_err(|e| TestCaseError::fail(format!("{e}")))?;
         for half in &both.halves {
             for i in 0..6 {
@@ -64,7 +64,7 @@ fn steps_of_the_stiffness_shrink_with_the_distance_of_the_positions() {
         let pair = super::pair(&spec);
         for corner_contact in [true, false] {
             let settings = Settings { corner_contact, ..Settings::default() };
-            let compliance = Compliance::analytic(&pair, &settings);
+            let compliance = Compliance::analytic(&pair, &settings, Watch::none()).expect("not canceled");
             let largest = |positions: usize| {
                 let settings = Settings { positions: Some(positions), ..settings };
                 let cycle = solve_half(&pair, Half::Left, 6e3, &compliance, &settings, Watch::none()).unwrap();
@@ -96,7 +96,7 @@ fn extremes_converge() {
         spec.assembly.in_plane_misalignment_m = 5.0 * gap_m;
         let pair = super::pair(&spec);
         let settings = Settings { positions: Some(12), ..Settings::default() };
-        let compliance = Compliance::analytic(&pair, &settings);
+        let compliance = Compliance::analytic(&pair, &settings, Watch::none()).expect("not canceled");
         let both = solve_pair_of_halves(&pair, torque_nm, 0.0, &compliance, &settings, Watch::none())
             .unwrap_or_else(|error| panic!("{teeth:?}, {helix_deg} deg, {torque_nm} N m: {error}"));
         for half in &both.halves {
@@ -117,7 +117,8 @@ fn finite_elements_converge_under_any_load() {
     for misalignment_m in [0.0, 20e-6, 1e-3] {
         spec.assembly.in_plane_misalignment_m = misalignment_m;
         let pair = super::pair(&spec);
-        let compliance = Compliance::finite_elements(&pair, &settings, [&pinion, &gear]);
+        let compliance =
+            Compliance::finite_elements(&pair, &settings, [&pinion, &gear], Watch::none()).expect("not canceled");
         for torque_nm in [1e-3, 1.0, 1e3, 1e6] {
             let both = solve_pair_of_halves(&pair, torque_nm, 0.0, &compliance, &settings, Watch::none())
                 .unwrap_or_else(|error| panic!("{misalignment_m} m, {torque_nm} N m: {error}"));
