@@ -269,7 +269,7 @@ async fn enter_in_a_field_submits_nothing_and_back_returns_what_was_submitted() 
         let asked = browser.requests().await;
         assert!(!asked.iter().any(|path| path == "/api/v1/jobs"), "{asked:?}");
         assert_eq!(browser.value("location.pathname").await, json!("/"));
-        browser.field("/operation/pinion_torque_nm").await.send_keys(TypingData::from(Key::Control + Key::Enter)).await.unwrap();
+        browser.field("/operation/pinion_torque_nm").await.send_keys(Key::Control + Key::Enter).await.unwrap();
         browser.until("location.pathname.startsWith('/jobs/')").await;
         succeeded(browser).await;
         browser.driver.back().await.unwrap();

@@ -147,7 +147,7 @@ mod tests {
         let mut bytes = first.as_bytes().to_vec();
         for part in rest.into_iter().flat_map(|rest| rest.split('%')) {
             bytes.extend(hex::decode(&part[..2]).unwrap());
-            bytes.extend(part[2..].as_bytes());
+            bytes.extend(&part.as_bytes()[2..]);
         }
         String::from_utf8(bytes).unwrap()
     }
