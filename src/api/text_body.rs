@@ -9,8 +9,8 @@ use std::task::{Context, Poll};
 /// Largest piece of a body.
 pub(super) const PIECE_BYTES: usize = 32 * 1024;
 
-/// A text in memory as a response body. The HTTP library takes a piece when the client has accepted most of those before,
-/// and drops the body, with what guards it, when it has taken the last one.
+/// A text in memory as a response body. The HTTP library takes a piece when the client has accepted most of those
+/// before, and drops the body, with what guards it, when it has taken the last one.
 pub(super) struct TextBody {
     text: Vec<u8>,
     sent: usize,

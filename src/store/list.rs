@@ -268,8 +268,8 @@ impl Store {
     }
 }
 
-/// The ids of a page of jobs sorted by submission: one index scan for each state, merged, so that the time of a page does
-/// not depend on the number of jobs.
+/// The ids of a page of jobs sorted by submission: one index scan for each state, merged, so that the time of a page
+/// does not depend on the number of jobs.
 fn push_newest(
     query: &mut QueryBuilder<Sqlite>,
     filter: &JobFilter,

@@ -96,8 +96,8 @@ async fn no_page_has_a_serious_finding() {
     .await;
 }
 
-/// States of the form that it does not open with: an empty pair, problems, values of another geometry, the question about
-/// them.
+/// States of the form that it does not open with: an empty pair, problems, values of another geometry, the question
+/// about them.
 #[tokio::test]
 async fn no_state_of_the_form_has_a_serious_finding() {
     let axe = axe_core();

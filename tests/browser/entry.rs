@@ -4,7 +4,7 @@ use crate::browser::{Browser, flow};
 use crate::form::{GOOD, document};
 use crate::job::{submit, succeeded};
 use serde_json::{Value, json};
-use thirtyfour::{Key, TypingData};
+use thirtyfour::Key;
 
 const STATE: &str = "document.querySelector('#check-state').textContent";
 

@@ -51,9 +51,9 @@ const DRAIN_S: u64 = 10;
 /// Far more than a stop takes, far less than one position of the mesh.
 const PROMPT: Duration = Duration::from_secs(10);
 
-/// Jobs whose single positions take longer than all the limits: too large ones are refused for the memory that they would
-/// take; those that fill all workers keep the time limit, obey a cancellation and a shutdown, and let others have their
-/// turn.
+/// Jobs whose single positions take longer than all the limits: too large ones are refused for the memory that they
+/// would take; those that fill all workers keep the time limit, obey a cancellation and a shutdown, and let others have
+/// their turn.
 #[test]
 fn contact_over_hundreds_of_pitches_keeps_every_limit() {
     let directory = tempfile::tempdir().expect("a directory");

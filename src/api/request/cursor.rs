@@ -12,8 +12,8 @@ const INTEGER: u8 = 1;
 const REAL: u8 = 2;
 const TEXT: u8 = 3;
 
-/// The position after a page: the place of its last job. Encoded as version, job id, digest of filters and order, tag of
-/// the value, value.
+/// The position after a page: the place of its last job. Encoded as version, job id, digest of filters and order, tag
+/// of the value, value.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Cursor(pub ListPlace);
 

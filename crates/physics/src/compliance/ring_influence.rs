@@ -116,8 +116,8 @@ struct Twist {
     products: Vec<f64>,
 }
 
-/// Points for functions up to the degree `order` and a highest wave that turns by `half_turn` radians from the middle of
-/// the face to its ends.
+/// Points for functions up to the degree `order` and a highest wave that turns by `half_turn` radians from the middle
+/// of the face to its ends.
 fn twist_points(order: usize, half_turn: f64) -> usize {
     order + 6 + (0.6 * half_turn).ceil() as usize
 }

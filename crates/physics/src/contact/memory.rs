@@ -46,7 +46,8 @@ pub enum ComplianceModel {
 pub struct ContactMemory {
     /// A compliance that is kept.
     pub compliance: f64,
-    /// Peak while a compliance is made, the kept one included; with finite elements without the elimination of a sector.
+    /// Peak while a compliance is made, the kept one included; with finite elements without the elimination of a
+    /// sector.
     pub compliance_peak: f64,
     /// One position while it is solved.
     pub position: f64,
