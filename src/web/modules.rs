@@ -35,7 +35,7 @@ fn imports(text: &str) -> impl Iterator<Item = &str> {
 }
 
 /// "../common/dom.js" seen from "design" is "common/dom.js".
-fn resolve(folder: &str, address: &str) -> Option<String> {
+pub(super) fn resolve(folder: &str, address: &str) -> Option<String> {
     let mut parts: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
     for part in address.split('/') {
         match part {

@@ -1,5 +1,6 @@
 //! Pages of the documentation as HTML: CommonMark with tables, and formulas in TeX notation as MathML.
 
+use super::super::modules::resolve;
 use super::documents::{self, Document};
 use math_core::{LatexToMathML, MathCoreConfig, MathDisplay};
 use pulldown_cmark::{CowStr, Event, HeadingLevel, LinkType, Options, Parser, Tag, TagEnd, html};
@@ -155,7 +156,7 @@ impl PageEvents<'_> {
         if file.contains(':') {
             return None;
         }
-        let address = documents::address_of_file(&joined(self.folder, file)?)?;
+        let address = documents::address_of_file(&resolve(self.folder, file)?)?;
         let fragment = if fragment.is_empty() { String::new() } else { format!("#{fragment}") };
         Some(format!("/help/{address}{fragment}"))
     }
@@ -210,19 +211,6 @@ fn slug(heading: &str) -> String {
 
 fn folder_of(file: &str) -> &str {
     file.rsplit_once('/').map_or("", |(folder, _)| folder)
-}
-
-/// A relative path seen from a folder; `None` where it leads above `docs/`.
-fn joined(folder: &str, path: &str) -> Option<String> {
-    let mut parts: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
-    for part in path.split('/') {
-        match part {
-            "." => {}
-            ".." => drop(parts.pop()?),
-            name => parts.push(name),
-        }
-    }
-    Some(parts.join("/"))
 }
 
 #[cfg(test)]
