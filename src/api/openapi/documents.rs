@@ -61,7 +61,9 @@ fn reference(name: &str) -> Value {
 
 /// Sets the schema of the document in the request and response bodies that are documents.
 pub(super) fn set_schemas(path: &str, operation: &mut Value) {
-    if let Some(body) = operation.pointer_mut("/requestBody/content/application~1json") {
+    let is_document =
+        |body: &&mut Value| body["schema"]["$ref"].as_str().is_none_or(|name| name.ends_with("/JobDocument"));
+    if let Some(body) = operation.pointer_mut("/requestBody/content/application~1json").filter(is_document) {
         body["schema"] = reference("JobDocument");
         for (name, kind) in JobKind::ALL {
             body["examples"][name] = json!({"value": example(kind)});
