@@ -116,11 +116,13 @@ pub fn login(status: StatusCode, next: &str, error: Option<&str>) -> Response {
 
 /// A page as a response; status 500 when it cannot be rendered.
 pub(super) fn page(status: StatusCode, template: &impl Template) -> Response {
-    match template.render() {
-        Ok(html) => (status, page_headers(), Html(html)).into_response(),
-        Err(error) => {
-            tracing::error!(%error, "a page could not be rendered");
-            StatusCode::INTERNAL_SERVER_ERROR.into_response()
-        }
-    }
+    rendered(template).map_or_else(IntoResponse::into_response, |html| (status, page_headers(), html).into_response())
+}
+
+/// The HTML of a page; status 500 when it cannot be rendered.
+pub(super) fn rendered(template: &impl Template) -> Result<Html<String>, StatusCode> {
+    template.render().map(Html).map_err(|error| {
+        tracing::error!(%error, "a page could not be rendered");
+        StatusCode::INTERNAL_SERVER_ERROR
+    })
 }

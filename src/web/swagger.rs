@@ -1,12 +1,12 @@
 //! The description of the HTTP interface in Swagger UI, inside the frame of the pages.
 
 use super::assets::{Content, answer};
-use super::pages::HasLogin;
+use super::pages::{HasLogin, rendered};
 use askama::Template;
 use axum::Extension;
 use axum::extract::Path;
-use axum::http::{HeaderMap, StatusCode, header};
-use axum::response::{Html, IntoResponse, Response};
+use axum::http::{HeaderMap, header};
+use axum::response::{IntoResponse, Response};
 use std::borrow::Cow;
 use std::sync::{Arc, LazyLock};
 use utoipa_swagger_ui::Config;
@@ -22,13 +22,8 @@ static CONFIG: LazyLock<Arc<Config<'static>>> = LazyLock::new(|| Arc::new(Config
 /// `/docs`: unlike the other pages without a content policy of its own, as the script inserts inline styles; the
 /// interface has a policy for these paths.
 pub(super) async fn page(Extension(HasLogin(has_login)): Extension<HasLogin>) -> Response {
-    match (DocsPage { has_login }).render() {
-        Ok(html) => ([(header::CACHE_CONTROL, "no-cache")], Html(html)).into_response(),
-        Err(error) => {
-            tracing::error!(%error, "a page could not be rendered");
-            StatusCode::INTERNAL_SERVER_ERROR.into_response()
-        }
-    }
+    let html = rendered(&DocsPage { has_login });
+    html.map(|html| ([(header::CACHE_CONTROL, "no-cache")], html)).into_response()
 }
 
 /// `/docs/{*file}`: the files of Swagger UI.
