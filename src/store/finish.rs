@@ -44,8 +44,10 @@ impl Store {
         completion: &Completion,
         now: Timestamp,
     ) -> Result<Option<JobRecord>, StoreError> {
+        // Before the transaction, for which other writers wait.
+        let headline = Headline::of_result(&completion.body);
         let mut transaction = self.begin().await?;
-        let done = complete(&mut transaction, id, attempt, completion, now).await?;
+        let done = complete(&mut transaction, id, attempt, (completion, headline), now).await?;
         if done.is_some() {
             transaction.commit().await?;
         }
@@ -103,10 +105,9 @@ pub(super) async fn complete(
     transaction: &mut Transaction<'static, Sqlite>,
     id: JobId,
     attempt: i64,
-    completion: &Completion,
+    (completion, headline): (&Completion, Headline),
     now: Timestamp,
 ) -> Result<Option<JobRecord>, StoreError> {
-    let headline = Headline::of_result(&completion.body);
     let done: Option<JobRecord> = sqlx::query_as(concat!(
         "UPDATE jobs SET state = 'succeeded', revision = revision + 1, progress = 1, \
          ended_at_us = MAX($3, COALESCE(started_at_us, submitted_at_us)), \

@@ -2,6 +2,7 @@
 
 use super::connect::{Store, StoreError};
 use super::finish::{Completion, complete};
+use super::headline::Headline;
 use super::lifecycle::JobId;
 use super::record::{JobRecord, job_columns, record_event};
 use jiff::Timestamp;
@@ -49,15 +50,19 @@ impl Store {
         capacity: u32,
         now: Timestamp,
     ) -> Result<Submission, StoreError> {
+        // Before the transaction, for which other writers wait.
+        let reuse = reuse.map(|completion| (Headline::of_result(&completion.body), completion));
         let mut transaction = self.begin().await?;
         if let Some(earlier) = earlier_submission(&mut transaction, &job).await? {
             return Ok(earlier);
         }
         let mut record = insert(&mut transaction, &job, now).await?;
         let mut ended = false;
-        if let Some(completion) = &reuse {
+        if let Some((headline, completion)) = &reuse {
             record = start(&mut transaction, &record, now).await?;
-            if let Some(done) = complete(&mut transaction, record.id, record.attempt, completion, now).await? {
+            if let Some(done) =
+                complete(&mut transaction, record.id, record.attempt, (completion, *headline), now).await?
+            {
                 record = done;
                 ended = true;
             } else {
