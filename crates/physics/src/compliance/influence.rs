@@ -102,6 +102,11 @@ impl Influence {
         Influence { path_nodes_m: vec![path_node_m], stations_m, offsets: 0, table }
     }
 
+    /// Stations along the face, from the mesh-out end, ascending.
+    pub(crate) fn stations_m(&self) -> &[f64] {
+        &self.stations_m
+    }
+
     /// Weights of the stations about `entry_m`.
     pub(crate) fn stencil(&self, entry_m: f64) -> Stencil {
         stencil(&self.stations_m, entry_m)

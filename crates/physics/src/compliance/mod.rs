@@ -100,7 +100,18 @@ impl Compliance {
     /// Fidelity `uniform`: the contact lines as a uniform elastic foundation of so much force per length of line and
     /// approach, both along the flank normal; everything else is rigid. A model with exact solutions, for comparisons.
     pub fn uniform(pair: &Pair, settings: &Settings, line_stiffness_n_per_m2: f64) -> Compliance {
-        let stations = UNIFORM_STATIONS;
+        Self::uniform_between(pair, settings, line_stiffness_n_per_m2, UNIFORM_STATIONS)
+    }
+
+    /// The same with `stations` over the face width, at least four, between which the flexibility of what the teeth
+    /// stand on is given.
+    pub fn uniform_between(
+        pair: &Pair,
+        settings: &Settings,
+        line_stiffness_n_per_m2: f64,
+        stations: usize,
+    ) -> Compliance {
+        let stations = stations.max(UNIFORM_STATIONS);
         let step = pair.spec.face_width_m / stations as f64;
         let stations_m = (0..stations).map(|i| (i as f64 + 0.5) * step).collect();
         let influence = Influence::rigid(pair.pitch_point_m(), stations_m);

@@ -39,7 +39,7 @@ pub fn solve_coast_halves(
 }
 
 /// A periodic list in the reverse order, its first value staying where it is.
-fn backwards<T>(values: &mut [T]) {
+pub(super) fn backwards<T>(values: &mut [T]) {
     if let Some(others) = values.get_mut(1..) {
         others.reverse();
     }
@@ -48,7 +48,7 @@ fn backwards<T>(values: &mut [T]) {
 impl HalfCycle {
     /// Curves and path in the reverse order; the first position is at the phase `lead` of this half, and a pair's
     /// theoretical path of contact is `pitches` base pitches long.
-    fn run_backwards(&mut self, lead: f64, pitches: f64) {
+    pub(super) fn run_backwards(&mut self, lead: f64, pitches: f64) {
         let count = self.phase.len() as f64;
         self.phase = (0..self.phase.len()).map(|i| (i as f64 / count + lead).fract()).collect();
         for curve in [

@@ -9,7 +9,7 @@
 //! local approach within an active set, all changes of the set at once and warm-started; when that cycles, a careful
 //! active-set method that never leaves f >= 0.
 
-use super::system::{ContactSystem, LEAST_FORCE, LocalApproach, SystemWorkspace};
+use super::system::{ContactProblem, LEAST_FORCE};
 use crate::watch::{Canceled, Meter};
 
 /// A converged distribution.
@@ -60,14 +60,15 @@ pub(super) enum Prescribed {
 }
 
 /// Distributes the force over the points. `start` holds forces of a neighbouring state, zeros and all.
-pub(super) fn distribute<L: LocalApproach>(
-    system: &ContactSystem<'_, L>,
+pub(super) fn distribute<P: ContactProblem>(
+    system: &P,
     prescribed: Prescribed,
     start: &[f64],
-    work: &mut SystemWorkspace,
+    work: &mut P::Workspace,
     meter: &mut Meter,
 ) -> Result<Distribution, DistributionError> {
-    let n = system.gaps.len();
+    let gaps: Vec<f64> = system.gaps().collect();
+    let n = gaps.len();
     let total = match prescribed {
         Prescribed::Force(force) => force,
         Prescribed::Approach { expected_force, .. } => expected_force,
@@ -79,15 +80,17 @@ pub(super) fn distribute<L: LocalApproach>(
     } else {
         forces.fill(total / n as f64);
     }
-    work.entries.clear();
-    work.entries.resize(n, 0);
+    // Number of times that a point has entered the active set; opening and index of points that enter it.
+    let mut entries = vec![0u8; n];
+    let mut entering: Vec<(f64, usize)> = Vec::new();
     let mut active = forces.iter().map(|&f| f > 0.0).collect::<Vec<_>>();
     // Approach and gaps count from the least gap: gaps far above the deflections would drown them in rounding.
-    let datum = system.gaps.iter().copied().fold(f64::INFINITY, f64::min);
+    let datum = gaps.iter().copied().fold(f64::INFINITY, f64::min);
     let above_datum = match prescribed {
         Prescribed::Force(_) => None,
         Prescribed::Approach { approach, .. } => Some(approach - datum),
     };
+    let carriers = system.carriers();
     let limit = NEWTON_ITERATIONS + 40 + 6 * n as u32;
     let mut change = f64::INFINITY;
     for iteration in 1..=limit {
@@ -96,13 +99,14 @@ pub(super) fn distribute<L: LocalApproach>(
         let Some((approach, stiffness)) = step else {
             return Err(DistributionError::NotConverged { iterations: iteration, change });
         };
+        let new_forces = system.new_forces(work);
         let mut same = true;
         change = 0.0;
         let mut step = 1.0f64;
         if primal {
             for i in 0..n {
-                if active[i] && work.new_forces[i] < 0.0 {
-                    step = step.min(forces[i] / (forces[i] - work.new_forces[i]));
+                if active[i] && new_forces[i] < 0.0 {
+                    step = step.min(forces[i] / (forces[i] - new_forces[i]));
                 }
             }
         }
@@ -110,7 +114,7 @@ pub(super) fn distribute<L: LocalApproach>(
             if !active[i] {
                 continue;
             }
-            let f = work.new_forces[i];
+            let f = new_forces[i];
             let mut next = if step < 1.0 { forces[i] + step * (f - forces[i]) } else { f };
             if next <= 1e-14 * total && f <= 0.0 {
                 next = 0.0;
@@ -120,11 +124,17 @@ pub(super) fn distribute<L: LocalApproach>(
             change = change.max((next - forces[i]).abs() / total);
             forces[i] = next;
         }
-        if active.iter().all(|&m| !m) {
-            // Everything let go at once: begin again from the point with the least gap.
-            let least = (0..n).min_by(|&a, &b| system.gaps[a].total_cmp(&system.gaps[b])).unwrap_or(0);
-            active[least] = true;
-            forces[least] = total;
+        // Everything let go at once: begin again from the point with the least gap.
+        let mut let_go = false;
+        for range in carriers.iter().filter(|range| !range.is_empty()) {
+            if active[range.clone()].iter().all(|&m| !m) {
+                let least = range.clone().min_by(|&a, &b| gaps[a].total_cmp(&gaps[b])).unwrap_or(range.start);
+                active[least] = true;
+                forces[least] = total;
+                let_go = true;
+            }
+        }
+        if let_go {
             continue;
         }
         if step < 1.0 || (primal && change > TOLERANCE) {
@@ -132,34 +142,32 @@ pub(super) fn distribute<L: LocalApproach>(
         }
         // Points outside that would penetrate come in.
         let slack = 1e-10 * approach.abs().max(1e-30);
-        work.entering.clear();
-        system.station_shifts(&forces, work, meter)?;
-        for (line, range) in system.lines.iter().enumerate() {
-            for j in range.clone() {
-                if active[j] {
-                    continue;
-                }
-                let opening = system.deflection(line, j, &forces, work) + (system.gaps[j] - datum) - approach;
-                // Approach under the least force that counts as contact.
-                let least = system.local.approach(j, LEAST_FORCE * total / n as f64).0;
-                if opening < -slack.max(least) {
-                    if !primal {
-                        active[j] = true;
-                        same = false;
-                        // The force that takes the penetration up locally: where to linearise, not a part of the
-                        // balance. One that has come in before and was let go again carries less than that.
-                        let less = 0.1f64.powi(i32::from(work.entries[j]));
-                        forces[j] = less * force_for(system.local, j, -opening, total / n as f64);
-                        work.entries[j] = work.entries[j].saturating_add(1);
-                    } else {
-                        work.entering.push((opening, j));
-                    }
+        entering.clear();
+        system.displace(&forces, work, meter)?;
+        for j in 0..n {
+            if active[j] {
+                continue;
+            }
+            let opening = system.deflection(j, &forces, work) + (gaps[j] - datum) - approach;
+            // Approach under the least force that counts as contact.
+            let least = system.local_approach(j, LEAST_FORCE * total / n as f64).0;
+            if opening < -slack.max(least) {
+                if !primal {
+                    active[j] = true;
+                    same = false;
+                    // The force that takes the penetration up locally: where to linearise, not a part of the
+                    // balance. One that has come in before and was let go again carries less than that.
+                    let less = 0.1f64.powi(i32::from(entries[j]));
+                    forces[j] = less * force_for(system, j, -opening, total / n as f64);
+                    entries[j] = entries[j].saturating_add(1);
+                } else {
+                    entering.push((opening, j));
                 }
             }
         }
         // Carefully: those that penetrate about as deep as the deepest.
-        let deepest = work.entering.iter().fold(0.0f64, |deepest, e| deepest.min(e.0));
-        for &(opening, j) in &work.entering {
+        let deepest = entering.iter().fold(0.0f64, |deepest, e| deepest.min(e.0));
+        for &(opening, j) in &entering {
             if opening <= 0.5 * deepest {
                 active[j] = true;
                 same = false;
@@ -174,10 +182,10 @@ pub(super) fn distribute<L: LocalApproach>(
 }
 
 /// Force up to `most` under which point `i` approaches by `approach`, to a factor of two.
-fn force_for(local: &impl LocalApproach, i: usize, approach: f64, most: f64) -> f64 {
+fn force_for(problem: &impl ContactProblem, i: usize, approach: f64, most: f64) -> f64 {
     let mut force = most;
     for _ in 0..30 {
-        if local.approach(i, force).0 <= approach {
+        if problem.local_approach(i, force).0 <= approach {
             break;
         }
         force *= 0.5;
@@ -189,6 +197,7 @@ fn force_for(local: &impl LocalApproach, i: usize, approach: f64, most: f64) -> 
 mod tests {
     use super::*;
     use crate::compliance::{STENCIL, Stencil};
+    use crate::contact::system::{ContactSystem, LocalApproach, SystemWorkspace};
     use crate::watch::Watch;
     use herringbone_oracle::Tolerance::Relative;
     use herringbone_oracle::check;
@@ -234,6 +243,7 @@ mod tests {
                     lines: &lines,
                     coupling: &coupling,
                     local: &local,
+                    modes: &[],
                 };
                 let mut meter = Meter::new(Watch::none());
                 let got =

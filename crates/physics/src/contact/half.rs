@@ -3,6 +3,7 @@
 use super::distribution::DistributionError;
 use super::error::ContactError;
 use super::position::{ForceCurve, LoadedPosition, PositionError, PositionSolver};
+use super::shafts::{DisplacementField, Mount};
 use crate::compliance::{Compliance, Settings};
 use crate::gear::{Half, Pair};
 use crate::watch::Watch;
@@ -26,7 +27,31 @@ impl<'a> HalfContact<'a> {
         settings: &Settings,
         watch: Watch<'a>,
     ) -> HalfContact<'a> {
-        HalfContact { pair, half, solver: PositionSolver::new(pair, half, compliance, settings.corner_contact, watch) }
+        Self::mounted(pair, half, compliance, settings, Mount::Rigid, watch)
+    }
+
+    /// The same with the bodies displaced by `field` from where they stand without load, and held there.
+    pub fn displaced(
+        pair: &'a Pair,
+        half: Half,
+        compliance: &'a Compliance,
+        settings: &Settings,
+        field: &'a DisplacementField,
+        watch: Watch<'a>,
+    ) -> HalfContact<'a> {
+        Self::mounted(pair, half, compliance, settings, Mount::Displaced(field), watch)
+    }
+
+    fn mounted(
+        pair: &'a Pair,
+        half: Half,
+        compliance: &'a Compliance,
+        settings: &Settings,
+        mount: Mount<'a>,
+        watch: Watch<'a>,
+    ) -> HalfContact<'a> {
+        let corner_contact = settings.corner_contact;
+        HalfContact { pair, half, solver: PositionSolver::new(pair, half, compliance, corner_contact, mount, watch) }
     }
 
     /// The watch whose checkpoints are passed.
@@ -79,7 +104,7 @@ impl<'a> HalfContact<'a> {
     }
 }
 
-fn to_contact_error(error: PositionError, half: Half, phase: f64) -> ContactError {
+pub(super) fn to_contact_error(error: PositionError, half: Half, phase: f64) -> ContactError {
     match error {
         PositionError::NoContact => ContactError::NoContact { half, phase },
         PositionError::Distribution(DistributionError::NotConverged { iterations, change }) => {

@@ -2,7 +2,8 @@
 //! transmission error and load shares over one mesh period, on a [`Compliance`](crate::compliance::Compliance).
 //!
 //! `lines` and `position` put the contact lines of one position together, `distribution` shares the force out by Newton
-//! steps of the `system`, `refine` chooses the positions, `cycle` and `halves` run over the mesh period.
+//! steps of the `system`, `refine` chooses the positions, `cycle` and `halves` run over the mesh period; `shafts` does
+//! all that for both halves together on elastic shafts.
 //!
 //! Everything is SI and along the transverse base tangent unless a name says otherwise; coordinates are those of
 //! [`crate::gear`].
@@ -20,6 +21,7 @@ mod memory;
 mod point_contacts;
 mod position;
 mod refine;
+mod shafts;
 mod short_face;
 mod system;
 
@@ -33,6 +35,10 @@ pub use halves::{LoadedContact, same_gaps, solve_half, solve_pair_of_halves};
 pub use lines::ContactPoint;
 pub use memory::{ComplianceModel, ContactMemory, ContactSizes};
 pub use position::LoadedPosition;
+pub use shafts::{
+    AxialFreedom, ContactShafts, DisplacementField, FaceLoad, HalfOnShafts, Hand, LoadedContactOnShafts, MeshFrame,
+    ShaftState, sense_of_rotation, solve_on_shafts,
+};
 pub use short_face::{SHORT_FACE_NOTICE, stiffness_excess};
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::distribution::{Distribution, DistributionError, Prescribed, distribute};
 use super::lines::{ContactPoint, CornerGaps, PairRange, collect, reference_roll_m};
 use super::point_contacts::PointContacts;
+use super::shafts::{HalfFlexibility, Mount};
 use super::system::{ContactSystem, SystemWorkspace};
 use crate::compliance::{CORNER_REACH, Compliance, LineWeights, Stencil};
 use crate::gear::{Half, Pair};
@@ -92,11 +93,14 @@ pub(super) struct PositionSolver<'a> {
     gaps: Vec<f64>,
     stencils: Vec<Stencil>,
     bulk: Vec<f64>,
+    mounted_bulk: Vec<f64>,
+    modes: Vec<f64>,
     block: Vec<f64>,
     scratch: Vec<f64>,
     local: PointContacts,
     coupling: Vec<Vec<f64>>,
     work: SystemWorkspace,
+    mount: Mount<'a>,
     watch: Watch<'a>,
     /// Largest corner gap that was worth looking at so far.
     corner_gap_m: f64,
@@ -120,6 +124,7 @@ impl<'a> PositionSolver<'a> {
         half: Half,
         compliance: &'a Compliance,
         corner_contact: bool,
+        mount: Mount<'a>,
         watch: Watch<'a>,
     ) -> PositionSolver<'a> {
         PositionSolver {
@@ -137,11 +142,14 @@ impl<'a> PositionSolver<'a> {
             gaps: Vec::new(),
             stencils: Vec::new(),
             bulk: Vec::new(),
+            mounted_bulk: Vec::new(),
+            modes: Vec::new(),
             block: Vec::new(),
             scratch: Vec::new(),
             local: PointContacts::default(),
             coupling: Vec::new(),
             work: SystemWorkspace::default(),
+            mount,
             watch,
             corner_gap_m: 0.0,
             corner_width: None,
@@ -169,6 +177,27 @@ impl<'a> PositionSolver<'a> {
         width_m
     }
 
+    /// Most slices of the contact lines, and the least width of a part of a slice beyond the path, under a force.
+    fn segmentation(&mut self, force_bt_n: f64) -> (usize, f64) {
+        let cos = self.pair.base_helix_angle_rad.cos();
+        let least_m = self.compliance.local.least_width_m(self.pair, force_bt_n / cos);
+        let most = (self.pair.spec.face_width_m / least_m).clamp(4.0, 1e6) as usize;
+        (most, least_m.max(self.corner_width_m(force_bt_n) / PARTS_PER_CORNER_WIDTH))
+    }
+
+    /// Collects the points of possible contact, with the gaps of the displaced bodies.
+    fn collect_points(&mut self, phase: f64, most: usize, reach: &PairRange) -> Result<(), Canceled> {
+        self.watch.checkpoint_quietly()?;
+        collect(self.pair, &self.corners, self.half, phase, self.slices.min(most), reach, &mut self.points);
+        if let Mount::Displaced(field) = self.mount {
+            let cos = self.pair.base_helix_angle_rad.cos();
+            for p in &mut self.points {
+                p.gap_m += field.at(p.entry_m, p.x_m) / cos;
+            }
+        }
+        Ok(())
+    }
+
     /// The watch whose checkpoints are passed.
     pub(super) fn watch(&self) -> Watch<'a> {
         self.watch
@@ -193,14 +222,11 @@ impl<'a> PositionSolver<'a> {
         force_bt_n: f64,
     ) -> Result<LoadedPosition, PositionError> {
         let cos = self.pair.base_helix_angle_rad.cos();
-        let least_m = self.compliance.local.least_width_m(self.pair, force_bt_n / cos);
-        let most = (self.pair.spec.face_width_m / least_m).clamp(4.0, 1e6) as usize;
-        let least_part_m = least_m.max(self.corner_width_m(force_bt_n) / PARTS_PER_CORNER_WIDTH);
+        let (most, least_part_m) = self.segmentation(force_bt_n);
         for _ in 0..8 {
             let corner_gap_m = if self.corner_contact { self.corner_gap_m } else { 0.0 };
             let reach = PairRange { lowest_pair, corner_gap_m, least_part_m };
-            self.watch.checkpoint_quietly()?;
-            collect(self.pair, &self.corners, self.half, phase, self.slices.min(most), &reach, &mut self.points);
+            self.collect_points(phase, most, &reach)?;
             if self.points.is_empty() {
                 return Err(PositionError::NoContact);
             }
@@ -234,15 +260,12 @@ impl<'a> PositionSolver<'a> {
         approaches_m: &[f64],
     ) -> Result<ForceCurve, PositionError> {
         let cos = self.pair.base_helix_angle_rad.cos();
-        let least_m = self.compliance.local.least_width_m(self.pair, force_bt_n / cos);
-        let most = (self.pair.spec.face_width_m / least_m).clamp(4.0, 1e6) as usize;
-        let least_part_m = least_m.max(self.corner_width_m(force_bt_n) / PARTS_PER_CORNER_WIDTH);
+        let (most, least_part_m) = self.segmentation(force_bt_n);
         let highest_m = approaches_m.last().copied().unwrap_or(0.0);
         let mut corner_gap_m = if self.corner_contact { highest_m } else { 0.0 };
         let free_m = loop {
             let reach = PairRange { lowest_pair: i32::MIN, corner_gap_m, least_part_m };
-            self.watch.checkpoint_quietly()?;
-            collect(self.pair, &self.corners, self.half, phase, self.slices.min(most), &reach, &mut self.points);
+            self.collect_points(phase, most, &reach)?;
             let free_m = self.points.iter().map(|p| p.gap_m - 0.5 * p.gap_spread_m).fold(f64::INFINITY, f64::min);
             if !free_m.is_finite() {
                 return Err(PositionError::NoContact);
@@ -276,6 +299,91 @@ impl<'a> PositionSolver<'a> {
         Ok(ForceCurve { free_m, samples })
     }
 
+    /// Collects and assembles the points of a position on elastic shafts, with their displacements by unit openings at
+    /// the nodes, and expects the forces of the position before.
+    pub(super) fn prepare<const N: usize>(
+        &mut self,
+        phase: f64,
+        force_bt_n: f64,
+        corner_gap_m: f64,
+        node_weights: impl Fn(f64, f64) -> [f64; N],
+    ) -> Result<(), PositionError> {
+        let cos = self.pair.base_helix_angle_rad.cos();
+        let (most, least_part_m) = self.segmentation(force_bt_n);
+        let reach = PairRange { lowest_pair: i32::MIN, corner_gap_m, least_part_m };
+        self.collect_points(phase, most, &reach)?;
+        if self.points.is_empty() {
+            return Err(PositionError::NoContact);
+        }
+        self.assemble(phase, force_bt_n / cos)?;
+        self.modes.clear();
+        self.modes.extend(self.points.iter().flat_map(|p| node_weights(p.entry_m, p.x_m)));
+        self.start_from_previous();
+        Ok(())
+    }
+
+    /// The points of the assembled position.
+    pub(super) fn points(&self) -> &[ContactPoint] {
+        &self.points
+    }
+
+    /// Forces that the assembled points are expected to carry.
+    pub(super) fn expected_forces(&self) -> &[f64] {
+        &self.start
+    }
+
+    /// The assembled points on elastic shafts.
+    pub(super) fn mounted_system(&self) -> ContactSystem<'_, PointContacts> {
+        self.system(&self.mounted_bulk, &self.modes)
+    }
+
+    /// Keeps the solved forces for the next position.
+    pub(super) fn store(&mut self, forces_n: &[f64]) {
+        store_forces(&mut self.previous, &self.points, forces_n);
+    }
+
+    /// Forces of the points at the stations of the whole face, each with its first moment over x.
+    pub(super) fn station_loads(&self, forces_n: &[f64]) -> Vec<[f64; 2]> {
+        let influence = &self.compliance.influence;
+        let mut loads = vec![[0.0; 2]; influence.stations_m().len()];
+        for (p, f) in self.points.iter().zip(forces_n) {
+            let stencil = influence.stencil(p.entry_m);
+            for (load, w) in loads[stencil.first..].iter_mut().zip(stencil.weights) {
+                load[0] += w * f;
+                load[1] += w * f * p.x_m;
+            }
+        }
+        loads
+    }
+
+    /// Stiffness of the loaded teeth on bodies that are held, along the flank normal: force by approach, moment about
+    /// the middle of the face by approach (force by tilt), moment by tilt; `total` and `all` are force and points of
+    /// the whole problem.
+    pub(super) fn tooth_stiffness(
+        &mut self,
+        all: usize,
+        total: f64,
+        forces_n: &[f64],
+    ) -> Result<[f64; 3], PositionError> {
+        let middle_m = 0.5 * self.pair.spec.face_width_m;
+        let arms: Vec<f64> = self.points.iter().map(|p| p.entry_m - middle_m).collect();
+        let active: Vec<bool> = forces_n.iter().map(|f| *f > 0.0).collect();
+        let mut work = std::mem::take(&mut self.work);
+        let system = self.system(&self.bulk, &arms);
+        let meter = &mut Meter::new(self.watch);
+        let response = system.linear_response((total, all), 0.0, forces_n, &active, &mut work, meter);
+        let out = match response? {
+            None => [0.0; 3],
+            Some((stiffness, _)) => {
+                let moment = |by: &mut dyn Iterator<Item = f64>| by.zip(&arms).map(|(f, a)| f * a).sum::<f64>();
+                let coupled = work.mode_forces.iter().sum();
+                [stiffness, coupled, moment(&mut work.mode_forces.iter().copied())]
+            }
+        };
+        self.work = work;
+        Ok(out)
+    }
+
     /// Expects the forces of the position before.
     fn start_from_previous(&mut self) {
         // Both lists ascend. What comes onto the path is expected to carry like the rest of its line.
@@ -295,16 +403,25 @@ impl<'a> PositionSolver<'a> {
     }
 
     fn distribute(&mut self, prescribed: Prescribed) -> Result<Distribution, DistributionError> {
-        let system = ContactSystem {
+        let mut work = std::mem::take(&mut self.work);
+        let meter = &mut Meter::new(self.watch);
+        let solved = distribute(&self.system(&self.bulk, &[]), prescribed, &self.start, &mut work, meter);
+        self.work = work;
+        solved
+    }
+
+    /// The assembled points on bodies of the flexibility `bulk` between the stations.
+    fn system<'s>(&'s self, bulk: &'s [f64], modes: &'s [f64]) -> ContactSystem<'s, PointContacts> {
+        ContactSystem {
             gaps: &self.gaps,
             stencils: &self.stencils,
             stations: self.weights.iter().map(|w| w.count).sum(),
-            bulk: &self.bulk,
+            bulk,
             lines: &self.lines,
             coupling: &self.coupling,
             local: &self.local,
-        };
-        distribute(&system, prescribed, &self.start, &mut self.work, &mut Meter::new(self.watch))
+            modes,
+        }
     }
 
     /// Lines, gaps, bulk flexibility and local contacts of the current points.
@@ -360,8 +477,40 @@ impl<'a> PositionSolver<'a> {
             }
             row += response.count;
         }
+        if let Mount::Shafts(shafts) = self.mount {
+            self.add_shafts(shafts, (x0, slope), &mut meter)?;
+        }
         let model = &self.compliance.local;
         self.local.prepare(pair, model, force_n, (&self.points, &self.lines), &mut self.coupling, &mut meter)
+    }
+}
+
+impl PositionSolver<'_> {
+    /// The bulk flexibility with that of the shafts within the half; the line of pair 0 is at `x0 + slope z`.
+    fn add_shafts(
+        &mut self,
+        shafts: &HalfFlexibility,
+        (x0, slope): (f64, f64),
+        meter: &mut Meter,
+    ) -> Result<(), Canceled> {
+        self.mounted_bulk.clear();
+        self.mounted_bulk.extend_from_slice(&self.bulk);
+        let stations_m = self.compliance.influence.stations_m();
+        let places: Vec<(usize, f64)> = self
+            .weights
+            .iter()
+            .flat_map(|line| {
+                let base = x0 + f64::from(line.pair) * self.pair.base_pitch_m;
+                (line.first..line.first + line.count).map(move |i| (i, base + slope * stations_m[i]))
+            })
+            .collect();
+        for (row, place) in self.mounted_bulk.chunks_exact_mut(places.len().max(1)).zip(&places) {
+            meter.count(4 * places.len())?;
+            for (value, load) in row.iter_mut().zip(&places) {
+                *value += shafts.between(*place, *load);
+            }
+        }
+        Ok(())
     }
 }
 

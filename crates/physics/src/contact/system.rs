@@ -16,6 +16,52 @@ pub(super) trait LocalApproach {
     fn approach(&self, i: usize, force: f64) -> (f64, f64);
 }
 
+/// A problem that [`distribute`](super::distribution::distribute) solves: points, and the linear system of a Newton
+/// step.
+pub(super) trait ContactProblem {
+    /// Reused memory.
+    type Workspace;
+
+    /// Normal gap of every point before loading, m.
+    fn gaps(&self) -> impl Iterator<Item = f64>;
+
+    /// Ranges of points that cannot all be without force.
+    fn carriers(&self) -> Vec<Range<usize>> {
+        std::iter::once(0..self.gaps().count()).collect()
+    }
+
+    /// Local approach of point `i` under a positive force, and its derivative.
+    fn local_approach(&self, i: usize, force: f64) -> (f64, f64);
+
+    /// One Newton step on the active points: their [new forces](Self::new_forces); returns approach and stiffness.
+    /// `total` is the sum of the forces (their size, where the approach above the datum is `prescribed` instead).
+    /// `None` where the system is singular.
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    fn newton(
+        &self,
+        prescribed: (f64, Option<f64>),
+        datum: f64,
+        forces: &[f64],
+        active: &[bool],
+        work: &mut Self::Workspace,
+        meter: &mut Meter,
+    ) -> Result<Option<(f64, f64)>, Canceled>;
+
+    /// Forces after the step.
+    fn new_forces<'w>(&self, work: &'w Self::Workspace) -> &'w [f64];
+
+    /// Prepares [`Self::deflection`] under `forces`.
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    fn displace(&self, forces: &[f64], work: &mut Self::Workspace, meter: &mut Meter) -> Result<(), Canceled>;
+
+    /// Displacement of point `i` by the forces of all others, apart from its gap and the approach of the bodies.
+    fn deflection(&self, i: usize, forces: &[f64], work: &Self::Workspace) -> f64;
+}
+
 /// The points and what couples them. All quantities along the flank normal.
 pub(super) struct ContactSystem<'a, L: LocalApproach> {
     /// Normal gap of every point before loading, m.
@@ -32,6 +78,9 @@ pub(super) struct ContactSystem<'a, L: LocalApproach> {
     pub coupling: &'a [Vec<f64>],
     /// Local approach of the points.
     pub local: &'a L,
+    /// Displacements of the points by unit displacements of bodies that they are fixed to, point by point; empty for
+    /// one rigid body.
+    pub modes: &'a [f64],
 }
 
 /// Reused memory of the solver.
@@ -41,6 +90,8 @@ pub(super) struct SystemWorkspace {
     target: Vec<f64>,
     /// Forces after the step.
     pub new_forces: Vec<f64>,
+    /// Forces per unit displacement of every mode, point by point.
+    pub mode_forces: Vec<f64>,
     weight: Vec<f64>,
     matrix: Vec<f64>,
     sides: Vec<f64>,
@@ -50,10 +101,6 @@ pub(super) struct SystemWorkspace {
     station_force: Vec<f64>,
     station_shift: Vec<f64>,
     unit: Vec<f64>,
-    /// Number of times that a point has entered the active set.
-    pub entries: Vec<u8>,
-    /// Opening and index of points that enter the active set.
-    pub entering: Vec<(f64, usize)>,
 }
 
 /// Least force that counts as contact, as a part of the mean force of the points.
@@ -61,15 +108,21 @@ pub(super) const LEAST_FORCE: f64 = 1e-9;
 /// Diagonals of W.
 const BAND: usize = 2 * STENCIL - 1;
 impl<L: LocalApproach> ContactSystem<'_, L> {
-    /// One Newton step on the active points: their new forces into `work.new_forces`; returns approach and stiffness.
-    /// `total` is the sum of the forces (their size, where the approach above the datum is `prescribed` instead).
-    /// `None` where the system is singular.
+    /// Number of modes.
+    fn mode_count(&self) -> usize {
+        self.modes.len() / self.gaps.len().max(1)
+    }
+
+    /// Linearises the active points about `forces` and solves for their forces: those of no approach above the datum,
+    /// into `work.new_forces`; those per unit of approach; and those per unit displacement of every mode, into
+    /// `work.mode_forces`. Returns the sums of the second and the first. `None` where the system is singular. `total`
+    /// is the size of the forces, over `all` points of the problem.
     ///
     /// # Errors
     /// [`Canceled`].
-    pub(super) fn newton(
+    pub(super) fn linear_response(
         &self,
-        (total, prescribed): (f64, Option<f64>),
+        (total, all): (f64, usize),
         datum: f64,
         forces: &[f64],
         active: &[bool],
@@ -78,7 +131,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
     ) -> Result<Option<(f64, f64)>, Canceled> {
         meter.checkpoint()?;
         let (n, r) = (self.gaps.len(), self.stations);
-        let floor = LEAST_FORCE * total / n as f64;
+        let floor = LEAST_FORCE * total / all as f64;
         work.slope.resize(n, 1.0);
         work.target.resize(n, 0.0);
         for i in 0..n {
@@ -89,16 +142,16 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
                 work.target[i] = slope * at - value - (self.gaps[i] - datum);
             }
         }
-        // Right-hand sides Pᵀ D⁻¹ 1 and Pᵀ D⁻¹ c.
+        // Right-hand sides Pᵀ D⁻¹ 1, Pᵀ D⁻¹ c, and Pᵀ D⁻¹ of the modes.
+        let modes = self.mode_count();
         work.sides.clear();
-        work.sides.resize(2 * r, 0.0);
+        work.sides.resize((2 + modes) * r, 0.0);
         if self.coupling.is_empty() {
             self.add_points(active, work, meter)?;
         } else if !self.add_lines(active, work, meter)? {
             return Ok(None);
         }
-        let (unit, target) = work.sides.split_at_mut(r);
-        for side in [unit, target] {
+        for side in work.sides.chunks_exact_mut(r.max(1)) {
             work.station_force.clear();
             work.station_force.extend_from_slice(side);
             multiply(self.bulk, &work.station_force, side, meter)?;
@@ -110,19 +163,13 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         work.new_forces.resize(n, 0.0);
         work.unit.clear();
         work.unit.resize(n, 0.0);
-        let (stiffness, rest) = if self.coupling.is_empty() {
+        work.mode_forces.clear();
+        work.mode_forces.resize(n * modes, 0.0);
+        Ok(Some(if self.coupling.is_empty() {
             self.forces_of_points(active, work)
         } else {
             self.forces_of_lines(active, work)
-        };
-        let approach = prescribed.unwrap_or_else(|| (total - rest) / stiffness);
-        if !approach.is_finite() {
-            return Ok(None);
-        }
-        for (f, u) in work.new_forces.iter_mut().zip(&work.unit) {
-            *f += approach * u;
-        }
-        Ok(Some((approach, stiffness)))
+        }))
     }
 
     /// I + B W and the right-hand sides when D is diagonal: W is banded.
@@ -140,6 +187,9 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
                 let scaled = wa * inverse;
                 work.sides[row] += scaled;
                 work.sides[r + row] += scaled * work.target[i];
+                for (k, mode) in self.modes_of(i).iter().enumerate() {
+                    work.sides[(2 + k) * r + row] += scaled * mode;
+                }
                 for (b, wb) in stencil.weights.iter().enumerate() {
                     // Diagonal by diagonal: W[row][column] is at [row - column + 3][column].
                     work.weight[(STENCIL - 1 + a - b) * r + stencil.first + b] += scaled * wb;
@@ -189,12 +239,17 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
             work.new_forces[i] = new_forces;
             stiffness += unit;
             rest += new_forces;
+            let modes = self.modes_of(i);
+            for (k, mode) in modes.iter().enumerate() {
+                let side = &work.sides[(2 + k) * r..(3 + k) * r];
+                work.mode_forces[i * modes.len() + k] = (mode - stencil.at(side)) / work.slope[i];
+            }
         }
         (stiffness, rest)
     }
 
     /// The same when the points of a line are coupled: D is a full block per line, factored in `work.block`;
-    /// `work.columns` keeps L⁻¹ [1, c, P]. `false` where a block is not positive definite.
+    /// `work.columns` keeps L⁻¹ [1, c, modes, P]. `false` where a block is not positive definite.
     fn add_lines(&self, active: &[bool], work: &mut SystemWorkspace, meter: &mut Meter) -> Result<bool, Canceled> {
         let r = self.stations;
         meter.zeros(&mut work.matrix, r * r)?;
@@ -225,15 +280,19 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
             }
             let stations = self.span(&work.line_points);
             let width = stations.len();
-            // Columns 1, c, P, one after the other.
+            // Columns 1, c, the modes, P, one after the other.
+            let sides = 2 + self.mode_count();
             let first = work.columns.len();
-            work.columns.resize(first + (2 + width) * m, 0.0);
+            work.columns.resize(first + (sides + width) * m, 0.0);
             let columns = &mut work.columns[first..];
             for (row, &i) in work.line_points.iter().enumerate() {
                 columns[row] = 1.0;
                 columns[m + row] = work.target[i];
+                for (k, mode) in self.modes_of(i).iter().enumerate() {
+                    columns[(2 + k) * m + row] = *mode;
+                }
                 for (k, w) in self.stencils[i].weights.iter().enumerate() {
-                    columns[(2 + self.stencils[i].first + k - stations.start) * m + row] = *w;
+                    columns[(sides + self.stencils[i].first + k - stations.start) * m + row] = *w;
                 }
             }
             for column in columns.chunks_exact_mut(m) {
@@ -244,10 +303,11 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
             for a in 0..width {
                 meter.count(a * m)?;
                 let row = stations.start + a;
-                work.sides[row] += dot(column(2 + a), column(0));
-                work.sides[r + row] += dot(column(2 + a), column(1));
+                for side in 0..sides {
+                    work.sides[side * r + row] += dot(column(sides + a), column(side));
+                }
                 for b in 0..=a {
-                    let value = dot(column(2 + a), column(2 + b));
+                    let value = dot(column(sides + a), column(sides + b));
                     work.weight[row * r + stations.start + b] += value;
                     if b != a {
                         work.weight[(stations.start + b) * r + row] += value;
@@ -295,10 +355,27 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
                     out[i] = *value;
                 }
             }
+            let modes = self.mode_count();
+            for k in 0..modes {
+                let side = &work.sides[(2 + k) * r..(3 + k) * r];
+                work.columns.clear();
+                let of_point = |&i: &usize| self.modes[i * modes + k] - self.stencils[i].at(side);
+                work.columns.extend(work.line_points.iter().map(of_point));
+                cholesky_solve(block, &mut work.columns, m);
+                for (&i, value) in work.line_points.iter().zip(&work.columns) {
+                    work.mode_forces[i * modes + k] = *value;
+                }
+            }
             stiffness += work.line_points.iter().map(|&i| work.unit[i]).sum::<f64>();
             rest += work.line_points.iter().map(|&i| work.new_forces[i]).sum::<f64>();
         }
         (stiffness, rest)
+    }
+
+    /// Displacements of point `i` by the modes.
+    fn modes_of(&self, i: usize) -> &[f64] {
+        let modes = self.mode_count();
+        &self.modes[i * modes..(i + 1) * modes]
     }
 
     /// Stations that the points `active` touch.
@@ -312,7 +389,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
     ///
     /// # Errors
     /// [`Canceled`].
-    pub(super) fn station_shifts(
+    fn station_shifts(
         &self,
         forces: &[f64],
         work: &mut SystemWorkspace,
@@ -329,14 +406,55 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         work.station_shift.resize(self.stations, 0.0);
         multiply(self.bulk, &work.station_force, &mut work.station_shift, meter)
     }
+}
 
-    /// Displacement of point `j` of `line` by the forces of all other points.
-    pub(super) fn deflection(&self, line: usize, j: usize, forces: &[f64], work: &SystemWorkspace) -> f64 {
-        let mut sum = self.stencils[j].at(&work.station_shift);
-        if let Some(coupling) = self.coupling.get(line) {
+impl<L: LocalApproach> ContactProblem for ContactSystem<'_, L> {
+    type Workspace = SystemWorkspace;
+
+    fn gaps(&self) -> impl Iterator<Item = f64> {
+        self.gaps.iter().copied()
+    }
+
+    fn local_approach(&self, i: usize, force: f64) -> (f64, f64) {
+        self.local.approach(i, force)
+    }
+
+    fn newton(
+        &self,
+        (total, prescribed): (f64, Option<f64>),
+        datum: f64,
+        forces: &[f64],
+        active: &[bool],
+        work: &mut SystemWorkspace,
+        meter: &mut Meter,
+    ) -> Result<Option<(f64, f64)>, Canceled> {
+        let response = self.linear_response((total, self.gaps.len()), datum, forces, active, work, meter)?;
+        let Some((stiffness, rest)) = response else { return Ok(None) };
+        let approach = prescribed.unwrap_or_else(|| (total - rest) / stiffness);
+        if !approach.is_finite() {
+            return Ok(None);
+        }
+        for (f, u) in work.new_forces.iter_mut().zip(&work.unit) {
+            *f += approach * u;
+        }
+        Ok(Some((approach, stiffness)))
+    }
+
+    fn new_forces<'w>(&self, work: &'w SystemWorkspace) -> &'w [f64] {
+        &work.new_forces
+    }
+
+    fn displace(&self, forces: &[f64], work: &mut SystemWorkspace, meter: &mut Meter) -> Result<(), Canceled> {
+        self.station_shifts(forces, work, meter)
+    }
+
+    fn deflection(&self, i: usize, forces: &[f64], work: &SystemWorkspace) -> f64 {
+        let mut sum = self.stencils[i].at(&work.station_shift);
+        if !self.coupling.is_empty() {
+            let line = self.lines.partition_point(|range| range.end <= i);
             let range = &self.lines[line];
             let size = range.len();
-            let row = &coupling[(j - range.start) * size..(j - range.start + 1) * size];
+            let row = &self.coupling[line][(i - range.start) * size..(i - range.start + 1) * size];
             sum += dot(row, &forces[range.clone()]);
         }
         sum

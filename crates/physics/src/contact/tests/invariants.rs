@@ -238,6 +238,7 @@ fn a_constant_foundation_gives_the_length_of_the_lines_and_relief_unloads_it() {
                 lines: &lines,
                 coupling: &[],
                 local: &local,
+                modes: &[],
             };
             let total = 4e3;
             let found = {

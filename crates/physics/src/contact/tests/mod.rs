@@ -7,5 +7,6 @@ mod members;
 mod published;
 mod reference_pair;
 mod robustness;
+mod shafts;
 
 use crate::compliance::fixtures::{pair, spec};
