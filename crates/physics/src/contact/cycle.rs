@@ -169,7 +169,18 @@ impl<'a> CycleBuilder<'a> {
         from: f64,
     ) -> CycleBuilder<'a> {
         let states = positions.states.into_iter().map(|(phase, state)| (phase, force_bt_n, state)).collect();
-        CycleBuilder { pair, slices, states, resampled: Some((from, positions.error)) }
+        Self::resampled(pair, slices, states, (from, positions.error))
+    }
+
+    /// The same with a force at every position: phase (ascending), F_bt and state; phase of the first curve position and
+    /// error of the positions.
+    pub(super) fn resampled(
+        pair: &'a Pair,
+        slices: usize,
+        states: Vec<(f64, f64, LoadedPosition)>,
+        from_and_error: (f64, f64),
+    ) -> CycleBuilder<'a> {
+        CycleBuilder { pair, slices, states, resampled: Some(from_and_error) }
     }
 
     /// Solves the special states (mesh-in share, begin and end of load, entry) and closes the period. `force_at` gives

@@ -23,6 +23,8 @@ pub(super) struct Distribution {
     pub stiffness: f64,
     /// Newton iterations.
     pub iterations: u32,
+    /// Forces about which the last step was linearised.
+    pub linearised_n: Vec<f64>,
 }
 
 /// Errors of a distribution.
@@ -91,10 +93,14 @@ pub(super) fn distribute<P: ContactProblem>(
         Prescribed::Approach { approach, .. } => Some(approach - datum),
     };
     let carriers = system.carriers();
+    // Changes count as parts of what each of them carries.
+    let of_carrier = total / carriers.len() as f64;
     let limit = NEWTON_ITERATIONS + 40 + 6 * n as u32;
     let mut change = f64::INFINITY;
+    let mut linearised_n = vec![0.0; n];
     for iteration in 1..=limit {
         let primal = iteration > NEWTON_ITERATIONS;
+        linearised_n.copy_from_slice(&forces);
         let step = system.newton((total, above_datum), datum, &forces, &active, work, meter)?;
         let Some((approach, stiffness)) = step else {
             return Err(DistributionError::NotConverged { iterations: iteration, change });
@@ -121,7 +127,7 @@ pub(super) fn distribute<P: ContactProblem>(
                 active[i] = false;
                 same = false;
             }
-            change = change.max((next - forces[i]).abs() / total);
+            change = change.max((next - forces[i]).abs() / of_carrier);
             forces[i] = next;
         }
         // Everything let go at once: begin again from the point with the least gap.
@@ -173,9 +179,10 @@ pub(super) fn distribute<P: ContactProblem>(
                 same = false;
             }
         }
-        let rounding = 16.0 * f64::EPSILON * stiffness * approach.abs() / total;
+        let rounding = 16.0 * f64::EPSILON * stiffness * approach.abs() / of_carrier;
         if same && change < TOLERANCE + rounding {
-            return Ok(Distribution { forces, approach: approach + datum, stiffness, iterations: iteration });
+            let approach = approach + datum;
+            return Ok(Distribution { forces, approach, stiffness, iterations: iteration, linearised_n });
         }
     }
     Err(DistributionError::NotConverged { iterations: limit, change })

@@ -15,10 +15,22 @@ pub(super) const MOST_STATES: usize = (COARSE + 3) * 16;
 /// Smallest interval.
 const FINEST: f64 = 1.0 / 1024.0;
 
+/// Solved state of a position.
+pub(super) trait PositionState {
+    /// Stiffness and transmission error of every half that the state is of.
+    fn stiffness_and_error(&self) -> impl Iterator<Item = [f64; 2]>;
+}
+
+impl PositionState for LoadedPosition {
+    fn stiffness_and_error(&self) -> impl Iterator<Item = [f64; 2]> {
+        std::iter::once([self.stiffness_n_per_m, self.approach_m])
+    }
+}
+
 /// Positions of one period and how well they carry its curves.
-pub(super) struct RefinedPositions {
+pub(super) struct RefinedPositions<S = LoadedPosition> {
     /// Phases ascending in [0, 1) and their states.
-    pub states: Vec<(f64, LoadedPosition)>,
+    pub states: Vec<(f64, S)>,
     /// Largest change of a Fourier coefficient (mean and first harmonics of stiffness and transmission error, as parts
     /// of their means) by the positions that confirmed the others.
     pub error: f64,
@@ -26,12 +38,12 @@ pub(super) struct RefinedPositions {
 
 /// Solves positions until stiffness and transmission error halfway between neighbours agree with the interpolation of
 /// the others to `accuracy` of their means. `solve` gets a phase and the state nearest to it.
-pub(super) fn refine(
+pub(super) fn refine<S: PositionState>(
     pair: &Pair,
     accuracy: f64,
-    mut solve: impl FnMut(f64, Option<&LoadedPosition>) -> Result<LoadedPosition, ContactError>,
-) -> Result<RefinedPositions, ContactError> {
-    let mut states: Vec<(f64, LoadedPosition)> = Vec::with_capacity(64);
+    mut solve: impl FnMut(f64, Option<&S>) -> Result<S, ContactError>,
+) -> Result<RefinedPositions<S>, ContactError> {
+    let mut states: Vec<(f64, S)> = Vec::with_capacity(64);
     for phase in start_phases(pair, COARSE, 8.0 * FINEST) {
         let state = solve(phase, states.last().map(|s| &s.1))?;
         states.push((phase, state));
@@ -80,35 +92,37 @@ pub(super) fn start_phases(pair: &Pair, count: usize, least: f64) -> Vec<f64> {
     phases
 }
 
-/// Stiffness and transmission error over the period.
+/// Stiffness and transmission error of every half over the period, with their means.
 struct PositionCurves {
-    stiffness: PeriodicMonotoneCubic,
-    error: PeriodicMonotoneCubic,
-    mean: [f64; 2],
+    halves: Vec<[(PeriodicMonotoneCubic, f64); 2]>,
 }
 
 /// Samples for the comparison of Fourier coefficients.
 const SAMPLES: usize = 128;
 
 impl PositionCurves {
-    fn new<'s>(states: impl Iterator<Item = &'s (f64, LoadedPosition)> + Clone) -> PositionCurves {
+    fn new<'s, S: PositionState + 's>(states: impl Iterator<Item = &'s (f64, S)> + Clone) -> PositionCurves {
         let phase: Vec<f64> = states.clone().map(|s| s.0).collect();
         let n = phase.len() as f64;
-        let of = |f: fn(&LoadedPosition) -> f64| states.clone().map(|s| f(&s.1)).collect::<Vec<_>>();
-        let (k, e) = (of(|s| s.stiffness_n_per_m), of(|s| s.approach_m));
-        let mean = [k.iter().sum::<f64>() / n, e.iter().map(|v| v.abs()).sum::<f64>() / n];
-        PositionCurves {
-            stiffness: PeriodicMonotoneCubic::new(phase.clone(), k),
-            error: PeriodicMonotoneCubic::new(phase, e),
-            mean,
-        }
+        let halves = states.clone().next().map_or(0, |s| s.1.stiffness_and_error().count());
+        let curve = |half: usize, value: usize| {
+            let of = |s: &'s (f64, S)| s.1.stiffness_and_error().nth(half).map_or(f64::NAN, |v| v[value]);
+            let values: Vec<f64> = states.clone().map(of).collect();
+            let mean = values.iter().map(|v| v.abs()).sum::<f64>() / n;
+            (PeriodicMonotoneCubic::new(phase.clone(), values), mean)
+        };
+        PositionCurves { halves: (0..halves).map(|half| [curve(half, 0), curve(half, 1)]).collect() }
     }
 
     /// Distance of a state from the interpolation, as a part of the means.
-    fn error(&self, phase: f64, state: &LoadedPosition) -> f64 {
-        let stiffness = (self.stiffness.at(phase) - state.stiffness_n_per_m).abs() / self.mean[0];
-        let error = (self.error.at(phase) - state.approach_m).abs() / self.mean[1];
-        stiffness.max(error)
+    fn error(&self, phase: f64, state: &impl PositionState) -> f64 {
+        let mut worst = 0.0f64;
+        for (curves, values) in self.halves.iter().zip(state.stiffness_and_error()) {
+            for ((curve, mean), value) in curves.iter().zip(values) {
+                worst = worst.max((curve.at(phase) - value).abs() / mean);
+            }
+        }
+        worst
     }
 
     /// Largest change of mean or harmonics against `other`, as a part of the mean.
@@ -119,7 +133,7 @@ impl PositionCurves {
             let offset = difference.iter().sum::<f64>() / SAMPLES as f64;
             harmonics(&difference).into_iter().fold(offset.abs(), f64::max) / mean
         };
-        let stiffness = change(&self.stiffness, &other.stiffness, self.mean[0]);
-        stiffness.max(change(&self.error, &other.error, self.mean[1]))
+        let both = self.halves.iter().flatten().zip(other.halves.iter().flatten());
+        both.map(|((a, mean), (b, _))| change(a, b, *mean)).fold(0.0, f64::max)
     }
 }

@@ -389,12 +389,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
     ///
     /// # Errors
     /// [`Canceled`].
-    fn station_shifts(
-        &self,
-        forces: &[f64],
-        work: &mut SystemWorkspace,
-        meter: &mut Meter,
-    ) -> Result<(), Canceled> {
+    fn station_shifts(&self, forces: &[f64], work: &mut SystemWorkspace, meter: &mut Meter) -> Result<(), Canceled> {
         work.station_force.clear();
         work.station_force.resize(self.stations, 0.0);
         for (stencil, f) in self.stencils.iter().zip(forces) {

@@ -8,11 +8,14 @@ use super::position::{JointPosition, JointSolver};
 use crate::compliance::{Compliance, Settings};
 use crate::contact::ContactError;
 use crate::contact::coast::backwards;
-use crate::contact::cycle::{CycleBuilder, HalfCycle, harmonics};
+use crate::contact::cycle::{CURVE_POSITIONS, CycleBuilder};
 use crate::contact::half::HalfContact;
 use crate::contact::halves::LoadedContact;
+use crate::contact::lines::ContactPoint;
 use crate::contact::position::LoadedPosition;
+use crate::contact::refine::refine;
 use crate::gear::{Half, Pair};
+use crate::numerics::PeriodicMonotoneCubic;
 use crate::watch::Watch;
 
 /// Load along the face of one half, mean over all contact lines that pass a place during the mesh period.
@@ -49,8 +52,10 @@ impl FaceLoad {
         let [inner, outer] = self.ends_n_per_m;
         let places: Vec<f64> =
             std::iter::once(0.0).chain(self.strip_m.iter().copied()).chain(std::iter::once(width_m)).collect();
-        let loads: Vec<f64> =
-            std::iter::once(inner).chain(self.line_load_n_per_m.iter().copied()).chain(std::iter::once(outer)).collect();
+        let loads: Vec<f64> = std::iter::once(inner)
+            .chain(self.line_load_n_per_m.iter().copied())
+            .chain(std::iter::once(outer))
+            .collect();
         crate::numerics::interpolation::linear(&places, &loads, from_inner_m)
     }
 }
@@ -118,14 +123,8 @@ pub struct LoadedContactOnShafts {
     pub balance_error: f64,
 }
 
-/// Positions over the mesh period: to begin with, and at most.
-const POSITIONS: usize = 32;
-const MOST_POSITIONS: usize = 128;
 /// Length of the pieces of the face over which the line load is averaged.
 const PIECE_M: f64 = 5e-3;
-/// Harmonics that are compared for the error of the positions.
-const COMPARED: usize = 3;
-
 /// Solves both halves of `pair` on `shafts` under the pinion's torque of the magnitude `torque_nm`. `half_stagger` (part
 /// of a transverse pitch) advances the right half. `axial_n`: axial force by which a coupling holds the floating member
 /// back, on the pinion and positive to the right. With `coast`, `shafts` are those of the frame of the coast flanks, and
@@ -182,100 +181,125 @@ fn solve_from(
     let stagger = half_stagger - half_stagger.floor();
     let force_bt_n = torque_nm / pair.pinion.base_radius_m;
     let mut solver = JointSolver::new(pair, shafts, compliance, settings, watch);
-    let mut solve = |position: f64| {
-        let phases = [(position + from).fract(), (position + from + stagger).fract()];
-        // Σ n_z f of the forces on the gear is the axial force on the pinion with the opposite sign.
-        solver.solve(phases, force_bt_n, axial_n).map(|state| (phases, state))
-    };
-    let mut count = settings.positions.unwrap_or(POSITIONS);
-    let mut states = Vec::with_capacity(count);
-    for i in 0..count {
-        watch.checkpoint(0.9 * i as f64 / count as f64)?;
-        states.push(solve(i as f64 / count as f64)?);
-    }
-    let mut error = position_error(&states);
-    while settings.positions.is_none() && error > settings.accuracy && count < MOST_POSITIONS {
-        let mut refined = Vec::with_capacity(2 * count);
-        for (i, state) in states.into_iter().enumerate() {
-            watch.checkpoint_quietly()?;
-            refined.push(state);
-            refined.push(solve((i as f64 + 0.5) / count as f64)?);
+    let mut solve = |phase: f64, near: Option<&JointPosition>| {
+        if let Some(state) = near {
+            solver.start_from(state);
         }
-        states = refined;
-        count *= 2;
-        error = position_error(&states);
-    }
-    report(pair, shafts, states, error, (compliance, settings), watch)
+        // Σ n_z f of the forces on the gear is the opposite of the axial force on the pinion.
+        solver.solve([phase, (phase + stagger).fract()], force_bt_n, axial_n)
+    };
+    let positions = match settings.positions {
+        Some(count) => {
+            let mut states = Vec::with_capacity(count);
+            for i in 0..count {
+                let position = i as f64 / count as f64;
+                watch.checkpoint(0.9 * position)?;
+                let phase = (position + from).fract();
+                states.push((phase, solve(phase, None)?));
+            }
+            Positions { states, resampled: None }
+        }
+        None => {
+            let mut solved = 0.0;
+            let refined = refine(pair, settings.accuracy, |phase, near| {
+                solved += 1.0;
+                watch.checkpoint(0.9 * solved / (solved + 32.0))?;
+                solve(phase, near)
+            })?;
+            Positions { states: refined.states, resampled: Some((from, refined.error)) }
+        }
+    };
+    report(pair, shafts, &positions, stagger, (compliance, settings), watch)
 }
 
-/// Change of the first Fourier coefficients of approach and stiffness of both halves, as parts of the means, when every
-/// other position is left out.
-fn position_error(states: &[([f64; 2], JointPosition)]) -> f64 {
-    let change = |of: &dyn Fn(&JointPosition) -> f64| {
-        let all: Vec<f64> = states.iter().map(|(_, state)| of(state)).collect();
-        let half: Vec<f64> = all.iter().step_by(2).copied().collect();
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-        let differences =
-            harmonics(&all).into_iter().zip(harmonics(&half)).take(COMPARED).map(|(a, b)| (a - b).abs());
-        let offset = (mean(&all) - mean(&half)).abs();
-        differences.fold(offset, f64::max) / mean(&all).abs().max(f64::MIN_POSITIVE)
-    };
-    (0..2)
-        .map(|h| {
-            change(&|state| state.halves[h].approach_m).max(change(&|state| state.halves[h].stiffness_n_per_m))
-        })
-        .fold(0.0, f64::max)
+/// Solved positions: the phase of the left half, and the state.
+struct Positions {
+    states: Vec<(f64, JointPosition)>,
+    /// Phase of the first curve position when the curves are interpolated between the states, and the error of that.
+    resampled: Option<(f64, f64)>,
+}
+
+impl Positions {
+    /// Part of the mesh period that each state stands for.
+    fn weights(&self) -> Vec<f64> {
+        let n = self.states.len();
+        let phase = |i: usize| self.states[i % n].0 + (i / n) as f64;
+        if self.resampled.is_none() {
+            return vec![1.0 / n as f64; n];
+        }
+        (0..n).map(|i| 0.5 * (phase(i + 1) - if i == 0 { phase(n - 1) - 1.0 } else { phase(i - 1) })).collect()
+    }
+
+    /// A curve at the positions of the curves.
+    fn curve(&self, of: impl Fn(&JointPosition) -> f64) -> Vec<f64> {
+        let values: Vec<f64> = self.states.iter().map(|(_, state)| of(state)).collect();
+        match self.resampled {
+            None => values,
+            Some((from, _)) => {
+                let phases = self.states.iter().map(|s| s.0).collect();
+                PeriodicMonotoneCubic::new(phases, values).samples(from, CURVE_POSITIONS)
+            }
+        }
+    }
+
+    /// Mean over the mesh period.
+    fn mean(&self, of: impl Fn(&JointPosition) -> f64) -> f64 {
+        self.weights().iter().zip(&self.states).map(|(w, (_, state))| w * of(state)).sum()
+    }
 }
 
 fn report(
     pair: &Pair,
     shafts: &ContactShafts,
-    states: Vec<([f64; 2], JointPosition)>,
-    position_error: f64,
+    positions: &Positions,
+    stagger: f64,
     (compliance, settings): (&Compliance, &Settings),
     watch: Watch<'_>,
 ) -> Result<LoadedContactOnShafts, ContactError> {
-    let count = states.len() as f64;
-    let cos = pair.base_helix_angle_rad.cos();
+    let (states, weights) = (&positions.states, positions.weights());
     let slices = compliance.slices();
-    let of_both: f64 =
-        states.iter().flat_map(|(_, s)| &s.halves).map(|half| half.forces_n.iter().sum::<f64>()).sum::<f64>() / count;
+    let cos = pair.base_helix_angle_rad.cos();
+    let of_both = positions.mean(|s| s.halves.iter().flat_map(|half| &half.forces_n).sum::<f64>());
     let mut lengths = [[0.0; 2]; 2];
     let mut halves = Vec::with_capacity(2);
     for half in Half::BOTH {
         let h = half.index();
-        let positions: Vec<&LoadedPosition> = states.iter().map(|(_, s)| &s.halves[h]).collect();
-        let mut solved = half_on_shafts(pair, half, shafts, &positions, slices, &mut lengths[h]);
+        let loaded: Vec<(f64, &LoadedPosition)> =
+            weights.iter().zip(states).map(|(w, (_, s))| (*w, &s.halves[h])).collect();
+        let mut solved = half_on_shafts(pair, half, shafts, &loaded, slices, &mut lengths[h]);
         solved.share = solved.normal_force_n[0] / of_both;
-        for (_, state) in &states {
-            (0..3).for_each(|c| solved.tooth_stiffness[c] += state.tilting[h][c] / count);
-            solved.openings_m.iter_mut().zip(state.openings_m[h]).for_each(|(mean, o)| *mean += o / count);
-        }
+        solved.tooth_stiffness = std::array::from_fn(|c| positions.mean(|s| s.tilting[h][c]));
+        solved.openings_m = (0..NODES).map(|k| positions.mean(|s| s.openings_m[h][k])).collect();
         halves.push(solved);
     }
     let halves = [halves.remove(0), halves.remove(0)];
-    let [pinion, gear] = Body::BOTH.map(|body| shaft_state(shafts, body, &states));
+    let [pinion, gear] = Body::BOTH.map(|body| shaft_state(shafts, body, positions));
     let balance_error = balance_error(shafts, &halves, [&pinion, &gear]);
-    let between_couplings_m = states.iter().map(|(_, s)| s.approach_m).collect();
-    let pinion_float_m = states.iter().map(|(_, s)| s.shafts[0].apex[2]).collect();
+    let between_couplings_m = positions.curve(|s| s.approach_m);
+    let pinion_float_m = positions.curve(|s| s.shafts[0].apex[2]);
     // The curves of either half, with the bodies held in their mean shape where special states are solved.
     let mut cycles = Vec::with_capacity(2);
     for half in Half::BOTH {
         let h = half.index();
+        let lead = if half == Half::Left { 0.0 } else { stagger };
         let field = displacement_field(shafts, &halves[h]);
         let mut contact = HalfContact::displaced(pair, half, compliance, settings, &field, watch);
-        let own: Vec<(f64, f64, LoadedPosition)> = states
+        let mut own: Vec<(f64, f64, LoadedPosition)> = states
             .iter()
-            .map(|(phases, state)| {
+            .map(|(phase, state)| {
                 let state = &state.halves[h];
-                (phases[h], state.forces_n.iter().sum::<f64>() * cos, state.clone())
+                ((phase + lead).fract(), state.forces_n.iter().sum::<f64>() * cos, state.clone())
             })
             .collect();
-        let mean_n = own.iter().map(|s| s.1).sum::<f64>() / count;
-        let mut cycle: HalfCycle =
-            CycleBuilder::at_positions(pair, slices, own).finish(&mut contact, &|_| mean_n)?;
-        cycle.position_error = Some(position_error);
-        cycles.push(cycle);
+        let builder = match positions.resampled {
+            None => CycleBuilder::at_positions(pair, slices, own),
+            Some((from, error)) => {
+                own.sort_by(|a, b| a.0.total_cmp(&b.0));
+                CycleBuilder::resampled(pair, slices, own, ((from + lead).fract(), error))
+            }
+        };
+        let mean_n = halves[h].normal_force_n[0] * cos;
+        cycles.push(builder.finish(&mut contact, &|_| mean_n)?);
     }
     let halves_of = [cycles.remove(0), cycles.remove(0)];
     let tan = pair.base_helix_angle_rad.tan();
@@ -295,8 +319,8 @@ fn report(
         contact,
         between_couplings_m,
         pinion_float_m,
-        line_length_m: 0.5 * all / count,
-        line_load_n_per_m: of_both / (all / count),
+        line_length_m: 0.5 * all,
+        line_load_n_per_m: of_both / all,
         open_fraction: (of_left[1] + of_right[1]) / all,
         balance_error,
         halves,
@@ -323,7 +347,7 @@ fn half_on_shafts(
     pair: &Pair,
     half: Half,
     shafts: &ContactShafts,
-    positions: &[&LoadedPosition],
+    positions: &[(f64, &LoadedPosition)],
     slices: usize,
     lengths: &mut [f64; 2],
 ) -> HalfOnShafts {
@@ -332,32 +356,38 @@ fn half_on_shafts(
     let mut strips = Strips::new(width_m, slices);
     let mut of_pieces = Strips::new(width_m, pieces);
     let sliver_m = 0.5 * width_m / slices as f64;
-    let mut forces = Vec::with_capacity(positions.len());
-    let (mut moment, mut peaks) = (0.0, 0.0);
-    for position in positions {
-        forces.push(position.forces_n.iter().sum::<f64>());
+    let (mut largest_n, mut least_n) = (f64::NEG_INFINITY, f64::INFINITY);
+    let (mut sum, mut moment, mut peaks) = (0.0, 0.0, 0.0);
+    for &(weight, position) in positions {
+        let whole = position.forces_n.iter().sum::<f64>();
+        (largest_n, least_n) = (largest_n.max(whole), least_n.min(whole));
+        sum += weight * whole;
         let mut peak = 0.0f64;
-        for (p, &f) in position.points.iter().zip(&position.forces_n) {
-            // entry_m is its own inverse.
-            let from_inner_m = pair.entry_m(p.entry_m);
-            let on_path = p.zone == 1;
-            let length_m = if on_path { p.width_m / cos } else { 0.0 };
-            lengths[0] += length_m;
-            if f <= 0.0 {
-                lengths[1] += length_m;
+        let mut rest = position.forces_n.as_slice();
+        for line in position.points.chunk_by(|a, b| a.pair == b.pair) {
+            let (forces, others) = rest.split_at(line.len());
+            rest = others;
+            for (i, (p, &f)) in line.iter().zip(forces).enumerate() {
+                // entry_m is its own inverse.
+                let from_inner_m = pair.entry_m(p.entry_m);
+                let on_path = p.zone == 1;
+                let length_m = if on_path { weight * p.width_m / cos } else { 0.0 };
+                lengths[0] += length_m;
+                if on_path && p.width_m >= sliver_m {
+                    peak = peak.max(f * cos / p.width_m);
+                }
+                moment += weight * f * from_inner_m;
+                let range = (from_inner_m - 0.5 * p.width_m, from_inner_m + 0.5 * p.width_m);
+                let load = SegmentLoad::new(line, forces, i, pair);
+                lengths[1] += length_m * (1.0 - load.loaded_part(p.width_m));
+                for strips in [&mut strips, &mut of_pieces] {
+                    strips.add_length(range, length_m);
+                    strips.add_force(&load, weight);
+                }
             }
-            if on_path && p.width_m >= sliver_m {
-                peak = peak.max(f * cos / p.width_m);
-            }
-            moment += f * from_inner_m;
-            let range = (from_inner_m - 0.5 * p.width_m, from_inner_m + 0.5 * p.width_m);
-            strips.add(range, f, length_m);
-            of_pieces.add(range, f, length_m);
         }
-        peaks += peak;
+        peaks += weight * peak;
     }
-    let sum: f64 = forces.iter().sum();
-    let mean_n = sum / positions.len() as f64;
     let mean_n_per_m = sum / lengths[0];
     let line_load_n_per_m = strips.line_loads();
     let last = line_load_n_per_m.len() - 1;
@@ -366,12 +396,10 @@ fn half_on_shafts(
         (1.5 * end - 0.5 * before).max(0.0)
     };
     let ends_n_per_m = [beyond(0, 1.min(last)), beyond(last, last.saturating_sub(1))];
-    let largest = forces.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let least = forces.iter().copied().fold(f64::INFINITY, f64::min);
     HalfOnShafts {
-        normal_force_n: [mean_n, largest - least],
+        normal_force_n: [sum, largest_n - least_n],
         share: 0.0,
-        axial_force_on_pinion_n: -shafts.frame.axial[half.index()] * mean_n,
+        axial_force_on_pinion_n: -shafts.frame.axial[half.index()] * sum,
         face: FaceLoad {
             strip_m: strips.middles_m(),
             ends_n_per_m,
@@ -380,10 +408,80 @@ fn half_on_shafts(
             mean_n_per_m,
             line_load_n_per_m,
         },
-        peak_over_mean: peaks / positions.len() as f64 / mean_n_per_m,
+        peak_over_mean: peaks / mean_n_per_m,
         centroid_from_inner_m: moment / sum,
         tooth_stiffness: [0.0; 3],
         openings_m: vec![0.0; NODES],
+    }
+}
+
+/// Load of a segment of a contact line, linear over the part of the face that it loads.
+///
+/// The slope is that between the neighbours; a segment next to one without load, whose linear load would fall below
+/// zero, carries a triangle on a part of its width.
+struct SegmentLoad {
+    range_m: (f64, f64),
+    /// Force per width in the middle of the range, and its slope.
+    middle_n_per_m: f64,
+    slope_n_per_m2: f64,
+}
+
+impl SegmentLoad {
+    /// Of point `i` of `line`, along the distance from the inner end.
+    fn new(line: &[ContactPoint], forces_n: &[f64], i: usize, pair: &Pair) -> SegmentLoad {
+        let place = |i: usize| pair.entry_m(line[i].entry_m);
+        let load = |i: usize| forces_n[i] / line[i].width_m;
+        let (at_m, width_m, own) = (place(i), line[i].width_m, load(i));
+        let even = SegmentLoad {
+            range_m: (at_m - 0.5 * width_m, at_m + 0.5 * width_m),
+            middle_n_per_m: own,
+            slope_n_per_m2: 0.0,
+        };
+        if own <= 0.0 {
+            return even;
+        }
+        // Neighbours on the same part of the path that touch this segment.
+        let beside = |j: Option<usize>| {
+            j.filter(|&j| j < line.len() && line[j].zone == line[i].zone)
+                .filter(|&j| (place(j) - at_m).abs() < 0.51 * (line[j].width_m + width_m))
+        };
+        let slope = |a: usize, b: usize| (load(b) - load(a)) / (place(b) - place(a));
+        let loaded = |j: &usize| forces_n[*j] > 0.0;
+        let (before, after) = (beside(i.checked_sub(1)), beside(Some(i + 1)));
+        let at_border = [before, after].iter().flatten().any(|j| !loaded(j));
+        let slope_n_per_m2 = match (before.filter(loaded), after.filter(loaded)) {
+            (Some(before), Some(after)) => slope(before, after),
+            (Some(j), None) | (None, Some(j)) => slope(j, i),
+            (None, None) => return even,
+        };
+        let steepest = 2.0 * own / width_m;
+        if slope_n_per_m2.abs() <= steepest {
+            return SegmentLoad { slope_n_per_m2, ..even };
+        }
+        if !at_border {
+            return SegmentLoad { slope_n_per_m2: steepest.copysign(slope_n_per_m2), ..even };
+        }
+        // A triangle of this slope with the whole force, at the end where the load is higher.
+        let loaded_m = (2.0 * own * width_m / slope_n_per_m2.abs()).sqrt().min(width_m);
+        let (low, high) = even.range_m;
+        let range_m = if slope_n_per_m2 > 0.0 { (high - loaded_m, high) } else { (low, low + loaded_m) };
+        let middle_n_per_m = own * width_m / loaded_m;
+        SegmentLoad {
+            range_m,
+            middle_n_per_m,
+            slope_n_per_m2: (2.0 * middle_n_per_m / loaded_m).copysign(slope_n_per_m2),
+        }
+    }
+
+    /// Part of a segment of this width that is loaded.
+    fn loaded_part(&self, width_m: f64) -> f64 {
+        if self.middle_n_per_m > 0.0 { ((self.range_m.1 - self.range_m.0) / width_m).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    /// Force between two places of the range.
+    fn between_n(&self, low: f64, high: f64) -> f64 {
+        let middle_m = 0.5 * (self.range_m.0 + self.range_m.1);
+        (high - low) * (self.middle_n_per_m + self.slope_n_per_m2 * (0.5 * (low + high) - middle_m))
     }
 }
 
@@ -399,24 +497,27 @@ impl Strips {
         Strips { width_m: face_m / count as f64, force_n: vec![0.0; count], length_m: vec![0.0; count] }
     }
 
-    /// Adds a force that is spread evenly over a range of the face.
-    fn add(&mut self, (from, to): (f64, f64), force_n: f64, length_m: f64) {
-        let last = self.force_n.len() - 1;
-        let strip = |place: f64| ((place / self.width_m).max(0.0) as usize).min(last);
-        // An end on the border of two strips belongs to the one before.
-        let (first, end) = (strip(from + 1e-9 * self.width_m), strip(to - 1e-9 * self.width_m));
-        if first >= end || to <= from {
-            self.force_n[first] += force_n;
-            self.length_m[first] += length_m;
-            return;
+    /// Adds what a function that integrates to `of(from, to)` has within every strip between `from` and `to`.
+    fn add(values: &mut [f64], width_m: f64, (from, to): (f64, f64), of: impl Fn(f64, f64) -> f64) {
+        let last = values.len() - 1;
+        let strip = |place: f64| ((place / width_m).max(0.0) as usize).min(last);
+        // An end on the border of two strips belongs to the one between it and the other end.
+        let (first, end) = (strip(from + 1e-9 * width_m), strip(to - 1e-9 * width_m));
+        for i in first..=end.max(first) {
+            let low = if i == first { from } else { i as f64 * width_m };
+            let high = if i >= end { to } else { (i + 1) as f64 * width_m };
+            values[i] += of(low, high);
         }
-        for i in first..=end {
-            let low = if i == first { from } else { i as f64 * self.width_m };
-            let high = if i == end { to } else { (i + 1) as f64 * self.width_m };
-            let part = (high - low) / (to - from);
-            self.force_n[i] += part * force_n;
-            self.length_m[i] += part * length_m;
-        }
+    }
+
+    /// Adds a length that is spread evenly over a range of the face.
+    fn add_length(&mut self, (from, to): (f64, f64), length_m: f64) {
+        let per_width = if to > from { length_m / (to - from) } else { 0.0 };
+        Self::add(&mut self.length_m, self.width_m, (from, to), |low, high| per_width * (high - low));
+    }
+
+    fn add_force(&mut self, load: &SegmentLoad, weight: f64) {
+        Self::add(&mut self.force_n, self.width_m, load.range_m, |low, high| weight * load.between_n(low, high));
     }
 
     fn middles_m(&self) -> Vec<f64> {
@@ -428,15 +529,9 @@ impl Strips {
     }
 }
 
-fn shaft_state(shafts: &ContactShafts, body: Body, states: &[([f64; 2], JointPosition)]) -> ShaftState {
-    let count = states.len() as f64;
+fn shaft_state(shafts: &ContactShafts, body: Body, positions: &Positions) -> ShaftState {
     let mean = |of: &dyn Fn(&SectionDisplacements) -> Section| -> Section {
-        let mut sum = [0.0; 6];
-        for (_, state) in states {
-            let section = of(&state.shafts[body as usize]);
-            sum.iter_mut().zip(section).for_each(|(s, u)| *s += u / count);
-        }
-        sum
+        std::array::from_fn(|c| positions.mean(|s| of(&s.shafts[body as usize])[c]))
     };
     let shaft = match body {
         Body::Pinion => &shafts.train.pinion,
@@ -474,7 +569,10 @@ fn balance_error(shafts: &ContactShafts, halves: &[HalfOnShafts; 2], states: [&S
             (0..3).for_each(|c| sum[c] += bearing[c]);
         }
         let held_by_bearings = train.coupling.axial_n_per_m == 0.0
-            && !matches!((body, shafts.freedom), (Body::Pinion, AxialFreedom::Pinion) | (Body::Gear, AxialFreedom::Gear));
+            && !matches!(
+                (body, shafts.freedom),
+                (Body::Pinion, AxialFreedom::Pinion) | (Body::Gear, AxialFreedom::Gear)
+            );
         for (c, value) in sum.iter().enumerate() {
             if c < 2 || held_by_bearings {
                 worst = worst.max(value.abs() / force);

@@ -275,9 +275,8 @@ impl ContactShafts {
                 (Body::Pinion, AxialFreedom::Pinion) | (Body::Gear, AxialFreedom::Gear) => float_m,
                 _ => 0.0,
             };
-            let section = |i: usize| -> Section {
-                std::array::from_fn(|c| all[6 * i + c] + if c == 2 { shift } else { 0.0 })
-            };
+            let section =
+                |i: usize| -> Section { std::array::from_fn(|c| all[6 * i + c] + if c == 2 { shift } else { 0.0 }) };
             let shape_from = NAMED_SECTIONS + sections.bearings;
             let nodes_from = shape_from + sections.shape_m.len();
             SectionDisplacements {
@@ -286,9 +285,7 @@ impl ContactShafts {
                 apex: section(6),
                 bearings: (NAMED_SECTIONS..shape_from).map(section).collect(),
                 shape: (shape_from..nodes_from).map(section).collect(),
-                nodes: std::array::from_fn(|half| {
-                    std::array::from_fn(|i| section(nodes_from + half * FACE_NODES + i))
-                }),
+                nodes: std::array::from_fn(|half| std::array::from_fn(|i| section(nodes_from + half * FACE_NODES + i))),
             }
         })
     }

@@ -150,8 +150,20 @@ mod tests {
                 let of = |body| frame.load(body, Half::Left, x_m)[5] * sense;
                 let cos = pair.base_helix_angle_rad.cos();
                 let topic = "Shafts: directions of the tooth forces";
-                check(topic, "moment about the pinion's axis", of(Body::Pinion), cos * pair.pinion.base_radius_m, Relative(1e-12));
-                check(topic, "moment about the gear's axis", of(Body::Gear), -cos * pair.gear.base_radius_m, Relative(1e-12));
+                check(
+                    topic,
+                    "moment about the pinion's axis",
+                    of(Body::Pinion),
+                    cos * pair.pinion.base_radius_m,
+                    Relative(1e-12),
+                );
+                check(
+                    topic,
+                    "moment about the gear's axis",
+                    of(Body::Gear),
+                    -cos * pair.gear.base_radius_m,
+                    Relative(1e-12),
+                );
             }
             assert_eq!(frame.load(Body::Pinion, Half::Left, 0.0)[2], -frame.load(Body::Pinion, Half::Right, 0.0)[2]);
         }

@@ -8,6 +8,7 @@ use crate::contact::ContactError;
 use crate::contact::distribution::{Prescribed, distribute};
 use crate::contact::half::to_contact_error;
 use crate::contact::position::{LoadedPosition, PositionError, PositionSolver};
+use crate::contact::refine::PositionState;
 use crate::gear::{Half, Pair};
 use crate::watch::{Meter, Watch};
 
@@ -26,6 +27,12 @@ pub(super) struct JointPosition {
     /// Force and moment of the teeth of either half by unit approach and unit tilt about the middle of the face, along
     /// the flank normal: N/m, N, N m.
     pub tilting: [[f64; 3]; 2],
+}
+
+impl PositionState for JointPosition {
+    fn stiffness_and_error(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.halves.iter().map(|half| [half.stiffness_n_per_m, half.approach_m])
+    }
 }
 
 /// Solves positions of both halves one after the other.
@@ -59,6 +66,13 @@ impl<'a> JointSolver<'a> {
             work: HalvesWorkspace::default(),
             corner_gap_m: 0.0,
             watch,
+        }
+    }
+
+    /// Takes `state` as the neighbour to start from.
+    pub(super) fn start_from(&mut self, state: &JointPosition) {
+        for (solver, half) in self.halves.iter_mut().zip(&state.halves) {
+            solver.start_from(half);
         }
     }
 
@@ -126,9 +140,10 @@ impl<'a> JointSolver<'a> {
                 continue;
             }
             let mut tilting = [[0.0; 3]; 2];
+            let linearised_n = [&solved.linearised_n[..left], &solved.linearised_n[left..]];
             for half in Half::BOTH {
                 let h = half.index();
-                let of_teeth = self.halves[h].tooth_stiffness(solved.forces.len(), force_bt_n / cos, &forces[h]);
+                let of_teeth = self.halves[h].tooth_stiffness(solved.forces.len(), force_bt_n / cos, linearised_n[h]);
                 tilting[h] = of_teeth.map_err(|error| to_contact_error(error, half, phases[h]))?;
             }
             let mut forces = forces.into_iter();

@@ -7,9 +7,9 @@
 
 use std::ops::Range;
 
-use super::flexibility::{ContactShafts, NODES};
 use super::super::point_contacts::PointContacts;
 use super::super::system::{ContactProblem, ContactSystem, LocalApproach, SystemWorkspace};
+use super::flexibility::{ContactShafts, NODES};
 use crate::numerics::dense::lu_solve;
 use crate::watch::{Canceled, Meter};
 
@@ -145,8 +145,7 @@ impl ContactProblem for HalvesOnShafts<'_> {
         let by_shift =
             if self.floats { [(self.axial_n - axial[0]) / axial[2], -axial[1] / axial[2]] } else { [0.0; 2] };
         let stiffness = of_all[1] + by_shift[1] * of_all[2];
-        let approach =
-            prescribed.unwrap_or_else(|| (total - of_all[0] - by_shift[0] * of_all[2]) / stiffness);
+        let approach = prescribed.unwrap_or_else(|| (total - of_all[0] - by_shift[0] * of_all[2]) / stiffness);
         let shift = by_shift[0] + by_shift[1] * approach;
         if !(approach.is_finite() && shift.is_finite()) {
             return Ok(None);
@@ -160,9 +159,12 @@ impl ContactProblem for HalvesOnShafts<'_> {
             let closing = approach + self.shafts.frame.axial[h] * shift;
             let by_node = openings.map(|opening| closing - opening);
             let own = &work.halves[h];
-            work.new_forces.extend(own.new_forces.iter().zip(own.mode_forces.chunks_exact(NODES)).map(
-                |(f, columns)| f + columns.iter().zip(&by_node).map(|(c, s)| c * s).sum::<f64>(),
-            ));
+            work.new_forces.extend(
+                own.new_forces
+                    .iter()
+                    .zip(own.mode_forces.chunks_exact(NODES))
+                    .map(|(f, columns)| f + columns.iter().zip(&by_node).map(|(c, s)| c * s).sum::<f64>()),
+            );
         }
         Ok(Some((approach, stiffness)))
     }
