@@ -328,7 +328,7 @@ impl<'a> CycleBuilder<'a> {
         let step = (self.states.len() / SLICE_CHECKS).max(1);
         contact.set_slices(self.slices / 2);
         let mut sums = [[0.0; 2]; 2];
-        for (phase, force, state) in self.states.iter().step_by(step) {
+        for (phase, force, state) in self.states.iter().step_by(step).filter(|state| state.1 > 0.0) {
             let coarse = contact.at(*phase, *force)?;
             for (sum, (fine, coarse)) in sums
                 .iter_mut()

@@ -36,7 +36,7 @@ pub struct LoadedContact {
 
 /// Part of the force that the less loaded of two spur halves keeps at least, so that its stiffness stays defined when
 /// the other one could carry everything.
-const LEAST_PART: f64 = 1e-6;
+pub(super) const LEAST_PART: f64 = 1e-6;
 
 /// Helix angles below this leave no axial coupling.
 const SPUR: f64 = 1e-4;

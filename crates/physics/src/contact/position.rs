@@ -27,15 +27,19 @@ pub struct LoadedPosition {
 }
 
 impl LoadedPosition {
-    /// Force of pair `k` as a part of all forces.
+    /// Force of pair `k` as a part of all forces; 0 without load.
     pub fn share(&self, k: i32) -> f64 {
         let of_pair: f64 = self.points.iter().zip(&self.forces_n).filter(|(p, _)| p.pair == k).map(|(_, f)| f).sum();
-        of_pair / self.forces_n.iter().sum::<f64>()
+        let all: f64 = self.forces_n.iter().sum();
+        if all > 0.0 { of_pair / all } else { 0.0 }
     }
 
     /// [`Self::share`] of the pairs `low` to `high`, which are all that have points.
     pub(super) fn shares(&self, low: i32, high: i32) -> Vec<f64> {
         let all: f64 = self.forces_n.iter().sum();
+        if all <= 0.0 {
+            return vec![0.0; (high - low + 1) as usize];
+        }
         let mut shares = vec![std::iter::empty::<f64>().sum::<f64>() / all; (high - low + 1) as usize];
         let mut forces = self.forces_n.as_slice();
         for line in self.points.chunk_by(|a, b| a.pair == b.pair) {

@@ -10,7 +10,7 @@ use crate::contact::ContactError;
 use crate::contact::coast::backwards;
 use crate::contact::cycle::{CURVE_POSITIONS, CycleBuilder};
 use crate::contact::half::HalfContact;
-use crate::contact::halves::LoadedContact;
+use crate::contact::halves::{LEAST_PART, LoadedContact};
 use crate::contact::lines::ContactPoint;
 use crate::contact::position::LoadedPosition;
 use crate::contact::refine::refine;
@@ -25,7 +25,7 @@ pub struct FaceLoad {
     pub strip_m: Vec<f64>,
     /// Normal force per length of contact line in every strip.
     pub line_load_n_per_m: Vec<f64>,
-    /// The same at the inner and the outer end, extended linearly from the two strips before.
+    /// The same at the inner and the outer end, extended from the three strips before.
     pub ends_n_per_m: [f64; 2],
     /// Middles of pieces of about 5 mm of the face, from the inner end.
     pub piece_m: Vec<f64>,
@@ -38,12 +38,17 @@ pub struct FaceLoad {
 impl FaceLoad {
     /// Largest line load along the face, the ends included, over the mean: K_Hβ.
     pub fn k_h_beta(&self) -> f64 {
-        self.line_load_n_per_m.iter().chain(&self.ends_n_per_m).copied().fold(0.0, f64::max) / self.mean_n_per_m
+        self.over_mean(self.line_load_n_per_m.iter().chain(&self.ends_n_per_m).copied().fold(0.0, f64::max))
+    }
+
+    /// 1 without load.
+    fn over_mean(&self, largest_n_per_m: f64) -> f64 {
+        if self.mean_n_per_m > 0.0 { largest_n_per_m / self.mean_n_per_m } else { 1.0 }
     }
 
     /// Largest mean over 5 mm of the face over the mean.
     pub fn k_h_beta_5mm(&self) -> f64 {
-        self.piece_line_load_n_per_m.iter().copied().fold(0.0, f64::max) / self.mean_n_per_m
+        self.over_mean(self.piece_line_load_n_per_m.iter().copied().fold(0.0, f64::max))
     }
 
     /// Line load at a distance from the inner end, linear between strips and ends.
@@ -298,7 +303,8 @@ fn report(
                 CycleBuilder::resampled(pair, slices, own, ((from + lead).fract(), error))
             }
         };
-        let mean_n = halves[h].normal_force_n[0] * cos;
+        // A half that the other one relieves of all load is looked at under a small one.
+        let mean_n = halves[h].normal_force_n[0].max(LEAST_PART * of_both) * cos;
         cycles.push(builder.finish(&mut contact, &|_| mean_n)?);
     }
     let halves_of = [cycles.remove(0), cycles.remove(0)];
@@ -389,13 +395,16 @@ fn half_on_shafts(
         peaks += weight * peak;
     }
     let mean_n_per_m = sum / lengths[0];
+    // Without load every ratio to it is that of an even one.
+    let over = |value: f64, mean: f64, even: f64| if sum > 0.0 { value / mean } else { even };
     let line_load_n_per_m = strips.line_loads();
-    let last = line_load_n_per_m.len() - 1;
-    let beyond = |end: usize, before: usize| {
-        let [end, before] = [line_load_n_per_m[end], line_load_n_per_m[before]];
-        (1.5 * end - 0.5 * before).max(0.0)
+    // A parabola through the middles of the three strips at the end; a load that vanishes there stays zero.
+    let beyond = |strips: &mut dyn Iterator<Item = &f64>| match strips.take(3).collect::<Vec<_>>()[..] {
+        [end, next, third] if *end > 0.0 => (1.875 * end - 1.25 * next + 0.375 * third).max(0.0),
+        [end, ..] => *end,
+        [] => 0.0,
     };
-    let ends_n_per_m = [beyond(0, 1.min(last)), beyond(last, last.saturating_sub(1))];
+    let ends_n_per_m = [beyond(&mut line_load_n_per_m.iter()), beyond(&mut line_load_n_per_m.iter().rev())];
     HalfOnShafts {
         normal_force_n: [sum, largest_n - least_n],
         share: 0.0,
@@ -408,8 +417,8 @@ fn half_on_shafts(
             mean_n_per_m,
             line_load_n_per_m,
         },
-        peak_over_mean: peaks / mean_n_per_m,
-        centroid_from_inner_m: moment / sum,
+        peak_over_mean: over(peaks, mean_n_per_m, 1.0),
+        centroid_from_inner_m: over(moment, sum, 0.5 * width_m),
         tooth_stiffness: [0.0; 3],
         openings_m: vec![0.0; NODES],
     }
