@@ -26,6 +26,11 @@ impl<'a> Watch<'a> {
         Watch { progress: &|_| {}, canceled: &|| false }
     }
 
+    /// Whether the calculation is to be canceled, for a watch of a part of it.
+    pub fn canceled(&self) -> &'a (dyn Fn() -> bool + Sync) {
+        self.canceled
+    }
+
     /// Checks for cancellation without a progress report.
     ///
     /// # Errors

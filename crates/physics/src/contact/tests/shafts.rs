@@ -8,8 +8,8 @@ use serde_json::Value;
 use super::pair;
 use crate::compliance::{Compliance, Settings};
 use crate::contact::{
-    ContactShafts, HalfOnShafts, Hand, LoadedContactOnShafts, MeshFrame, harmonics, sense_of_rotation, solve_on_shafts,
-    solve_pair_of_halves,
+    ContactShafts, HalfOnShafts, Hand, LoadedContactOnShafts, MeshFrame, evening_modification, harmonics,
+    sense_of_rotation, solve_on_shafts, solve_pair_of_halves, with_helix_modification,
 };
 use crate::gear::{FlankModification, GearSpec, Pair, PairSpec, Rotation};
 use crate::shafts::{Bearing, Coupling, Shaft, ShaftMaterial, ShaftSegment, ShaftTrain};
@@ -387,4 +387,35 @@ fn turned_and_mirrored_trains_turn_and_mirror_the_result() {
     };
     compare("turned by 180° about x", &turned, [1.0, -1.0, -1.0, 1.0, -1.0, -1.0]);
     compare("mirrored at z = 0", &mirrored, [1.0, 1.0, -1.0, -1.0, -1.0, 1.0]);
+}
+
+/// The proposed slope and crowning even the load: below 1.15 over 5 mm in every case, from a contact with open parts
+/// too.
+#[test]
+fn the_proposed_helix_modification_evens_the_load() {
+    for entry in cases() {
+        let name = entry["name"].as_str().expect("a name");
+        let case = case_of(&entry["input"]);
+        let settings = settings();
+        let compliance = foundation(&case.pair, &settings);
+        let shafts = shafts_of(&case, &compliance);
+        let load = (case.torque_nm, 0.0, 0.0);
+        let with = (&compliance, &settings);
+        let (proposed, contact) =
+            evening_modification(&case.pair, &shafts, load, false, with, Watch::none()).expect("a modification");
+        // What is proposed does what is said when it is solved by itself.
+        let pair = with_helix_modification(&case.pair, &proposed, false);
+        let again = solve_on_shafts(&pair, &shafts, load, false, with, Watch::none()).expect("a cycle");
+        for ((half, same), side) in contact.halves.iter().zip(&again.halves).zip(["left", "right"]) {
+            let factor = half.face.k_h_beta_5mm();
+            check(
+                TOPIC,
+                &format!("{name}, {side}: K_Hβ, 5 mm, with the proposed modification"),
+                factor,
+                1.0,
+                Absolute(0.15),
+            );
+            assert!((factor - same.face.k_h_beta_5mm()).abs() < 1e-9);
+        }
+    }
 }
