@@ -3,6 +3,10 @@
 //! Stiffness per width is in N/m² (1 N/(mm um) = 1e9 N/m²) and acts in the transverse plane along the base tangent, as
 //! the standard's mesh stiffness does; times the face width of one half it is the stiffness of that half.
 
+mod face_load;
+
+pub use face_load::{PinionArrangement, PinionOnShaft};
+
 use crate::gear::Pair;
 use serde::{Deserialize, Serialize};
 
