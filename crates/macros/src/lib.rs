@@ -57,6 +57,9 @@ pub fn derive_words(item: TokenStream) -> TokenStream {
 /// - `lower_is_better`: smaller values are better designs.
 /// - `inherits`: the scalar that represents its struct; label, unit and help are those of the field with the struct.
 ///
+/// - `halves`, on a field `left` beside others: the field `right` of the same type has the same declarations.
+/// - `skip`: the value is declared elsewhere in the result.
+///
 /// `#[scalar(halves)]` on a struct: its fields are the values of the left and the right half.
 #[proc_macro_derive(ResultFields, attributes(scalar))]
 pub fn result_fields(input: TokenStream) -> TokenStream {
