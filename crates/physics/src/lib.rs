@@ -15,6 +15,7 @@
 //! | [`dynamics`] | equations of motion of both halves, integration, periodic solutions, natural modes |
 //! | [`equations`] | parameters of the equations of motion from a pair and its loaded contact |
 //! | [`response`] | steady vibration: RMS values, spectra, regime, series |
+//! | [`shafts`] | shafts on bearings: static flexibility, natural modes and vibration of the geared rotor |
 //! | [`numerics`] | quadrature, splines, interpolation, dense linear algebra |
 //! | [`watch`] | progress and cancellation of long calculations |
 //!
@@ -64,5 +65,6 @@ pub mod impact;
 pub mod iso6336;
 pub mod numerics;
 pub mod response;
+pub mod shafts;
 pub(crate) mod simd;
 pub mod watch;
