@@ -126,8 +126,9 @@ pub struct BearingInput {
     pub speed_table: Vec<BearingAtSpeedInput>,
 }
 
-/// Radial stiffness and damping of a bearing at one speed: force along the first axis per displacement or velocity along
-/// the second. x: along the line of centres; y: perpendicular.
+/// Radial stiffness and damping of a bearing at one speed: force of the shaft on the bearing along the first axis per
+/// displacement or velocity of the shaft along the second. x: from the pinion's axis to the gear's; y: perpendicular, with
+/// z along the shafts from left to right.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 #[input(rules = bearing_at_speed_rules)]
 pub struct BearingAtSpeedInput {
@@ -137,10 +138,10 @@ pub struct BearingAtSpeedInput {
     /// Stiffness along x.
     #[input(unit = "N/um", min = 0.0, max = 1e7)]
     pub stiffness_xx_n_per_um: f64,
-    /// Force along x by a displacement along y.
+    /// Force on the bearing along x by a displacement of the shaft along y.
     #[input(unit = "N/um", min = -1e7, max = 1e7, default = 0.0)]
     pub stiffness_xy_n_per_um: f64,
-    /// Force along y by a displacement along x.
+    /// Force on the bearing along y by a displacement of the shaft along x.
     #[input(unit = "N/um", min = -1e7, max = 1e7, default = 0.0)]
     pub stiffness_yx_n_per_um: f64,
     /// Stiffness along y.
@@ -149,10 +150,10 @@ pub struct BearingAtSpeedInput {
     /// Damping along x.
     #[input(unit = "N s/m", min = 0.0, max = 1e12, default = 0.0)]
     pub damping_xx_ns_per_m: f64,
-    /// Force along x by a velocity along y.
+    /// Force on the bearing along x by a velocity of the shaft along y.
     #[input(unit = "N s/m", min = -1e12, max = 1e12, default = 0.0)]
     pub damping_xy_ns_per_m: f64,
-    /// Force along y by a velocity along x.
+    /// Force on the bearing along y by a velocity of the shaft along x.
     #[input(unit = "N s/m", min = -1e12, max = 1e12, default = 0.0)]
     pub damping_yx_ns_per_m: f64,
     /// Damping along y.
