@@ -42,6 +42,7 @@ fn parameters(torque_per_half_nm: f64, half_backlash_m: f64, damping_ratio: f64,
             duration_mesh_periods: 0.08,
             start_mesh_periods: 0.0,
         }),
+        displacement_excitation: Vec::new(),
         phase_shift_mesh_periods: 0.0,
     };
     Parameters {
@@ -58,5 +59,6 @@ fn parameters(torque_per_half_nm: f64, half_backlash_m: f64, damping_ratio: f64,
             gear_axial: Spring::with_damping_ratio(3e8, 0.03, mg),
             ..Couplings::default()
         },
+        train: None,
     }
 }

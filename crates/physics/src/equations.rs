@@ -70,6 +70,7 @@ pub fn base_plane_parameters(
             mesh_stiffness,
             contact_force: None,
             impact: None,
+            displacement_excitation: Vec::new(),
             phase_shift_mesh_periods: 0.0,
         }
     };
@@ -87,6 +88,7 @@ pub fn base_plane_parameters(
             gear_axial: spring(mounting.halves_axial_n_per_m[1], gear_mass_kg),
             ..Couplings::default()
         },
+        train: None,
     }
 }
 

@@ -141,6 +141,7 @@ impl ReferenceCase {
                 duration_mesh_periods: m.impact_duration_mesh_periods,
                 start_mesh_periods: 0.0,
             }),
+            displacement_excitation: Vec::new(),
             phase_shift_mesh_periods: 0.0,
         };
         Parameters {
@@ -157,6 +158,7 @@ impl ReferenceCase {
                 gear_axial: spring(m.gear_axial_coupling_n_per_m, m.gear_mass_kg),
                 ..Couplings::default()
             },
+            train: None,
         }
     }
 }

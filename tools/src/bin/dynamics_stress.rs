@@ -136,6 +136,7 @@ fn case(r: &mut Random, of: &Ranges) -> StressCase {
         contact_force: None,
         mesh_stiffness,
         impact,
+        displacement_excitation: Vec::new(),
         phase_shift_mesh_periods: 0.0,
     };
     let torsional = |r: &mut Random, inertia: f64, radius: f64| {
@@ -169,6 +170,7 @@ fn case(r: &mut Random, of: &Ranges) -> StressCase {
         impact_acts_on: ImpactActsOn::Torsion,
         halves: [half, right],
         couplings,
+        train: None,
     };
     parameters.balance_axially();
     let description = format!(

@@ -56,7 +56,8 @@ impl CheckedJob {
     pub fn report(&self) -> CheckReport {
         CheckReport {
             geometry: geometry(&self.prepared),
-            supports: (self.document.kind != JobKind::Mesh).then(|| self.prepared.supports.clone()),
+            supports: (self.document.kind != JobKind::Mesh && self.document.design.shafts.is_none())
+                .then(|| self.prepared.supports.clone()),
             memory_mib: demand(&self.document, 1).total_mib(),
             warnings: self.prepared.warnings.iter().cloned().chain(repeat::changed_inputs(&self.document)).collect(),
             derived: derived::values(&self.document, &self.prepared),

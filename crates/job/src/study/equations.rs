@@ -113,6 +113,7 @@ pub(super) fn parameters(
         mesh_stiffness: stiffness,
         contact_force: None,
         impact,
+        displacement_excitation: Vec::new(),
         phase_shift_mesh_periods,
     };
     let [left_stiffness, right_stiffness] = stiffness;
@@ -137,6 +138,7 @@ pub(super) fn parameters(
             pinion_torsion: torsion(&supports.pinion_halves_torsional_nm_per_rad, pinion_inertia_kg_m2),
             gear_torsion: torsion(&supports.gear_halves_torsional_nm_per_rad, gear_inertia_kg_m2),
         },
+        train: None,
     };
     parameters.balance_axially();
     parameters

@@ -22,6 +22,7 @@ pub(crate) mod prepare;
 mod repeat;
 mod response_result;
 mod row;
+mod shafts;
 mod supports;
 mod sweep;
 mod vibration;

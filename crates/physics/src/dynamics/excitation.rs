@@ -11,7 +11,7 @@ use crate::numerics::monotone_cubics;
 /// One harmonic of a Fourier series: `amplitude · cos(2π i φ + phase_rad)` for entry i, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Harmonic {
-    /// Relative to the mean for a stiffness, N for a force.
+    /// Relative to the mean for a stiffness, N for a force, m for a displacement.
     pub amplitude: f64,
     /// Phase angle, rad.
     pub phase_rad: f64,

@@ -44,6 +44,7 @@ mod integrate;
 mod lane_batch;
 mod lanes;
 mod modal;
+mod modal_train;
 mod model;
 mod parameters;
 mod recurrence;
@@ -60,6 +61,7 @@ pub use error::DynamicsError;
 pub use excitation::{Harmonic, ImpactExcitation, Stiffness};
 pub use integrate::{Integrator, StepCounts};
 pub use modal::{Mode, NaturalModes, SpringGroup};
+pub use modal_train::{LinearOutput, MAX_ELASTIC_MODES, MAX_LINEAR_OUTPUTS, MAX_RIGID_BODY_MODES, ModalTrain};
 pub use model::ContactSide;
 pub use parameters::{
     Couplings, HalfParameters, ImpactActsOn, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m,

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::contact_force::ContactForce;
 use super::error::DynamicsError;
-use super::excitation::{ImpactExcitation, Stiffness};
+use super::excitation::{Harmonic, ImpactExcitation, Stiffness};
+use super::modal_train::ModalTrain;
 
 /// A linear spring with a viscous damper in parallel. Zero stiffness and damping: no spring.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -55,6 +56,10 @@ pub struct HalfParameters {
     pub mesh_damping_n_s_per_m: f64,
     /// F_s, tangential in the transverse plane; see [`Parameters::impact_acts_on`].
     pub impact: Option<ImpactExcitation>,
+    /// e, displacement of the flanks along the tooth normal by their shape, as a Fourier series over the mesh phase from
+    /// the first harmonic, amplitudes in m; positive opens a gap (material removed). The mesh force is that of s − e:
+    /// k_m f(s − e) + c_m d(s − e)/dt, or the contact force at s − e. Empty: none.
+    pub displacement_excitation: Vec<Harmonic>,
     /// Delay of the excitations of this half, in mesh periods (stagger of the halves).
     pub phase_shift_mesh_periods: f64,
 }
@@ -108,6 +113,9 @@ pub struct Parameters {
     pub halves: [HalfParameters; 2],
     /// Springs between the halves of the shafts.
     pub couplings: Couplings,
+    /// Shafts, bearings and bodies as a reduced train, in place of the masses, supports and couplings. Radii, helix angle
+    /// and pinion torques then serve the impact and the choice of the loaded flank alone.
+    pub train: Option<Arc<ModalTrain>>,
 }
 
 /// Equivalent mass of the mesh of one half, m_e = 1/(R_p²/I_p + R_g²/I_g), kg.
@@ -138,9 +146,10 @@ impl Parameters {
         1.0 / self.mesh_frequency_hz
     }
 
-    /// Whether both halves are equal, phase included: the motion is then mirror-symmetric (z_2 = −z_1).
+    /// Whether both halves are equal, phase included: the motion is then mirror-symmetric (z_2 = −z_1). Never with a
+    /// [`train`](Self::train).
     pub fn is_symmetric(&self) -> bool {
-        self.halves[0] == self.halves[1]
+        self.train.is_none() && self.halves[0] == self.halves[1]
     }
 
     /// Shifts torque between the halves until the mean impact forces have no component along the screw motion of the
@@ -175,10 +184,12 @@ impl Parameters {
             return Err(invalid("mesh force", f64::NAN, "both halves need a contact force, or neither"));
         }
         for h in &self.halves {
-            positive("pinion mass", h.pinion_mass_kg)?;
-            positive("gear mass", h.gear_mass_kg)?;
-            positive("pinion inertia", h.pinion_inertia_kg_m2)?;
-            positive("gear inertia", h.gear_inertia_kg_m2)?;
+            if self.train.is_none() {
+                positive("pinion mass", h.pinion_mass_kg)?;
+                positive("gear mass", h.gear_mass_kg)?;
+                positive("pinion inertia", h.pinion_inertia_kg_m2)?;
+                positive("gear inertia", h.gear_inertia_kg_m2)?;
+            }
             finite("pinion torque", h.pinion_torque_nm)?;
             finite("phase shift", h.phase_shift_mesh_periods)?;
             not_negative("mesh damping", h.mesh_damping_n_s_per_m)?;
@@ -188,6 +199,13 @@ impl Parameters {
             spring("gear axial support", h.gear_axial)?;
             h.mesh_stiffness.validate()?;
             h.impact.as_ref().map_or(Ok(()), ImpactExcitation::validate)?;
+            let numbers = |e: &Harmonic| e.amplitude.is_finite() && e.phase_rad.is_finite();
+            if let Some(bad) = h.displacement_excitation.iter().find(|e| !numbers(e)) {
+                return Err(invalid("displacement excitation", bad.amplitude, "harmonics must be finite"));
+            }
+        }
+        if let Some(train) = &self.train {
+            train.validate()?;
         }
         let c = &self.couplings;
         spring("pinion axial coupling", c.pinion_axial)?;

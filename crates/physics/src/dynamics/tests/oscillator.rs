@@ -38,6 +38,7 @@ fn oscillator(omega: f64, epsilon: f64, amplitude: f64) -> Parameters {
         impact: Some(ImpactExcitation::Harmonics {
             harmonics: vec![Harmonic { amplitude: -amplitude * omega * omega, phase_rad: 0.0 }],
         }),
+        displacement_excitation: Vec::new(),
         phase_shift_mesh_periods: 0.0,
     };
     Parameters {
@@ -50,6 +51,7 @@ fn oscillator(omega: f64, epsilon: f64, amplitude: f64) -> Parameters {
         impact_acts_on: ImpactActsOn::Torsion,
         halves: [half.clone(), half],
         couplings: Couplings::default(),
+        train: None,
     }
 }
 

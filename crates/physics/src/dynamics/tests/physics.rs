@@ -26,6 +26,7 @@ fn natural_frequencies_with_couplings() {
         mesh_stiffness: Stiffness::Constant { mean_n_per_m: 8e8 },
         mesh_damping_n_s_per_m: 0.0,
         impact: None,
+        displacement_excitation: Vec::new(),
         phase_shift_mesh_periods: 0.0,
     };
     let spring = |stiffness| Spring { stiffness, damping: 0.0 };
@@ -46,6 +47,7 @@ fn natural_frequencies_with_couplings() {
             pinion_torsion: spring(5e6),
             gear_torsion: spring(5e7),
         },
+        train: None,
     };
     let f = NaturalModes::new(&p).unwrap().frequencies_hz;
     let expected = [0.0, 329.20, 539.79, 615.84, 1088.4, 2052.3, 2265.1, 2353.9, 2749.1, 3976.7, 4422.4, 5035.8];

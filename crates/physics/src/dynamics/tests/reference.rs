@@ -94,6 +94,7 @@ pub(crate) fn parameters(name: &str) -> Parameters {
             duration_mesh_periods: m.impact_duration_mesh_periods,
             start_mesh_periods: 0.0,
         }),
+        displacement_excitation: Vec::new(),
         phase_shift_mesh_periods: 0.0,
     };
     Parameters {
@@ -110,6 +111,7 @@ pub(crate) fn parameters(name: &str) -> Parameters {
             gear_axial: Spring::with_damping_ratio(m.gear_axial_coupling_n_per_m, z, m.gear_mass_kg),
             ..Couplings::default()
         },
+        train: None,
     }
 }
 
