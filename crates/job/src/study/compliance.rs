@@ -18,6 +18,9 @@ pub(super) struct ComplianceMemo(Mutex<HashMap<String, Arc<Compliance>>>);
 /// Largest number of compliances kept: a sweep over the teeth does not use old ones again.
 pub(super) const KEPT: usize = 8;
 
+/// Stations of a uniform foundation on shafts, whose flexibility is read between them.
+const SHAFT_STATIONS: usize = 40;
+
 /// Fraction of the progress of the mesh stage assigned to the solution of the finite elements.
 const ELEMENTS_PART: f64 = 0.95;
 
@@ -45,7 +48,11 @@ pub(super) fn find(
     let watch = Watch::new(&|_| {}, context.canceled);
     let (compliance, elements_reused, done) = match case.fidelity {
         Fidelity::Analytic => (Compliance::analytic(pair, &case.settings, watch)?, false, 0.0),
-        Fidelity::Uniform => (Compliance::uniform(pair, &case.settings, case.line_stiffness_n_per_m2), false, 0.0),
+        Fidelity::Uniform => {
+            let stations = if case.mounted.is_some() { SHAFT_STATIONS } else { 0 };
+            let stiffness = case.line_stiffness_n_per_m2;
+            (Compliance::uniform_between(pair, &case.settings, stiffness, stations), false, 0.0)
+        }
         Fidelity::Fe => {
             let inputs = Compliance::finite_element_inputs(pair, &case.settings, case.resolution);
             let (pinion, pinion_reused) = flank(&inputs[0], context, (0.0, 0.4 * ELEMENTS_PART))?;

@@ -28,7 +28,16 @@ pub(super) fn force_hash(case: &ContactCase, idle: bool) -> String {
 
 /// Hash of the inputs of the teeth's compliance: those of [`mesh_hash`] without load, modifications and misalignments.
 pub(super) fn compliance_hash(case: &ContactCase) -> String {
-    hash("compliance", &(bare(case), &case.settings, case.fidelity, case.line_stiffness_n_per_m2, case.resolution))
+    let teeth = (bare(case), &case.settings, case.fidelity, case.line_stiffness_n_per_m2, case.resolution);
+    match &case.mounted {
+        None => hash("compliance", &teeth),
+        Some(_) => hash("compliance-on-shafts", &teeth),
+    }
+}
+
+/// Hash of the flexibility of the shafts between the stations of the compliance, under the flanks that carry.
+pub(super) fn shaft_flexibility_hash(case: &ContactCase, coast: bool) -> String {
+    hash("shaft-flexibility", &(compliance_hash(case), &case.mounted, case.spec.rotation, case.spec.gap_width_m, coast))
 }
 
 /// Hash of the finite elements of one gear.

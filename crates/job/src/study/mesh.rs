@@ -5,6 +5,7 @@ use super::equations::{MotionPlane, given_stiffness};
 use super::hash::mesh_hash;
 use super::mesh_force::{self, MeshForces};
 use super::prepare::Prepared;
+use super::shaft_contact::{self, MountedTrain, ShaftContact};
 use super::{SolveContext, SolveError, Stage};
 use crate::document::{
     BodyInput, Elements, Fidelity, JobDocument, JobKind, Ltca, MeshForce, MeshStiffness, MeshStiffnessSource,
@@ -12,7 +13,9 @@ use crate::document::{
 };
 use crate::result::{ApexSensitivity, Convergence, FlankLoad, Mesh, MeshCurve, PerHalf, ReusedStage};
 use herringbone_physics::compliance::{BodyHold, Settings};
-use herringbone_physics::contact::{self, ContactError, ForceTable, HalfCycle, LoadedContact, MESH_IN_PHASE};
+use herringbone_physics::contact::{
+    self, ContactError, ContactShafts, ForceTable, HalfCycle, LoadedContact, LoadedContactOnShafts, MESH_IN_PHASE,
+};
 use herringbone_physics::dynamics::Stiffness;
 use herringbone_physics::fe::Resolution;
 use herringbone_physics::gear::{Pair, PairSpec};
@@ -36,6 +39,8 @@ pub(super) struct MeshStage {
     pub entry: [EntryState; 2],
     /// The mesh force over approach and phase, if the equations contain it.
     pub forces: Option<MeshForces>,
+    /// The contact of both halves on their shafts.
+    pub on_shafts: Option<ShaftContact>,
 }
 
 /// The mesh of one half at the entry of a pair. Stiffness and deflection along the transverse base tangent.
@@ -68,11 +73,14 @@ impl EntryState {
 pub(super) struct ContactCase<'a> {
     pub spec: &'a PairSpec,
     pub torque_nm: f64,
-    half_stagger: f64,
+    pub half_stagger: f64,
     pub fidelity: Fidelity,
     pub line_stiffness_n_per_m2: f64,
     pub resolution: Resolution,
     pub settings: Settings,
+    /// Shafts that both halves stand on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mounted: Option<MountedTrain>,
 }
 
 pub(super) fn resolution(elements: Elements) -> Resolution {
@@ -112,6 +120,7 @@ impl<'a> ContactCase<'a> {
                 },
                 corner_contact: ltca.corner_contact,
             },
+            mounted: MountedTrain::of(document, &prepared.pair),
         }
     }
 }
@@ -120,6 +129,8 @@ impl<'a> ContactCase<'a> {
 #[derive(Default)]
 pub(super) struct MeshMemo {
     contacts: Memo<LoadedContact>,
+    pub(super) shaft_contacts: Memo<LoadedContactOnShafts>,
+    pub(super) shafts: Memo<ContactShafts>,
     pub(super) forces: Memo<Vec<ForceTable>>,
     pub(super) compliances: ComplianceMemo,
 }
@@ -165,8 +176,18 @@ pub(super) fn run(
     match &document.model.mesh_stiffness {
         MeshStiffness::Ltca(ltca) => {
             let case = ContactCase::new(document, ltca, prepared);
-            let (contact, reused) = loaded_contact(&case, &prepared.pair, context, memo)?;
+            let (contact, on_shafts, reused) = match &case.mounted {
+                None => {
+                    let (contact, reused) = loaded_contact(&case, &prepared.pair, context, memo)?;
+                    (contact, None, reused)
+                }
+                Some(mounted) => {
+                    let (found, reused) = shaft_contact::find(&case, mounted, &prepared.pair, context, memo)?;
+                    (Arc::new(found.loaded.contact.clone()), Some(found), reused)
+                }
+            };
             let mut stage = from_contact(&contact, ltca, prepared, plane);
+            stage.on_shafts = on_shafts;
             if document.model.mesh_force == MeshForce::Contact && document.kind != JobKind::Mesh {
                 let forces = mesh_force::run(&case, &prepared.pair, plane, context, memo)?;
                 stage.summary.contact_force = Some(forces.summary.clone());
@@ -317,6 +338,7 @@ fn from_contact(contact: &LoadedContact, ltca: &Ltca, prepared: &Prepared, plane
         stagger_included: true,
         entry: [entry(left), entry(right)],
         forces: None,
+        on_shafts: None,
     }
 }
 
@@ -434,5 +456,6 @@ fn closed_form(source: MeshStiffnessSource, prepared: &Prepared, curve: impl Fn(
         stagger_included: false,
         entry: [entry.clone(), entry],
         forces: None,
+        on_shafts: None,
     }
 }

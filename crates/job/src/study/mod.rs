@@ -22,6 +22,7 @@ pub(crate) mod prepare;
 mod repeat;
 mod response_result;
 mod row;
+mod shaft_contact;
 mod shafts;
 mod supports;
 mod sweep;
@@ -228,5 +229,7 @@ mod unchecked {
 mod contact_tests;
 #[cfg(test)]
 mod limits_tests;
+#[cfg(test)]
+mod shaft_tests;
 #[cfg(test)]
 mod tests;

@@ -4,6 +4,7 @@ use super::check::CheckedJob;
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
 use super::prepare::geometry;
+use super::shaft_contact::{self, ShaftContact};
 use super::{RecordedChannel, SolveContext, SolveError, Stage, accuracy, bounds, impact, vibration};
 use crate::document::{Fidelity, JobDocument, JobKind, MeshStiffness, Recorded};
 use crate::result::{JobResult, NumericsResult, Poincare};
@@ -43,11 +44,26 @@ impl PointOptions<'_> {
 /// A point with the stages before its response, and the equations of motion if the document requests a response.
 pub(super) struct Staged<'a> {
     result: JobResult,
+    on_shafts: Option<ShaftContact>,
     parameters: Option<Parameters>,
     stopwatch: Stopwatch<'a>,
 }
 
 impl Staged<'_> {
+    /// Adds to the block `shafts` what a single point shows beside its own contact.
+    fn complete_shafts(&mut self, job: &CheckedJob, context: &SolveContext, memo: &MeshMemo) -> Result<(), SolveError> {
+        let (document, prepared) = (job.document(), job.prepared());
+        let (Some(contact), Some(shafts), MeshStiffness::Ltca(ltca)) =
+            (&self.on_shafts, &mut self.result.shafts, &document.model.mesh_stiffness)
+        else {
+            return Ok(());
+        };
+        let case = mesh::ContactCase::new(document, ltca, prepared);
+        shaft_contact::complete(document, &case, &prepared.pair, (contact, shafts), context, memo)?;
+        self.result.numerics.wall_ms.mesh += self.stopwatch.lap_ms();
+        Ok(())
+    }
+
     pub(super) fn parameters(&self) -> Option<&Parameters> {
         self.parameters.as_ref()
     }
@@ -65,7 +81,10 @@ pub(super) fn solve(
 ) -> Result<Point, SolveError> {
     let progress = |stage, fraction| (context.progress)(stage, of_whole(job.document(), stage, fraction));
     let context = &SolveContext { progress: &progress, ..*context };
-    let staged = stage(job, context, memo)?;
+    let mut staged = stage(job, context, memo)?;
+    if options.whole {
+        staged.complete_shafts(job, context, memo)?;
+    }
     respond(job.document(), staged, context, options)
 }
 
@@ -105,6 +124,7 @@ pub(super) fn stage<'a>(
     });
     let result = JobResult {
         geometry: Some(geometry(prepared)),
+        shafts: mesh.on_shafts.as_ref().map(|contact| shaft_contact::result(document, &prepared.pair, contact)),
         mesh: Some(mesh.summary),
         impact: impact.summary,
         supports: (document.kind != JobKind::Mesh).then(|| prepared.supports.clone()),
@@ -112,7 +132,7 @@ pub(super) fn stage<'a>(
         numerics,
         ..JobResult::default()
     };
-    Ok(Staged { result, parameters, stopwatch })
+    Ok(Staged { result, on_shafts: mesh.on_shafts, parameters, stopwatch })
 }
 
 /// The response of a staged point, where it has equations.
@@ -140,7 +160,7 @@ pub(super) fn assemble(
     options: &PointOptions,
     response: Option<Result<Response, DynamicsError>>,
 ) -> Result<Point, SolveError> {
-    let Staged { mut result, parameters, mut stopwatch } = staged;
+    let Staged { mut result, parameters, mut stopwatch, .. } = staged;
     let (Some(parameters), Some(response)) = (parameters, response) else {
         result.accuracy = Some(accuracy::of(document, &result));
         return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });

@@ -13,8 +13,6 @@ use herringbone_physics::shafts::{
 };
 
 /// Both shafts at the speed of the document; `None` without `design.shafts`.
-// Called by the stages that solve on shafts.
-#[cfg_attr(not(test), expect(dead_code))]
 pub(super) fn train(document: &JobDocument) -> Option<ShaftTrain> {
     let design = &document.design;
     let resolved = design.resolved_shafts()?;

@@ -60,8 +60,8 @@ impl PinionOnShaft {
     /// (ISO 6336-1:2006, 7.6.2; all of the power through one end).
     pub fn equivalent_misalignment_m(&self, line_load_n_per_m: f64) -> f64 {
         let d = self.reference_diameter_m;
-        let bending = self.constant() * self.bearing_span_m * self.offset_m / (d * d)
-            * (d / self.shaft_diameter_m).powi(4);
+        let bending =
+            self.constant() * self.bearing_span_m * self.offset_m / (d * d) * (d / self.shaft_diameter_m).powi(4);
         let gamma = ((WHOLE_POWER + bending - 0.3).abs() + 0.3) * (self.helix_width_m / d).powi(2);
         0.046 * MM_UM_PER_N * line_load_n_per_m * gamma
     }

@@ -1,9 +1,11 @@
 //! The shafts of a pair as plain values.
 
+use serde::{Deserialize, Serialize};
+
 use super::error::{ShaftError, ShaftItem};
 
 /// Both shafts of a pair.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShaftTrain {
     /// Shaft of the pinion.
     pub pinion: Shaft,
@@ -13,7 +15,7 @@ pub struct ShaftTrain {
 
 /// A stepped shaft with the bodies of both gear halves, its bearings and its coupling. Positions are measured from the
 /// left end.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Shaft {
     /// Segments from the left end to the right end, the bodies of the gear halves included.
     pub segments: Vec<ShaftSegment>,
@@ -32,7 +34,7 @@ pub struct Shaft {
 }
 
 /// A cylindrical piece of a shaft.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ShaftSegment {
     /// Length, m.
     pub length_m: f64,
@@ -43,7 +45,7 @@ pub struct ShaftSegment {
 }
 
 /// Elastic material of a shaft.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ShaftMaterial {
     /// Young's modulus E, Pa.
     pub youngs_modulus_pa: f64,
@@ -54,7 +56,7 @@ pub struct ShaftMaterial {
 }
 
 /// A linear bearing between the shaft and the rigid ground. It does not resist rotation about z.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Bearing {
     /// Position from the left end, m.
     pub position_m: f64,
@@ -105,7 +107,7 @@ fn section_matrix(radial: [[f64; 2]; 2], axial: f64, tilting: f64) -> [[f64; 6];
 }
 
 /// The place where the torque enters (pinion) or leaves (gear).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coupling {
     /// Position from the left end, m.
     pub position_m: f64,
@@ -116,7 +118,7 @@ pub struct Coupling {
 }
 
 /// Inertia of a machine on the torsional spring of a coupling.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// Torsional stiffness of the coupling, N m/rad.
     pub torsional_nm_per_rad: f64,
@@ -127,7 +129,7 @@ pub struct Machine {
 }
 
 /// A rigid body on a section of the shaft.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RigidBody {
     /// Mass, kg.
     pub mass_kg: f64,

@@ -1,0 +1,101 @@
+//! Documents with shafts against the reference calculations, through the whole study.
+
+use super::{SolveContext, unchecked};
+use crate::document::JobDocument;
+use herringbone_oracle::Tolerance::Absolute;
+use herringbone_oracle::check;
+use serde_json::Value;
+
+const TOPIC: &str = "Shafts: documents";
+
+fn cases() -> Vec<Value> {
+    serde_json::from_str(include_str!("../../../../tests/data/shafts_static.json")).expect("a list of cases")
+}
+
+fn solved(input: &Value) -> Value {
+    let document: JobDocument = crate::parse(input.to_string().as_bytes()).expect("a valid document");
+    let outcome = unchecked::solve(&document, &SolveContext::none()).expect("a result");
+    serde_json::to_value(outcome.result).expect("JSON")
+}
+
+/// Largest difference that the reference's section 7 allows for the value at a path, by the largest value of its kind.
+fn allowed(path: &str, expected: &Value, case: &Value) -> Option<f64> {
+    let value = expected.as_f64()?.abs();
+    let result = &case["result"];
+    let open = result["open_fraction"].as_f64()? > 0.0;
+    let line_load = result["line_load_mean_n_per_mm"].as_f64()?;
+    let largest = |keys: &[&str]| -> f64 {
+        let of = |value: &Value| value.as_array().into_iter().flatten().filter_map(Value::as_f64).collect::<Vec<_>>();
+        let mut most = 0.0f64;
+        for member in ["pinion", "gear"] {
+            for key in keys {
+                of(&result[member][key]).into_iter().for_each(|v| most = most.max(v.abs()));
+                for bearing in result[member]["bearings"].as_array().into_iter().flatten() {
+                    of(&bearing[key]).into_iter().for_each(|v| most = most.max(v.abs()));
+                }
+            }
+        }
+        most
+    };
+    let of_load = if open { 0.02 } else { 0.01 };
+    let parts: Vec<&str> = path.split('/').collect();
+    let has = |name: &str| parts.contains(&name);
+    let name = parts.iter().rev().find(|part| part.parse::<usize>().is_err())?;
+    Some(match *name {
+        "face_ends" | "max_gap_in_contact_um" | "max_penetration_outside_um" | "balance_rel" | "pp" => return None,
+        "between_couplings_pp_um" | "normal_force_pp_n" => return None,
+        "k_h_beta" | "k_h_beta_5mm" => of_load,
+        "line_load_peak_over_mean" => of_load * value.max(1.0),
+        // Values at places, which section 7 does not name: at the border of an open part they depend on the segments.
+        "line_load_n_per_mm" if open => 0.05 * line_load,
+        key if key.starts_with("line_load_") && key != "line_load_mean_n_per_mm" => of_load * line_load,
+        "share" => 0.002,
+        "harmonics_um" | "approach_mid_face_harmonics_um" if parts.last() == Some(&"0") => (0.02 * value).max(0.01),
+        "harmonics_um" | "approach_mid_face_harmonics_um" => (0.05 * value).max(0.02),
+        "x_um" | "y_um" | "z_um" => 5e-3 * largest(&["x_um", "y_um", "z_um"]),
+        "tilt_x_urad" | "tilt_y_urad" => 5e-3 * largest(&["tilt_x_urad", "tilt_y_urad"]),
+        "twist_from_coupling_urad" => 5e-3 * largest(&["twist_from_coupling_urad"]),
+        "force_on_shaft_n" => 3e-3 * largest(&["force_on_shaft_n"]),
+        "moment_on_shaft_nm" => 3e-3 * largest(&["moment_on_shaft_nm"]) + 1e-9,
+        "mean" if has("pinion_axial_float_um") => (0.01 * value).max(0.02),
+        "open_fraction" => 0.01,
+        "load_centroid_from_inner_end_mm" => 0.2,
+        _ => 3e-3 * value.max(1e-6),
+    })
+}
+
+fn compare(path: &str, got: &Value, expected: &Value, case: &Value, compared: &mut usize) {
+    match expected {
+        Value::Object(map) => {
+            for (key, value) in map.iter().filter(|(key, _)| *key != "solver") {
+                compare(&format!("{path}/{key}"), &got[key], value, case, compared);
+            }
+        }
+        Value::Array(list) => {
+            assert_eq!(got.as_array().map(Vec::len), Some(list.len()), "{path}");
+            for (i, value) in list.iter().enumerate() {
+                compare(&format!("{path}/{i}"), &got[i], value, case, compared);
+            }
+        }
+        Value::Number(_) => {
+            let value = got.as_f64().unwrap_or_else(|| panic!("{path} is {got}"));
+            if let Some(tolerance) = allowed(path, expected, case) {
+                check(TOPIC, path, value, expected.as_f64().unwrap_or(f64::NAN), Absolute(tolerance));
+                *compared += 1;
+            }
+        }
+        _ => assert_eq!(got, expected, "{path}"),
+    }
+}
+
+/// Every number of the ten reference results at its place in the block `shafts`.
+#[test]
+fn the_reference_documents_give_the_reference_results() {
+    for case in cases() {
+        let result = solved(&case["input"]);
+        let mut compared = 0;
+        let name = case["name"].as_str().expect("a name");
+        compare(name, &result["shafts"], &case["result"], &case, &mut compared);
+        assert!(compared > 150, "{name}: {compared} numbers");
+    }
+}
