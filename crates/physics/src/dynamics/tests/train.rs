@@ -14,7 +14,7 @@ use herringbone_oracle::{check, check_worst};
 #[path = "../../../benches/train_cases.rs"]
 mod train_cases;
 
-use train_cases::{TwelveDegrees, train_of};
+use train_cases::train_of;
 
 const TOPIC: &str = "Dynamics: reduced trains";
 
@@ -119,7 +119,7 @@ fn solve_in_twelve(p: &Parameters, analysis: &Analysis) -> Response {
 #[test]
 fn responses_are_those_of_the_twelve_equations() {
     let names = ["x_left", "a_x_right", "s_right", "v_theta_g_left", "f_n_left", "f_z_right", "tooth_force_right"];
-    let mut separated = 0;
+    let (mut separated, mut compared) = (0, 0);
     for name in ["A", "C"] {
         for (what, p) in variants(name) {
             let q = as_train(&p);
@@ -134,6 +134,17 @@ fn responses_are_those_of_the_twelve_equations() {
             let (a, b) = (&train.summary, &twelve.summary);
             assert_eq!((a.regime, a.period_mesh_periods, a.contact), (b.regime, b.period_mesh_periods, b.contact));
             separated += usize::from(a.contact_share.left < 1.0);
+            if a.period_mesh_periods.is_none() {
+                // A motion that does not repeat amplifies rounding: the means of its record agree within their scatter.
+                let error = a.rms.mesh_circumferential_acceleration_m_s2.left
+                    / b.rms.mesh_circumferential_acceleration_m_s2.left
+                    - 1.0;
+                let scatter = 5.0 * (a.error_estimate + b.error_estimate);
+                println!("case {name}, {what}: {:?}, {error:.1e} of {scatter:.1e}", a.regime);
+                assert!(error.abs() < scatter);
+                continue;
+            }
+            compared += 1;
             let mut errors: Vec<f64> =
                 b.rms.channels.iter().map(|(channel, rms)| a.rms.channels[channel] / rms - 1.0).collect();
             errors.extend([a.tooth_force.left.static_n / b.tooth_force.left.static_n - 1.0]);
@@ -142,7 +153,13 @@ fn responses_are_those_of_the_twelve_equations() {
             check_worst(TOPIC, &format!("case {name}, {what}: RMS values, forces, contact"), errors, 1e-8);
             for (one, other) in train.channels.iter().zip(&twelve.channels) {
                 let size = other.values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-                let worst = one.values.iter().zip(&other.values).fold(0.0f64, |m, (a, b)| m.max((a - b).abs() / size));
+                // A motion of period n may be recorded from any of its n mesh periods.
+                let from = |shift: usize| {
+                    let shifted = one.values.iter().cycle().skip(64 * shift);
+                    shifted.zip(&other.values).fold(0.0f64, |m, (a, b)| m.max((a - b).abs() / size))
+                };
+                let periods = one.values.len() / 64;
+                let worst = (0..periods).map(from).fold(f64::INFINITY, f64::min);
                 // Rigid rotations of both start at other angles.
                 assert!(worst < 2e-7 || one.name.contains("theta"), "{name} {what} {}: {worst:.1e}", one.name);
             }
@@ -154,9 +171,8 @@ fn responses_are_those_of_the_twelve_equations() {
                 all
             };
             let (one, other) = (moduli(&train), moduli(&twelve));
-            // A train without rigid-body modes of torsion has them among its elastic modes nowhere.
-            let common = one.len().min(other.len());
-            let worst: Vec<f64> = other[..common]
+            // A rigid-body mode that torsional springs couple is a coordinate among others in the twelve equations.
+            let worst: Vec<f64> = other
                 .iter()
                 .filter(|m| m.norm() < 1.0 - 1e-6)
                 .map(|m| one.iter().fold(f64::INFINITY, |least, o| least.min((o - m).norm())))
@@ -170,7 +186,7 @@ fn responses_are_those_of_the_twelve_equations() {
             check_worst(TOPIC, &format!("case {name}, {what}: natural frequencies, Hz"), errors, 1e-6);
         }
     }
-    assert!(separated >= 6, "{separated} variants lose contact");
+    assert!(separated >= 6 && compared >= 12, "{separated} variants lose contact, {compared} of 14 are periodic");
 }
 
 /// Chaos over a short time, recorded: the same statistics and the same switches.
@@ -399,4 +415,210 @@ impl Observer<52> for Together<'_, '_> {
         self.0.segment(segment);
         self.1.iter_mut().for_each(|(_, alone)| alone.segment(segment));
     }
+}
+
+/// The state of least energy from twelve displacements and velocities has exactly these; a larger set of displacements
+/// than coordinates is met where it can be.
+#[test]
+fn a_start_has_the_twelve_displacements() {
+    let case = parameters("C");
+    let physical = advance(&case, &start("C"), 7, Integrator::Taylor, 1e-9, &Watch::none()).unwrap().state;
+    let mut errors = Vec::new();
+    for further in [0, 28, 80] {
+        let p = parameters("C");
+        let q = Parameters { train: Some(Arc::new(train_of(&p, further, 0.01))), ..p };
+        let there_and_back = advance(&q, &physical, 0, Integrator::Taylor, 1e-9, &Watch::none()).unwrap();
+        errors.extend(differences(&there_and_back.state, &physical));
+        fn of<const D: usize>(q: &Parameters, physical: &[f64; 24]) -> [f64; 24] {
+            let model = DynamicModel::<D>::new(q).unwrap();
+            model.physical_state(&model.state_from(physical))
+        }
+        let through = match number_of_coordinates(&q, false) {
+            28 => of::<28>(&q, &physical),
+            52 => of::<52>(&q, &physical),
+            _ => of::<100>(&q, &physical),
+        };
+        errors.extend(differences(&through, &physical));
+    }
+    check_worst(TOPIC, "displacements and velocities of the state of least energy", errors, 1e-9);
+    // Of all states with these displacements it has the least energy: a displacement that keeps them adds energy.
+    let p = parameters("C");
+    let train = train_of(&p, 28, 0.0);
+    let q = Parameters { train: Some(Arc::new(train.clone())), ..p };
+    let model = DynamicModel::<52>::new(&q).unwrap();
+    let state = model.state_from(&physical);
+    let equations = model.train.as_ref().unwrap();
+    let gradient = equations.stiffness_product(&state.x);
+    let n = equations.elastic;
+    let rows = DMatrix::from_fn(12, n + equations.rigid, |r, c| {
+        equations.displacements[r][if c < n { c } else { 52 - MAX_RIGID_BODY_MODES + c - n }]
+    });
+    let gradient = DVector::from_fn(n + equations.rigid, |c, _| if c < n { gradient[c] } else { 0.0 });
+    // The gradient of the energy is a combination of the rows.
+    let fit = rows.transpose().svd(true, true).solve(&gradient, 1e-13).unwrap();
+    let rest = (&gradient - rows.transpose() * fit).amax() / gradient.amax();
+    check_worst(TOPIC, "gradient of the energy off the twelve displacements", [rest], 1e-8);
+}
+
+/// Order of convergence of both methods on 40 modes with gyroscopic terms, by halving fixed steps.
+#[test]
+fn fixed_steps_converge_with_their_order() {
+    let mut p = parameters("A");
+    p.halves.iter_mut().for_each(|h| h.impact = None);
+    let q = with_further_modes(&p, 0.02);
+    let model = DynamicModel::<52>::new(&q).unwrap();
+    let from = model.state_from(&start("A"));
+    let run = |motion: Motion<'_, 52>| {
+        let mut motion = motion;
+        motion.advance_period(&mut Unobserved, &Watch::none(), 0.0).unwrap();
+        motion.state
+    };
+    let new = || Motion::new(&model, from, Integrator::Taylor, 1e-15, u64::MAX);
+    let exact = run(new());
+    let error = |state: MotionState<52>| (0..48).fold(0.0f64, |m, c| m.max((state.x[c] - exact.x[c]).abs()));
+    for (order, parts) in [(6usize, 300.0), (10, 120.0)] {
+        let at = |parts: f64| error(run(new().with_fixed_taylor(order, model.period_tau / parts)));
+        let found = (at(parts) / at(2.0 * parts)).log2();
+        // The displacements of a step have the order of the series, and their velocities one less.
+        check(
+            TOPIC,
+            &format!("order of convergence, Taylor series of order {order}"),
+            found,
+            order as f64,
+            Absolute(1.2),
+        );
+    }
+    let at = |parts: f64| error(run(new().with_fixed_runge_kutta(model.period_tau / parts)));
+    let found = (at(800.0) / at(1600.0)).log2();
+    check(TOPIC, "order of convergence, Runge–Kutta", found, 4.0, Absolute(0.6));
+}
+
+/// Unloaded and without excitation: at rest with the flanks in touch, by every method; and not where it is held.
+#[test]
+fn an_unloaded_train_rests() {
+    let mut p = parameters("C");
+    p.halves.iter_mut().for_each(|h| (h.impact, h.pinion_torque_nm) = (None, 0.0));
+    let q = with_further_modes(&p, 0.02);
+    let integrate = SolutionMethod::Integrate { mesh_periods: 20, record_mesh_periods: 10 };
+    for method in [SolutionMethod::Auto, SolutionMethod::Periodic, integrate] {
+        let response = solve(&q, &Analysis { method, ..Analysis::default() }, &Watch::none()).unwrap();
+        let s = response.summary;
+        assert!(s.rms.channels.values().all(|rms| *rms < 1e-9), "{:?}", s.rms.channels);
+        check(TOPIC, "unloaded train: s over half the backlash", s.min_displacement_m, 2e-5, Relative(1e-9));
+        assert_eq!((s.regime, s.dynamic_factor), (Regime::Period1, None));
+    }
+    // A displacement excitation moves it.
+    let mut moved = q.clone();
+    moved.halves[0].displacement_excitation = vec![Harmonic { amplitude: 1e-6, phase_rad: 0.0 }];
+    let method = SolutionMethod::Integrate { mesh_periods: 20, record_mesh_periods: 10 };
+    let s = solve(&moved, &Analysis { method, ..Analysis::default() }, &Watch::none()).unwrap().summary;
+    assert!(s.rms.mesh_circumferential_acceleration_m_s2.left > 1e-3);
+}
+
+/// Trains beside pairs, in one group: each as alone, to the last bit, from the end state of another too.
+#[test]
+fn many_points_with_trains_are_those_alone() {
+    let p = parameters("C");
+    let q = with_further_modes(&p, 0.02);
+    let mut staggered = p.clone();
+    staggered.halves[1].phase_shift_mesh_periods = 0.5;
+    let points = [q.clone(), p.clone(), as_train(&staggered), staggered];
+    let method = SolutionMethod::Integrate { mesh_periods: 30, record_mesh_periods: 10 };
+    for method in [method, SolutionMethod::Auto] {
+        let analysis = Analysis { method, ..Analysis::default() };
+        let together = solve_many(&points, &analysis, &Watch::none()).unwrap();
+        for (p, response) in points.iter().zip(&together) {
+            assert_eq!(response, &solve(p, &analysis, &Watch::none()));
+        }
+        let end = together[0].as_ref().unwrap().final_state;
+        let continued = Analysis { initial_state: Some(end), ..analysis };
+        let next = Parameters { mesh_frequency_hz: 1.01 * q.mesh_frequency_hz, ..q.clone() };
+        let response = solve(&next, &continued, &Watch::none()).unwrap();
+        assert!(response.summary.rms.mesh_circumferential_acceleration_m_s2.left > 1.0);
+    }
+    let starts = [start("C"); 4];
+    let together = advance_many(&points, &starts, 3, 1e-9, &Watch::none()).unwrap();
+    for (p, state) in points.iter().zip(together) {
+        assert_eq!(state, advance(p, &starts[0], 3, Integrator::Taylor, 1e-9, &Watch::none()));
+    }
+}
+
+#[test]
+fn a_malformed_train_is_refused() {
+    let p = parameters("A");
+    let train = train_of(&p, 3, 0.0);
+    assert_eq!(train.validate(), Ok(()));
+    assert_eq!((train.len(), train.is_empty()), (15, false));
+    let mut refused = 0;
+    let mut refuse = |change: &dyn Fn(&mut ModalTrain)| {
+        let mut bad = train.clone();
+        change(&mut bad);
+        let q = Parameters { train: Some(Arc::new(bad)), ..p.clone() };
+        let error = solve(&q, &Analysis::default(), &Watch::none());
+        assert!(matches!(error, Err(DynamicsError::InvalidParameter { .. })), "{refused}: {error:?}");
+        refused += 1;
+    };
+    refuse(&|t| t.eigenvalues_rad2_s2.clear());
+    refuse(&|t| t.eigenvalues_rad2_s2[4] = f64::NAN);
+    refuse(&|t| t.eigenvalues_rad2_s2.fill(0.0));
+    refuse(&|t| t.eigenvalues_rad2_s2[14] = -1e6);
+    refuse(&|t| t.eigenvalues_rad2_s2[..5].fill(0.0));
+    refuse(&|t| t.damping_per_s.truncate(3));
+    refuse(&|t| t.damping_per_s[7] = f64::INFINITY);
+    refuse(&|t| t.cross_stiffness_per_s2 = Some(vec![0.0; 7]));
+    refuse(&|t| t.mesh[1].push(0.0));
+    refuse(&|t| t.mesh[0].fill(0.0));
+    refuse(&|t| t.reference_stiffness_n_per_m[0] = 0.0);
+    refuse(&|t| t.load_n.clear());
+    refuse(&|t| t.displacements[11][2] = f64::NAN);
+    refuse(&|t| t.outputs[0].velocity = vec![1.0]);
+    refuse(&|t| t.outputs[3].unit = "lbf".into());
+    let long = train_of(&p, 97, 0.0);
+    let q = Parameters { train: Some(Arc::new(long)), ..p.clone() };
+    assert!(matches!(solve(&q, &Analysis::default(), &Watch::none()), Err(DynamicsError::InvalidParameter { .. })));
+    assert_eq!(refused, 15);
+}
+
+/// Torques that do not balance accelerate the rigid-body mode.
+#[test]
+fn an_unbalanced_train_has_no_steady_state() {
+    let p = parameters("A");
+    let mut train = train_of(&p, 5, 0.0);
+    let rigid = (0..train.len()).find(|&i| train.is_rigid_body_mode(i)).unwrap();
+    train.load_n[rigid] += 1000.0;
+    let q = Parameters { train: Some(Arc::new(train)), ..p };
+    let refused = solve(&q, &Analysis::default(), &Watch::none());
+    assert!(matches!(refused, Err(DynamicsError::Unbalanced { .. })), "{refused:?}");
+}
+
+/// A channel for every further quantity, by its name.
+#[test]
+fn outputs_are_channels() {
+    let p = parameters("A");
+    let train = train_of(&p, 5, 0.01);
+    let q = Parameters { train: Some(Arc::new(train.clone())), ..p };
+    let id = ChannelId::parse_with("bearing_2_y", Some(&train)).unwrap();
+    assert_eq!(ChannelId::parse_with("bearing_2_y", None), None);
+    assert_eq!(ChannelId::parse_with("s_left", Some(&train)), ChannelId::parse("s_left"));
+    let analysis = Analysis { channels: vec![id], samples_per_mesh_period: 512, ..Analysis::default() };
+    let response = solve(&q, &analysis, &Watch::none()).unwrap();
+    let channel = &response.channels[0];
+    assert_eq!((channel.name.as_str(), channel.unit.as_str(), channel.values.len()), ("bearing_2_y", "N", 512));
+    let mean = channel.values.iter().sum::<f64>() / 512.0;
+    let rms = (channel.values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 512.0).sqrt();
+    let output = &response.outputs[1];
+    check(TOPIC, "mean of a bearing force, samples against integrals", output.mean, mean, Relative(1e-5));
+    check(TOPIC, "RMS of a bearing force, samples against integrals", output.rms, rms, Relative(1e-4));
+    let first: Complex<f64> = (0..512)
+        .map(|i| Complex::from_polar(channel.values[i] / 256.0, -std::f64::consts::TAU * i as f64 / 512.0))
+        .sum();
+    check(
+        TOPIC,
+        "first order of a bearing force, samples against integrals",
+        output.orders[0].amplitude,
+        first.norm(),
+        Relative(1e-4),
+    );
+    let phase = (output.orders[0].phase_rad - first.arg()).abs();
+    check(TOPIC, "its phase, rad", phase, 0.0, Absolute(1e-4));
 }
