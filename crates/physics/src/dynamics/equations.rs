@@ -7,10 +7,15 @@
 //! + sinβ_j (z_p − z_g).
 //!
 //! `Equations<6>` are those of one half of a mirror-symmetric pair (z of the other half is the opposite),
-//! `Equations<12>` those of both halves. Time is scaled by a reference frequency: τ = ω_ref t; velocities are dx/dτ.
+//! `Equations<12>` those of both halves, larger ones those of a reduced train ([`TrainEquations`]). Time is scaled by a
+//! reference frequency: τ = ω_ref t; velocities are dx/dτ.
+
+use std::sync::Arc;
 
 use super::lanes::Real;
+use super::modal_train::MAX_RIGID_BODY_MODES;
 use super::parameters::{ImpactActsOn, Parameters, Spring};
+use super::train_equations::{TrainEquations, dot};
 
 /// Coordinates per half, and their indices.
 pub(crate) const PER_HALF: usize = 6;
@@ -20,6 +25,23 @@ pub(crate) const U: usize = 2;
 pub(crate) const YG: usize = 3;
 pub(crate) const ZG: usize = 4;
 pub(crate) const W: usize = 5;
+
+/// Whether the `d` coordinates are those of a reduced train.
+pub(crate) const fn is_train(d: usize) -> bool {
+    d > 2 * PER_HALF
+}
+
+/// Number of solved halves.
+pub(crate) const fn solved_halves(d: usize) -> usize {
+    if d == PER_HALF { 1 } else { 2 }
+}
+
+/// Whether a coordinate is a rigid rotation w or, of a train, a rigid-body mode. They may grow without limit and do not
+/// count in the size of a motion.
+#[inline(always)]
+pub(crate) const fn is_rigid_rotation(d: usize, coordinate: usize) -> bool {
+    if is_train(d) { coordinate + MAX_RIGID_BODY_MODES >= d } else { coordinate % PER_HALF == W }
+}
 
 /// Spring and damper in scaled time, divided by the mass they act on.
 #[derive(Debug, Clone, Copy, Default)]
@@ -76,7 +98,8 @@ pub(crate) struct HalfEquations<R> {
     pub load: R,
 }
 
-/// Linear part of the equations of one half (D = 6, mirror-symmetric pair) or of both (D = 12).
+/// Linear part of the equations of one half (D = 6, mirror-symmetric pair), of both (D = 12), or of a train. Of a train
+/// the halves have only s, damper and load.
 #[derive(Debug, Clone)]
 pub(crate) struct Equations<const D: usize, R> {
     pub halves: [HalfEquations<R>; 2],
@@ -90,6 +113,8 @@ pub(crate) struct Equations<const D: usize, R> {
     torsional: bool,
     /// D = 6 only: the other half moves as the mirror image (1) or as its opposite (−1, antisymmetric perturbations).
     parity: f64,
+    /// Some for a train, and for nothing else.
+    pub train: Option<Arc<TrainEquations<D>>>,
 }
 
 impl<const D: usize> Equations<D, f64> {
@@ -104,7 +129,43 @@ impl<const D: usize> Equations<D, f64> {
             impact_normal: if p.impact_acts_on == ImpactActsOn::Torsion { 0.0 } else { 1.0 / p.helix_angle_rad.cos() },
             torsional,
             parity: 1.0,
+            train: None,
         }
+    }
+
+    /// The equations of a train.
+    pub(crate) fn of_train(p: &Parameters, train: TrainEquations<D>, omega_ref: f64) -> Self {
+        let cos = p.helix_angle_rad.cos();
+        let forces_n = train.static_forces_n();
+        let half = |j: usize| {
+            let h = &p.halves[j];
+            let cm = h.mesh_damping_n_s_per_m * omega_ref;
+            // 1 N along the mesh accelerates s by the square of its row.
+            let inv_ms: f64 = train.mesh[j].iter().zip(&train.mesh_acceleration[j]).map(|(m, a)| m * a).sum();
+            HalfEquations {
+                sin: if j == 0 { p.helix_angle_rad.sin() } else { -p.helix_angle_rad.sin() },
+                inv_me: inv_ms / (cos * cos),
+                cm,
+                cm_in_gap: if p.damping_in_gap { cm } else { 0.0 },
+                load: forces_n[j] * cos,
+                ..HalfEquations::default()
+            }
+        };
+        Self {
+            halves: [half(0), half(1)],
+            cos,
+            b: p.half_backlash_m,
+            impact_along: if p.impact_acts_on == ImpactActsOn::Torsion { 1.0 } else { 0.0 },
+            impact_normal: if p.impact_acts_on == ImpactActsOn::Torsion { 0.0 } else { 1.0 / cos },
+            torsional: false,
+            parity: 1.0,
+            train: Some(Arc::new(train)),
+        }
+    }
+
+    /// Number of degrees of freedom: of a train that of its modes.
+    pub(crate) fn degrees_of_freedom(&self) -> usize {
+        self.train.as_ref().map_or(D, |train| train.elastic + train.rigid)
     }
 
     /// The equations of antisymmetric perturbations (D = 6): the other half moves as the opposite of the mirror image.
@@ -117,14 +178,19 @@ impl<const D: usize> Equations<D, f64> {
         self.torsional
     }
 
-    /// Indices of the coordinates that are integrated: all, or all but w where no torsional spring acts.
+    /// Indices of the coordinates that are integrated: all, or all but w where no torsional spring acts. Of a train the
+    /// elastic modes: its rigid-body modes act on nothing.
     pub(crate) fn active(&self) -> impl Iterator<Item = usize> + use<D> {
         let with_w = self.torsional && (D > PER_HALF || self.parity < 0.0);
-        (0..D).filter(move |c| with_w || c % PER_HALF != W)
+        let elastic = self.train.as_ref().map_or(0, |train| train.elastic);
+        (0..D).filter(move |&c| if is_train(D) { c < elastic } else { with_w || c % PER_HALF != W })
     }
 
     /// Diagonal of the mass matrix in solver coordinates, kg.
     pub(crate) fn masses_kg(&self, omega_ref: f64) -> [f64; D] {
+        if is_train(D) {
+            return [1.0; D];
+        }
         let mut out = [0.0; D];
         let square = omega_ref * omega_ref;
         for (j, h) in self.halves[..Self::HALVES].iter().enumerate() {
@@ -145,7 +211,9 @@ impl<const D: usize> Equations<D, f64> {
 }
 
 impl<const D: usize, R: Real> Equations<D, R> {
-    pub(crate) const HALVES: usize = D / PER_HALF;
+    pub(crate) const HALVES: usize = solved_halves(D);
+    /// Whether the linear part is that of a train.
+    pub(crate) const IS_TRAIN: bool = is_train(D);
 
     /// Equations without forces, for unused lanes.
     pub(crate) fn at_rest() -> Self {
@@ -157,10 +225,11 @@ impl<const D: usize, R: Real> Equations<D, R> {
             impact_normal: R::default(),
             torsional: false,
             parity: 1.0,
+            train: None,
         }
     }
 
-    /// Sets the equations of one lane. All lanes have the same parity.
+    /// Sets the equations of one lane. All lanes have the same parity; trains have no lanes.
     pub(crate) fn put(&mut self, lane: usize, one: &Equations<D, f64>) {
         fn rate<R: Real>(to: &mut ScaledSpring<R>, lane: usize, from: &ScaledSpring<f64>) {
             to.k.set(lane, from.k);
@@ -213,8 +282,35 @@ impl<const D: usize, R: Real> Equations<D, R> {
     /// Displacement s of a half along the tooth normal, m.
     #[inline(always)]
     pub(crate) fn s(&self, j: usize, x: &[R; D]) -> R {
+        if Self::IS_TRAIN {
+            return self.train.as_ref().map_or(R::splat(0.0), |train| dot(&train.mesh[j], x));
+        }
         let i = j * PER_HALF;
         self.cos * (x[i + YP] - x[i + YG] + x[i + U]) + self.halves[j].sin * (x[i + ZP] - x[i + ZG])
+    }
+
+    /// Tangential displacement x of a half, m.
+    #[inline(always)]
+    pub(crate) fn mesh_x(&self, j: usize, x: &[R; D]) -> R {
+        if Self::IS_TRAIN {
+            return self.train.as_ref().map_or(R::splat(0.0), |train| dot(&train.mesh_x[j], x));
+        }
+        let i = j * PER_HALF;
+        x[i + YP] - x[i + YG] + x[i + U]
+    }
+
+    /// Accelerations of a train in scaled time from its normal tooth forces and tangential forces, N; `s`: the
+    /// displacements along the normal. Linear and homogeneous in all of them and `loads`.
+    #[inline(always)]
+    pub(super) fn train_acceleration(
+        &self,
+        motion: (&[R; D], &[R; D]),
+        (s, normal, along): ([R; 2], [R; 2], Option<[R; 2]>),
+        loads: R,
+    ) -> [R; D] {
+        let Some(train) = &self.train else { return [R::splat(0.0); D] };
+        let beyond = |j: usize| normal[j] - R::splat(train.reference_stiffness[j]) * s[j];
+        train.acceleration(motion, [beyond(0), beyond(1)], along, loads)
     }
 
     /// Accelerations in scaled time of one half from its normal tooth force and the tangential force, T_p/R_p − F_s

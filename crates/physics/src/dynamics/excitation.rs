@@ -198,6 +198,23 @@ impl FourierSeries<f64> {
     }
 }
 
+impl FourierSeries<f64> {
+    /// Series of a displacement; None without harmonics.
+    pub(crate) fn of_displacement(harmonics: &[Harmonic], shift: f64, period_tau: f64) -> Option<Self> {
+        let moves = harmonics.iter().any(|h| h.amplitude != 0.0);
+        moves.then(|| Self::new(0.0, 1.0, harmonics, shift, period_tau))
+    }
+
+    /// Value and derivative by the phase.
+    pub(crate) fn value_and_rate(&self, phase: f64) -> (f64, f64) {
+        self.terms.iter().enumerate().fold((self.constant, 0.0), |(value, rate), (i, term)| {
+            let order = TAU * (i + 1) as f64;
+            let (sin, cos) = (order * phase).sin_cos();
+            (value + term.cos * cos - term.sin * sin, rate - order * (term.cos * sin + term.sin * cos))
+        })
+    }
+}
+
 impl<R: Real> FourierSeries<R> {
     pub(crate) fn zero() -> Self {
         Self { constant: R::splat(0.0), terms: Vec::new() }
@@ -385,6 +402,26 @@ impl ImpactWaveform {
             ImpactWaveform::None => 0.0,
             ImpactWaveform::HalfSine { force_n, duration, .. } => force_n.abs() * duration.ceil(),
             ImpactWaveform::Harmonics(series) => series.terms.iter().map(|t| t.cos.hypot(t.sin)).sum(),
+        }
+    }
+
+    /// Taylor coefficients in scaled time about `phase`, orders 0 to `order`, of the force on the smooth interval that
+    /// contains `interior`, N. False, with `out` unchanged, where there is none.
+    pub(crate) fn taylor(&self, phase: f64, interior: f64, order: usize, out: &mut [f64; MAX_ORDER + 1]) -> bool {
+        match self {
+            ImpactWaveform::None => false,
+            ImpactWaveform::HalfSine { force_n, duration, start, power } => {
+                let (sin, cos) = Self::sine(phase, interior, *duration, *start);
+                let signed = [sin, cos, -sin, -cos];
+                for n in 0..=order {
+                    out[n] = force_n * power[n] * signed[n & 3];
+                }
+                sin != 0.0 || cos != 0.0
+            }
+            ImpactWaveform::Harmonics(series) => {
+                series.fill(phase, order, out);
+                true
+            }
         }
     }
 

@@ -17,6 +17,10 @@ pub(crate) struct ExcitationTerms<R> {
     pub impact: [[R; MAX_ORDER + 1]; 2],
     /// Whether the impact is not zero.
     pub impact_active: [bool; 2],
+    /// Displacement excitation, which s − gap is without.
+    pub gap: [[R; MAX_ORDER + 1]; 2],
+    /// Whether there is one.
+    pub gap_active: [bool; 2],
     /// Cells of a tabulated contact force, one per half.
     pub cells: [ForceCells<R>; 2],
 }
@@ -30,11 +34,13 @@ impl<R: Real> ExcitationTerms<R> {
             degree: [0; 2],
             impact: zero,
             impact_active: [false; 2],
+            gap: zero,
+            gap_active: [false; 2],
             cells: [ForceCells::none(); 2],
         }
     }
 
-    /// Copies the terms of one motion into all lanes.
+    /// Copies the terms of one motion, as they act on perturbations, into all lanes.
     #[inline(always)]
     pub(crate) fn broadcast(&mut self, one: &ExcitationTerms<f64>, order: usize) {
         for j in 0..2 {
@@ -98,6 +104,10 @@ impl<const D: usize> ExcitationExpansion<f64> for DynamicModel<D> {
                 }
                 terms.reverse_stiffness(j, order);
             }
+            terms.gap_active[j] = e.gap.is_some();
+            if let Some(series) = &e.gap {
+                series.fill(phase, order, &mut terms.gap[j]);
+            }
             terms.impact_active[j] = false;
             if let Some((sin, cos)) = e.impact.pulse(phase, interior)
                 && let Some(powers) = e.impact.powers()
@@ -129,6 +139,7 @@ impl<const D: usize> DynamicModel<D> {
         let phase = segment.phase + at / self.period_tau;
         self.expand(phase, interior, segment.contact.map(f64::from), order, terms);
         for j in 0..self.excitations.len() {
+            let moved = std::mem::take(&mut terms.gap_active[j]);
             if !terms.cells[j].in_use {
                 continue;
             }
@@ -141,6 +152,11 @@ impl<const D: usize> DynamicModel<D> {
                     *s = self.s(j, row);
                 }
                 recentre(&mut s[..=segment.degree], at);
+                if moved {
+                    for (s, gap) in s[..=order].iter_mut().zip(&terms.gap[j]) {
+                        *s -= gap;
+                    }
+                }
                 let mut series = ContactSeries::new();
                 for n in 0..=order {
                     stiffness[n] = series.stiffness(&cells, n, s[n]);
@@ -184,6 +200,7 @@ struct LaneExcitation<'m, const L: usize> {
     pulses: [Option<&'m ImpactWaveform>; L],
     powers: [Lanes<L>; MAX_ORDER + 1],
     impact: FourierSeries<Lanes<L>>,
+    gap: FourierSeries<Lanes<L>>,
 }
 
 /// Excitations of the motions in all lanes.
@@ -200,6 +217,7 @@ impl<'m, const L: usize> LaneExcitations<'m, L> {
             pulses: [None; L],
             powers: [Lanes::splat(0.0); MAX_ORDER + 1],
             impact: FourierSeries::zero(),
+            gap: FourierSeries::zero(),
         };
         Self { halves: [half(), half()] }
     }
@@ -217,6 +235,7 @@ impl<'m, const L: usize> LaneExcitations<'m, L> {
                 to.set(lane, *from);
             }
             to.impact.put(lane, from.impact.series().unwrap_or(&FourierSeries::zero()));
+            to.gap.put(lane, from.gap.as_ref().unwrap_or(&FourierSeries::zero()));
         }
     }
 }
@@ -253,6 +272,10 @@ impl<const L: usize> ExcitationExpansion<Lanes<L>> for LaneExcitations<'_, L> {
                     }
                 }
                 terms.reverse_stiffness(j, order);
+            }
+            terms.gap_active[j] = !e.gap.is_constant();
+            if terms.gap_active[j] {
+                e.gap.fill(phase, order, &mut terms.gap[j]);
             }
             let (mut sin, mut cos) = (zero, zero);
             for lane in 0..L {

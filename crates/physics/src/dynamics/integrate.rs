@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::equations::{PER_HALF, W};
+use super::equations::is_rigid_rotation;
 use super::error::DynamicsError;
 use super::model::{DynamicModel, MotionState};
 use super::runge_kutta::RungeKutta;
@@ -151,6 +151,8 @@ impl<'a, const D: usize> Motion<'a, D> {
 /// Whether a component exceeds the limit or is not finite. Rigid rotation is not limited.
 pub(super) fn has_diverged<const D: usize>(state: &MotionState<D>) -> bool {
     [&state.x, &state.v].iter().any(|row| {
-        row.iter().enumerate().any(|(c, v)| !v.is_finite() || (c % PER_HALF != W && v.abs() > DIVERGENCE_LIMIT_M))
+        row.iter()
+            .enumerate()
+            .any(|(c, v)| !v.is_finite() || (!is_rigid_rotation(D, c) && v.abs() > DIVERGENCE_LIMIT_M))
     })
 }

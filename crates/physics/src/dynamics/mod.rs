@@ -53,6 +53,8 @@ mod runge_kutta;
 mod segment;
 mod shooting;
 mod taylor;
+mod train_equations;
+mod train_variation;
 mod trajectory;
 mod variation;
 
@@ -61,14 +63,16 @@ pub use error::DynamicsError;
 pub use excitation::{Harmonic, ImpactExcitation, Stiffness};
 pub use integrate::{Integrator, StepCounts};
 pub use modal::{Mode, NaturalModes, SpringGroup};
-pub use modal_train::{LinearOutput, MAX_ELASTIC_MODES, MAX_LINEAR_OUTPUTS, MAX_RIGID_BODY_MODES, ModalTrain};
+pub use modal_train::{
+    LinearOutput, MAX_ELASTIC_MODES, MAX_LINEAR_OUTPUTS, MAX_RIGID_BODY_MODES, ModalTrain, OUTPUT_UNITS,
+};
 pub use model::ContactSide;
 pub use parameters::{
     Couplings, HalfParameters, ImpactActsOn, Parameters, Spring, equivalent_mass_kg, mesh_damping_n_s_per_m,
 };
 pub use trajectory::{FinalState, advance, advance_many};
 
-pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP};
+pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP, is_rigid_rotation, is_train, solved_halves};
 pub(crate) use excitation::MAX_ORDER;
 pub(crate) use integrate::{DIVERGENCE_LIMIT_M, Motion};
 pub(crate) use lane_batch::{POINTS_PER_TASK, TrajectoryObserver, integrate_trajectories, integrate_trajectory};
@@ -76,7 +80,8 @@ pub(crate) use model::{DynamicModel, MotionState};
 pub(crate) use rigid_body::RigidBodyModes;
 pub(crate) use segment::{Observer, Segment, Unobserved};
 pub(crate) use shooting::{IntegrationLimits, Shooting};
-pub(crate) use trajectory::is_mirrored;
+pub(crate) use train_equations::{TrainEquations, dot as row_product};
+pub(crate) use trajectory::{is_mirrored, number_of_coordinates};
 pub(crate) use variation::{ObserverPair, Perturbation, Variation, state_difference};
 
 #[cfg(test)]

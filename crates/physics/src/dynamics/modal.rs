@@ -12,9 +12,13 @@ pub use mode::Mode;
 pub use springs::SpringGroup;
 
 use super::error::DynamicsError;
+use super::modal_train::ModalTrain;
+use super::model::DynamicModel;
 use super::parameters::Parameters;
+use super::trajectory::number_of_coordinates;
 
-/// Natural frequencies and mode shapes of the undamped system with mean mesh stiffness and closed contact.
+/// Natural frequencies and mode shapes of the undamped system with mean mesh stiffness and closed contact; of a train
+/// with its reference mesh stiffnesses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NaturalModes {
     /// Ascending, Hz; 0 for rigid-body modes.
@@ -39,6 +43,9 @@ impl NaturalModes {
     /// [`DynamicsError::InvalidParameter`].
     pub fn new(p: &Parameters) -> Result<Self, DynamicsError> {
         p.validate()?;
+        if let Some(train) = &p.train {
+            return Ok(Self::of_train(train));
+        }
         let k = stiffness_matrix(p);
         let root = masses(p).map(|m| 1.0 / m.sqrt());
         let scaled = DMatrix::from_fn(12, 12, |r, c| k[(r, c)] * root[r] * root[c]);
@@ -73,6 +80,19 @@ impl NaturalModes {
         Ok(Self { frequencies_hz, shapes })
     }
 
+    /// The modes of a valid train closed with its reference mesh stiffnesses, as they move the twelve displacements.
+    fn of_train(train: &ModalTrain) -> Self {
+        let mut modes: Vec<(f64, [f64; 12])> = (0..train.len())
+            .map(|i| {
+                let square = if train.is_rigid_body_mode(i) { 0.0 } else { train.eigenvalues_rad2_s2[i] };
+                (square.sqrt() / std::f64::consts::TAU, std::array::from_fn(|c| train.displacements[c][i]))
+            })
+            .collect();
+        modes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (frequencies_hz, shapes) = modes.into_iter().unzip();
+        Self { frequencies_hz, shapes }
+    }
+
     /// Shapes of the rigid-body modes.
     pub fn rigid_body_modes(&self) -> impl Iterator<Item = &[f64; 12]> {
         self.shapes.iter().zip(&self.frequencies_hz).filter(|(_, f)| **f == 0.0).map(|(shape, _)| shape)
@@ -80,7 +100,21 @@ impl NaturalModes {
 
     /// Deflection (m, rad) under the mean torques with the mean mesh stiffness, without impact, each half in contact on
     /// the flank loaded by its torque; no component along rigid-body modes.
+    ///
+    /// Of a train with a tabulated contact force: under that force at the start of the mesh period.
     pub fn static_deflection(&self, p: &Parameters) -> [f64; 12] {
+        fn of_train<const D: usize>(p: &Parameters) -> [f64; 12] {
+            let mean_n_per_m = [0, 1].map(|j| p.halves[j].mesh_stiffness.mean_n_per_m());
+            DynamicModel::<D>::new(p)
+                .map_or([0.0; 12], |model| model.physical_displacements(&model.static_state_of_train(mean_n_per_m).x))
+        }
+        if p.train.is_some() {
+            return match number_of_coordinates(p, false) {
+                28 => of_train::<28>(p),
+                52 => of_train::<52>(p),
+                _ => of_train::<100>(p),
+            };
+        }
         let mut force = torques(p);
         for j in 0..2 {
             let side = if p.halves[j].pinion_torque_nm < 0.0 { -1.0 } else { 1.0 };

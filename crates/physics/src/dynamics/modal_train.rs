@@ -10,6 +10,9 @@ pub const MAX_RIGID_BODY_MODES: usize = 4;
 /// Largest number of further quantities of a train.
 pub const MAX_LINEAR_OUTPUTS: usize = 1000;
 
+/// Units of the further quantities.
+pub const OUTPUT_UNITS: [&str; 8] = ["m", "m/s", "m/s2", "rad", "rad/s", "rad/s2", "N", "N m"];
+
 /// Equations of motion of a drive train reduced to coordinates q (m √kg) of unit modal mass (1 kg):
 ///
 /// ```text
@@ -45,7 +48,7 @@ pub struct ModalTrain {
 pub struct LinearOutput {
     /// Name of the channel.
     pub name: String,
-    /// SI unit: N, N m, m, rad.
+    /// SI unit, one of [`OUTPUT_UNITS`].
     pub unit: String,
     /// Row of the coordinates, unit per (m √kg).
     pub displacement: Vec<f64>,
@@ -79,6 +82,21 @@ impl ModalTrain {
             .collect();
         out.sort_by(f64::total_cmp);
         out
+    }
+
+    /// Whether the meshes open together without strain, so that an unloaded train can rest with its flanks touching.
+    pub(crate) fn opens_freely(&self) -> bool {
+        const STRAINED: f64 = 1e-6;
+        // q without forces at s = 1 on both meshes: λ q = Σ mesh k_ref.
+        let [left, right] = &self.mesh;
+        let [k_left, k_right] = self.reference_stiffness_n_per_m;
+        let s = |row: &[f64]| {
+            (0..self.len())
+                .filter(|&i| !self.is_rigid_body_mode(i))
+                .map(|i| row[i] * (left[i] * k_left + right[i] * k_right) / self.eigenvalues_rad2_s2[i])
+                .sum::<f64>()
+        };
+        self.cross_stiffness_per_s2.is_none() && self.mesh.iter().all(|row| (s(row) - 1.0).abs() < STRAINED)
     }
 
     /// Checks sizes and numbers.
@@ -135,6 +153,13 @@ impl ModalTrain {
             return invalid("outputs of the train", self.outputs.len() as f64, "more than 1000");
         }
         for output in &self.outputs {
+            if !OUTPUT_UNITS.contains(&output.unit.as_str()) {
+                return invalid(
+                    "unit of an output of the train",
+                    f64::NAN,
+                    "must be m, rad, N or N m, or a rate of m or rad",
+                );
+            }
             matrix("output row of the train", &output.displacement, n)?;
             if !output.velocity.is_empty() {
                 matrix("output row of the train", &output.velocity, n)?;

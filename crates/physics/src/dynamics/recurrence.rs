@@ -1,12 +1,12 @@
 //! Recurrence for the Taylor coefficients of the motion between two events.
 
 use super::contact_force::ForceCells;
-use super::equations::{Equations, PER_HALF, W};
+use super::equations::{Equations, PER_HALF, is_rigid_rotation};
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
 use super::lanes::Real;
 
-/// Working memory of a Taylor step: coefficients of all coordinates, of s and of F_n.
+/// Working memory of a Taylor step: coefficients of all coordinates, of s less the displacement excitation and of F_n.
 #[repr(align(64))]
 pub(crate) struct TaylorWork<const D: usize, R> {
     pub rows: [[R; D]; MAX_ORDER + 1],
@@ -114,7 +114,7 @@ pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
     work: &mut TaylorWork<D, R>,
 ) -> (R, usize) {
     let TaylorWork { rows, s, force, excitation, contact: series } = work;
-    let halves = D / PER_HALF;
+    let halves = Equations::<D, R>::HALVES;
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let mut damper = [zero; 2];
     let mut closed = [zero; 2];
@@ -128,6 +128,10 @@ pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
         backlash_offset[j] = loads * contact[j] * equations.b;
         s[j][0] = equations.s(j, &rows[0]);
         s[j][1] = equations.s(j, &rows[1]);
+        if excitation.gap_active[j] {
+            s[j][0] -= excitation.gap[j][0];
+            s[j][1] -= excitation.gap[j][1];
+        }
     }
     let short = |r: f64| r <= MAX_EARLY_TERMINATION_SPAN;
     let early_end = early_end.filter(|e| e.remaining.any(short));
@@ -142,6 +146,8 @@ pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
             *c = *c * R::splat(n1);
         }
         let scale = R::splat(1.0 / (n1 * (n1 + 1.0))) * active;
+        // Of a train: s, normal and tangential forces of both halves.
+        let (mut closing, mut normals, mut alongs) = ([zero; 2], [zero; 2], [zero; 2]);
         for j in 0..halves {
             let h = &equations.halves[j];
             let mut f = damper[j] * R::splat(n1) * s[j][n + 1];
@@ -168,6 +174,14 @@ pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
                 along -= equations.impact_along * impact_force;
                 normal += equations.impact_normal * impact_force;
             }
+            if Equations::<D, R>::IS_TRAIN {
+                closing[j] = s[j][n];
+                if excitation.gap_active[j] {
+                    closing[j] += excitation.gap[j][n];
+                }
+                (normals[j], alongs[j]) = (normal, along);
+                continue;
+            }
             if n == 0 {
                 along += loads * h.load;
             }
@@ -177,8 +191,19 @@ pub(crate) fn taylor_coefficients<const D: usize, R: Real>(
                 next[i + c] = a[c] * scale;
             }
         }
+        if Equations::<D, R>::IS_TRAIN {
+            let struck = excitation.impact_active[0] || excitation.impact_active[1];
+            let tooth = (closing, normals, struck.then_some(alongs));
+            let a = equations.train_acceleration((x, &v), tooth, if n == 0 { loads } else { zero });
+            for c in 0..D {
+                next[c] = a[c] * scale;
+            }
+        }
         for j in 0..halves {
             s[j][n + 2] = equations.s(j, next);
+            if excitation.gap_active[j] {
+                s[j][n + 2] -= excitation.gap[j][n + 2];
+            }
         }
         if let Some(e) = &early_end {
             let before = power;
@@ -231,7 +256,7 @@ pub(super) fn larger<R: Real>(a: R, b: R) -> R {
 pub(super) fn norm<const D: usize, R: Real>(row: &[R; D]) -> R {
     let mut largest = R::splat(0.0);
     for (c, value) in row.iter().enumerate() {
-        if c % PER_HALF != W {
+        if !is_rigid_rotation(D, c) {
             // `f64::max` would drop a NaN.
             largest = largest.zip(*value, |m, v| if v.abs() <= m { m } else { v.abs() });
         }

@@ -1,4 +1,4 @@
-//! Rigid-body modes: rotation of each half, and the screw motion of a floating pinion.
+//! Rigid-body modes: rotation of each half, and the screw motion of a floating pinion; those of a train.
 //!
 //! No spring acts along them and their momentum is conserved, so a motion drifts along them at a constant velocity and
 //! a perturbation along them stays constant or grows linearly in time. They are removed before a motion is tested for
@@ -26,6 +26,9 @@ impl<const D: usize> RigidBodyModes<D> {
     pub(crate) fn new(model: &DynamicModel<D>) -> Result<Self, DynamicsError> {
         let active: Vec<usize> = model.active().collect();
         let masses = model.masses_kg();
+        if DynamicModel::<D>::IS_TRAIN {
+            return Ok(Self { shapes: rigid_body_modes(model, &active, &masses, [0.0; 2])?, masses });
+        }
         let mesh = |j: usize| {
             let m = &masses[(j * PER_HALF).min(D - PER_HALF)..];
             model.omega_ref * model.omega_ref / (1.0 / m[YP] + 1.0 / m[YG] + 1.0 / m[U])

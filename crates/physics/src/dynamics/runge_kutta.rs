@@ -5,7 +5,7 @@
 //! steps. Tableau: E. Fehlberg, Low-order classical Runge-Kutta formulas with stepsize control, NASA TR R-315 (1969),
 //! table III.
 
-use super::equations::{PER_HALF, W};
+use super::equations::is_rigid_rotation;
 use super::error::DynamicsError;
 use super::excitation::{Coefficients, MAX_ORDER};
 use super::integrate::StepCounts;
@@ -91,7 +91,7 @@ impl<const D: usize> RungeKutta<D> {
                     ex += h * (B5[i] - B4[i]) * k[i].0[c];
                     ev += h * (B5[i] - B4[i]) * k[i].1[c];
                 }
-                if c % PER_HALF != W {
+                if !is_rigid_rotation(D, c) {
                     // `max` would drop a NaN.
                     let both = ex.abs() + ev.abs();
                     error = if both > error || both.is_nan() { both } else { error };
@@ -123,6 +123,14 @@ impl<const D: usize> RungeKutta<D> {
             counts.force_evaluations += 1;
             self.quintic(model, (&state.x, &state.v, &k[0].1), (&x, &v, &a), h);
             for j in 0..DynamicModel::<D>::HALVES {
+                if DynamicModel::<D>::IS_TRAIN {
+                    let step = (state.phase, interior, h);
+                    let cubic = model.mesh_force_over_step(j, step, &self.rows[..=5]);
+                    for (n, part) in cubic.into_iter().enumerate() {
+                        self.force[j][n] = part / h.powi(n as i32);
+                    }
+                    continue;
+                }
                 let impact = model.impact_in_normal(j, state.phase, phase_step, interior);
                 for (n, part) in impact.into_iter().enumerate() {
                     self.force[j][n] -= part / h.powi(n as i32);
@@ -147,7 +155,7 @@ impl<const D: usize> RungeKutta<D> {
     }
 
     /// Dense output: quintic Hermite interpolant of positions, velocities and accelerations at both ends. The mesh
-    /// force is that of the gear's lateral equation of motion along the quintic.
+    /// force is that of the gear's lateral equation of motion along the quintic; that of a train is not set here.
     fn quintic(&mut self, model: &DynamicModel<D>, start: Ends<'_, D>, end: Ends<'_, D>, h: f64) {
         let r = &mut self.rows;
         for c in 0..D {
@@ -162,6 +170,9 @@ impl<const D: usize> RungeKutta<D> {
             r[3][c] = (10.0 * dx - 4.0 * dv + 0.5 * da) / h.powi(3);
             r[4][c] = (-15.0 * dx + 7.0 * dv - da) / h.powi(4);
             r[5][c] = (6.0 * dx - 3.0 * dv + 0.5 * da) / h.powi(5);
+        }
+        if DynamicModel::<D>::IS_TRAIN {
+            return;
         }
         for j in 0..DynamicModel::<D>::HALVES {
             for n in 0..=3 {

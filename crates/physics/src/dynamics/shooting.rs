@@ -6,9 +6,11 @@ use super::equations::PER_HALF;
 use super::error::DynamicsError;
 use super::integrate::{Integrator, Motion, StepCounts};
 use super::modal::RIGID_BODY_EIGENVALUE;
+use super::modal_train::MAX_RIGID_BODY_MODES;
 use super::model::{DynamicModel, MotionState};
 use super::recurrence::norm;
 use super::segment::{Observer, Segment};
+use super::train_variation::eigenvalues;
 use super::variation::{ObserverPair, Perturbation, Variation};
 use crate::watch::Watch;
 
@@ -89,16 +91,28 @@ impl<'m, const D: usize> Shooting<'m, D> {
             motion.advance_period(&mut ObserverPair(&mut variation, &mut amplitude), watch, 0.0)?;
             watch.checkpoint(0.0)?;
         }
-        let n = self.active.len();
-        let monodromy = DMatrix::from_fn(2 * n, 2 * n, |r, c| {
-            let (x, v) = &variation.columns[c];
-            if r < n { x[self.active[r]] } else { v[self.active[r - n]] }
-        });
+        let monodromy = variation.monodromy();
         if monodromy.iter().any(|c| !c.is_finite()) {
             return Err(DynamicsError::Diverged { time_s: motion.time_s() });
         }
         let AmplitudeMonitor { size, separated, .. } = amplitude;
         Ok(PeriodMap { end: motion.state, monodromy, size, separated, counts: motion.counts })
+    }
+
+    /// The motion over a mesh period from `start`, and its monodromy matrix with the reference mesh stiffnesses in place
+    /// of those along the motion. None for anything but a train, or if its complex modes are nearly dependent.
+    ///
+    /// # Errors
+    /// [`DynamicsError`].
+    pub(crate) fn approximate_period_map(&self, start: MotionState<D>) -> Result<Option<PeriodMap<D>>, DynamicsError> {
+        let Some(modes) = self.model.train_modes() else { return Ok(None) };
+        let IntegrationLimits { tolerance, max_steps, watch } = self.limits;
+        let mut motion = Motion::new(self.model, start, Integrator::Taylor, tolerance, max_steps);
+        let mut amplitude = AmplitudeMonitor { size: 0.0, separated: false, first: None };
+        motion.advance_period(&mut amplitude, watch, 0.0)?;
+        let monodromy = modes.free_motion(self.model.period_tau);
+        let AmplitudeMonitor { size, separated, .. } = amplitude;
+        Ok(Some(PeriodMap { end: motion.state, monodromy, size, separated, counts: motion.counts }))
     }
 
     /// Component along a rigid-body mode: nᵀ M q.
@@ -107,7 +121,11 @@ impl<'m, const D: usize> Shooting<'m, D> {
     }
 
     /// Projector onto the complement of the rigid-body modes, over (active displacements, active velocities).
-    fn rigid_body_projector(&self) -> DMatrix<f64> {
+    /// None where no active coordinate moves in them.
+    fn rigid_body_projector(&self) -> Option<DMatrix<f64>> {
+        if DynamicModel::<D>::IS_TRAIN {
+            return None;
+        }
         let n = self.active.len();
         let mut q = DMatrix::identity(2 * n, 2 * n);
         for mode in &self.rigid_body {
@@ -119,7 +137,7 @@ impl<'m, const D: usize> Shooting<'m, D> {
                 }
             }
         }
-        q
+        Some(q)
     }
 
     /// Newton correction of the start for a motion that is to repeat after `periods` mesh periods; `defect` is end −
@@ -134,8 +152,13 @@ impl<'m, const D: usize> Shooting<'m, D> {
         let projector = self.rigid_body_projector();
         let r =
             DVector::from_fn(2 * n, |i, _| if i < n { defect.0[self.active[i]] } else { defect.1[self.active[i - n]] });
-        let system = DMatrix::identity(2 * n, 2 * n) - &projector * monodromy * &projector;
-        let solution = &projector * system.lu().solve(&(&projector * r))?;
+        let solution = match &projector {
+            Some(projector) => {
+                let system = DMatrix::identity(2 * n, 2 * n) - projector * monodromy * projector;
+                projector * system.lu().solve(&(projector * r))?
+            }
+            None => (DMatrix::identity(2 * n, 2 * n) - monodromy).lu().solve(&r)?,
+        };
         let (mut x, mut v) = ([0.0; D], [0.0; D]);
         for (i, &c) in self.active.iter().enumerate() {
             x[c] = solution[i];
@@ -163,25 +186,38 @@ impl<'m, const D: usize> Shooting<'m, D> {
 
     /// Floquet multipliers, rigid-body modes excluded, largest first.
     pub(crate) fn multipliers(&self, monodromy: &DMatrix<f64>) -> Vec<Complex<f64>> {
-        let projector = self.rigid_body_projector();
-        let Some(schur) = Schur::try_new(&projector * monodromy * &projector, f64::EPSILON, 10_000) else {
-            return Vec::new();
+        let (found, removed) = match self.rigid_body_projector() {
+            Some(projector) => {
+                let schur = Schur::try_new(&projector * monodromy * &projector, f64::EPSILON, 10_000);
+                let found = schur.map(|schur| schur.complex_eigenvalues().iter().copied().collect::<Vec<_>>());
+                (found, self.rigid_body.len())
+            }
+            None => (eigenvalues(monodromy), 0),
         };
-        let mut all: Vec<_> = schur.complex_eigenvalues().iter().copied().collect();
+        let Some(mut all) = found else { return Vec::new() };
         all.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
         // The eigenvalues of the removed modes are the zeros at the end.
-        all.truncate((all.len() - 2 * self.rigid_body.len()).max(1));
+        all.truncate((all.len() - 2 * removed).max(1));
         all
     }
 }
 
-/// Rigid-body modes: eigenvectors of M^-½ K M^-½ with eigenvalue zero, in solver coordinates.
+/// Rigid-body modes: eigenvectors of M^-½ K M^-½ with eigenvalue zero, in solver coordinates. Those of a train are
+/// coordinates that are not among the `active`.
 pub(super) fn rigid_body_modes<const D: usize>(
     model: &DynamicModel<D>,
     active: &[usize],
     masses: &[f64; D],
     mean_stiffness_n_per_m: [f64; 2],
 ) -> Result<Vec<[f64; D]>, DynamicsError> {
+    if let Some(train) = &model.train {
+        let unit = |i: usize| {
+            let mut mode = [0.0; D];
+            mode[D - MAX_RIGID_BODY_MODES + i] = 1.0;
+            mode
+        };
+        return Ok((0..train.rigid).map(unit).collect());
+    }
     let n = active.len();
     let mut k = DMatrix::zeros(n, n);
     for (column, &c) in active.iter().enumerate() {

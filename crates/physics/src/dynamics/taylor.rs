@@ -7,7 +7,7 @@
 
 use super::contact_force::{ContactForce, ForceCells};
 use super::crossing::first_crossing;
-use super::equations::{Equations, PER_HALF};
+use super::equations::Equations;
 use super::error::DynamicsError;
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationExpansion;
@@ -100,7 +100,7 @@ pub(super) fn step<const D: usize, R: Real>(
     let mut changed = R::splat(-1.0);
     let mut to = R::splat(0.0);
     if switching.any(|s| s != 0.0) {
-        for j in 0..D / PER_HALF {
+        for j in 0..Equations::<D, R>::HALVES {
             let s = &work.s[j][..=degree];
             let (at, side) = if work.excitation.cells[j].in_use {
                 next_cell(s, &work.excitation.cells[j], contact[j], h, switching)

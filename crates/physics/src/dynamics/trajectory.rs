@@ -8,6 +8,7 @@ use super::lane_batch::{POINTS_PER_TASK, TrajectoryObserver, integrate_trajector
 use super::model::{DynamicModel, MotionState};
 use super::parameters::Parameters;
 use super::segment::Segment;
+use super::train_equations::train_size;
 use crate::watch::{Canceled, Watch};
 
 /// End of a trajectory.
@@ -48,15 +49,28 @@ pub fn advance(
         }
         observer.outcome
     }
-    if p.is_symmetric() && is_mirrored(start) {
-        run::<6>(p, start, mesh_periods, (integrator, tolerance), watch)
-    } else {
-        run::<12>(p, start, mesh_periods, (integrator, tolerance), watch)
+    let by = (integrator, tolerance);
+    match number_of_coordinates(p, is_mirrored(start)) {
+        6 => run::<6>(p, start, mesh_periods, by, watch),
+        12 => run::<12>(p, start, mesh_periods, by, watch),
+        28 => run::<28>(p, start, mesh_periods, by, watch),
+        52 => run::<52>(p, start, mesh_periods, by, watch),
+        _ => run::<100>(p, start, mesh_periods, by, watch),
     }
 }
 
-/// Integrates several trajectories by Taylor series as [`advance`] does, eight per thread in vector lanes and on all
-/// threads of the pool. `starts` holds one state per entry of `points`. The results are bit-identical to those of
+/// Number of coordinates in which a pair is solved: 6 for equal halves with a mirrored start, 12, or the size that
+/// holds its train (28, 52 or 100).
+pub(crate) fn number_of_coordinates(p: &Parameters, mirrored_start: bool) -> usize {
+    match &p.train {
+        Some(train) => train_size(train),
+        None if mirrored_start && p.is_symmetric() => 6,
+        None => 12,
+    }
+}
+
+/// Integrates several trajectories by Taylor series as [`advance`] does, eight per thread in vector lanes (trains one after the other)
+/// and on all threads of the pool. `starts` holds one state per entry of `points`. The results are bit-identical to those of
 /// [`advance`].
 ///
 /// # Errors
@@ -73,8 +87,17 @@ pub fn advance_many(
         .par_chunks(POINTS_PER_TASK)
         .map(|group| {
             let mut out = vec![Err(DynamicsError::Canceled(Canceled)); group.len()];
-            let mirrored = |(p, start): &(&Parameters, &[f64; 24])| p.is_symmetric() && is_mirrored(start);
-            let (halves, whole): (Vec<usize>, Vec<usize>) = (0..group.len()).partition(|&i| mirrored(&group[i]));
+            let coordinates = |i: usize| number_of_coordinates(group[i].0, is_mirrored(group[i].1));
+            let (pairs, trains): (Vec<usize>, Vec<usize>) = (0..group.len()).partition(|&i| group[i].0.train.is_none());
+            // Trains have no lanes.
+            for i in trains {
+                let (p, start) = group[i];
+                out[i] = advance(p, start, mesh_periods, Integrator::Taylor, tolerance, watch);
+                if out[i] == Err(DynamicsError::Canceled(Canceled)) {
+                    return Err(Canceled);
+                }
+            }
+            let (halves, whole): (Vec<usize>, Vec<usize>) = pairs.into_iter().partition(|&i| coordinates(i) == 6);
             advance_group::<6>(group, &halves, mesh_periods, tolerance, watch, &mut out)?;
             advance_group::<12>(group, &whole, mesh_periods, tolerance, watch, &mut out)?;
             Ok(out)

@@ -1,5 +1,7 @@
 //! Variational equations: small perturbations of a motion over mesh periods.
 
+use nalgebra::DMatrix;
+
 use super::equations::Equations;
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
@@ -8,6 +10,7 @@ use super::model::{ContactSide, DynamicModel, MotionState};
 use super::recurrence::{TaylorWork, taylor_coefficients};
 use super::segment::{Observer, Segment};
 use super::taylor::{evaluate_rows, step_for_tolerance};
+use super::train_variation::TrainPropagator;
 use crate::simd::vectorised;
 
 /// Perturbations integrated side by side.
@@ -29,7 +32,10 @@ pub(crate) type Perturbation<const D: usize> = ([f64; D], [f64; D]);
 /// 2004, doi:10.1007/978-3-540-44398-8).
 pub(crate) struct Variation<'m, const D: usize> {
     model: &'m DynamicModel<D>,
+    /// The perturbations; with a `propagator` only their number.
     pub columns: Vec<Perturbation<D>>,
+    /// All perturbations of a train, if they are many.
+    propagator: Option<Box<TrainPropagator>>,
     tolerance: f64,
     last_contact: Option<[ContactSide; 2]>,
     /// `None` only during [`Observer::segment`].
@@ -39,20 +45,48 @@ pub(crate) struct Variation<'m, const D: usize> {
 /// Working memory for one perturbation and for several.
 struct PerturbationWorkspace<const D: usize> {
     one: Box<TaylorWork<D, f64>>,
-    several: Box<TaylorWork<D, Lanes<PERTURBATION_LANES>>>,
-    equations: Equations<D, Lanes<PERTURBATION_LANES>>,
+    /// None for trains.
+    several: Option<SeveralPerturbations<D>>,
     terms: ExcitationTerms<f64>,
 }
+
+/// Working memory and equations of perturbations in lanes.
+struct SeveralPerturbations<const D: usize> {
+    work: Box<TaylorWork<D, Lanes<PERTURBATION_LANES>>>,
+    equations: Equations<D, Lanes<PERTURBATION_LANES>>,
+}
+
+/// Number of perturbations of a train from which they are propagated together.
+const MANY_PERTURBATIONS: usize = 4;
 
 impl<'m, const D: usize> Variation<'m, D> {
     pub(crate) fn new(model: &'m DynamicModel<D>, columns: Vec<Perturbation<D>>, tolerance: f64) -> Self {
         let workspace = PerturbationWorkspace {
             one: TaylorWork::new(),
-            several: TaylorWork::new(),
-            equations: model.broadcast(),
+            several: if DynamicModel::<D>::IS_TRAIN {
+                None
+            } else {
+                Some(SeveralPerturbations { work: TaylorWork::new(), equations: model.broadcast() })
+            },
             terms: ExcitationTerms::new(),
         };
-        Self { model, columns, tolerance, last_contact: None, workspace: Some(Box::new(workspace)) }
+        let modes = if columns.len() < MANY_PERTURBATIONS { None } else { model.train_modes() };
+        let propagator = modes.map(|modes| Box::new(TrainPropagator::new(modes, &columns, tolerance)));
+        Self { model, columns, propagator, tolerance, last_contact: None, workspace: Some(Box::new(workspace)) }
+    }
+
+    /// Derivative of the end by the start after [`Variation::unit_perturbations`], over (active displacements, active
+    /// velocities).
+    pub(crate) fn monodromy(&self) -> DMatrix<f64> {
+        if let (Some(propagator), Some(modes)) = (&self.propagator, self.model.train_modes()) {
+            return propagator.states(modes);
+        }
+        let active: Vec<usize> = self.model.active().collect();
+        let n = active.len();
+        DMatrix::from_fn(2 * n, 2 * n, |r, c| {
+            let (x, v) = &self.columns[c];
+            if r < n { x[active[r]] } else { v[active[r - n]] }
+        })
     }
 
     /// The unit perturbations: one per active displacement, then one per active velocity.
@@ -70,7 +104,7 @@ impl<'m, const D: usize> Variation<'m, D> {
     fn apply_saltation(&mut self, segment: &Segment<'_, D>, before: [ContactSide; 2]) {
         for j in 0..DynamicModel::<D>::HALVES {
             let (was, is) = (before[j], segment.contact[j]);
-            let speed = self.model.s(j, &segment.rows[1]);
+            let speed = self.model.rate_of_approach(j, self.model.s(j, &segment.rows[1]), segment.phase);
             let h = &self.model.halves[j];
             // A change from one level of a contact force to the next leaves the force continuous.
             if (was == 0) == (is == 0) || speed == 0.0 || h.cm == h.cm_in_gap {
@@ -83,6 +117,10 @@ impl<'m, const D: usize> Variation<'m, D> {
             let side = if is != 0 { is.signum() } else { was.signum() };
             let crossing_speed = speed - f64::from(side) * self.model.contact_onset_rate(j, side, segment.phase);
             if crossing_speed == 0.0 {
+                continue;
+            }
+            if let (Some(propagator), Some(modes)) = (&mut self.propagator, self.model.train_modes()) {
+                propagator.saltate(modes, j, change, crossing_speed);
                 continue;
             }
             for (x, v) in &mut self.columns {
@@ -145,20 +183,27 @@ impl<const D: usize> Observer<D> for Variation<'_, D> {
             self.apply_saltation(segment, before);
         }
         self.last_contact = Some(segment.contact);
+        if let (Some(propagator), Some(modes)) = (&mut self.propagator, self.model.train_modes()) {
+            propagator.segment(modes, self.model, segment);
+            return;
+        }
         let Some(mut workspace) = self.workspace.take() else { return };
-        let PerturbationWorkspace { one, several, equations, terms } = &mut *workspace;
+        let PerturbationWorkspace { one, several, terms } = &mut *workspace;
         vectorised(
             #[inline(always)]
             || {
                 let mut first = 0;
                 while first < self.columns.len() {
-                    if self.columns.len() - first == 1 {
-                        let alone: &Equations<D, f64> = self.model;
-                        self.propagate::<f64>(segment, first, alone, terms, one);
+                    let lanes = several.as_mut().filter(|_| self.columns.len() - first > 1);
+                    if DynamicModel::<D>::IS_TRAIN {
+                        self.propagate::<f64>(segment, first, self.model, terms, one);
                         first += 1;
-                    } else {
-                        self.propagate::<Lanes<PERTURBATION_LANES>>(segment, first, equations, terms, several);
+                    } else if let Some(SeveralPerturbations { work, equations }) = lanes {
+                        self.propagate::<Lanes<PERTURBATION_LANES>>(segment, first, equations, terms, work);
                         first += PERTURBATION_LANES;
+                    } else {
+                        self.propagate::<f64>(segment, first, self.model, terms, one);
+                        first += 1;
                     }
                 }
             },

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::channel::{Channel, ChannelId};
 use super::confidence::ConfidenceInterval;
+use super::orders::MeshOrder;
 use super::statistics::Statistics;
 use crate::dynamics::{Integrator, StepCounts};
 
@@ -211,7 +212,7 @@ pub struct Summary {
     pub energy_balance_residual: Option<f64>,
     /// Mesh periods of the record.
     pub recorded_mesh_periods: u64,
-    /// 6 for mirror-symmetric halves, otherwise 12.
+    /// 6 for mirror-symmetric halves, otherwise 12; of a train the number of its coordinates.
     pub degrees_of_freedom: u32,
     /// Whether the mesh damper acts in the gap.
     pub damping_in_gap: bool,
@@ -228,6 +229,21 @@ pub struct PoincarePoint {
     pub v_x_left_m_s: f64,
 }
 
+/// A further quantity of a train over the record, for example a bearing force.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OutputResponse {
+    /// Name and unit, as the train gives them.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Time mean.
+    pub mean: f64,
+    /// RMS of the dynamic part, without the mean.
+    pub rms: f64,
+    /// Mesh orders from the first, by integrals over the record.
+    pub orders: Vec<MeshOrder>,
+}
+
 /// Response of a pair at one operating point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Response {
@@ -235,9 +251,14 @@ pub struct Response {
     pub summary: Summary,
     /// Time series of the requested channels, in their order.
     pub channels: Vec<Channel>,
+    /// The further quantities of a train, in its order.
+    pub outputs: Vec<OutputResponse>,
+    /// Mesh orders of the total normal tooth forces, N; of a train only.
+    pub tooth_force_orders: Option<Halves<Vec<MeshOrder>>>,
     /// One point per recorded mesh period.
     pub poincare: Vec<PoincarePoint>,
     /// State at the end of the record: 12 displacements (m, rad), then 12 velocities (m/s, rad/s). The integration of a
-    /// neighbouring operating point can start from it.
+    /// neighbouring operating point can start from it. Of a train the motion has further coordinates, which a start
+    /// from this state takes at least energy.
     pub final_state: [f64; 24],
 }

@@ -1,7 +1,7 @@
 //! Energy balance of a recorded motion by the work–energy theorem, a check that is independent of the integrator.
 
 use super::statistics::GAUSS;
-use crate::dynamics::{DynamicModel, Observer, PER_HALF, Segment, W};
+use crate::dynamics::{DynamicModel, Observer, Segment, is_rigid_rotation};
 
 /// Longest record that is balanced; of longer ones the first mesh periods are.
 const MAX_MESH_PERIODS: u64 = 200;
@@ -11,7 +11,7 @@ const REST_VELOCITY_RATIO: f64 = 1e-9;
 
 /// Change of the kinetic energy of a motion against the work of all forces, ∫ Σ_c F_c v_c dt with the forces of `model`
 /// (springs, dampers, mesh, impacts, torques) along the solution, by Gauss–Legendre quadrature on every segment. The
-/// rigid rotation of each half (w) is excluded.
+/// rigid rotation of each half (w), or the rigid-body modes of a train, are excluded.
 pub(super) struct EnergyBalance<'m, const D: usize> {
     model: &'m DynamicModel<D>,
     masses: [f64; D],
@@ -30,7 +30,7 @@ pub(super) struct EnergyBalance<'m, const D: usize> {
 impl<'m, const D: usize> EnergyBalance<'m, D> {
     pub(crate) fn new(model: &'m DynamicModel<D>) -> Self {
         let mut masses = model.masses_kg();
-        (0..D).filter(|c| c % PER_HALF == W).for_each(|c| masses[c] = 0.0);
+        (0..D).filter(|c| is_rigid_rotation(D, *c)).for_each(|c| masses[c] = 0.0);
         Self {
             model,
             masses,

@@ -14,6 +14,7 @@ mod classification;
 mod confidence;
 mod energy;
 mod lyapunov;
+mod orders;
 mod poincare;
 mod recorder;
 mod recording;
@@ -25,11 +26,12 @@ mod statistics;
 mod steady;
 
 pub use analysis::{
-    Analysis, AppliedMethod, ContactState, Halves, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals,
-    SolutionMethod, Summary, ToothForce,
+    Analysis, AppliedMethod, ContactState, Halves, Multiplier, OutputResponse, PoincarePoint, Regime, Response, Rms,
+    RmsIntervals, SolutionMethod, Summary, ToothForce,
 };
 pub use channel::{Channel, ChannelId, ChannelQuantity};
 pub use confidence::ConfidenceInterval;
+pub use orders::{MESH_ORDERS, MeshOrder};
 pub use solve::{solve, solve_many};
 pub use spectrum::Spectrum;
 pub use statistics::Statistics;

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::dynamics::{
-    DynamicModel, DynamicsError, MotionState, PER_HALF, Perturbation, RigidBodyModes, W, state_difference,
+    DynamicModel, DynamicsError, MotionState, Perturbation, RigidBodyModes, is_rigid_rotation, state_difference,
 };
 
 /// Longest period that is searched for, in mesh periods.
@@ -40,7 +40,8 @@ impl<const D: usize> PoincareSection<D> {
     /// Size of the motion: its largest velocity in scaled time, or 1e-9 of the largest displacement if that is larger
     /// (below it is rounding).
     pub(crate) fn size(&self) -> f64 {
-        let parts = |row: &[f64; D]| (0..D).filter(|c| c % PER_HALF != W).fold(0.0f64, |m, c| m.max(row[c].abs()));
+        let parts =
+            |row: &[f64; D]| (0..D).filter(|c| !is_rigid_rotation(D, *c)).fold(0.0f64, |m, c| m.max(row[c].abs()));
         self.states.iter().fold(f64::MIN_POSITIVE, |m, s| m.max(parts(&s.v)).max(1e-9 * parts(&s.x)))
     }
 
@@ -86,5 +87,5 @@ impl<const D: usize> PoincareSection<D> {
 
 /// Largest component of a perturbation, rigid rotation excluded.
 pub(super) fn largest_component<const D: usize>(d: &Perturbation<D>) -> f64 {
-    (0..D).filter(|c| c % PER_HALF != W).fold(0.0, |m, c| m.max(d.0[c].abs()).max(d.1[c].abs()))
+    (0..D).filter(|c| !is_rigid_rotation(D, *c)).fold(0.0, |m, c| m.max(d.0[c].abs()).max(d.1[c].abs()))
 }

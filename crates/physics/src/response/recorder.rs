@@ -1,6 +1,7 @@
 //! Recording of channels during an integration: statistics, time series, contact times.
 
 use super::channel::{ChannelEvaluator, ChannelId};
+use super::orders::{MeshOrder, OrderAccumulator, OrderTable};
 use super::statistics::{MomentAccumulator, horner};
 use crate::dynamics::{DynamicModel, MAX_ORDER, Observer, PER_HALF, Segment};
 use crate::simd::vectorised;
@@ -12,6 +13,7 @@ struct ChannelTrack<const D: usize> {
     accumulator: MomentAccumulator,
     extremes: bool,
     samples: Option<Vec<f64>>,
+    orders: Option<OrderAccumulator>,
 }
 
 /// Observer of the recorded mesh periods.
@@ -24,6 +26,8 @@ pub(super) struct ChannelRecorder<const D: usize> {
     sampling: bool,
     /// Scaled time on driving flank, apart, and on back flank, per solved half.
     contact: [[f64; 3]; 2],
+    /// Some if a channel has its mesh orders recorded.
+    order_table: Option<Box<OrderTable>>,
 }
 
 impl<const D: usize> ChannelRecorder<D> {
@@ -52,6 +56,7 @@ impl<const D: usize> ChannelRecorder<D> {
                     accumulator: MomentAccumulator::new(id.is_acceleration()),
                     extremes,
                     samples,
+                    orders: None,
                 }),
             }
         };
@@ -68,7 +73,24 @@ impl<const D: usize> ChannelRecorder<D> {
             next_sample: 0,
             sampling: samples_per_mesh_period > 0 && !series.is_empty(),
             contact: [[0.0; 3]; 2],
+            order_table: None,
         }
+    }
+
+    /// Records the mesh orders of channels that have statistics.
+    pub(crate) fn with_orders(mut self, ids: &[ChannelId]) -> Self {
+        for track in &mut self.tracks {
+            if ids.contains(&track.id) {
+                track.orders = Some(OrderAccumulator::default());
+                self.order_table.get_or_insert_with(OrderTable::new);
+            }
+        }
+        self
+    }
+
+    /// Mesh orders of a channel, if they were recorded.
+    pub(crate) fn orders(&self, id: ChannelId) -> Option<Vec<MeshOrder>> {
+        self.tracks.iter().find(|t| t.id == id)?.orders.as_ref().map(OrderAccumulator::finish)
     }
 
     pub(crate) fn accumulator(&self, id: ChannelId) -> Option<&MomentAccumulator> {
@@ -114,12 +136,19 @@ impl<const D: usize> Observer<D> for ChannelRecorder<D> {
                 last += 1;
             }
         }
+        let length = segment.h / period_tau;
+        if let Some(table) = &mut self.order_table {
+            table.set(segment.phase, length);
+        }
         for track in &mut self.tracks {
             let degree = vectorised(
                 #[inline(always)]
                 || {
                     let degree = track.evaluator.polynomial(segment, &mut polynomial);
-                    track.accumulator.add(&polynomial[..=degree], segment.h, track.extremes);
+                    let values = track.accumulator.add(&polynomial[..=degree], segment.h, track.extremes);
+                    if let (Some(orders), Some(table)) = (&mut track.orders, &self.order_table) {
+                        orders.add(&values, table, length);
+                    }
                     degree
                 },
             );

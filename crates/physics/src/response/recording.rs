@@ -8,9 +8,7 @@ use super::poincare::PoincareSection;
 use super::recorder::ChannelRecorder;
 use super::report::RecordedMotion;
 use super::statistics::MomentAccumulator;
-use crate::dynamics::{
-    DynamicModel, DynamicsError, MotionState, Observer, Segment, StepCounts, TrajectoryObserver, U, YG, YP,
-};
+use crate::dynamics::{DynamicModel, DynamicsError, MotionState, Observer, Segment, StepCounts, TrajectoryObserver};
 
 /// Number of parts of a record from which its standard error is estimated.
 const BATCHES: u64 = 10;
@@ -190,7 +188,7 @@ impl<'m, const D: usize> TrajectoryObserver<'m, D> for RecordedRun<'m, D> {
 }
 
 fn poincare<const D: usize>(model: &DynamicModel<D>, state: &MotionState<D>) -> PoincarePoint {
-    let x = |row: &[f64; D]| row[YP] - row[YG] + row[U];
+    let x = |row: &[f64; D]| model.mesh_x(0, row);
     PoincarePoint { x_left_m: x(&state.x), v_x_left_m_s: x(&state.v) * model.omega_ref }
 }
 

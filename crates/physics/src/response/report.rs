@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use super::analysis::{
-    Analysis, AppliedMethod, ContactState, Halves, Multiplier, PoincarePoint, Regime, Response, Rms, RmsIntervals,
-    Summary, ToothForce,
+    Analysis, AppliedMethod, ContactState, Halves, Multiplier, OutputResponse, PoincarePoint, Regime, Response, Rms,
+    RmsIntervals, Summary, ToothForce,
 };
 use super::channel::{Channel, ChannelId};
 use super::confidence::rms_interval_95;
 use super::poincare::PoincareSection;
 use super::recorder::ChannelRecorder;
-use crate::dynamics::{DynamicModel, MotionState, NaturalModes, PER_HALF, Parameters, StepCounts};
+use crate::dynamics::{DynamicModel, LinearOutput, MotionState, NaturalModes, PER_HALF, Parameters, StepCounts};
 
 /// Parameters, settings and natural modes of the analysis.
 pub(super) struct ReportInput<'a> {
@@ -61,7 +61,9 @@ pub(super) fn assemble_response<const D: usize>(
     let both = |id: fn(u8) -> ChannelId| Halves { left: rms_of(id(0)), right: rms_of(id(right)) };
     let mesh = both(ChannelId::mesh_acceleration);
     let axial = both(ChannelId::pinion_axial_acceleration);
-    let mut channels: BTreeMap<String, f64> = recorder.all().map(|(id, g, _)| (id.name(), g.finish().rms)).collect();
+    let train = input.p.train.as_deref();
+    let name = |id: ChannelId| id.name_with(train);
+    let mut channels: BTreeMap<String, f64> = recorder.all().map(|(id, g, _)| (name(id), g.finish().rms)).collect();
     for (half, m, a) in [(0, mesh.left, axial.left), (1, mesh.right, axial.right)] {
         channels.insert(ChannelId::mesh_acceleration(half).name(), m);
         channels.insert(ChannelId::pinion_axial_acceleration(half).name(), a);
@@ -70,7 +72,7 @@ pub(super) fn assemble_response<const D: usize>(
         .analysis
         .channels
         .iter()
-        .filter_map(|id| recorder.accumulator(*id).map(|g| (id.name(), g.finish())))
+        .filter_map(|id| recorder.accumulator(*id).map(|g| (name(*id), g.finish())))
         .collect();
     let mut min_displacement_m = f64::INFINITY;
     for half in solved_halves::<D>() {
@@ -88,6 +90,20 @@ pub(super) fn assemble_response<const D: usize>(
     };
     let tooth_force = Halves { left: tooth_force(0), right: tooth_force(right) };
     let shares = recorder.contact_shares();
+    let output = |(id, output): (ChannelId, &LinearOutput)| {
+        let statistics = recorder.accumulator(id)?.finish();
+        Some(OutputResponse {
+            name: output.name.clone(),
+            unit: output.unit.clone(),
+            mean: statistics.mean,
+            rms: statistics.rms,
+            orders: recorder.orders(id)?,
+        })
+    };
+    let outputs = train
+        .map_or_else(Vec::new, |train| ChannelId::outputs_of(train).zip(&train.outputs).filter_map(output).collect());
+    let orders = |half: u8| recorder.orders(ChannelId::tooth_force(half));
+    let tooth_force_orders = orders(0).zip(orders(1)).map(|(left, right)| Halves { left, right });
     let dt_s = input.p.mesh_period_s() / input.analysis.samples_per_mesh_period.max(1) as f64;
     let mut samples = recorder.take_samples();
     let series = input
@@ -97,9 +113,9 @@ pub(super) fn assemble_response<const D: usize>(
         .filter_map(|id| {
             let at = samples.iter().position(|(other, _)| other == id)?;
             let (id, values) = samples.swap_remove(at);
-            let quantity = id.quantity();
+            let quantity = id.quantity_with(train);
             Some(Channel {
-                name: id.name(),
+                name: name(id),
                 quantity,
                 unit: quantity.unit().into(),
                 t0_s: assessment.t0_s,
@@ -143,11 +159,11 @@ pub(super) fn assemble_response<const D: usize>(
         },
         energy_balance_residual: assessment.energy_residual,
         recorded_mesh_periods: recorded,
-        degrees_of_freedom: D as u32,
+        degrees_of_freedom: model.degrees_of_freedom() as u32,
         damping_in_gap: input.p.damping_in_gap,
         counts: assessment.counts,
     };
-    Response { summary, channels: series, poincare: record.points, final_state }
+    Response { summary, channels: series, outputs, tooth_force_orders, poincare: record.points, final_state }
 }
 
 /// Largest tooth force of a half over its static one, see [`Summary::dynamic_factor`].
@@ -158,7 +174,7 @@ fn dynamic_factor(tooth_force: &Halves<ToothForce>) -> Option<f64> {
 
 /// Indices of the solved halves: the left one alone when the other is its mirror image.
 pub(super) fn solved_halves<const D: usize>() -> std::ops::Range<u8> {
-    0..(D / PER_HALF) as u8
+    0..crate::dynamics::solved_halves(D) as u8
 }
 
 fn contact_state(shares: &[[f64; 3]; 2]) -> ContactState {

@@ -6,7 +6,7 @@ use super::report::{MotionAssessment, assemble_response};
 use super::solve::ResponseProblem;
 use crate::dynamics::{
     DynamicModel, DynamicsError, ImpactExcitation, Integrator, MotionState, PER_HALF, Spring, StepCounts, U,
-    integrate_trajectory,
+    integrate_trajectory, number_of_coordinates,
 };
 
 impl ResponseProblem<'_> {
@@ -15,6 +15,15 @@ impl ResponseProblem<'_> {
     /// vanishing load.
     pub(super) fn stays_at_rest(&self) -> bool {
         let [left, right] = &self.p.halves;
+        if [left, right].iter().any(|h| h.displacement_excitation.iter().any(|e| e.amplitude != 0.0)) {
+            return false;
+        }
+        if let Some(train) = &self.p.train {
+            let unloaded = train.load_n.iter().all(|load| *load == 0.0)
+                && [left, right].iter().all(|h| h.impact.as_ref().is_none_or(ImpactExcitation::is_zero));
+            let still = self.analysis.initial_state.is_none_or(|start| start.iter().all(|c| *c == 0.0));
+            return unloaded && still && train.opens_freely();
+        }
         let unloaded = [left, right]
             .iter()
             .all(|h| h.pinion_torque_nm == 0.0 && h.impact.as_ref().is_none_or(ImpactExcitation::is_zero));
@@ -31,7 +40,13 @@ impl ResponseProblem<'_> {
     /// # Errors
     /// [`DynamicsError`] for invalid parameters.
     pub(super) fn rest_response(&self) -> Result<Response, DynamicsError> {
-        if self.p.is_symmetric() { self.rest_response_in::<6>() } else { self.rest_response_in::<12>() }
+        match number_of_coordinates(self.p, true) {
+            6 => self.rest_response_in::<6>(),
+            12 => self.rest_response_in::<12>(),
+            28 => self.rest_response_in::<28>(),
+            52 => self.rest_response_in::<52>(),
+            _ => self.rest_response_in::<100>(),
+        }
     }
 
     fn rest_response_in<const D: usize>(&self) -> Result<Response, DynamicsError> {
@@ -48,7 +63,9 @@ impl ResponseProblem<'_> {
         // In contact without force: the contact is fixed as open, so that rounding does not close it.
         let side = if model.b == 0.0 { 1 } else { 0 };
         let mut start = MotionState { period: from, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [side; 2] };
-        if touching {
+        if touching && DynamicModel::<D>::IS_TRAIN {
+            start.x = model.static_state_of_train(self.mean_stiffness_n_per_m()).x;
+        } else if touching {
             (0..DynamicModel::<D>::HALVES)
                 .for_each(|j| start.x[j * PER_HALF + U] = model.first_contact_displacement_m(j) / model.cos);
         }

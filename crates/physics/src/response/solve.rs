@@ -9,7 +9,8 @@ use super::report::{MotionAssessment, ReportInput, assemble_response, solved_hal
 use super::steady::{SteadyMotion, SteadyStateSearch, displaced};
 use crate::dynamics::{
     DynamicModel, DynamicsError, IntegrationLimits, Integrator, MotionState, NaturalModes, PER_HALF, POINTS_PER_TASK,
-    Parameters, Perturbation, Shooting, integrate_trajectories, integrate_trajectory, is_mirrored, state_difference,
+    Parameters, Perturbation, Shooting, integrate_trajectories, integrate_trajectory, is_mirrored,
+    number_of_coordinates, state_difference,
 };
 use crate::watch::{Canceled, Watch};
 use rayon::prelude::*;
@@ -25,23 +26,33 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
     if point.stays_at_rest() {
         return point.rest_response();
     }
-    let start = point.start();
-    let mirrored = point.is_mirrored(&start);
+    let mirrored = point.is_mirrored();
+    let points = std::slice::from_ref(&point);
     match analysis.method {
         SolutionMethod::Integrate { .. } => {
-            let points = std::slice::from_ref(&point);
             let alone = LaneUse::Sequential(analysis.integrator);
-            let mut responses = if mirrored { integrate::<6>(points, alone) } else { integrate::<12>(points, alone) }?;
+            let mut responses = match number_of_coordinates(p, mirrored) {
+                6 => integrate::<6>(points, alone),
+                12 => integrate::<12>(points, alone),
+                28 => integrate::<28>(points, alone),
+                52 => integrate::<52>(points, alone),
+                _ => integrate::<100>(points, alone),
+            }?;
             responses.pop().unwrap_or(Err(DynamicsError::Canceled(Canceled)))
         }
         SolutionMethod::Auto | SolutionMethod::Periodic => {
-            if mirrored && let Some(response) = point.solve_steady::<6>(&start, false)? {
+            if mirrored && let Some(response) = point.solve_steady::<6>(false)? {
                 return Ok(response);
             }
             // Equal halves come here only when their motion leaves the mirror symmetry: the start is perturbed out of
             // it.
-            let found = point.solve_steady::<12>(&start, mirrored)?;
-            // A search in twelve coordinates always returns a motion.
+            let found = match number_of_coordinates(p, false) {
+                12 => point.solve_steady::<12>(mirrored),
+                28 => point.solve_steady::<28>(false),
+                52 => point.solve_steady::<52>(false),
+                _ => point.solve_steady::<100>(false),
+            }?;
+            // A search in twelve coordinates or more always returns a motion.
             found.ok_or(DynamicsError::NotPeriodic { mesh_periods: 0, change: f64::NAN })
         }
     }
@@ -99,7 +110,15 @@ fn solve_group(
                     out[i] = point.rest_response();
                     continue;
                 }
-                let side = &mut sides[usize::from(!point.is_mirrored(&point.start()))];
+                if p.train.is_some() {
+                    // Trains have no lanes.
+                    out[i] = solve(p, analysis, watch);
+                    if out[i] == Err(DynamicsError::Canceled(Canceled)) {
+                        return Err(Canceled);
+                    }
+                    continue;
+                }
+                let side = &mut sides[usize::from(!point.is_mirrored())];
                 side.0.push(i);
                 side.1.push(point);
             }
@@ -145,17 +164,21 @@ const OFF_SYMMETRY: f64 = 1e-3;
 
 impl ResponseProblem<'_> {
     /// Initial state: as given, or at rest under the mean load.
-    fn start(&self) -> [f64; 24] {
-        self.analysis.initial_state.unwrap_or_else(|| {
-            let mut at_rest = [0.0; 24];
-            at_rest[..12].copy_from_slice(&self.modes.static_deflection(self.p));
-            at_rest
-        })
+    fn start<const D: usize>(&self, model: &DynamicModel<D>) -> MotionState<D> {
+        if let Some(start) = &self.analysis.initial_state {
+            return model.state_from(start);
+        }
+        if DynamicModel::<D>::IS_TRAIN {
+            return model.static_state_of_train(self.mean_stiffness_n_per_m());
+        }
+        let mut at_rest = [0.0; 24];
+        at_rest[..12].copy_from_slice(&self.modes.static_deflection(self.p));
+        model.state_from(&at_rest)
     }
 
     /// Whether halves and start are mirror-symmetric.
-    fn is_mirrored(&self, start: &[f64; 24]) -> bool {
-        self.p.is_symmetric() && (self.analysis.initial_state.is_none() || is_mirrored(start))
+    fn is_mirrored(&self) -> bool {
+        self.p.is_symmetric() && self.analysis.initial_state.as_ref().is_none_or(is_mirrored)
     }
 
     pub(super) fn report_input(&self) -> ReportInput<'_> {
@@ -171,11 +194,7 @@ impl ResponseProblem<'_> {
     }
 
     /// Steady state; None when the motion in six coordinates leaves the mirror symmetry.
-    fn solve_steady<const D: usize>(
-        &self,
-        start: &[f64; 24],
-        off_symmetry: bool,
-    ) -> Result<Option<Response>, DynamicsError> {
+    fn solve_steady<const D: usize>(&self, off_symmetry: bool) -> Result<Option<Response>, DynamicsError> {
         let model = DynamicModel::<D>::new(self.p)?;
         let search = SteadyStateSearch {
             model: &model,
@@ -184,7 +203,7 @@ impl ResponseProblem<'_> {
             must_repeat: self.analysis.method == SolutionMethod::Periodic,
             from_start: self.analysis.initial_state.is_some(),
         };
-        let mut state = model.state_from(start);
+        let mut state = self.start(&model);
         if self.analysis.initial_state.is_none() {
             model.close_contact(&mut state);
         }
@@ -353,6 +372,12 @@ impl ResponseProblem<'_> {
             statistics.push((ChannelId::normal_force(half), false));
             statistics.push((ChannelId::tooth_force(half), true));
         }
+        let mut orders = Vec::new();
+        if let Some(train) = &self.p.train {
+            orders.extend(ChannelId::outputs_of(train));
+            statistics.extend(orders.iter().map(|id| (*id, false)));
+            orders.extend([ChannelId::tooth_force(0), ChannelId::tooth_force(1)]);
+        }
         ChannelRecorder::new(
             model,
             &statistics,
@@ -360,6 +385,7 @@ impl ResponseProblem<'_> {
             self.analysis.samples_per_mesh_period,
             periods,
         )
+        .with_orders(&orders)
     }
 
     /// Recorder of the accelerations alone.
@@ -388,12 +414,17 @@ impl LaneUse {
         max_steps: u64,
         watch: &Watch<'_>,
     ) -> Result<(), Canceled> {
-        match self {
-            LaneUse::Sequential(integrator) => {
-                runs.iter_mut().try_for_each(|run| integrate_trajectory(run, integrator, max_steps, watch))
+        let integrator = match self {
+            LaneUse::Sequential(integrator) => integrator,
+            LaneUse::Batched => {
+                // Trains have no lanes.
+                if !DynamicModel::<D>::IS_TRAIN {
+                    return integrate_trajectories(runs, tolerance, max_steps, watch);
+                }
+                Integrator::Taylor
             }
-            LaneUse::Batched => integrate_trajectories(runs, tolerance, max_steps, watch),
-        }
+        };
+        runs.iter_mut().try_for_each(|run| integrate_trajectory(run, integrator, max_steps, watch))
     }
 
     /// Execution of the comparison for the error estimate: always by Taylor series.
@@ -436,7 +467,7 @@ fn integrate<const D: usize>(
         out.push(Err(DynamicsError::Canceled(Canceled)));
         let run = model.as_ref().map_err(Clone::clone).and_then(|model| {
             let recorder = point.recorder(model, end - record_from);
-            let mut start = model.state_from(&point.start());
+            let mut start = point.start(model);
             if point.analysis.initial_state.is_none() {
                 model.close_contact(&mut start);
             }
@@ -468,7 +499,7 @@ fn integrate<const D: usize>(
         match next {
             Err(DynamicsError::Canceled(canceled)) => return Err(canceled),
             Err(error @ DynamicsError::Diverged { .. }) => {
-                out[i] = point.unstable_response(model, model.state_from(&point.start()), error);
+                out[i] = point.unstable_response(model, point.start(model), error);
             }
             Err(error) => out[i] = Err(error),
             Ok((finished, assessment, None)) => {

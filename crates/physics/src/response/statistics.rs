@@ -9,7 +9,7 @@ use crate::numerics::gauss::gauss_legendre_unit;
 
 /// Gauss–Legendre nodes per segment: exact for powers up to 2·24 − 1 = 47 in time, so for the square of any step's
 /// series.
-const NODES: usize = 24;
+pub(super) const NODES: usize = 24;
 
 /// Nodes and weights over 0 … 1.
 pub(super) static GAUSS: LazyLock<[(f64, f64); NODES]> = LazyLock::new(gauss_legendre_unit);
@@ -60,9 +60,10 @@ impl MomentAccumulator {
         }
     }
 
-    /// Adds the polynomial `c` over [0, h].
+    /// Adds the polynomial `c` over [0, h]. Returns its values at the nodes, less a constant that is the same for all
+    /// segments.
     #[inline(always)]
-    pub(crate) fn add(&mut self, c: &[f64], h: f64, extremes: bool) {
+    pub(crate) fn add(&mut self, c: &[f64], h: f64, extremes: bool) -> [f64; NODES] {
         let offset = *self.offset.get_or_insert(c[0]);
         let mut b = [0.0; MAX_ORDER + 1];
         let mut power = 1.0;
@@ -90,6 +91,7 @@ impl MomentAccumulator {
         if extremes {
             self.add_extremes(b, &values, offset);
         }
+        values
     }
 
     /// Extremes over the unit interval: nodes and both ends, then Newton's method for the derivative from the best of

@@ -117,6 +117,14 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         let masses = self.model.masses_kg();
         let square = self.model.omega_ref * self.model.omega_ref;
         let mut perturbation: Perturbation<D> = ([0.0; D], [0.0; D]);
+        if DynamicModel::<D>::IS_TRAIN {
+            for j in 0..DynamicModel::<D>::HALVES {
+                let force = -RELATIVE_SIZE * self.model.max_excitation_force_n(j);
+                let along = self.model.acceleration_of_mesh_force(j, force);
+                (0..D).for_each(|c| perturbation.0[c] += along[c]);
+            }
+            return displaced(self.model, start, &perturbation);
+        }
         for j in 0..DynamicModel::<D>::HALVES {
             let u = j * PER_HALF + U;
             perturbation.0[u] = RELATIVE_SIZE * self.model.max_excitation_force_n(j) / (masses[u] * square);
@@ -280,13 +288,18 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         let perturbations = 2 * self.model.active().count();
         let shooting = self.shooting(self.model, budget)?;
         let mut at = MotionState { period: 0, ..start };
-        let mut period_map = shooting.period_map(self.model, at, 1)?;
-        budget.spend(&period_map.counts, perturbations);
+        // The first steps to the orbit of a train need no exact monodromy matrix.
+        let approximate = shooting.approximate_period_map(at)?;
+        let mut monodromy_is_current = approximate.is_none();
+        let mut period_map = match approximate {
+            Some(approximate) => approximate,
+            None => shooting.period_map(self.model, at, 1)?,
+        };
+        budget.spend(&period_map.counts, if monodromy_is_current { perturbations } else { 0 });
         *counts += period_map.counts;
         let mut defect = state_difference(&period_map.end, &at);
         self.check_load_balance(&shooting, &defect)?;
         let mut last = f64::INFINITY;
-        let mut monodromy_is_current = true;
         for _ in 0..MAX_ITERATIONS {
             let size = period_map.size.max(1e-9 * largest_component(&(at.x, [0.0; D])));
             let change = largest_component(&defect) / size;

@@ -8,4 +8,5 @@ mod order;
 mod oscillator;
 mod physics;
 pub(crate) mod reference;
+mod train;
 mod variation;
