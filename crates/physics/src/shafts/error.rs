@@ -112,12 +112,20 @@ pub enum ShaftError {
     /// Neither shaft of the pair is held axially.
     #[error("both shafts are free axially: a bearing or a coupling of one of them has to be stiff along z")]
     BothFloatAxially,
+    /// A frequency range that is not positive and finite.
+    #[error("{quantity} is {value}, but it must be a positive finite number")]
+    InvalidRange {
+        /// Name of the number, with its unit.
+        quantity: &'static str,
+        /// The number.
+        value: f64,
+    },
     /// The symmetric part of the bearings' stiffness is negative in some motion: the train at rest is unstable.
     #[error(
         "the bearings' stiffness is negative for some motion of the shafts (eigenvalue {eigenvalue_rad2_s2:e} rad²/s²)"
     )]
     NegativeStiffness {
-        /// Eigenvalue ω² of that motion, rad²/s².
+        /// Upper limit of the eigenvalue ω² of that motion, rad²/s².
         eigenvalue_rad2_s2: f64,
     },
     /// The train cannot be solved in double precision, its stiffnesses or masses being too far apart.

@@ -14,10 +14,15 @@
 mod beam;
 mod error;
 mod flexibility;
+mod rotor;
 mod shaft;
 #[cfg(test)]
 mod tests;
 
 pub use error::{ShaftError, ShaftItem, SupportDefect};
 pub use flexibility::{SectionLoad, StaticDeflection};
+pub use rotor::{
+    DampedMode, FrequencyResponse, GearedRotor, Harmonics, KineticShares, MeshElement, ModeRange, ReducedRotor,
+    ReductionReport, ReductionSettings, ReductionStep, RotationSense, RotorMode, RotorModes, StrainShares,
+};
 pub use shaft::{Bearing, Coupling, Machine, RigidBody, Shaft, ShaftMaterial, ShaftSegment, ShaftTrain};

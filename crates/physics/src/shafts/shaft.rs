@@ -93,6 +93,11 @@ impl Bearing {
     pub(super) fn stiffness(&self) -> [[f64; 6]; 6] {
         section_matrix(self.radial_n_per_m, self.axial_n_per_m, self.tilting_nm_per_rad)
     }
+
+    /// Damping (N s/m, N m s/rad) of the section at the bearing.
+    pub(super) fn damping(&self) -> [[f64; 6]; 6] {
+        section_matrix(self.radial_damping_n_s_per_m, self.axial_damping_n_s_per_m, self.tilting_damping_nm_s_per_rad)
+    }
 }
 
 fn section_matrix(radial: [[f64; 2]; 2], axial: f64, tilting: f64) -> [[f64; 6]; 6] {

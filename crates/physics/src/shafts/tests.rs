@@ -1,4 +1,7 @@
 //! Shafts against closed forms, the reference cases and other programs.
 
+mod dynamics;
 mod fixtures;
+mod reduction;
+mod reference;
 mod statics;
