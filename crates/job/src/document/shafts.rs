@@ -262,7 +262,7 @@ impl BearingInput {
     }
 
     /// Whether it holds the shaft along x and along y; a stiffness that is not given is taken after the size.
-    fn holds_radially(&self) -> [bool; 2] {
+    pub(crate) fn holds_radially(&self) -> [bool; 2] {
         match self.speed_table.is_empty() {
             true => self.given_radial_n_per_um().map(|given| given != Some(0.0)),
             false => [true; 2],
