@@ -27,8 +27,8 @@ pub use response::{
     RmsResult, SpectrumResult, ToothForceResult, ToothForces,
 };
 pub use rotor::{
-    BearingForceResult, BearingForces, DirectionForce, MidFaceShape, RotorMode, RotorResult, ShaftShape,
-    ShapeAlongShafts,
+    BearingForceResult, BearingForces, DirectionForce, ForceOrders, MidFaceShape, RotorMode, RotorResult, ShaftShape,
+    ShapeAlongShafts, ToothForceOrders,
 };
 pub use shafts::{
     AxialFloat, AxialFrictionResult, AxialLimit, BearingReaction, CouplingTransmissionError, FaceLoadAtTorque,

@@ -1,6 +1,9 @@
 //! The vibration response.
 
-use super::{BearingForceResult, ContactStateResult, MethodResult, PerHalf, RegimeResult, ResultFields, RotorResult};
+use super::{
+    BearingForceResult, ContactStateResult, MethodResult, PerHalf, RegimeResult, ResultFields, RotorResult,
+    ToothForceOrders,
+};
 use crate::document::Plane;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -111,6 +114,10 @@ pub struct ResponseResult {
     /// Force of each bearing on its shaft, pinion's first; absent without `design.shafts`.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub bearings: Vec<BearingForceResult>,
+    /// Mesh orders of the tooth forces; absent without `design.shafts`.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[scalar(skip)]
+    pub tooth_force_orders_n: Option<ToothForceOrders>,
     /// Both shafts as a geared rotor; absent without `design.shafts`.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub rotor: Option<RotorResult>,

@@ -41,6 +41,23 @@ pub struct DirectionForce {
     pub phases_rad: Vec<f64>,
 }
 
+/// Orders of the normal tooth force of each half (mesh force, and impact force where one is applied), N.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+pub struct ToothForceOrders {
+    pub left: ForceOrders,
+    pub right: ForceOrders,
+}
+
+/// Amplitudes at the mesh frequency and its multiples, from order 1, and the phases of their cosines.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+pub struct ForceOrders {
+    pub amplitudes: Vec<f64>,
+    /// Mesh phase 0 at the start of contact of a pair of the left half.
+    pub phases_rad: Vec<f64>,
+}
+
 /// The geared rotor behind the response, and how far its modes were reduced.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, ResultFields)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Rotor))]

@@ -2,7 +2,7 @@
 //! frequency.
 
 use super::mesh::MeshMemo;
-use super::{SolveContext, SolveError, point, response_result, row};
+use super::{SolveContext, SolveError, point, row};
 use crate::document::{Axis, JobDocument};
 use crate::result::{Campbell, CampbellCrossing, NaturalMode};
 
@@ -36,11 +36,7 @@ pub(super) fn run(
         other_axis_value.into_iter().for_each(|value| values.insert(1 - at, value));
         let modes = row::job(base, sweep, &values).and_then(|job| {
             let staged = point::stage(&job, &quiet, memo)?;
-            let modes = staged
-                .parameters()
-                .map(response_result::natural_modes)
-                .transpose()
-                .map_err(super::vibration::failed)?;
+            let modes = staged.natural_modes().map_err(super::vibration::failed)?;
             Ok((modes, job.document().design.pinion.teeth))
         });
         match modes {

@@ -24,7 +24,7 @@ impl CheckedJob {
     /// calculation that this version does not support.
     pub fn new(document: JobDocument) -> Result<Self, DocumentError> {
         let job = Self::of_point(document)?;
-        vibration::channels(&job.document)?;
+        vibration::channels(&job.document, None)?;
         if job.document.kind == JobKind::Sweep {
             check_axes(&job.document)?;
         }

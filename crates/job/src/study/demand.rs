@@ -55,7 +55,8 @@ pub fn demand(document: &JobDocument, threads: usize) -> Demand {
     let is_sweep = document.kind == JobKind::Sweep;
     let series_mib = match document.kind {
         JobKind::Response => {
-            let channels = super::vibration::channels(document).map_or(0, |channels| channels.len());
+            let channels = super::vibration::channels(document, None).map_or(0, |channels| channels.len())
+                + super::rotor::channel_names(document).len();
             let analysis = &document.analysis;
             let samples = f64::from(analysis.record_mesh_periods) * f64::from(analysis.samples_per_mesh_period);
             (PER_CHANNEL * channels as f64 + SPECTRUM_CHANNELS) * samples * SAMPLE_BYTES / MIB

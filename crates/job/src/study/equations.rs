@@ -69,11 +69,19 @@ pub(super) fn given_stiffness(given: &GivenStiffness) -> Stiffness {
 /// The mesh damper then has the damping ratio along the transverse direction of the mesh, c = 2 ζ √(k m_e) there with k
 /// the mean tangent stiffness at the working load, so that ζ is the damping ratio of the two bodies turning on their
 /// mesh: along s that is 1/cosβ times the source's c_m.
-pub(super) fn with_contact_forces(mut parameters: Parameters, forces: &[Arc<ContactForce>; 2]) -> Parameters {
+///
+/// A damping that the document gives stays as it is.
+pub(super) fn with_contact_forces(
+    document: &JobDocument,
+    mut parameters: Parameters,
+    forces: &[Arc<ContactForce>; 2],
+) -> Parameters {
     let cos = parameters.helix_angle_rad.cos();
     for (half, force) in parameters.halves.iter_mut().zip(forces) {
         half.contact_force = Some(force.clone());
-        half.mesh_damping_n_s_per_m /= cos;
+        if document.model.mesh_damping_ns_per_m.is_none() {
+            half.mesh_damping_n_s_per_m /= cos;
+        }
     }
     parameters
 }
@@ -95,6 +103,12 @@ pub(super) fn parameters(
     let spring = |n_per_um: &SpringValue, mass| Spring::with_damping_ratio(n_per_um.value * 1e6, zeta, mass);
     let torsion = |nm_per_rad: &SpringValue, inertia| Spring::with_damping_ratio(nm_per_rad.value, zeta, inertia);
     let m_e = equivalent_mass_kg(plane.pinion_radius_m, pinion_inertia_kg_m2, plane.gear_radius_m, gear_inertia_kg_m2);
+    let excitation = |amplitude_um: f64| match amplitude_um {
+        0.0 => Vec::new(),
+        _ => vec![Harmonic { amplitude: amplitude_um * 1e-6, phase_rad: 0.0 }],
+    };
+    let [left_excitation, right_excitation] =
+        document.model.excitation_um.map_or([0.0; 2], |excitation| [excitation.left, excitation.right]).map(excitation);
     let half = |stiffness: Stiffness, impact: Option<ImpactExcitation>, phase_shift_mesh_periods: f64| HalfParameters {
         pinion_mass_kg,
         pinion_inertia_kg_m2,
@@ -105,11 +119,9 @@ pub(super) fn parameters(
         gear_lateral: spring(&supports.gear_lateral_n_per_um, gear_mass_kg),
         pinion_axial: Spring::default(),
         gear_axial: spring(&supports.gear_axial_n_per_um, gear_mass_kg),
-        mesh_damping_n_s_per_m: mesh_damping_n_s_per_m(
-            document.model.mesh_damping_ratio,
-            stiffness.mean_n_per_m(),
-            m_e,
-        ),
+        mesh_damping_n_s_per_m: document.model.mesh_damping_ns_per_m.unwrap_or_else(|| {
+            mesh_damping_n_s_per_m(document.model.mesh_damping_ratio, stiffness.mean_n_per_m(), m_e)
+        }),
         mesh_stiffness: stiffness,
         contact_force: None,
         impact,
@@ -129,7 +141,13 @@ pub(super) fn parameters(
             ActsOn::Torsion => ImpactActsOn::Torsion,
             ActsOn::All => ImpactActsOn::All,
         },
-        halves: [half(left_stiffness, left_impact, 0.0), half(right_stiffness, right_impact, -right_lead_mesh_periods)],
+        halves: [
+            HalfParameters { displacement_excitation: left_excitation, ..half(left_stiffness, left_impact, 0.0) },
+            HalfParameters {
+                displacement_excitation: right_excitation,
+                ..half(right_stiffness, right_impact, -right_lead_mesh_periods)
+            },
+        ],
         couplings: Couplings {
             pinion_axial: spring(&supports.pinion_halves_axial_n_per_um, pinion_mass_kg),
             gear_axial: spring(&supports.gear_halves_axial_n_per_um, gear_mass_kg),

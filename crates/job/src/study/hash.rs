@@ -40,6 +40,11 @@ pub(super) fn shaft_flexibility_hash(case: &ContactCase, coast: bool) -> String 
     hash("shaft-flexibility", &(compliance_hash(case), &case.mounted, case.spec.rotation, case.spec.gap_width_m, coast))
 }
 
+/// Hash of the inputs of a reduced rotor.
+pub(super) fn rotor_hash(inputs: &impl Serialize) -> String {
+    hash("rotor", inputs)
+}
+
 /// Hash of the finite elements of one gear.
 pub(super) fn flank_hash(key: &FlankKey) -> String {
     hash("flank", key)

@@ -5,6 +5,7 @@ use super::equations::{MotionPlane, given_stiffness};
 use super::hash::mesh_hash;
 use super::mesh_force::{self, MeshForces};
 use super::prepare::Prepared;
+use super::rotor::Rotor;
 use super::shaft_contact::{self, MountedTrain, ShaftContact};
 use super::{SolveContext, SolveError, Stage};
 use crate::document::{
@@ -131,6 +132,7 @@ pub(super) struct MeshMemo {
     contacts: Memo<LoadedContact>,
     pub(super) shaft_contacts: Memo<LoadedContactOnShafts>,
     pub(super) shafts: Memo<ContactShafts>,
+    pub(super) rotors: Memo<Rotor>,
     pub(super) forces: Memo<Vec<ForceTable>>,
     pub(super) compliances: ComplianceMemo,
 }
@@ -189,7 +191,7 @@ pub(super) fn run(
             let mut stage = from_contact(&contact, ltca, prepared, plane);
             stage.on_shafts = on_shafts;
             if document.model.mesh_force == MeshForce::Contact && document.kind != JobKind::Mesh {
-                let forces = mesh_force::run(&case, &prepared.pair, plane, context, memo)?;
+                let forces = mesh_force::run(&case, &prepared.pair, stage.on_shafts.as_ref(), plane, context, memo)?;
                 stage.summary.contact_force = Some(forces.summary.clone());
                 stage.stiffness = tangent_stiffness(&contact, plane);
                 stage.stagger_included = false;

@@ -4,6 +4,7 @@ use super::compliance;
 use super::equations::MotionPlane;
 use super::hash::force_hash;
 use super::mesh::{ContactCase, MeshMemo, contact_failed};
+use super::shaft_contact::ShaftContact;
 use super::{SolveContext, SolveError, Stage};
 use crate::result::ContactForceTable;
 use herringbone_physics::contact::{ForceTable, same_gaps};
@@ -32,6 +33,7 @@ const LOOSEST: f64 = 0.05;
 fn tables(
     case: &ContactCase,
     pair: &Pair,
+    on_shafts: Option<&ShaftContact>,
     flanks: Flanks,
     context: &SolveContext,
     memo: &MeshMemo,
@@ -52,10 +54,17 @@ fn tables(
             if flanks.are_idle {
                 settings.accuracy = (IDLE_FLANKS * settings.accuracy).min(LOOSEST);
             }
-            let halves: &[Half] = if same_gaps(flanks.pair) { &[Half::Left] } else { &Half::BOTH };
+            // Of the flanks that carry, with the bodies displaced by the shafts under the working load.
+            let loaded = on_shafts.filter(|_| !flanks.are_idle);
+            let equal = loaded.is_none() && same_gaps(flanks.pair);
+            let halves: &[Half] = if equal { &[Half::Left] } else { &Half::BOTH };
+            let with = (&*compliances.compliance, &settings);
             let tables: Result<Vec<_>, _> = halves
                 .iter()
-                .map(|&half| ForceTable::new(flanks.pair, half, force_n, &compliances.compliance, &settings, watch))
+                .map(|&half| {
+                    let field = loaded.map(|contact| contact.loaded.field_about_mesh_section(&contact.shafts, half));
+                    ForceTable::displaced(flanks.pair, half, field.as_ref(), force_n, with, watch)
+                })
                 .collect();
             let tables = tables.map_err(contact_failed)?;
             context.stages.save(&key, Stage::Mesh, &serde_json::to_vec(&tables).unwrap_or_default());
@@ -82,6 +91,7 @@ struct Flanks<'a> {
 pub(super) fn run(
     case: &ContactCase,
     pair: &Pair,
+    on_shafts: Option<&ShaftContact>,
     plane: &MotionPlane,
     context: &SolveContext,
     memo: &MeshMemo,
@@ -89,11 +99,11 @@ pub(super) fn run(
     let coast = pair.coast();
     let driven = case.torque_nm < 0.0;
     let (working, idle) = if driven { (&coast, pair) } else { (pair, &coast) };
-    let loaded = tables(case, pair, Flanks { pair: working, are_idle: false }, context, memo)?;
-    let unloaded = if same_flanks(working, idle) {
+    let loaded = tables(case, pair, on_shafts, Flanks { pair: working, are_idle: false }, context, memo)?;
+    let unloaded = if on_shafts.is_none() && same_flanks(working, idle) {
         loaded.clone()
     } else {
-        tables(case, pair, Flanks { pair: idle, are_idle: true }, context, memo)?
+        tables(case, pair, on_shafts, Flanks { pair: idle, are_idle: true }, context, memo)?
     };
     let of_half = |tables: &'_ Arc<Vec<ForceTable>>, half: usize| half.min(tables.len() - 1);
     let force = |half: usize| {

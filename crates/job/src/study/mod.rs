@@ -21,6 +21,7 @@ mod points;
 pub(crate) mod prepare;
 mod repeat;
 mod response_result;
+mod rotor;
 mod row;
 mod shaft_contact;
 mod shafts;

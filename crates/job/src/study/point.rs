@@ -4,10 +4,11 @@ use super::check::CheckedJob;
 use super::equations::{self, MotionPlane};
 use super::mesh::{self, MeshMemo};
 use super::prepare::geometry;
-use super::shaft_contact::{self, ShaftContact};
-use super::{RecordedChannel, SolveContext, SolveError, Stage, accuracy, bounds, impact, vibration};
+use super::rotor::{self, TurningRotor};
+use super::shaft_contact::{self, MountedTrain, ShaftContact};
+use super::{RecordedChannel, SolveContext, SolveError, Stage, accuracy, bounds, impact, response_result, vibration};
 use crate::document::{Fidelity, JobDocument, JobKind, MeshStiffness, Recorded};
-use crate::result::{JobResult, NumericsResult, Poincare};
+use crate::result::{JobResult, NaturalMode, NumericsResult, Poincare};
 use herringbone_physics::dynamics::{DynamicsError, Parameters};
 use herringbone_physics::response::Response;
 
@@ -45,6 +46,7 @@ impl PointOptions<'_> {
 pub(super) struct Staged<'a> {
     result: JobResult,
     on_shafts: Option<ShaftContact>,
+    rotor: Option<TurningRotor>,
     parameters: Option<Parameters>,
     stopwatch: Stopwatch<'a>,
 }
@@ -66,6 +68,18 @@ impl Staged<'_> {
 
     pub(super) fn parameters(&self) -> Option<&Parameters> {
         self.parameters.as_ref()
+    }
+
+    /// The natural modes of the equations of motion, if the document requests a response.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] if the equations are refused.
+    pub(super) fn natural_modes(&self) -> Result<Option<Vec<NaturalMode>>, DynamicsError> {
+        let Some(parameters) = &self.parameters else { return Ok(None) };
+        match &self.rotor {
+            None => response_result::natural_modes(parameters).map(Some),
+            Some(rotor) => Ok(Some(rotor.natural_modes(parameters))),
+        }
     }
 }
 
@@ -114,12 +128,18 @@ pub(super) fn stage<'a>(
     numerics.wall_ms.impact = stopwatch.lap_ms();
     (context.progress)(Stage::Impact, 1.0);
 
+    let mounted = MountedTrain::of(document, &prepared.pair).filter(|_| document.kind != JobKind::Mesh);
+    let rotor = mounted.map(|mounted| rotor::find(document, prepared, &mounted, &mesh, memo)).transpose()?;
     let parameters = (document.kind != JobKind::Mesh).then(|| {
         let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
         let parameters = equations::parameters(document, prepared, &plane, mesh.stiffness, impact.pulses, lead);
-        match &mesh.forces {
+        let parameters = match &mesh.forces {
             None => parameters,
-            Some(contact) => equations::with_contact_forces(parameters, &contact.forces),
+            Some(contact) => equations::with_contact_forces(document, parameters, &contact.forces),
+        };
+        match &rotor {
+            None => parameters,
+            Some(rotor) => rotor.into_equations(parameters, document),
         }
     });
     let result = JobResult {
@@ -127,12 +147,13 @@ pub(super) fn stage<'a>(
         shafts: mesh.on_shafts.as_ref().map(|contact| shaft_contact::result(document, &prepared.pair, contact)),
         mesh: Some(mesh.summary),
         impact: impact.summary,
-        supports: (document.kind != JobKind::Mesh).then(|| prepared.supports.clone()),
+        supports: (document.kind != JobKind::Mesh && document.design.shafts.is_none())
+            .then(|| prepared.supports.clone()),
         warnings,
         numerics,
         ..JobResult::default()
     };
-    Ok(Staged { result, on_shafts: mesh.on_shafts, parameters, stopwatch })
+    Ok(Staged { result, on_shafts: mesh.on_shafts, rotor, parameters, stopwatch })
 }
 
 /// The response of a staged point, where it has equations.
@@ -160,12 +181,13 @@ pub(super) fn assemble(
     options: &PointOptions,
     response: Option<Result<Response, DynamicsError>>,
 ) -> Result<Point, SolveError> {
-    let Staged { mut result, parameters, mut stopwatch, .. } = staged;
+    let Staged { mut result, parameters, mut stopwatch, rotor, .. } = staged;
     let (Some(parameters), Some(response)) = (parameters, response) else {
         result.accuracy = Some(accuracy::of(document, &result));
         return Ok(Point { result, series: Vec::new(), end_state: None, poincare: None, bands: None });
     };
-    let vibration = vibration::to_result(document, &parameters, options, response, &mut result.numerics)?;
+    let equations = (&parameters, rotor.as_ref());
+    let vibration = vibration::to_result(document, equations, options, response, &mut result.numerics)?;
     result.response = Some(vibration.summary);
     result.accuracy = Some(accuracy::of(document, &result));
     result.warnings.extend(vibration.warnings);

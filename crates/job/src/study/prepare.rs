@@ -47,7 +47,7 @@ pub(crate) fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError>
     warnings.extend(short_face(document, &pair));
     let supports = supports::used(&document.design.supports, &pair);
     warnings.extend(supports::assumed(document, &supports));
-    let collisions = shafts::collisions(document, &pair);
+    let collisions = shafts::violations(document, &pair);
     if !collisions.is_empty() {
         return Err(DocumentError::Invalid(collisions));
     }

@@ -142,6 +142,7 @@ pub(super) fn summary(
         energy_balance_residual: summary.energy_balance_residual,
         natural_modes: Vec::new(),
         bearings: Vec::new(),
+        tooth_force_orders_n: None,
         rotor: None,
     }
 }

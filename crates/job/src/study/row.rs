@@ -69,7 +69,8 @@ pub(super) fn solve_together(
         .map(|values| {
             let job = job(base, sweep, values)?;
             let staged = point::stage(&job, &quiet, memo)?;
-            let analysis = vibration::analysis(job.document(), &options)?;
+            let train = staged.parameters().and_then(|parameters| parameters.train.as_deref());
+            let analysis = vibration::analysis(job.document(), train, &options)?;
             Ok::<_, SolveError>((job, staged, analysis))
         })
         .collect();

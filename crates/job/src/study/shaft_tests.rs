@@ -2,9 +2,9 @@
 
 use super::{SolveContext, unchecked};
 use crate::document::JobDocument;
-use herringbone_oracle::Tolerance::Absolute;
+use herringbone_oracle::Tolerance::{Absolute, Relative};
 use herringbone_oracle::check;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 const TOPIC: &str = "Shafts: documents";
 
@@ -97,5 +97,80 @@ fn the_reference_documents_give_the_reference_results() {
         let name = case["name"].as_str().expect("a name");
         compare(name, &result["shafts"], &case["result"], &case, &mut compared);
         assert!(compared > 150, "{name}: {compared} numbers");
+    }
+}
+
+fn dynamic_cases() -> Vec<Value> {
+    serde_json::from_str(include_str!("../../../../tests/data/shafts_dynamic.json")).expect("a list of cases")
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
+}
+
+/// Natural frequencies and energy shares of both geared rotors, up to 3 kHz.
+#[test]
+fn the_reference_rotors_have_the_reference_modes() {
+    for case in dynamic_cases() {
+        let name = case["name"].as_str().expect("a name");
+        let mut input = case["input"].clone();
+        // A small, damped motion: the modes are what is looked at.
+        input["analysis"] = json!({"method": "integrate", "mesh_periods": 2, "record_mesh_periods": 1});
+        let result = solved(&input);
+        let frequencies = numbers(&result["response"]["natural_frequencies_hz"]);
+        let expected = numbers(&case["result"]["natural_frequencies_hz"]);
+        let modes = &result["response"]["rotor"]["modes"];
+        for (i, expected_hz) in expected.iter().enumerate().filter(|(_, hz)| **hz <= 3000.0) {
+            let what = |quantity: &str| format!("{name}, mode {}: {quantity}", i + 1);
+            check(TOPIC, &what("natural frequency, Hz"), frequencies[i], *expected_hz, Relative(3e-3));
+            let reference = &case["result"]["modes"][i];
+            let bearings = modes[i]["strain_energy_bearings"].as_f64().expect("a share");
+            let share = reference["strain_energy_bearings"].as_f64().expect("a share");
+            check(TOPIC, &what("strain energy of the bearings"), bearings, share, Absolute(0.01));
+            for half in ["left", "right"] {
+                let got = modes[i]["strain_energy_mesh"][half].as_f64().expect("a share");
+                let share = reference["strain_energy_mesh"][half].as_f64().expect("a share");
+                check(TOPIC, &what(&format!("strain energy of the {half} mesh")), got, share, Absolute(0.01));
+            }
+        }
+    }
+}
+
+/// Mesh and bearing forces under a displacement excitation, gyroscopic terms included.
+#[test]
+fn the_reference_rotor_vibrates_as_the_reference_does() {
+    for case in dynamic_cases() {
+        let Some(forced) = case["forced"].as_array() else { continue };
+        for point in forced {
+            let mut input = case["input"].clone();
+            input["operation"]["pinion_speed_rpm"] = point["pinion_speed_rpm"].clone();
+            input["model"]["excitation_um"] = json!({"left": 1.0, "right": 1.0});
+            input["model"]["impact"] = json!({"source": "none"});
+            let result = solved(&input);
+            let response = &result["response"];
+            let expected = &point["with_gyroscopic"];
+            let name = format!("{} at {} 1/min", case["name"].as_str().expect("a name"), point["pinion_speed_rpm"]);
+            let amplitude = |value: &Value| value.as_f64().expect("a force");
+            let forces = &expected["mesh_force_amplitude_n"];
+            let largest = amplitude(&forces["left"]).max(amplitude(&forces["right"]));
+            for half in ["left", "right"] {
+                let got = amplitude(&response["tooth_force_orders_n"][half]["amplitudes"][0]);
+                let what = format!("{name}: mesh force {half}, N");
+                check(TOPIC, &what, got, amplitude(&forces[half]), Absolute(0.02 * largest));
+            }
+            let reference = expected["bearing_force_amplitude_n"].as_array().expect("bearings");
+            let bearings = response["bearings"].as_array().expect("bearings");
+            assert_eq!(bearings.len(), reference.len());
+            let all = reference.iter().flat_map(|b| ["x", "y", "z"].map(|axis| amplitude(&b[axis])));
+            let largest = all.fold(0.0, f64::max);
+            for (got, expected) in bearings.iter().zip(reference) {
+                assert_eq!((&got["shaft"], &got["position_mm"]), (&expected["shaft"], &expected["position_mm"]));
+                for axis in ["x", "y", "z"] {
+                    let force = got["force_n"][axis]["amplitudes"][0].as_f64().unwrap_or(0.0);
+                    let what = format!("{name}: {} bearing at {} mm, {axis}, N", got["shaft"], got["position_mm"]);
+                    check(TOPIC, &what, force, amplitude(&expected[axis]), Absolute(0.02 * largest));
+                }
+            }
+        }
     }
 }

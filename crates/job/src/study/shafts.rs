@@ -3,7 +3,7 @@
 use super::supports::{self, shown};
 use crate::document::{
     BearingAtSpeedInput, BearingInput, DerivedShaftValue, DesignInput, GearInput, JobDocument, JobKind, MaterialInput,
-    RigidBodyInput, ShaftInput,
+    Plane, RigidBodyInput, ShaftInput,
 };
 use crate::violation::Violation;
 use crate::warning::Warning;
@@ -158,8 +158,19 @@ pub(super) fn warnings(document: &JobDocument) -> Vec<Warning> {
     warnings
 }
 
+/// What contradicts the shafts of a document: equations in the pitch plane, places where they would touch.
+pub(super) fn violations(document: &JobDocument, pair: &Pair) -> Vec<Violation> {
+    let mut found = collisions(document, pair);
+    if document.design.shafts.is_some() && document.model.plane == Plane::Pitch {
+        let detail =
+            "is pitch; with design.shafts the forces of the teeth act along their normals, in the base plane: base";
+        found.push(Violation::new("/model/plane".to_owned(), "conflict", detail.to_owned()));
+    }
+    found
+}
+
 /// Places beside the faces at which the two shafts would run into each other.
-pub(super) fn collisions(document: &JobDocument, pair: &Pair) -> Vec<Violation> {
+fn collisions(document: &JobDocument, pair: &Pair) -> Vec<Violation> {
     let design = &document.design;
     let Some(resolved) = design.resolved_shafts() else { return Vec::new() };
     let widths = [&design.pinion, &design.gear].map(|gear| gear.face_width_mm.unwrap_or(design.face_width_mm));

@@ -1,12 +1,13 @@
 //! The response stage: the steady vibration of the pair and its statistics.
 
 use super::point::PointOptions;
+use super::rotor::{self, TurningRotor};
 use super::{RecordedChannel, SolveContext, SolveError, Stage, bounds, response_result};
 use crate::document::{IntegratorInput, JobDocument, MethodInput, Recorded};
 use crate::result::{NumericsResult, Poincare, ResponseResult};
 use crate::warning::Warning;
 use crate::{DocumentError, Violation};
-use herringbone_physics::dynamics::{self, DynamicsError, Parameters};
+use herringbone_physics::dynamics::{self, DynamicsError, ModalTrain, Parameters};
 use herringbone_physics::response::{self, Analysis, ChannelId, Regime};
 use herringbone_physics::watch::Watch;
 
@@ -33,20 +34,28 @@ fn canonical(requested: &str) -> String {
     }
 }
 
-/// The channels requested by a document; all if it names none.
+/// The channels requested by a document; all if it names none. Without the `train` of its shafts their channels are left
+/// out.
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
-pub(super) fn channels(document: &JobDocument) -> Result<Vec<ChannelId>, DocumentError> {
-    let Some(requested) = &document.analysis.channels else { return Ok(ChannelId::all()) };
+pub(super) fn channels(document: &JobDocument, train: Option<&ModalTrain>) -> Result<Vec<ChannelId>, DocumentError> {
+    let Some(requested) = &document.analysis.channels else {
+        let outputs = train.into_iter().flat_map(ChannelId::outputs_of);
+        return Ok(ChannelId::all().into_iter().chain(outputs).collect());
+    };
+    let of_shafts = rotor::channel_names(document);
     let mut ids = Vec::with_capacity(requested.len());
     let mut violations = Vec::new();
     for (index, name) in requested.iter().enumerate() {
-        match ChannelId::parse(&canonical(name)) {
+        match ChannelId::parse_with(&canonical(name), train) {
             Some(id) if !ids.contains(&id) => ids.push(id),
             Some(_) => {}
+            // A force that is zero has no channel.
+            None if of_shafts.contains(name) => {}
             None => {
-                let known: Vec<_> = ChannelId::all().into_iter().map(ChannelId::name).collect();
+                let known: Vec<_> =
+                    ChannelId::all().into_iter().map(ChannelId::name).chain(of_shafts.iter().cloned()).collect();
                 let detail = format!("is no channel; permitted: {}", known.join(", "));
                 violations.push(Violation::new(format!("/analysis/channels/{index}"), "not-one-of", detail));
             }
@@ -68,7 +77,7 @@ pub(super) fn solve(
     options: &PointOptions,
     context: &SolveContext,
 ) -> Result<Result<response::Response, DynamicsError>, DocumentError> {
-    let analysis = analysis(document, options)?;
+    let analysis = analysis(document, parameters.train.as_deref(), options)?;
     let progress = |fraction: f64| (context.progress)(Stage::Response, fraction);
     let watch = Watch::new(&progress, context.canceled);
     Ok(response::solve(parameters, &analysis, &watch))
@@ -80,7 +89,7 @@ pub(super) fn solve(
 /// [`SolveError`].
 pub(super) fn to_result(
     document: &JobDocument,
-    parameters: &Parameters,
+    (parameters, rotor): (&Parameters, Option<&TurningRotor>),
     options: &PointOptions,
     response: Result<response::Response, DynamicsError>,
     numerics: &mut NumericsResult,
@@ -95,7 +104,14 @@ pub(super) fn to_result(
     if options.whole {
         block.poincare = response_result::poincare(&response, usize::MAX);
         block.spectrum = response_result::spectrum(&response, parameters.mesh_frequency_hz);
-        block.natural_modes = response_result::natural_modes(parameters).map_err(failed)?;
+        if rotor.is_none() {
+            block.natural_modes = response_result::natural_modes(parameters).map_err(failed)?;
+        }
+    }
+    let mut warnings = warnings(document, &response.summary);
+    if let Some(rotor) = rotor {
+        rotor.complete(document, (parameters, &response), &mut block, options.whole);
+        warnings.extend(rotor.warning(document));
     }
     let poincare = options.records(Recorded::Poincare).then(|| response_result::poincare(&response, POINCARE_POINTS));
     let bands =
@@ -116,7 +132,7 @@ pub(super) fn to_result(
         poincare,
         bands: bands.flatten(),
         series: if options.whole { channels.into_iter().map(channel).collect() } else { Vec::new() },
-        warnings: warnings(document, &response.summary),
+        warnings,
         // A motion that grows without bound has no end state to continue from.
         end_state: (response.summary.regime != Regime::Unstable).then(|| response.final_state.to_vec()),
     })
@@ -134,10 +150,14 @@ fn word(value: &impl serde::Serialize) -> String {
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.
-pub(super) fn analysis(document: &JobDocument, options: &PointOptions) -> Result<Analysis, DocumentError> {
+pub(super) fn analysis(
+    document: &JobDocument,
+    train: Option<&ModalTrain>,
+    options: &PointOptions,
+) -> Result<Analysis, DocumentError> {
     let requested = &document.analysis;
     let state = options.start.or(requested.initial_state.as_deref());
-    let mut channels = channels(document)?;
+    let mut channels = channels(document, train)?;
     if options.records(Recorded::Spectrum) {
         channels.extend(ChannelId::parse(response_result::SPECTRUM_CHANNEL));
     }

@@ -12,6 +12,7 @@ use super::error::ContactError;
 use super::half::HalfContact;
 use super::position::ForceCurve;
 use super::refine::start_phases;
+use super::shafts::DisplacementField;
 use crate::compliance::{Compliance, Settings};
 use crate::gear::{Half, Pair};
 use crate::numerics::PeriodicSpline;
@@ -55,6 +56,7 @@ const SMALL_FORCE: f64 = 0.2;
 
 /// Solves the contact of one half where F(δ, φ) needs it.
 struct Sampler<'a> {
+    field: Option<&'a DisplacementField>,
     pair: &'a Pair,
     half: Half,
     compliance: &'a Compliance,
@@ -65,7 +67,12 @@ struct Sampler<'a> {
 
 impl Sampler<'_> {
     fn contact(&self) -> HalfContact<'_> {
-        HalfContact::new(self.pair, self.half, self.compliance, self.settings, self.watch)
+        match self.field {
+            None => HalfContact::new(self.pair, self.half, self.compliance, self.settings, self.watch),
+            Some(field) => {
+                HalfContact::displaced(self.pair, self.half, self.compliance, self.settings, field, self.watch)
+            }
+        }
     }
 
     /// The curves at all phases, on the threads of the pool.
@@ -116,7 +123,19 @@ impl ForceTable {
         settings: &Settings,
         watch: Watch<'_>,
     ) -> Result<ForceTable, ContactError> {
-        let sampler = Sampler { pair, half, compliance, settings, force_bt_n, watch };
+        Self::displaced(pair, half, None, force_bt_n, (compliance, settings), watch)
+    }
+
+    /// The same with the bodies displaced by `field` and held there.
+    pub fn displaced(
+        pair: &Pair,
+        half: Half,
+        field: Option<&DisplacementField>,
+        force_bt_n: f64,
+        (compliance, settings): (&Compliance, &Settings),
+        watch: Watch<'_>,
+    ) -> Result<ForceTable, ContactError> {
+        let sampler = Sampler { field, pair, half, compliance, settings, force_bt_n, watch };
         let tolerance = AGREEMENT * settings.accuracy;
         let level_m = levels(&sampler, tolerance)?;
         // The first step is halved once more: its middle says how the contact begins.

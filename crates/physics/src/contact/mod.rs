@@ -37,8 +37,8 @@ pub use memory::{ComplianceModel, ContactMemory, ContactSizes};
 pub use position::LoadedPosition;
 pub use shafts::{
     AxialFreedom, ContactShafts, DisplacementField, FaceLoad, HalfOnShafts, Hand, HelixModification,
-    LoadedContactOnShafts, MeshFrame, ShaftState, evening_modification, helix_modification, sense_of_rotation,
-    solve_on_shafts, with_helix_modification,
+    LoadedContactOnShafts, MeshFrame, MeshSection, ShaftState, evening_modification, helix_modification,
+    sense_of_rotation, solve_on_shafts, with_helix_modification,
 };
 pub use short_face::{SHORT_FACE_NOTICE, stiffness_excess};
 

@@ -83,6 +83,8 @@ pub struct HalfOnShafts {
     /// Force by approach (N/m), moment about the middle of the face by approach (N) and by tilt (N m) of the teeth on
     /// bodies that are held, along the flank normal, mean; distances from the mesh-out end.
     pub tooth_stiffness: [f64; 3],
+    /// Centre of the load from the apex plane along the shafts.
+    pub centroid_z_m: f64,
     /// Openings that the shafts cause, relative to the mid-face sections at the pitch point, mean.
     pub openings_m: Vec<f64>,
 }
@@ -93,6 +95,8 @@ pub struct HalfOnShafts {
 pub struct ShaftState {
     /// Left outer, left inner, right inner, right outer end of the common face.
     pub face_ends: Vec<Section>,
+    /// Middles of the left and of the right face.
+    pub mid_faces: Vec<Section>,
     /// Apex plane.
     pub apex: Section,
     /// Force and moment of every bearing on the shaft: N, N m.
@@ -341,7 +345,56 @@ fn displacement_field(shafts: &ContactShafts, half: &HalfOnShafts) -> Displaceme
     shafts.field(openings_m)
 }
 
+/// Mesh of a half as a spring in the equations of motion of the rotor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshSection {
+    /// Section at which approach and tilt of the loaded teeth do not couple, from the apex plane along the shafts.
+    pub position_m: f64,
+    /// Mean force by approach of that section, along the flank normal, N/m.
+    pub stiffness_n_per_m: f64,
+    /// Moment by relative tilt of the sections, N m/rad.
+    pub tilting_nm_per_rad: f64,
+    /// Moment of the working load about that section less what the tilting stiffness takes of it, N m.
+    pub tilting_moment_nm: f64,
+}
+
 impl LoadedContactOnShafts {
+    /// The mesh of a half about its mean loaded state.
+    pub fn mesh_section(&self, shafts: &ContactShafts, half: Half) -> MeshSection {
+        let own = &self.halves[half.index()];
+        let [stiffness_n_per_m, coupled_n, by_tilt_nm] = own.tooth_stiffness;
+        let middle_m = 0.5 * shafts.frame.width_m;
+        let arm_m = if stiffness_n_per_m > 0.0 { coupled_n / stiffness_n_per_m } else { 0.0 };
+        let position_m = shafts.frame.z_m(half, middle_m + arm_m);
+        let tilting_nm_per_rad = (by_tilt_nm - arm_m * coupled_n).max(0.0);
+        // Closing by tilt per distance along z: (e_z × n) · (φ_p − φ_g).
+        let n = shafts.frame.load(Body::Pinion, half, 0.0);
+        let tilt = |state: &ShaftState| {
+            let section = &state.mid_faces[half.index()];
+            n[0] * section[4] - n[1] * section[3]
+        };
+        let tilt_rad = tilt(&self.shafts[0]) - tilt(&self.shafts[1]);
+        let moment_nm = own.normal_force_n[0] * (own.centroid_z_m - position_m);
+        MeshSection {
+            position_m,
+            stiffness_n_per_m,
+            tilting_nm_per_rad,
+            tilting_moment_nm: moment_nm - tilting_nm_per_rad * tilt_rad,
+        }
+    }
+
+    /// The openings between the bodies of a half relative to those of its [`MeshSection`], for
+    /// [`HalfContact::displaced`].
+    pub fn field_about_mesh_section(&self, shafts: &ContactShafts, half: Half) -> DisplacementField {
+        let own = &self.halves[half.index()];
+        let [stiffness, coupled, _] = own.tooth_stiffness;
+        let arm_m = if stiffness > 0.0 { coupled / stiffness } else { 0.0 };
+        let mut field = displacement_field(shafts, own);
+        let at_section_m = field.at(0.5 * shafts.frame.width_m + arm_m, shafts.frame.pitch_point_m);
+        field.opening_m.iter_mut().for_each(|opening| *opening -= at_section_m);
+        field
+    }
+
     /// The openings between the bodies of a half, for [`HalfContact::displaced`].
     pub fn displacement_field(&self, shafts: &ContactShafts, half: Half) -> DisplacementField {
         displacement_field(shafts, &self.halves[half.index()])
@@ -405,6 +458,7 @@ fn half_on_shafts(
         [] => 0.0,
     };
     let ends_n_per_m = [beyond(&mut line_load_n_per_m.iter()), beyond(&mut line_load_n_per_m.iter().rev())];
+    let centroid_from_inner_m = over(moment, sum, 0.5 * width_m);
     HalfOnShafts {
         normal_force_n: [sum, largest_n - least_n],
         share: 0.0,
@@ -418,7 +472,8 @@ fn half_on_shafts(
             line_load_n_per_m,
         },
         peak_over_mean: over(peaks, mean_n_per_m, 1.0),
-        centroid_from_inner_m: over(moment, sum, 0.5 * width_m),
+        centroid_from_inner_m,
+        centroid_z_m: shafts.frame.z_m(half, pair.entry_m(centroid_from_inner_m)),
         tooth_stiffness: [0.0; 3],
         openings_m: vec![0.0; NODES],
     }
@@ -549,6 +604,7 @@ fn shaft_state(shafts: &ContactShafts, body: Body, positions: &Positions) -> Sha
     let shape_at_m = shafts.shape_m()[body as usize].to_vec();
     ShaftState {
         face_ends: (0..4).map(|i| mean(&|s| s.face_ends[i])).collect(),
+        mid_faces: (0..2).map(|i| mean(&|s| s.mid_faces[i])).collect(),
         apex: mean(&|s| s.apex),
         bearings: {
             let sections: Vec<Section> = (0..shaft.bearings.len()).map(|i| mean(&|s| s.bearings[i])).collect();

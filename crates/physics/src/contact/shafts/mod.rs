@@ -18,7 +18,7 @@ mod modification;
 mod position;
 mod system;
 
-pub use cycle::{FaceLoad, HalfOnShafts, LoadedContactOnShafts, ShaftState, solve_on_shafts};
+pub use cycle::{FaceLoad, HalfOnShafts, LoadedContactOnShafts, MeshSection, ShaftState, solve_on_shafts};
 pub use flexibility::{AxialFreedom, ContactShafts, DisplacementField};
 pub use frame::{Hand, MeshFrame, sense_of_rotation};
 pub use modification::{HelixModification, evening_modification, helix_modification, with_helix_modification};

@@ -73,13 +73,22 @@ pub struct MeshElement {
     /// Stiffness against the relative tilt of the sections in the plane of action, about e_z × n, N m/rad; k_m b²/12 for
     /// a stiffness that is distributed evenly over the face width b, 0 for a plain mesh spring.
     pub tilting_nm_per_rad: f64,
+    /// Moment of the tooth forces about the section at no relative tilt, on the same axis, N m: constant, so that it
+    /// loads the reduced train but has no part in modes and harmonic vibration. 0 for forces in the section.
+    pub tilting_moment_nm: f64,
 }
 
 impl MeshElement {
     /// A plain mesh spring at mid-face.
     pub fn at_mid_face(pair: &Pair, half: Half, stiffness_n_per_m: f64, damping_n_s_per_m: f64) -> MeshElement {
         let position_m = mid_face_m(pair)[half.index()];
-        MeshElement { stiffness_n_per_m, damping_n_s_per_m, position_m, tilting_nm_per_rad: 0.0 }
+        MeshElement {
+            stiffness_n_per_m,
+            damping_n_s_per_m,
+            position_m,
+            tilting_nm_per_rad: 0.0,
+            tilting_moment_nm: 0.0,
+        }
     }
 }
 

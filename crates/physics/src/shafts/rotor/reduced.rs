@@ -21,6 +21,8 @@ pub struct ReducedRotor {
     pub(super) projection: Projection,
     /// Modal forces per torque on the pinion.
     pub(super) load_per_nm: DVector<f64>,
+    /// Modal forces of the constant tilting moments of the meshes.
+    pub(super) tilting_load: DVector<f64>,
     pub(super) displacements: [Vec<f64>; 12],
     pub(super) outputs: Vec<LinearOutput>,
 }
@@ -82,7 +84,7 @@ impl ReducedRotor {
             cross_stiffness_per_s2: cross.then(|| by_rows(&self.projection.cross_stiffness)),
             mesh: self.projection.mesh.each_ref().map(|row| row.as_slice().to_vec()),
             reference_stiffness_n_per_m: self.projection.mesh_stiffness_n_per_m,
-            load_n: (&self.load_per_nm * pinion_torque_nm).as_slice().to_vec(),
+            load_n: (&self.load_per_nm * pinion_torque_nm + &self.tilting_load).as_slice().to_vec(),
             displacements: self.displacements.clone(),
             outputs: self.outputs.clone(),
         }

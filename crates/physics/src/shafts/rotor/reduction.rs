@@ -183,6 +183,9 @@ impl GearedRotor {
             modes,
             report,
             load_per_nm: projected_row(&self.torque_row(), &projection.vectors),
+            tilting_load: self.meshes.iter().fold(DVector::zeros(projection.coordinates()), |sum, mesh| {
+                sum - projected_row(&mesh.tilt, &projection.vectors) * mesh.element.tilting_moment_nm
+            }),
             displacements: self.physical_rows().map(|row| projected_row(&row, &projection.vectors).as_slice().to_vec()),
             outputs: self.outputs(&projection),
             projection,
