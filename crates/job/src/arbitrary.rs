@@ -105,6 +105,9 @@ fn reconcile(document: &mut Value) {
             }
         }
     }
+    if document["design"]["shafts"].is_object() {
+        shafts(document);
+    }
     if let Some(analysis) = document.get_mut("analysis").filter(|analysis| analysis.is_object()) {
         periods(analysis);
     }
@@ -141,6 +144,124 @@ fn axes(document: &mut Value, is_sweep: bool) {
     }
 }
 
+/// Shafts that carry their gears: the places follow from the faces, the other numbers stay as they are where they can.
+fn shafts(document: &mut Value) {
+    let design = &mut document["design"];
+    let of = |object: &Value, name: &str, default: f64| object[name].as_f64().unwrap_or(default);
+    let width_mm = of(design, "face_width_mm", 0.5);
+    let gap_mm = of(design, "gap_width_mm", 30.0);
+    let module_mm = of(design, "normal_module_mm", 0.1);
+    let cos_helix = of(design, "helix_angle_deg", 0.0).to_radians().cos();
+    let mut widest_mm: f64 = 0.0;
+    for name in ["pinion", "gear"] {
+        let gear = &design[name];
+        let outer_mm = 0.5 * (gap_mm + width_mm + of(gear, "face_width_mm", width_mm));
+        let height = of(gear, "addendum", 1.0) + of(gear, "profile_shift", 0.0) + of(gear, "tip_alteration", 0.0);
+        let tip_mm = module_mm * (of(gear, "teeth", 5.0) / cos_helix + 2.0 * height);
+        widest_mm = widest_mm.max(outer_mm);
+        if design["shafts"][name].is_object() {
+            shaft(&mut design["shafts"][name], outer_mm, tip_mm);
+        }
+    }
+    let shafts = &mut design["shafts"];
+    if !(shafts["pinion"].is_object() && shafts["gear"].is_object()) && !shafts["arrangement"].is_object() {
+        shafts["arrangement"] = json!({});
+    }
+    if let Some(span_mm) = shafts["arrangement"]["bearing_span_mm"].as_f64() {
+        shafts["arrangement"]["bearing_span_mm"] = json!(span_mm.max(2.0 * widest_mm));
+    }
+    if shafts["gear"].is_object() {
+        let bearing = &mut shafts["gear"]["bearings"][0];
+        bearing["axial_n_per_um"] = json!(bearing["axial_n_per_um"].as_f64().unwrap_or(1.0).max(1.0));
+    }
+    if document["model"]["mesh_stiffness"]["body"] == "bore" {
+        document["model"]["mesh_stiffness"]["body"] = json!("rim");
+    }
+}
+
+fn shaft(shaft: &mut Value, outer_mm: f64, tip_mm: f64) {
+    let number = |value: &Value, default: f64| value.as_f64().unwrap_or(default);
+    let mut segments: Vec<Value> = shaft["segments"].as_array().cloned().unwrap_or_default();
+    // No more than positions can reach.
+    segments.resize(3, segments[0].clone());
+    let body = 1;
+    let mut position_mm = 0.0;
+    for (index, segment) in segments.iter_mut().enumerate() {
+        let mut diameter_mm = number(&segment["diameter_mm"], 1.0);
+        if index == body {
+            diameter_mm = diameter_mm.min(tip_mm).max(0.5);
+            segment["length_mm"] = json!(2.0 * outer_mm + 0.2);
+            shaft["gear_position_mm"] = json!(position_mm + outer_mm + 0.1);
+        }
+        segment["diameter_mm"] = json!(diameter_mm);
+        segment["bore_mm"] = json!(number(&segment["bore_mm"], 0.0).min(0.5 * diameter_mm));
+        position_mm += number(&segment["length_mm"], 1.0);
+    }
+    let length_mm = position_mm;
+    let beside_mm = [number(&shaft["gear_position_mm"], 0.0) - outer_mm, length_mm - 2.0 * outer_mm];
+    let beside_mm = [beside_mm[0], beside_mm[1] - beside_mm[0]];
+    shaft["segments"] = json!(segments);
+    let bearings = shaft["bearings"].as_array_mut().expect("a required list");
+    let count = bearings.len() as f64;
+    for (index, bearing) in bearings.iter_mut().enumerate() {
+        let part = (index as f64 + 1.0) / (count + 1.0);
+        bearing["position_mm"] = match index % 2 {
+            0 => json!(part * beside_mm[0]),
+            _ => json!(length_mm - part * beside_mm[1]),
+        };
+        bearing["tilting_nm_per_rad"] = json!(number(&bearing["tilting_nm_per_rad"], 1.0).max(1.0));
+        let radial = ["radial_n_per_um", "radial_x_n_per_um", "radial_y_n_per_um"];
+        if bearing["speed_table"].as_array().is_some_and(|rows| !rows.is_empty()) {
+            for name in radial.into_iter().chain(["radial_damping_ns_per_m"]) {
+                bearing[name] = Value::Null;
+            }
+            bearing["speed_table"].as_array_mut().into_iter().flatten().enumerate().for_each(speed_row);
+        } else {
+            for name in radial {
+                if let Some(stiffness) = bearing[name].as_f64() {
+                    bearing[name] = json!(stiffness.max(1e-3));
+                }
+            }
+        }
+    }
+    let coupling = &mut shaft["coupling"];
+    coupling["position_mm"] = json!(number(&coupling["position_mm"], 0.0) / 50_000.0 * length_mm);
+    if coupling["torsional_nm_per_rad"].is_null() || coupling["inertia_kg_m2"].is_null() {
+        for name in ["torsional_nm_per_rad", "inertia_kg_m2", "torsional_damping_nms_per_rad"] {
+            coupling[name] = Value::Null;
+        }
+    }
+    if shaft["half_body"].is_object() {
+        inertias(&mut shaft["half_body"]);
+    }
+    for inertia in shaft.get_mut("inertias").and_then(Value::as_array_mut).into_iter().flatten() {
+        inertia["position_mm"] = json!(number(&inertia["position_mm"], 0.0) / 50_000.0 * length_mm);
+        inertias(inertia);
+    }
+}
+
+fn inertias(body: &mut Value) {
+    let of = |name: &str| body[name].as_f64().unwrap_or_default();
+    body["diametral_inertia_kg_m2"] = json!(of("diametral_inertia_kg_m2").max(0.5 * of("polar_inertia_kg_m2")));
+}
+
+/// A row of a bearing's table with ascending speed, stable and dissipative.
+fn speed_row((index, row): (usize, &mut Value)) {
+    row["speed_rpm"] = json!(100.0 * index as f64);
+    for (kind, unit, largest) in [("stiffness", "n_per_um", 1e7), ("damping", "ns_per_m", 1e12)] {
+        let name = |axes: &str| format!("{kind}_{axes}_{unit}");
+        let main = ["xx", "yy"].map(|axes| row[name(axes)].as_f64().unwrap_or_default().max(1.0));
+        let bound = 0.9 * main[0].min(main[1]);
+        for (axes, value) in ["xx", "yy"].into_iter().zip(main) {
+            row[name(axes)] = json!(value);
+        }
+        for axes in ["xy", "yx"] {
+            let value = row[name(axes)].as_f64().unwrap_or_default();
+            row[name(axes)] = json!(value / largest * bound);
+        }
+    }
+}
+
 /// Gives every relief a positive length.
 fn reliefs(flank: &mut Value) {
     for name in ["tip_relief", "end_relief"] {
@@ -160,8 +281,11 @@ fn periods(analysis: &mut Value) {
 }
 
 fn given(model: &mut Value) {
-    let source = model["mesh_stiffness"]["source"].as_str().unwrap_or("ltca");
+    let source = model["mesh_stiffness"]["source"].as_str().unwrap_or("ltca").to_owned();
     if source != "ltca" && model["mesh_force"] == "contact" {
+        model["mesh_force"] = json!("stiffness");
+    }
+    if source == "ltca" && model["excitation_um"].is_object() {
         model["mesh_force"] = json!("stiffness");
     }
     let stiffness = &mut model["mesh_stiffness"];
@@ -204,6 +328,10 @@ fn pointers(document: &Value) -> Vec<(String, Value)> {
 /// Whether numbers are declared at a pointer.
 fn is_number(pointer: &str) -> bool {
     let fields = super::schema::field_descriptions();
+    // The items of a list have the declaration of all of them.
+    let is_index = |step: &str| !step.is_empty() && step.bytes().all(|digit| digit.is_ascii_digit());
+    let steps = pointer.split('/').map(|step| if is_index(step) { "*" } else { step });
+    let pointer = steps.collect::<Vec<_>>().join("/");
     let field = fields.iter().find(|field| field.pointer == pointer);
     field.is_some_and(|field| field.schema["type"] == "number" || field.schema["type"] == "integer")
 }
@@ -227,7 +355,9 @@ proptest! {
     fn what_is_given_is_kept(value in documents()) {
         let written = serde_json::to_value(super::parse_value(&value).expect("valid")).expect("numbers and texts");
         for pointer in ["/name", "/design/normal_module_mm", "/design/gear/tip_relief/amount_um", "/operation/pinion_torque_nm",
-                        "/design/supports/gear_axial_n_per_um", "/analysis/accuracy", "/axes/0/pointer"] {
+                        "/design/supports/gear_axial_n_per_um", "/design/shafts/arrangement/bearing_span_mm",
+                        "/design/shafts/pinion/bearings/0/axial_n_per_um", "/design/shafts/gear/coupling/axial_friction_n",
+                        "/model/mesh_damping_ns_per_m", "/model/excitation_um/left", "/analysis/accuracy", "/axes/0/pointer"] {
             if let Some(given) = value.pointer(pointer).filter(|given| !given.is_null()) {
                 prop_assert_eq!(written.pointer(pointer), Some(given), "{}", pointer);
             }

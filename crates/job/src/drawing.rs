@@ -16,6 +16,63 @@ pub struct Drawing {
     pub margins: Vec<MarginResult>,
     pub section: DrawnSection,
     pub plane_of_action: PlaneOfAction,
+    /// Both shafts; absent without `design.shafts`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shafts: Option<DrawnShafts>,
+}
+
+/// Both shafts in the plane of their axes: along the axis (0 in the middle of the gap, the left half below 0), and across (0 on the
+/// pinion's axis, the gear's axis at the centre distance).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+pub struct DrawnShafts {
+    pub center_distance_mm: f64,
+    pub pinion: DrawnShaft,
+    pub gear: DrawnShaft,
+}
+
+/// One shaft.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+pub struct DrawnShaft {
+    /// Place of the axis across.
+    pub axis_mm: f64,
+    pub segments: Vec<DrawnSegment>,
+    /// Ends of the left and the right half of this member along the axis.
+    pub faces_mm: [[f64; 2]; 2],
+    pub tip_radius_mm: f64,
+    pub root_radius_mm: f64,
+    pub bearings: Vec<DrawnBearing>,
+    /// Where the torque enters (pinion) or leaves (gear).
+    pub coupling_mm: f64,
+    /// Whether the coupling holds the shaft axially.
+    pub coupling_holds_axially: bool,
+    /// Whether a machine inertia hangs on the coupling.
+    pub has_machine: bool,
+    /// Further rigid bodies.
+    pub bodies_mm: Vec<f64>,
+    /// Nothing holds the shaft along its axis.
+    pub floats_axially: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+pub struct DrawnSegment {
+    /// Ends along the axis.
+    pub axial_mm: [f64; 2],
+    pub radius_mm: f64,
+    pub bore_radius_mm: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+pub struct DrawnBearing {
+    pub axial_mm: f64,
+    /// Radius of the shaft there.
+    pub radius_mm: f64,
+    pub holds_radially: bool,
+    pub holds_axially: bool,
+    pub holds_tilting: bool,
 }
 
 /// The transverse section: origin at the pitch point, second axis along the line of centres towards the gear. The pinion turns

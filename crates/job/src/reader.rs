@@ -515,8 +515,8 @@ impl<'a> Object<'a> {
 
     /// A list of objects; `None` when left out. When the fields are described: one object that represents all items.
     pub(crate) fn objects<'b>(&'b self, declared: &'static Declared) -> Option<Vec<Object<'b>>> {
-        let Declared { name, min_items, max_items, help, .. } = *declared;
-        self.declare(declared, false, || {
+        let Declared { name, min_items, max_items, help, required, .. } = *declared;
+        self.declare(declared, required, || {
             json!({"type": "array", "minItems": min_items, "maxItems": max_items, "items": {"type": "object"},
                 "description": help})
         });
@@ -531,6 +531,9 @@ impl<'a> Object<'a> {
         };
         if self.reading.is_describing() {
             return Some(vec![object(None, None)]);
+        }
+        if required && !self.has(name) {
+            self.missing(name, &format!("a list of {min_items} to {max_items} objects"));
         }
         let values = self.array(name, min_items, max_items)?;
         let mut objects = Vec::with_capacity(values.len());
@@ -626,14 +629,37 @@ impl<'a> ObjectPlace<'a> {
         self.object.is_none_or(|object| object.has(name))
     }
 
+    /// Whether the object is being read from a document, not checked once more.
+    pub(crate) fn is_reading_object(&self) -> bool {
+        self.object.is_some()
+    }
+
     /// Whether a document is read, so that rules can be violated.
     pub(crate) fn is_read(&self) -> bool {
         self.reading.purpose == Purpose::Read
     }
 
+    /// Whether the field `name`, or a field in it, has a violation already: rules that need its value have nothing to
+    /// say.
+    pub(crate) fn is_refused(&self, name: &str) -> bool {
+        let pointer = self.path.member(name).to_string();
+        let is_in =
+            |other: &str| other.strip_prefix(&pointer).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
+        self.reading.collected.borrow().violations.iter().any(|violation| is_in(&violation.pointer))
+    }
+
     /// Reports that the field `name` contradicts other fields.
     pub(crate) fn conflict(&self, name: &str, detail: impl Into<String>) {
         self.violate(name, "conflict", detail);
+    }
+
+    /// Reports that the number `name` contradicts other fields, with the range in its declared unit that they permit.
+    pub(crate) fn outside(&self, name: &str, unit: &str, [minimum, maximum]: [f64; 2], detail: impl Into<String>) {
+        if self.is_read() {
+            let violation = Violation::new(self.path.member(name).to_string(), "conflict", detail);
+            let (minimum, maximum) = (finite(minimum), finite(maximum));
+            self.reading.violate(Violation { minimum, maximum, unit: Some(unit.to_owned()), ..violation });
+        }
     }
 
     /// Reports that the field `name` is required by other fields.
@@ -646,6 +672,10 @@ impl<'a> ObjectPlace<'a> {
             self.reading.violate(Violation::new(self.path.member(name).to_string(), code, detail));
         }
     }
+}
+
+fn finite(number: f64) -> Option<f64> {
+    number.is_finite().then_some(number)
 }
 
 /// The violation of a number that is out of its range, without its pointer.

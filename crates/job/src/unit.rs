@@ -36,6 +36,8 @@ pub enum UnitQuantity {
     Stiffness,
     LineStiffness,
     TorsionalStiffness,
+    Damping,
+    TorsionalDamping,
 }
 
 use UnitQuantity::*;
@@ -49,8 +51,9 @@ const fn other(suffix: &'static str, text: &'static str, size: f64, quantity: Un
 }
 
 /// Every unit; a longer ending stands before one that ends it.
-pub static UNITS: [Unit; 56] = [
+pub static UNITS: [Unit; 58] = [
     declared("_n_per_mm_um", "N/(mm um)", "N/(mm·µm)", 1e9, LineStiffness),
+    declared("_nms_per_rad", "N m s/rad", "N·m·s/rad", 1.0, TorsionalDamping),
     declared("_nm_per_rad", "N m/rad", "N·m/rad", 1.0, TorsionalStiffness),
     other("_nm_per_deg", "N m/deg", 180.0 / PI, TorsionalStiffness),
     other("_knm_per_rad", "kN m/rad", 1e3, TorsionalStiffness),
@@ -58,6 +61,7 @@ pub static UNITS: [Unit; 56] = [
     declared("_n_per_um", "N/um", "N/µm", 1e6, Stiffness),
     other("_n_per_mm", "N/mm", 1e3, Stiffness),
     other("_n_per_m", "N/m", 1.0, Stiffness),
+    declared("_ns_per_m", "N s/m", "N·s/m", 1.0, Damping),
     other("_kg_dm3", "kg/dm3", 1e3, Density),
     declared("_kg_m3", "kg/m3", "kg/m³", 1.0, Density),
     other("_g_cm3", "g/cm3", 1e3, Density),
@@ -183,6 +187,18 @@ impl Unit {
             }
             None => panic!("a field is declared in a unit that is not known"),
         }
+    }
+
+    /// The unit `text` of a field in an object whose name ends in it. Evaluated when the crate is compiled.
+    pub const fn of_object(text: &str) -> &'static Unit {
+        let mut index = 0;
+        while index < UNITS.len() {
+            if UNITS[index].declared && is_same(UNITS[index].text.as_bytes(), text.as_bytes()) {
+                return &UNITS[index];
+            }
+            index += 1;
+        }
+        panic!("a field is declared in a unit that is not known")
     }
 
     /// The unit that a name ends in.

@@ -3,6 +3,7 @@
 use super::doc_lines;
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
+use syn::ext::IdentExt;
 use syn::punctuated::Punctuated;
 use syn::{
     Attribute, Data, DataEnum, DeriveInput, Error, Expr, Fields, LitInt, LitStr, Meta, Path, Result, Token, Type,
@@ -14,6 +15,8 @@ struct Attributes {
     min: Option<Expr>,
     max: Option<Expr>,
     unit: Option<LitStr>,
+    /// The unit, which is in the name of the object that the field is in.
+    object_unit: Option<LitStr>,
     default: Option<Expr>,
     base: Option<Expr>,
     required: bool,
@@ -53,6 +56,7 @@ impl Attributes {
                     "max_chars" => found.max_chars = Some(meta.value()?.parse()?),
                     "order" => found.order = Some(meta.value()?.parse()?),
                     "unit" => found.unit = Some(meta.value()?.parse()?),
+                    "object_unit" => found.object_unit = Some(meta.value()?.parse()?),
                     "group" => found.group = Some(meta.value()?.parse()?),
                     "symbol" => found.symbol = Some(meta.value()?.parse()?),
                     "when" => found.when = Some(meta.value()?.parse()?),
@@ -112,7 +116,7 @@ impl Declaration {
     fn of(field: syn::Field) -> Result<Self> {
         let name = field.ident.clone().ok_or_else(|| Error::new_spanned(&field, "an input field has a name"))?;
         let declaration = Self {
-            constant: format_ident!("{}", name.to_string().to_uppercase()),
+            constant: format_ident!("{}", name.unraw().to_string().to_uppercase()),
             help: help(&field.attrs),
             omitted: is_omitted(&field.attrs),
             attributes: Attributes::of(&field.attrs)?,
@@ -135,7 +139,7 @@ impl Declaration {
         if is_number != (attributes.min.is_some() && attributes.max.is_some()) {
             return fail("numbers, and only numbers, need `min` and `max`");
         }
-        if attributes.unit.is_some() && kind != "f64" {
+        if (attributes.unit.is_some() || attributes.object_unit.is_some()) && kind != "f64" {
             return fail("only an `f64` has a unit");
         }
         if (kind == "String" && !is_list(&self.ty)) != attributes.max_chars.is_some() {
@@ -155,7 +159,7 @@ impl Declaration {
     /// The constant with the declaration.
     fn declared(&self, group: Option<&LitStr>) -> Result<TokenStream> {
         let Self { constant, help, omitted, attributes, .. } = self;
-        let name = self.name.to_string();
+        let name = self.name.unraw().to_string();
         let Attributes { required, min, max, min_items, max_items, max_chars, order, .. } = attributes;
         let mut given: Vec<TokenStream> =
             [("min", min), ("max", max), ("min_items", min_items), ("max_items", max_items), ("max_chars", max_chars)]
@@ -169,7 +173,9 @@ impl Declaration {
                     })
                 })
                 .collect();
-        if innermost(&self.ty) == "f64" {
+        if let Some(unit) = &attributes.object_unit {
+            given.push(quote!(unit: crate::unit::Unit::of_object(#unit)));
+        } else if innermost(&self.ty) == "f64" {
             let unit = attributes.unit.as_ref().map_or_else(|| "1".to_owned(), LitStr::value);
             given.push(quote!(unit: crate::unit::Unit::of_field(#name, #unit)));
         }
@@ -263,7 +269,7 @@ pub(crate) fn derive_input(item: DeriveInput) -> Result<TokenStream> {
     let checks = in_order.iter().map(|field| field.check_rules());
     let names = declarations.iter().map(|field| &field.name);
     let arms = own.iter().map(|Declaration { name, constant, ty, .. }| {
-        let text = name.to_string();
+        let text = name.unraw().to_string();
         quote!(#text => <#ty as crate::field::Field>::slot(&mut self.#name, Self::#constant, __rest),)
     });
     let others = flattened.iter().map(|Declaration { name, ty, .. }| {

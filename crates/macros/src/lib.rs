@@ -16,9 +16,9 @@ use syn::{Attribute, DeriveInput, Expr, ExprLit, Lit, Meta, parse_macro_input};
 ///
 /// `#[input(…)]` on a field:
 /// - `min`, `max`, `unit = "mm"`: range and unit of a number, or of the numbers of a list. The name has to end in the
-///   unit.
+///   unit. `object_unit = "um"` instead of it: the name of the object ends in the unit.
 /// - `default = …`: an expression; the fields read before are variables in it. A value without a default is required.
-/// - `required`: the object has to be given.
+/// - `required`: the object, or the list of objects, has to be given.
 /// - `base = …`: the object whose values are the defaults of the fields; an expression like that of `default`.
 /// - `min_items`, `max_items`, `max_chars`: lengths of lists and texts.
 /// - `flatten`: the struct's fields stand among this object's.
@@ -56,6 +56,9 @@ pub fn derive_words(item: TokenStream) -> TokenStream {
 /// - `percent`: a share of 1 that is displayed in per cent.
 /// - `lower_is_better`: smaller values are better designs.
 /// - `inherits`: the scalar that represents its struct; label, unit and help are those of the field with the struct.
+///
+/// - `halves`, on a field `left` beside others: the field `right` of the same type has the same declarations.
+/// - `skip`: the value is declared elsewhere in the result.
 ///
 /// `#[scalar(halves)]` on a struct: its fields are the values of the left and the right half.
 #[proc_macro_derive(ResultFields, attributes(scalar))]

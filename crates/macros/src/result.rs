@@ -31,7 +31,7 @@ pub(crate) fn result_fields(input: &DeriveInput) -> Result<TokenStream> {
         let half = &fields.first().ok_or_else(|| Error::new(name.span(), "expected a field for each half"))?.ty;
         quote! { <#half as crate::result::ResultFields>::declare(&place.half(), quantities); }
     } else {
-        fields.iter().map(|field| declaration(field)).collect::<Result<TokenStream>>()?
+        declarations(&fields)?
     };
     Ok(quote! {
         impl crate::result::ResultFields for #name {
@@ -51,15 +51,30 @@ pub(crate) fn result_fields(input: &DeriveInput) -> Result<TokenStream> {
     })
 }
 
+/// The generated calls that declare the scalars of all fields.
+fn declarations(fields: &[&Field]) -> Result<TokenStream> {
+    let mut declared = TokenStream::new();
+    let mut halves = false;
+    for field in fields {
+        let attributes = ScalarAttributes::of(field)?;
+        // The right half has the declaration of the left one.
+        let is_right = halves && field.ident.as_ref().is_some_and(|name| name == "right");
+        if attributes.halves {
+            halves = true;
+            let ty = &field.ty;
+            declared.extend(quote! { <#ty as crate::result::ResultFields>::declare(&place.half(), quantities); });
+        } else if !is_right && !attributes.skip {
+            declared.extend(declaration(field, attributes)?);
+        }
+    }
+    Ok(declared)
+}
+
 /// The generated call that declares the scalars of a field.
-fn declaration(field: &Field) -> Result<TokenStream> {
+fn declaration(field: &Field, attributes: ScalarAttributes) -> Result<TokenStream> {
     let ty = &field.ty;
     let name = serialized_name(field)?;
     let (stem, _, derived_unit) = units::split(&name);
-    let mut attributes = ScalarAttributes::default();
-    for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("scalar")) {
-        attribute.parse_nested_meta(|meta| attributes.read(&meta))?;
-    }
     let symbol = attributes.symbol.unwrap_or_default();
     let unit = attributes.unit.unwrap_or_else(|| derived_unit.to_owned());
     let help = attributes.help.unwrap_or_else(|| doc_lines(&field.attrs).collect::<Vec<_>>().join(" "));
@@ -117,9 +132,19 @@ struct ScalarAttributes {
     inherits: bool,
     /// Number of items of a list of numbers that are scalars.
     items: Option<usize>,
+    halves: bool,
+    skip: bool,
 }
 
 impl ScalarAttributes {
+    fn of(field: &Field) -> Result<Self> {
+        let mut attributes = Self::default();
+        for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("scalar")) {
+            attribute.parse_nested_meta(|meta| attributes.read(&meta))?;
+        }
+        Ok(attributes)
+    }
+
     fn read(&mut self, meta: &ParseNestedMeta) -> Result<()> {
         let name = meta.path.require_ident()?.to_string();
         match name.as_str() {
@@ -136,11 +161,13 @@ impl ScalarAttributes {
             "percent" => self.percent = true,
             "lower_is_better" => self.lower_is_better = true,
             "inherits" => self.inherits = true,
+            "halves" => self.halves = true,
+            "skip" => self.skip = true,
             "items" => self.items = Some(meta.value()?.parse::<LitInt>()?.base10_parse()?),
             _ => {
                 return Err(meta.error(
                     "expected one of label, symbol, unit, help, theory, headline, change, percent, lower_is_better, inherits, \
-                     items",
+                     items, halves, skip",
                 ));
             }
         }

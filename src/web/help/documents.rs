@@ -19,7 +19,15 @@ pub(super) struct Document {
 pub(super) const SECTIONS: &[(&str, &[&str])] = &[
     (
         "Theory",
-        &["theory/geometry", "theory/contact", "theory/impact", "theory/vibration", "theory/accuracy", "theory/source"],
+        &[
+            "theory/geometry",
+            "theory/contact",
+            "theory/shafts",
+            "theory/impact",
+            "theory/vibration",
+            "theory/accuracy",
+            "theory/source",
+        ],
     ),
     (
         "Validation",

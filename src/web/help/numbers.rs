@@ -33,6 +33,7 @@ pub(super) struct Number {
 const BLOCKS: &[(&str, &str, &str)] = &[
     ("geometry", "Geometry", "Of one half, ISO 21771-1."),
     ("mesh", "Mesh", "The loaded contact of one half over a mesh period."),
+    ("shafts", "Shafts and bearings", "Both halves together on their elastic shafts."),
     ("impact", "Mesh-in impact", "At the tip corner of the entering pair."),
     ("response", "Vibration", "The steady motion of both halves."),
     ("supports", "Supports and couplings", "Springs of the equations of motion."),

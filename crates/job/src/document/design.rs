@@ -1,5 +1,7 @@
 //! The gear pair: teeth, flanks, supports, assembly errors.
 
+use super::arrangement;
+use super::shafts::ShaftsInput;
 use crate::field::Input;
 use crate::reader::ObjectPlace;
 use herringbone_macros::{Input, Words};
@@ -56,6 +58,9 @@ pub struct DesignInput {
     pub gear: GearInput,
     /// Shafts and bearings, per half.
     pub supports: SupportsInput,
+    /// Shafts with their bearings, in place of the supports; without them the bodies stand on the supports.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shafts: Option<ShaftsInput>,
     /// Assembly errors.
     pub assembly: AssemblyInput,
 }
@@ -79,6 +84,7 @@ fn design_rules(design: &mut DesignInput, place: &ObjectPlace) {
             place.conflict(name, detail);
         }
     }
+    arrangement::design_and_shafts(design, place);
 }
 
 /// Section in which the pressure angle of the rack is given.

@@ -5,20 +5,29 @@
 //! schema and form.
 
 mod analysis;
+mod arrangement;
 mod design;
 mod model;
+mod shafts;
+#[cfg(test)]
+mod shafts_tests;
 mod sweep;
 mod sweep_point;
 
 pub use analysis::{AnalysisInput, IntegratorInput, MAX_SERIES_SAMPLES, MethodInput};
+pub use arrangement::{ArrangementInput, DerivedShaftValue, Mounting, ResolvedShafts, ShaftEnd};
 pub use design::{
     AssemblyInput, CoastInput, DEFAULT_BACKLASH_UM, DesignInput, EndReliefInput, FlankInput, GearInput, Hand,
     MaterialInput, PressureAnglePlane, ReliefShapeInput, SupportsInput, TipReliefInput,
 };
 pub use model::{
-    ActsOn, BodyInput, CornerImpactInput, Elements, Fidelity, GivenImpactInput, GivenStiffness, HarmonicInput,
-    ImpactDuration, ImpactInput, ImpactSource, Ltca, MeshForce, MeshStiffness, MeshStiffnessSource, ModelInput, Plane,
-    StiffnessLaw,
+    ActsOn, BodyInput, CornerImpactInput, Elements, ExcitationInput, Fidelity, GivenImpactInput, GivenStiffness,
+    HarmonicInput, ImpactDuration, ImpactInput, ImpactSource, Ltca, MeshForce, MeshStiffness, MeshStiffnessSource,
+    ModelInput, Plane, StiffnessLaw,
+};
+pub use shafts::{
+    BearingAtSpeedInput, BearingInput, CouplingInput, RigidBodyInput, ShaftInertiaInput, ShaftInput, ShaftSegmentInput,
+    ShaftsInput,
 };
 pub use sweep::{Axis, AxisPoints, Continuation, MAX_SWEEP_POINTS, Recorded, Spacing};
 pub use sweep_point::SweepPointInput;
@@ -52,7 +61,7 @@ pub enum JobKind {
 
 /// A job document with every default filled in and every value within its range.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
-#[input(group = "job", rules = sweep::of_sweeps_only)]
+#[input(group = "job", rules = document_rules)]
 pub struct JobDocument {
     /// What to compute: mesh, response or sweep.
     #[input(default = JobKind::Response)]
@@ -90,6 +99,17 @@ pub struct JobDocument {
     /// response: the point of a sweep that this job repeats. The interface fills it in where it gives the document of a point.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sweep_point: Option<SweepPointInput>,
+}
+
+fn document_rules(document: &mut JobDocument, place: &ObjectPlace) {
+    sweep::of_sweeps_only(document, place);
+    let MeshStiffness::Ltca(ltca) = &document.model.mesh_stiffness else { return };
+    if document.design.shafts.is_some() && ltca.body == BodyInput::Bore && ltca.fidelity != Fidelity::Uniform {
+        place.conflict(
+            "model/mesh_stiffness/body",
+            "is bore, while design.shafts is given: the body between rim and bore is part of the shaft and would yield twice; use rim",
+        );
+    }
 }
 
 /// The operating point.

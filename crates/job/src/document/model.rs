@@ -19,6 +19,10 @@ pub struct ModelInput {
     /// Damping ratio of the mesh.
     #[input(min = 0.0, max = 2.0, default = 0.1, symbol = "ζ_m")]
     pub mesh_damping_ratio: f64,
+    /// Damping of the mesh of each half, along the flank normal; from the damping ratio when null.
+    #[input(unit = "N s/m", min = 0.0, max = 1e12, symbol = "c_m")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh_damping_ns_per_m: Option<f64>,
     /// Whether the mesh damper acts while the teeth are apart.
     #[input(default = true)]
     pub damping_in_gap: bool,
@@ -32,6 +36,21 @@ pub struct ModelInput {
     pub mesh_stiffness: MeshStiffness,
     /// Where the mesh-in impact comes from.
     pub impact: ImpactInput,
+    /// Amplitude of a displacement excitation e cos(2 pi f_m t) of each mesh at the mesh frequency, along the flank
+    /// normal; none when null.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub excitation_um: Option<ExcitationInput>,
+}
+
+/// A displacement excitation of each half; positive: a gap, material removed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Input)]
+pub struct ExcitationInput {
+    /// Amplitude in the left half; needs mesh_force stiffness.
+    #[input(object_unit = "um", min = -1000.0, max = 1000.0, default = 0.0)]
+    pub left: f64,
+    /// Amplitude in the right half; needs mesh_force stiffness.
+    #[input(object_unit = "um", min = -1000.0, max = 1000.0, default = 0.0)]
+    pub right: f64,
 }
 
 fn model_rules(model: &mut ModelInput, place: &ObjectPlace) {
@@ -39,6 +58,12 @@ fn model_rules(model: &mut ModelInput, place: &ObjectPlace) {
         place.conflict(
             "mesh_force",
             "is contact, which needs a loaded contact analysis: mesh_stiffness.source ltca; with given and iso6336 it is stiffness",
+        );
+    }
+    if model.mesh_force == MeshForce::Contact && model.excitation_um.is_some() {
+        place.conflict(
+            "excitation_um",
+            "is given with mesh_force contact, whose transmission error follows from the flanks; permitted with mesh_force stiffness",
         );
     }
 }

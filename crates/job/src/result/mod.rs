@@ -9,6 +9,8 @@ mod mesh;
 mod numerics;
 mod quantity;
 mod response;
+mod rotor;
+mod shafts;
 mod supports;
 mod sweep;
 mod sweep_column;
@@ -23,6 +25,14 @@ pub use quantity::{Change, Quantity, QuantityKind, gear_data_quantities, quantit
 pub use response::{
     FloquetMultiplier, IntervalPerHalf, IntervalResult, NaturalMode, Poincare, ResponseResult, RmsIntervalsResult,
     RmsResult, SpectrumResult, ToothForceResult, ToothForces,
+};
+pub use rotor::{
+    BearingForceResult, BearingForces, DirectionForce, MidFaceShape, RotorMode, RotorResult, ShaftShape,
+    ShapeAlongShafts,
+};
+pub use shafts::{
+    AxialFloat, AxialFrictionResult, AxialLimit, BearingReaction, CouplingTransmissionError, FaceLoadAtTorque,
+    HelixModificationResult, Iso6336FaceLoad, ShaftDeflection, ShaftHalfResult, ShaftMemberResult, ShaftsResult,
 };
 pub use supports::{SpringValue, SupportsResult};
 pub use sweep::{Campbell, CampbellCrossing, Hysteresis, Jump, SweepAxis, SweepPoint, SweepResult};
@@ -43,6 +53,9 @@ use serde::{Deserialize, Serialize};
 pub struct JobResult {
     pub geometry: Option<Geometry>,
     pub mesh: Option<Mesh>,
+    /// Both halves together on their shafts; absent without `design.shafts`.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub shafts: Option<ShaftsResult>,
     pub impact: Option<ImpactResult>,
     pub response: Option<ResponseResult>,
     #[serde(skip_serializing_if = "Option::is_none", default)]

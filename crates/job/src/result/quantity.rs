@@ -300,6 +300,10 @@ mod tests {
             ("/response/tooth_force_n/right/max".to_owned(), "largest tooth force, right".to_owned()),
         ];
         assert_eq!((force.unit, force.places().as_slice()), ("N", places.as_slice()));
+        // Halves beside other fields of their block; what is declared once is not listed again.
+        let load = of("/shafts/{half}/k_h_beta");
+        assert_eq!((load.symbol, load.places()[1].0.as_str()), ("K_Hβ", "/shafts/right/k_h_beta"));
+        assert!(quantities().iter().all(|quantity| !quantity.pointer.starts_with("/shafts/pinion/k_h_beta")));
         let spring = of("/supports/gear_axial_n_per_um/value");
         assert_eq!((spring.label.as_str(), spring.unit), ("axial support, gear", "N/um"));
         let origin = of("/supports/gear_axial_n_per_um/origin");

@@ -1,6 +1,6 @@
 //! The vibration response.
 
-use super::{ContactStateResult, MethodResult, PerHalf, RegimeResult, ResultFields};
+use super::{BearingForceResult, ContactStateResult, MethodResult, PerHalf, RegimeResult, ResultFields, RotorResult};
 use crate::document::Plane;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -108,6 +108,12 @@ pub struct ResponseResult {
     /// What each of `natural_frequencies_hz` is, in their order: undamped, contact closed, mean mesh stiffness.
     #[serde(default)]
     pub natural_modes: Vec<NaturalMode>,
+    /// Force of each bearing on its shaft, pinion's first; absent without `design.shafts`.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub bearings: Vec<BearingForceResult>,
+    /// Both shafts as a geared rotor; absent without `design.shafts`.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub rotor: Option<RotorResult>,
 }
 
 /// Tooth force of each half, N, positive on driving flanks.

@@ -43,13 +43,15 @@ pub(crate) fn backlash_um(document: &JobDocument) -> f64 {
 /// (`discs`, kg and kg m²), and backlash.
 pub(crate) fn of_document(document: &JobDocument, prepared: &Prepared, discs: [(f64, f64); 2]) -> Vec<Warning> {
     let vibrates = document.kind != JobKind::Mesh;
+    // On shafts the masses are those of the shafts.
+    let has_masses = vibrates && document.design.shafts.is_none();
     let strikes = matches!(document.model.impact, ImpactInput::CornerContact(_) | ImpactInput::Zhou2008(_));
     let mut warnings = Vec::new();
     let design = &document.design;
     for ((name, gear), (mass_kg, inertia_kg_m2)) in
         [("pinion", &design.pinion), ("gear", &design.gear)].into_iter().zip(discs)
     {
-        if vibrates || strikes {
+        if has_masses || strikes {
             let pointer = format!("/design/{name}/inertia_kg_m2");
             match gear.inertia_kg_m2 {
                 None => warnings.push(warning(
@@ -60,7 +62,7 @@ pub(crate) fn of_document(document: &JobDocument, prepared: &Prepared, discs: [(
                 Some(given) => warnings.extend(implausible("inertia-implausible", pointer, given, inertia_kg_m2, "kg·m²")),
             }
         }
-        if vibrates {
+        if has_masses {
             let pointer = format!("/design/{name}/mass_kg");
             match gear.mass_kg {
                 None => warnings.push(warning(

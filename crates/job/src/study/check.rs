@@ -4,9 +4,9 @@ mod drawing;
 
 use super::axes::check_axes;
 use super::prepare::{Prepared, geometry, prepare};
-use super::{CheckReport, demand, derived, repeat, vibration};
+use super::{CheckReport, SolvedShafts, demand, derived, repeat, vibration};
 use crate::DocumentError;
-use crate::document::{JobDocument, JobKind};
+use crate::document::{JobDocument, JobKind, ResolvedShafts};
 
 /// A job document that can be solved: its pair is feasible and every requested calculation is supported. The pair and
 /// the quantities that follow from it without solving are derived once, here.
@@ -56,10 +56,16 @@ impl CheckedJob {
     pub fn report(&self) -> CheckReport {
         CheckReport {
             geometry: geometry(&self.prepared),
-            supports: (self.document.kind != JobKind::Mesh).then(|| self.prepared.supports.clone()),
+            supports: (self.document.kind != JobKind::Mesh && self.document.design.shafts.is_none())
+                .then(|| self.prepared.supports.clone()),
             memory_mib: demand(&self.document, 1).total_mib(),
             warnings: self.prepared.warnings.iter().cloned().chain(repeat::changed_inputs(&self.document)).collect(),
             derived: derived::values(&self.document, &self.prepared),
+            shafts: self
+                .document
+                .design
+                .resolved_shafts()
+                .map(|ResolvedShafts { pinion, gear, .. }| SolvedShafts { pinion, gear }),
         }
     }
 }

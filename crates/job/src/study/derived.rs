@@ -50,7 +50,11 @@ pub(super) fn values(document: &JobDocument, prepared: &Prepared) -> Vec<Derived
         add(at("inertia_kg_m2"), member.inertia_kg_m2(), "as solid discs".to_owned(), true);
         add(at("face_width_mm"), design.face_width_mm, "face width of the pair".to_owned(), true);
     }
-    if vibrates {
+    if let Some(shafts) = design.resolved_shafts() {
+        for value in shafts.derived {
+            add(value.pointer, value.value, value.basis.to_owned(), true);
+        }
+    } else if vibrates {
         for (name, spring) in supports::named(&supports::used(&SupportsInput::defaults(), pair)) {
             let basis = match spring.origin {
                 SpringOrigin::Derived => "from the body of the gear",

@@ -22,12 +22,13 @@ pub(crate) mod prepare;
 mod repeat;
 mod response_result;
 mod row;
+mod shafts;
 mod supports;
 mod sweep;
 mod vibration;
 
 use crate::DocumentError;
-use crate::document::JobKind;
+use crate::document::{JobKind, ShaftInput};
 use crate::result::{Geometry, JobResult, ReusedStage};
 use crate::warning::Warning;
 
@@ -168,6 +169,18 @@ pub struct CheckReport {
     pub warnings: Vec<Warning>,
     /// Values that the rest of the document gives to fields which can be left out.
     pub derived: Vec<DerivedValue>,
+    /// Both shafts as they are solved, as a document gives them: bearings with their stiffness, derived shafts in full; absent without
+    /// `design.shafts`.
+    #[cfg_attr(feature = "schema", schema(value_type = Option<Object>))]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shafts: Option<SolvedShafts>,
+}
+
+/// Both shafts, as members of `design.shafts`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SolvedShafts {
+    pub pinion: ShaftInput,
+    pub gear: ShaftInput,
 }
 
 impl SolveError {

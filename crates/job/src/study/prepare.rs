@@ -1,6 +1,6 @@
 //! Conversion of a document to physics in SI: the pair, its inertias and its operating point, with their feasibility.
 
-use super::{bounds, gear_findings, supports};
+use super::{bounds, gear_findings, shafts, supports};
 use crate::DocumentError;
 use crate::document::{self as doc, JobDocument, PressureAnglePlane};
 use crate::result::{GearGeometry, Geometry, SupportsResult};
@@ -36,7 +36,7 @@ const LIGHT_LINE_LOAD_N_PER_M: f64 = 1e3;
 /// Derives all quantities of the pair that are known without solving.
 ///
 /// # Errors
-/// [`DocumentError::Invalid`] with every infeasibility of the pair.
+/// [`DocumentError::Invalid`] with every infeasibility of the pair, or of its shafts.
 pub(crate) fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
     let mut warnings = Vec::new();
     let spec = pair_spec(document, &mut warnings);
@@ -47,6 +47,11 @@ pub(crate) fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError>
     warnings.extend(short_face(document, &pair));
     let supports = supports::used(&document.design.supports, &pair);
     warnings.extend(supports::assumed(document, &supports));
+    let collisions = shafts::collisions(document, &pair);
+    if !collisions.is_empty() {
+        return Err(DocumentError::Invalid(collisions));
+    }
+    warnings.extend(shafts::warnings(document));
     let design = &document.design;
     let [pinion_disc, gear_disc] = [&pair.pinion, &pair.gear].map(|member| (member.mass_kg(), member.inertia_kg_m2()));
     let torque_nm = document.operation.pinion_torque_nm;

@@ -141,6 +141,8 @@ pub(super) fn summary(
         }),
         energy_balance_residual: summary.energy_balance_residual,
         natural_modes: Vec::new(),
+        bearings: Vec::new(),
+        rotor: None,
     }
 }
 

@@ -72,10 +72,26 @@ pub(super) fn named(supports: &SupportsResult) -> [(&'static str, &SpringValue);
     ]
 }
 
-/// Warning of the springs that were not given, with the values used; none without equations of motion. Springs that a
-/// sweep varies are given.
+/// Names of the springs that a document gives.
+pub(super) fn given(supports: &doc::SupportsInput) -> impl Iterator<Item = &'static str> {
+    let springs = [
+        ("pinion_lateral_n_per_um", supports.pinion_lateral_n_per_um),
+        ("gear_lateral_n_per_um", supports.gear_lateral_n_per_um),
+        ("gear_axial_n_per_um", supports.gear_axial_n_per_um),
+        ("pinion_halves_axial_n_per_um", supports.pinion_halves_axial_n_per_um),
+        ("gear_halves_axial_n_per_um", supports.gear_halves_axial_n_per_um),
+        ("pinion_halves_lateral_n_per_um", supports.pinion_halves_lateral_n_per_um),
+        ("gear_halves_lateral_n_per_um", supports.gear_halves_lateral_n_per_um),
+        ("pinion_halves_torsional_nm_per_rad", supports.pinion_halves_torsional_nm_per_rad),
+        ("gear_halves_torsional_nm_per_rad", supports.gear_halves_torsional_nm_per_rad),
+    ];
+    springs.into_iter().filter_map(|(name, spring)| spring.map(|_| name))
+}
+
+/// Warning of the springs that were not given, with the values used; none without equations of motion, and none where
+/// shafts replace them. Springs that a sweep varies are given.
 pub(super) fn assumed(document: &JobDocument, used: &SupportsResult) -> Option<Warning> {
-    if document.kind == JobKind::Mesh {
+    if document.kind == JobKind::Mesh || document.design.shafts.is_some() {
         return None;
     }
     let swept =

@@ -1,7 +1,10 @@
 //! The drawing of a document's pair.
 
-use crate::document::{Hand, JobDocument, RotationInput};
-use crate::drawing::{Drawing, DrawnGear, DrawnHalf, DrawnLine, DrawnSection, MarginResult, PathPoint, PlaneOfAction};
+use crate::document::{GearInput, Hand, JobDocument, ResolvedShafts, RotationInput, ShaftInput};
+use crate::drawing::{
+    Drawing, DrawnBearing, DrawnGear, DrawnHalf, DrawnLine, DrawnSection, DrawnSegment, DrawnShaft, DrawnShafts,
+    MarginResult, PathPoint, PlaneOfAction,
+};
 use crate::study::CheckedJob;
 use herringbone_physics::gear::{self, Half, MarginKind, Member, Pair};
 use std::f64::consts::TAU;
@@ -16,6 +19,7 @@ impl Drawing {
             margins: pair.margins().into_iter().map(margin).collect(),
             section: section(pair, document),
             plane_of_action: plane_of_action(pair, document),
+            shafts: document.design.resolved_shafts().map(|resolved| shafts(&resolved, pair, document)),
         }
     }
 }
@@ -131,6 +135,53 @@ fn half(pair: &Pair, half: Half, pinion_hand: Hand, phase: f64) -> DrawnHalf {
     }
 }
 
+fn shafts(resolved: &ResolvedShafts, pair: &Pair, document: &JobDocument) -> DrawnShafts {
+    let design = &document.design;
+    let drawn = |given: &ShaftInput, gear: &GearInput, member: &Member, axis_mm: f64| {
+        let z = |position_mm: f64| position_mm - given.gear_position_mm;
+        let width_mm = gear.face_width_mm.unwrap_or(design.face_width_mm);
+        // A half that is wider or narrower than the design's is centred on that.
+        let middle_mm = 0.5 * (design.gap_width_mm + design.face_width_mm);
+        let half = |side: f64| [side * middle_mm - 0.5 * width_mm, side * middle_mm + 0.5 * width_mm];
+        DrawnShaft {
+            axis_mm,
+            segments: given
+                .places_mm()
+                .map(|(ends, segment)| DrawnSegment {
+                    axial_mm: ends.map(z),
+                    radius_mm: 0.5 * segment.diameter_mm,
+                    bore_radius_mm: 0.5 * segment.bore_mm,
+                })
+                .collect(),
+            faces_mm: [half(-1.0), half(1.0)],
+            tip_radius_mm: member.tip_radius_m * MM,
+            root_radius_mm: member.root_radius_m * MM,
+            bearings: given
+                .bearings
+                .iter()
+                .map(|bearing| DrawnBearing {
+                    axial_mm: z(bearing.position_mm),
+                    radius_mm: 0.5 * given.diameter_at_mm(bearing.position_mm).unwrap_or_default(),
+                    holds_radially: bearing.holds_radially().contains(&true),
+                    holds_axially: bearing.axial_n_per_um > 0.0,
+                    holds_tilting: bearing.tilting_nm_per_rad > 0.0,
+                })
+                .collect(),
+            coupling_mm: z(given.coupling.position_mm),
+            coupling_holds_axially: given.coupling.axial_n_per_um > 0.0,
+            has_machine: given.coupling.inertia_kg_m2.is_some(),
+            bodies_mm: given.inertias.iter().map(|inertia| z(inertia.position_mm)).collect(),
+            floats_axially: !given.is_held_axially(),
+        }
+    };
+    let center_distance_mm = pair.center_distance_m * MM;
+    DrawnShafts {
+        center_distance_mm,
+        pinion: drawn(&resolved.pinion, &design.pinion, &pair.pinion, 0.0),
+        gear: drawn(&resolved.gear, &design.gear, &pair.gear, center_distance_mm),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -217,5 +268,29 @@ mod tests {
             drawn(|value| value["design"]["pinion"]["left_half_hand"] = json!("right")).section.seen_from,
             Half::Left
         );
+    }
+
+    #[test]
+    fn shafts_stand_round_the_middle_of_the_gap() {
+        assert_eq!(drawn(|_| {}).shafts, None);
+        let shafts = drawn(|value| {
+            value["design"]["shafts"] =
+                json!({"arrangement": {"bearing_span_mm": 340.0, "pinion_shaft_diameter_mm": 80.0}});
+        });
+        let shafts = shafts.shafts.unwrap();
+        let (pinion, gear) = (&shafts.pinion, &shafts.gear);
+        assert_eq!((pinion.faces_mm, gear.faces_mm), ([[-90.0, -15.0], [15.0, 90.0]], [[-90.0, -15.0], [15.0, 90.0]]));
+        for shaft in [pinion, gear] {
+            near(shaft.bearings[0].axial_mm, -170.0);
+            near(shaft.bearings[1].axial_mm, 170.0);
+            assert!(shaft.segments.windows(2).all(|pair| pair[0].axial_mm[1] == pair[1].axial_mm[0]));
+            near(shaft.segments[1].axial_mm[0], -90.0);
+            // The body is the root circle, which the pair calculates itself.
+            near(shaft.segments[1].radius_mm, shaft.root_radius_mm);
+        }
+        near(pinion.bearings[0].radius_mm, 40.0);
+        assert!(pinion.coupling_mm < -170.0 && gear.coupling_mm > 170.0);
+        assert!(pinion.floats_axially && gear.bearings[0].holds_axially && !gear.floats_axially);
+        near(gear.axis_mm, shafts.center_distance_mm);
     }
 }
