@@ -425,7 +425,7 @@ impl Shaft {
     /// Fails when the bearings leave a translation along x or y or a tilting free.
     ///
     /// # Errors
-    /// [`ShaftError::SingularSupport`].
+    /// [`ShaftError::SingularSupport`], [`ShaftError::IllConditioned`].
     pub fn check_support(&self) -> Result<(), ShaftError> {
         let length = self.length_m();
         let middle = self.bearings.iter().map(|b| b.position_m).sum::<f64>() / self.bearings.len().max(1) as f64;
@@ -445,9 +445,13 @@ impl Shaft {
                 stiffness[(i, i)] += bearing.tilting_nm_per_rad / (length * length);
             }
         }
-        let svd = stiffness.svd(false, true);
+        let scaled = stiffness / stiffness.amax().max(f64::MIN_POSITIVE);
+        if !scaled.iter().all(|value| value.is_finite()) {
+            return Err(ShaftError::IllConditioned { reason: "a stiffness is too large" });
+        }
+        let svd = scaled.svd(false, true);
         let largest = svd.singular_values.max();
-        if svd.singular_values.min() > SINGULAR * largest && largest.is_finite() {
+        if svd.singular_values.min() > SINGULAR * largest {
             return Ok(());
         }
         let motion = svd.v_t.map(|v_t| v_t.row(svd.singular_values.imin()).transpose().iamax());

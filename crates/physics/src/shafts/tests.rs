@@ -2,6 +2,7 @@
 
 mod dynamics;
 mod fixtures;
+mod properties;
 mod reduction;
 mod reference;
 mod statics;

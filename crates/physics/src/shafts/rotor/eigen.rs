@@ -1,6 +1,6 @@
 //! The lowest natural modes of a large sparse system.
 
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{ComplexField, DMatrix, SymmetricEigen};
 
 use super::sparse::{CholeskyFactor, Envelope, SparseMatrix};
 use crate::numerics::dense::dot;
@@ -81,7 +81,10 @@ impl<'a> ShiftedStiffness<'a> {
                 continue;
             }
             let exhausted = size >= n || size >= 6 * wanted + 30 * BLOCK;
-            let ritz = SymmetricEigen::new(DMatrix::from_fn(size, size, |i, j| space.projected[i.max(j)][i.min(j)]));
+            let projected = DMatrix::from_fn(size, size, |i, j| space.projected[i.max(j)][i.min(j)]);
+            let Some(ritz) = symmetric_eigen(projected) else {
+                return Err(ShaftError::ModesNotConverged { converged: 0, wanted });
+            };
             let mut order: Vec<usize> = (0..size).collect();
             order.sort_by(|&a, &b| ritz.eigenvalues[b].total_cmp(&ritz.eigenvalues[a]));
             order.truncate(wanted);
@@ -103,6 +106,16 @@ impl<'a> ShiftedStiffness<'a> {
             next_check = (size + 2 * BLOCK).min(n);
         }
     }
+}
+
+/// Eigenvalues and vectors of a symmetric or Hermitian matrix; `None` if it is not finite or the method does not converge.
+pub(super) fn symmetric_eigen<T: ComplexField<RealField = f64>>(
+    matrix: DMatrix<T>,
+) -> Option<SymmetricEigen<T, nalgebra::Dyn>> {
+    if !matrix.iter().all(|value| value.clone().is_finite()) {
+        return None;
+    }
+    SymmetricEigen::try_new(matrix, f64::EPSILON, 100_000)
 }
 
 /// Number of eigenvalues of K φ = λ M φ below `limit`.

@@ -7,9 +7,9 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Complex, DMatrix, DVector, Matrix2, SymmetricEigen};
+use nalgebra::{Complex, DMatrix, DVector, Matrix2};
 
-use super::eigen::{Eigenmodes, count_below};
+use super::eigen::{Eigenmodes, count_below, symmetric_eigen};
 use super::modes::{RotorModes, limit_of};
 use super::reduced::{Projection, Receptance, ReducedBearing, ReducedRotor};
 use super::sparse::{SparseRow, dot};
@@ -104,7 +104,7 @@ impl GearedRotor {
                 let ahead = sizes[place..].iter().take(AHEAD).map(|(modes, _)| *modes).max().unwrap_or(size);
                 modes = self.eigenmodes(limit, ahead)?;
             }
-            let projection = self.projection(&modes, size, &flexibility.columns(0, inputs).into_owned());
+            let projection = self.projection(&modes, size, &flexibility.columns(0, inputs).into_owned())?;
             let errors = omegas.iter().zip(&exact);
             let error = errors
                 .map(|(&omega, exact)| projection.error(exact, omega, settings.pinion_speed_rad_s))
@@ -152,18 +152,25 @@ impl GearedRotor {
     }
 
     /// The rotor projected on the lowest `size` of the modes and the residual vectors of the flexibility.
-    fn projection(&self, modes: &Eigenmodes, size: usize, flexibility: &DMatrix<f64>) -> Projection {
+    fn projection(
+        &self,
+        modes: &Eigenmodes,
+        size: usize,
+        flexibility: &DMatrix<f64>,
+    ) -> Result<Projection, ShaftError> {
         let kept = modes.vectors.columns(0, size).into_owned();
         let residual = self.residual_vectors(&kept, flexibility);
         let stiffness = projected(&self.stiffness, &residual);
-        let eigen = SymmetricEigen::new((&stiffness + stiffness.transpose()) * 0.5);
+        let Some(eigen) = symmetric_eigen((&stiffness + stiffness.transpose()) * 0.5) else {
+            return Err(ShaftError::IllConditioned { reason: "the residual flexibility is not finite" });
+        };
         let residual = residual * &eigen.eigenvectors;
         let mut vectors = DMatrix::zeros(self.unknowns(), size + residual.ncols());
         vectors.columns_mut(0, size).copy_from(&kept);
         vectors.columns_mut(size, residual.ncols()).copy_from(&residual);
         let mut eigenvalues = modes.eigenvalues[..size].to_vec();
         eigenvalues.extend(eigen.eigenvalues.iter());
-        Projection {
+        Ok(Projection {
             damping: projected(&self.damping, &vectors),
             gyroscopic: projected(&self.gyroscopic, &vectors),
             cross_stiffness: projected(&self.cross_stiffness, &vectors),
@@ -175,7 +182,7 @@ impl GearedRotor {
             }),
             eigenvalues,
             vectors,
-        }
+        })
     }
 
     fn reduced(&self, modes: RotorModes, report: ReductionReport, projection: Projection) -> ReducedRotor {

@@ -2,9 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Complex, DMatrix, SymmetricEigen};
+use nalgebra::{Complex, DMatrix};
 
 use super::GearedRotor;
+use super::eigen::symmetric_eigen;
 use super::modes::RotorModes;
 use super::sparse::SparseMatrix;
 use crate::shafts::error::ShaftError;
@@ -23,11 +24,14 @@ impl GearedRotor {
     /// ascending, Hz, rigid-body modes left out. The turning rotor is projected on the modes at rest: accurate up to
     /// about half of their highest frequency.
     ///
+    /// # Errors
+    /// [`ShaftError::IllConditioned`] when the eigenvalues cannot be found.
+    ///
     /// With q = q̂ e^{iωt} and p = Λ^½ q/ω the equations ω² q = iωΩG q + Λ q become a Hermitian problem.
-    pub fn whirl_frequencies_hz(&self, modes: &RotorModes, pinion_speed_rad_s: f64) -> Vec<f64> {
+    pub fn whirl_frequencies_hz(&self, modes: &RotorModes, pinion_speed_rad_s: f64) -> Result<Vec<f64>, ShaftError> {
         let n = modes.eigenvalues.len();
         if n == 0 {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let gyroscopic = projected(&self.gyroscopic, &modes.vectors) * pinion_speed_rad_s;
         let mut matrix = DMatrix::<Complex<f64>>::zeros(2 * n, 2 * n);
@@ -40,11 +44,14 @@ impl GearedRotor {
             matrix[(i, n + i)] = root;
             matrix[(n + i, i)] = root;
         }
-        let mut frequencies: Vec<f64> = SymmetricEigen::new(matrix).eigenvalues.iter().map(|w| w / TAU).collect();
+        let Some(eigen) = symmetric_eigen(matrix) else {
+            return Err(ShaftError::IllConditioned { reason: "the whirl frequencies cannot be found" });
+        };
+        let mut frequencies: Vec<f64> = eigen.eigenvalues.iter().map(|w| w / TAU).collect();
         frequencies.sort_by(f64::total_cmp);
         // They come in pairs of opposite sign; of the rigid-body modes as zeros.
         let elastic = n - modes.rigid_body_modes();
-        frequencies.split_off(2 * n - elastic)
+        Ok(frequencies.split_off(2 * n - elastic))
     }
 
     /// Natural motions of the damped rotor with gyroscopic terms and unsymmetric bearings at a speed of the pinion
@@ -71,6 +78,9 @@ impl GearedRotor {
         state.view_mut((n, 0), (n, n)).copy_from(&(stiffness * (-1.0 / (scale * scale))));
         state.view_mut((n, n), (n, n)).copy_from(&(damping * (-1.0 / scale)));
         (0..n).for_each(|i| state[(i, n + i)] = 1.0);
+        if !state.iter().all(|value| value.is_finite()) {
+            return Err(ShaftError::IllConditioned { reason: "the damping or the speed is too large" });
+        }
         let Some(schur) = nalgebra::Schur::try_new(state, f64::EPSILON, 100_000) else {
             return Err(ShaftError::IllConditioned { reason: "the eigenvalues of the damped rotor do not converge" });
         };
