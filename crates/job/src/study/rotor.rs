@@ -73,7 +73,8 @@ pub(super) fn find(
     let accuracy = document.analysis.accuracy.max(FINEST);
     let numbers = meshes
         .map(|m| [m.stiffness_n_per_m, m.damping_n_s_per_m, m.position_m, m.tilting_nm_per_rad, m.tilting_moment_nm]);
-    let key = rotor_hash(&(&pair.spec, mounted, numbers, up_to_hz, accuracy));
+    let coast = document.operation.pinion_torque_nm < 0.0;
+    let key = rotor_hash(&(&pair.spec, mounted, numbers, coast, up_to_hz, accuracy));
     if let Some(rotor) = memo.rotors.get(&key) {
         return Ok(TurningRotor { rotor, speed_rad_s });
     }
@@ -97,7 +98,8 @@ fn mesh_element(
     half: Half,
 ) -> MeshElement {
     let mean_n_per_m = mesh.stiffness[half.index()].mean_n_per_m();
-    let element = MeshElement::at_mid_face(pair, half, mean_n_per_m, 0.0);
+    let coast = document.operation.pinion_torque_nm < 0.0;
+    let element = MeshElement { on_coast_flanks: coast, ..MeshElement::at_mid_face(pair, half, mean_n_per_m, 0.0) };
     let element = match &mesh.on_shafts {
         None => element,
         Some(contact) => {
@@ -105,7 +107,8 @@ fn mesh_element(
             MeshElement {
                 position_m: section.position_m,
                 tilting_nm_per_rad: section.tilting_nm_per_rad,
-                tilting_moment_nm: section.tilting_moment_nm,
+                // Of the contact positive where it closes the flanks that carry.
+                tilting_moment_nm: if coast { -section.tilting_moment_nm } else { section.tilting_moment_nm },
                 ..element
             }
         }
@@ -178,7 +181,7 @@ impl TurningRotor {
         (parameters, response): (&Parameters, &Response),
         block: &mut ResponseResult,
         whole: bool,
-    ) {
+    ) -> Result<(), SolveError> {
         let rotor = &self.rotor;
         block.natural_frequencies_hz = rotor.reduced.modes.natural_frequencies_hz();
         block.bearings = bearings(document, &response.outputs);
@@ -192,8 +195,9 @@ impl TurningRotor {
             .map(|force| ToothForceOrders { left: orders(&force.left), right: orders(&force.right) });
         if whole {
             block.natural_modes = rotor.natural_modes(parameters);
-            block.rotor = Some(rotor.result(document, parameters, self.speed_rad_s));
+            block.rotor = Some(rotor.result(document, parameters, self.speed_rad_s)?);
         }
+        Ok(())
     }
 
     /// A warning where the reduction is not as accurate as the response is to be.
@@ -253,10 +257,17 @@ impl Rotor {
         (train.damping_per_s[mode * train.len() + mode] + meshes) / (2.0 * omega)
     }
 
-    fn result(&self, document: &JobDocument, parameters: &Parameters, speed_rad_s: f64) -> RotorResult {
+    fn result(
+        &self,
+        document: &JobDocument,
+        parameters: &Parameters,
+        speed_rad_s: f64,
+    ) -> Result<RotorResult, SolveError> {
         let modes = &self.reduced.modes;
         let report = &self.reduced.report;
-        RotorResult {
+        let whirl_frequencies_hz =
+            self.full.whirl_frequencies_hz(modes, speed_rad_s).map_err(|error| failed(&error))?;
+        Ok(RotorResult {
             degrees_of_freedom: self.full.unknowns() as u32,
             coordinates: self.reduced.coordinates() as u32,
             modes_kept: report.modes as u32,
@@ -268,12 +279,12 @@ impl Rotor {
                 left: self.meshes[0].stiffness_n_per_m * 1e-6,
                 right: self.meshes[1].stiffness_n_per_m * 1e-6,
             },
-            whirl_frequencies_hz: self.full.whirl_frequencies_hz(modes, speed_rad_s),
+            whirl_frequencies_hz,
             modes: (modes.rigid_body_modes()..modes.modes.len())
                 .take(MOST_SHAPES)
                 .map(|i| self.mode(i, document, parameters))
                 .collect(),
-        }
+        })
     }
 
     fn mode(&self, i: usize, document: &JobDocument, parameters: &Parameters) -> RotorMode {

@@ -110,7 +110,7 @@ pub(super) fn to_result(
     }
     let mut warnings = warnings(document, &response.summary);
     if let Some(rotor) = rotor {
-        rotor.complete(document, (parameters, &response), &mut block, options.whole);
+        rotor.complete(document, (parameters, &response), &mut block, options.whole)?;
         warnings.extend(rotor.warning(document));
     }
     let poincare = options.records(Recorded::Poincare).then(|| response_result::poincare(&response, POINCARE_POINTS));

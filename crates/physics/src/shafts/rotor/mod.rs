@@ -76,6 +76,10 @@ pub struct MeshElement {
     /// Moment of the tooth forces about the section at no relative tilt, on the same axis, N m: constant, so that it
     /// loads the reduced train but has no part in modes and harmonic vibration. 0 for forces in the section.
     pub tilting_moment_nm: f64,
+    /// Whether the coast flanks carry: their normal leans to the other side of the transverse base tangent, so that its
+    /// component along the line of centres separates the axes too. The displacement of the mesh stays positive where it
+    /// closes the drive flanks.
+    pub on_coast_flanks: bool,
 }
 
 impl MeshElement {
@@ -88,6 +92,7 @@ impl MeshElement {
             position_m,
             tilting_nm_per_rad: 0.0,
             tilting_moment_nm: 0.0,
+            on_coast_flanks: false,
         }
     }
 }
@@ -434,7 +439,10 @@ impl Builders {
 
 impl Mesh {
     fn new(half: usize, element: MeshElement, geometry: &MeshGeometry, shafts: &[RotorShaft; 2]) -> Mesh {
-        let n = geometry.normals[half];
+        let mut n = geometry.normals[half];
+        if element.on_coast_flanks {
+            n[0] = -n[0];
+        }
         // e_x × n and e_z × n.
         let (moment, tilt) = ([0.0, -n[2], n[1]], [-n[1], n[0], 0.0]);
         let mut mesh = Mesh { element, row: SparseRow::new(), tilt: SparseRow::new() };
