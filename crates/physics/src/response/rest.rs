@@ -43,7 +43,6 @@ impl ResponseProblem<'_> {
         match number_of_coordinates(self.p, true) {
             6 => self.rest_response_in::<6>(),
             12 => self.rest_response_in::<12>(),
-            28 => self.rest_response_in::<28>(),
             52 => self.rest_response_in::<52>(),
             _ => self.rest_response_in::<100>(),
         }

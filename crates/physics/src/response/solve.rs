@@ -34,7 +34,6 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
             let mut responses = match number_of_coordinates(p, mirrored) {
                 6 => integrate::<6>(points, alone),
                 12 => integrate::<12>(points, alone),
-                28 => integrate::<28>(points, alone),
                 52 => integrate::<52>(points, alone),
                 _ => integrate::<100>(points, alone),
             }?;
@@ -48,7 +47,6 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
             // it.
             let found = match number_of_coordinates(p, false) {
                 12 => point.solve_steady::<12>(mirrored),
-                28 => point.solve_steady::<28>(false),
                 52 => point.solve_steady::<52>(false),
                 _ => point.solve_steady::<100>(false),
             }?;

@@ -434,7 +434,6 @@ fn a_start_has_the_twelve_displacements() {
             model.physical_state(&model.state_from(physical))
         }
         let through = match number_of_coordinates(&q, false) {
-            28 => of::<28>(&q, &physical),
             52 => of::<52>(&q, &physical),
             _ => of::<100>(&q, &physical),
         };
