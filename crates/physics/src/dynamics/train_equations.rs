@@ -70,6 +70,8 @@ pub(crate) struct TrainEquations<const D: usize> {
     /// Number of elastic modes and of rigid-body modes.
     pub elastic: usize,
     pub rigid: usize,
+    /// Coordinate of each mode of the [`ModalTrain`].
+    pub places: Vec<usize>,
     /// λ/ω² and diagonal of the damping matrix over ω.
     stiffness: Row<D>,
     damping: Row<D>,
@@ -110,11 +112,10 @@ impl<const D: usize> TrainEquations<D> {
         let (rigid, elastic): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| train.is_rigid_body_mode(i));
         // Mode of each coordinate.
         let mut modes: [Option<usize>; D] = [None; D];
-        for (c, i) in elastic.iter().enumerate() {
-            modes[c] = Some(*i);
-        }
-        for (c, i) in rigid.iter().enumerate() {
-            modes[D - MAX_RIGID_BODY_MODES + c] = Some(*i);
+        let mut places = vec![0; n];
+        let elastic_places = elastic.iter().zip(0..);
+        for (i, c) in elastic_places.chain(rigid.iter().zip(D - MAX_RIGID_BODY_MODES..)) {
+            (modes[c], places[*i]) = (Some(*i), c);
         }
         let row = |values: &[f64], factor: f64| -> Row<D> {
             std::array::from_fn(|c| modes[c].and_then(|i| values.get(i)).map_or(0.0, |v| v * factor))
@@ -151,6 +152,7 @@ impl<const D: usize> TrainEquations<D> {
         Self {
             elastic: elastic.len(),
             rigid: rigid.len(),
+            places,
             stiffness,
             damping: std::array::from_fn(|c| damping(c, c)),
             off_diagonal_damping: Columns::new(damping),
