@@ -126,7 +126,7 @@ pub(crate) fn train_of(p: &Parameters, further: usize, gyroscopic: f64) -> Modal
         eigenvalues_rad2_s2: eigen.eigenvalues.iter().map(|l| if *l < 1e-12 * largest { 0.0 } else { *l }).collect(),
         damping_per_s: (0..n * n).map(|at| damping[(at / n, at % n)]).collect(),
         cross_stiffness_per_s2: None,
-        mesh: mesh.each_ref().map(|row| reduced(row)),
+        mesh: mesh.each_ref().map(&reduced),
         reference_stiffness_n_per_m: k_ref,
         load_n: reduced(&DVector::from_fn(n, |i, _| if i < 12 { twelve.torques[i] * roots[i] } else { 0.0 })),
         displacements: std::array::from_fn(|i| reduced(&unit(i, roots[i]))),

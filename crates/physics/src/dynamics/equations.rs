@@ -283,7 +283,9 @@ impl<const D: usize, R: Real> Equations<D, R> {
     #[inline(always)]
     pub(crate) fn s(&self, j: usize, x: &[R; D]) -> R {
         if Self::IS_TRAIN {
-            return self.train.as_ref().map_or(R::splat(0.0), |train| dot(&train.mesh[j], x));
+            // No closure: it would not be compiled for the vector instructions of its caller.
+            let Some(train) = &self.train else { return R::splat(0.0) };
+            return dot(&train.mesh[j], x);
         }
         let i = j * PER_HALF;
         self.cos * (x[i + YP] - x[i + YG] + x[i + U]) + self.halves[j].sin * (x[i + ZP] - x[i + ZG])
@@ -293,7 +295,8 @@ impl<const D: usize, R: Real> Equations<D, R> {
     #[inline(always)]
     pub(crate) fn mesh_x(&self, j: usize, x: &[R; D]) -> R {
         if Self::IS_TRAIN {
-            return self.train.as_ref().map_or(R::splat(0.0), |train| dot(&train.mesh_x[j], x));
+            let Some(train) = &self.train else { return R::splat(0.0) };
+            return dot(&train.mesh_x[j], x);
         }
         let i = j * PER_HALF;
         x[i + YP] - x[i + YG] + x[i + U]
@@ -309,8 +312,11 @@ impl<const D: usize, R: Real> Equations<D, R> {
         loads: R,
     ) -> [R; D] {
         let Some(train) = &self.train else { return [R::splat(0.0); D] };
-        let beyond = |j: usize| normal[j] - R::splat(train.reference_stiffness[j]) * s[j];
-        train.acceleration(motion, [beyond(0), beyond(1)], along, loads)
+        let mut beyond = normal;
+        for j in 0..2 {
+            beyond[j] -= R::splat(train.reference_stiffness[j]) * s[j];
+        }
+        train.acceleration(motion, beyond, along, loads)
     }
 
     /// Accelerations in scaled time of one half from its normal tooth force and the tangential force, T_p/R_p − F_s

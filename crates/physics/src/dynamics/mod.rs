@@ -24,12 +24,18 @@
 //! tabulated by the contact analysis ([`ContactForce`]). The reference plane (pitch plane: R pitch radius, β; base
 //! plane: R_b, β_b) is set by the radii and the helix angle of [`Parameters`].
 //!
+//! # Reduced trains
+//! With [`Parameters::train`] the linear part is that of a [`ModalTrain`]: shafts, bearings and bodies in modal
+//! coordinates. Mesh forces, impacts, damping in the gap and displacement excitations act as above, along the rows of s
+//! that the train gives. Vectors of 12 and 24 are then those of the mid-face sections.
+//!
 //! # Validation
 //! Three reference cases solved event-exact in 113-bit arithmetic (`tests/reference.rs`): states after 1, 5 and 20 mesh
 //! periods within 1e-13 (contact kept; period-2 motion) and 1e-11 (chaotic motion), RMS within 1e-13, by the Taylor
 //! method at its finest tolerance. Amplitudes and jumps of the clearance oscillator (`tests/oscillator.rs`); twelve
 //! coupled natural frequencies to five digits, energy, symmetry and scaling (`tests/physics.rs`); measured orders of
-//! convergence (`tests/order.rs`); the monodromy matrix against differences of motions (`tests/variation.rs`).
+//! convergence (`tests/order.rs`); the monodromy matrix against differences of motions (`tests/variation.rs`); the
+//! twelve equations as a train, and trains against closed forms (`tests/train.rs`).
 
 // Loops over coordinates and Taylor orders are written with an index, as the formulas are.
 #![allow(clippy::needless_range_loop)]

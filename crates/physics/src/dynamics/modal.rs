@@ -110,7 +110,6 @@ impl NaturalModes {
         }
         if p.train.is_some() {
             return match number_of_coordinates(p, false) {
-                28 => of_train::<28>(p),
                 52 => of_train::<52>(p),
                 _ => of_train::<100>(p),
             };

@@ -408,6 +408,26 @@ impl<const D: usize> DynamicModel<D> {
         }
     }
 
+    /// State from the coordinates of a train, then their velocities (1/s), in the order of the [`ModalTrain`].
+    pub(crate) fn state_from_modes(&self, modal: &[f64]) -> MotionState<D> {
+        let mut state = MotionState { period: 0, phase: 0.0, x: [0.0; D], v: [0.0; D], contact: [1; 2] };
+        if let Some(train) = &self.train {
+            let (x, v) = modal.split_at(modal.len() / 2);
+            for ((place, x), v) in train.places.iter().zip(x).zip(v) {
+                (state.x[*place], state.v[*place]) = (*x, *v / self.omega_ref);
+            }
+            self.set_contact(&mut state);
+        }
+        state
+    }
+
+    /// Coordinates of a train, then their velocities (1/s), in the order of the [`ModalTrain`]; empty for a pair.
+    pub(crate) fn modal_state(&self, state: &MotionState<D>) -> Vec<f64> {
+        let Some(train) = &self.train else { return Vec::new() };
+        let coordinates = train.places.iter().map(|place| state.x[*place]);
+        coordinates.chain(train.places.iter().map(|place| state.v[*place] * self.omega_ref)).collect()
+    }
+
     /// Train at rest under its load at the phase 0: with the tabulated contact force, or with the mean mesh stiffnesses
     /// `mean_n_per_m` on the flanks that the load presses. Without load the flanks touch.
     pub(crate) fn static_state_of_train(&self, mean_n_per_m: [f64; 2]) -> MotionState<D> {

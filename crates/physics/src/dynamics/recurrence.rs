@@ -5,6 +5,7 @@ use super::equations::{Equations, PER_HALF, is_rigid_rotation};
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
 use super::lanes::Real;
+use super::modal_train::MAX_RIGID_BODY_MODES;
 
 /// Working memory of a Taylor step: coefficients of all coordinates, of s less the displacement excitation and of F_n.
 #[repr(align(64))]
@@ -254,6 +255,16 @@ pub(super) fn larger<R: Real>(a: R, b: R) -> R {
 /// Largest coordinate, rigid rotation excluded.
 #[inline(always)]
 pub(super) fn norm<const D: usize, R: Real>(row: &[R; D]) -> R {
+    if Equations::<D, R>::IS_TRAIN {
+        // Four maxima at a time: the sizes are multiples of four, and so is the number of rigid-body modes.
+        let mut largest = [R::splat(0.0); 4];
+        for values in row[..D - MAX_RIGID_BODY_MODES].chunks_exact(4) {
+            for k in 0..4 {
+                largest[k] = largest[k].zip(values[k], |m, v| if v.abs() <= m { m } else { v.abs() });
+            }
+        }
+        return larger(larger(largest[0], largest[1]), larger(largest[2], largest[3]));
+    }
     let mut largest = R::splat(0.0);
     for (c, value) in row.iter().enumerate() {
         if !is_rigid_rotation(D, c) {

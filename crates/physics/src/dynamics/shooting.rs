@@ -1,6 +1,6 @@
 //! Shooting method for periodic motions: period map, monodromy matrix, Newton correction, Floquet multipliers.
 
-use nalgebra::{Complex, DMatrix, DVector, Schur, SymmetricEigen};
+use nalgebra::{Complex, DMatrix, DVector, SymmetricEigen};
 
 use super::equations::PER_HALF;
 use super::error::DynamicsError;
@@ -187,12 +187,8 @@ impl<'m, const D: usize> Shooting<'m, D> {
     /// Floquet multipliers, rigid-body modes excluded, largest first.
     pub(crate) fn multipliers(&self, monodromy: &DMatrix<f64>) -> Vec<Complex<f64>> {
         let (found, removed) = match self.rigid_body_projector() {
-            Some(projector) => {
-                let schur = Schur::try_new(&projector * monodromy * &projector, f64::EPSILON, 10_000);
-                let found = schur.map(|schur| schur.complex_eigenvalues().iter().copied().collect::<Vec<_>>());
-                (found, self.rigid_body.len())
-            }
-            None => (eigenvalues(monodromy), 0),
+            Some(projector) => (eigenvalues(&projector * monodromy * &projector), self.rigid_body.len()),
+            None => (eigenvalues(monodromy.clone()), 0),
         };
         let Some(mut all) = found else { return Vec::new() };
         all.sort_by(|a, b| b.norm().total_cmp(&a.norm()));

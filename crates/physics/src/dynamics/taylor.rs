@@ -334,7 +334,15 @@ impl<const D: usize> Taylor<D> {
             force: &self.work.force,
             contact: state.contact,
         });
-        (state.x, state.v) = evaluate_rows(&self.work.rows[..=stepped.degree], h);
+        let rows = &self.work.rows[..=stepped.degree];
+        (state.x, state.v) = if DynamicModel::<D>::IS_TRAIN {
+            vectorised(
+                #[inline(always)]
+                || evaluate_rows(rows, h),
+            )
+        } else {
+            evaluate_rows(rows, h)
+        };
         state.phase = phase;
         if stepped.changed >= 0.0 {
             state.contact[stepped.changed as usize] = stepped.contact as ContactSide;

@@ -13,12 +13,12 @@ use super::modal_train::{LinearOutput, MAX_RIGID_BODY_MODES, ModalTrain};
 use super::train_variation::TrainModes;
 
 /// Sizes of the coordinate vectors of trains.
-const TRAIN_SIZES: [usize; 3] = [28, 52, 100];
+const TRAIN_SIZES: [usize; 2] = [52, 100];
 
 /// Smallest of the [`TRAIN_SIZES`] that holds a train.
 pub(crate) fn train_size(train: &ModalTrain) -> usize {
     let elastic = (0..train.len()).filter(|&i| !train.is_rigid_body_mode(i)).count();
-    TRAIN_SIZES.into_iter().find(|d| elastic + MAX_RIGID_BODY_MODES <= *d).unwrap_or(TRAIN_SIZES[2])
+    TRAIN_SIZES.into_iter().find(|d| elastic + MAX_RIGID_BODY_MODES <= *d).unwrap_or(TRAIN_SIZES[1])
 }
 
 /// One value per coordinate.
@@ -52,7 +52,7 @@ impl<const D: usize> Columns<D> {
     #[inline(always)]
     fn subtract_product<R: Real>(&self, values: &[R; D], out: &mut [R; D]) {
         for (sources, columns) in &self.0 {
-            let [f0, f1, f2, f3] = sources.map(|c| values[c]);
+            let [f0, f1, f2, f3] = [values[sources[0]], values[sources[1]], values[sources[2]], values[sources[3]]];
             let [c0, c1, c2, c3] = columns;
             for r in 0..D {
                 let left = R::splat(c0[r]) * f0 + R::splat(c1[r]) * f1;
@@ -70,6 +70,8 @@ pub(crate) struct TrainEquations<const D: usize> {
     /// Number of elastic modes and of rigid-body modes.
     pub elastic: usize,
     pub rigid: usize,
+    /// Coordinate of each mode of the [`ModalTrain`].
+    pub places: Vec<usize>,
     /// λ/ω² and diagonal of the damping matrix over ω.
     stiffness: Row<D>,
     damping: Row<D>,
@@ -110,11 +112,10 @@ impl<const D: usize> TrainEquations<D> {
         let (rigid, elastic): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| train.is_rigid_body_mode(i));
         // Mode of each coordinate.
         let mut modes: [Option<usize>; D] = [None; D];
-        for (c, i) in elastic.iter().enumerate() {
-            modes[c] = Some(*i);
-        }
-        for (c, i) in rigid.iter().enumerate() {
-            modes[D - MAX_RIGID_BODY_MODES + c] = Some(*i);
+        let mut places = vec![0; n];
+        let elastic_places = elastic.iter().zip(0..);
+        for (i, c) in elastic_places.chain(rigid.iter().zip(D - MAX_RIGID_BODY_MODES..)) {
+            (modes[c], places[*i]) = (Some(*i), c);
         }
         let row = |values: &[f64], factor: f64| -> Row<D> {
             std::array::from_fn(|c| modes[c].and_then(|i| values.get(i)).map_or(0.0, |v| v * factor))
@@ -151,6 +152,7 @@ impl<const D: usize> TrainEquations<D> {
         Self {
             elastic: elastic.len(),
             rigid: rigid.len(),
+            places,
             stiffness,
             damping: std::array::from_fn(|c| damping(c, c)),
             off_diagonal_damping: Columns::new(damping),

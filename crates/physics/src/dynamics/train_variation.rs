@@ -6,7 +6,7 @@
 //! at any time. The two g_j are polynomials through Gauss points (collocation): as many points per step as
 //! the fastest mode requires for the tolerance.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, Schur};
 
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
@@ -55,7 +55,7 @@ impl TrainModes {
     /// The modes; None where the eigenvectors are nearly dependent. `mesh_damping`: of each mesh in scaled time, N/m.
     pub(super) fn new<const D: usize>(train: &TrainEquations<D>, mesh_damping: [f64; 2]) -> Option<Self> {
         let n = train.elastic;
-        let mut matrix = faer::Mat::<f64>::zeros(2 * n, 2 * n);
+        let mut matrix = DMatrix::<f64>::zeros(2 * n, 2 * n);
         for c in 0..n {
             let mut unit = [0.0; D];
             unit[c] = 1.0;
@@ -71,37 +71,7 @@ impl TrainModes {
                 matrix[(n + r, n + c)] = -dampers[r];
             }
         }
-        let eigen = matrix.eigen().ok()?;
-        let mut blocks = Vec::with_capacity(2 * n);
-        let mut vectors = DMatrix::zeros(2 * n, 2 * n);
-        let mut column = 0;
-        for i in 0..2 * n {
-            let value = eigen.S()[i];
-            if value.im < 0.0 {
-                continue;
-            }
-            let pair = value.im > 0.0;
-            if column + 1 + usize::from(pair) > 2 * n {
-                return None;
-            }
-            let vector = |r: usize| eigen.U()[(r, i)];
-            let size = (0..2 * n).map(|r| vector(r).re.hypot(vector(r).im)).fold(0.0, f64::max);
-            for r in 0..2 * n {
-                vectors[(r, column)] = vector(r).re / size;
-                if pair {
-                    vectors[(r, column + 1)] = vector(r).im / size;
-                }
-            }
-            column += 1 + usize::from(pair);
-            blocks.push(if pair {
-                Block::Pair { rate: value.re, omega: value.im }
-            } else {
-                Block::Real { rate: value.re }
-            });
-        }
-        if column != 2 * n {
-            return None;
-        }
+        let (blocks, vectors) = eigenvectors(matrix)?;
         let inverse = vectors.clone().try_inverse()?;
         let condition = vectors.norm() * inverse.norm() / (2 * n) as f64;
         if condition.is_nan() || condition > WORST_CONDITION {
@@ -186,11 +156,78 @@ impl TrainModes {
     }
 }
 
+/// Eigenvalues of a matrix, of each conjugate pair the one above the real axis, and the real and imaginary parts of
+/// their eigenvectors as columns, largest component 1: back substitution in the real Schur form (G. H. Golub, C. F. Van
+/// Loan, Matrix Computations, section 7.6). None where the Schur form is not found.
+fn eigenvectors(matrix: DMatrix<f64>) -> Option<(Vec<Block>, DMatrix<f64>)> {
+    let size = matrix.nrows();
+    let (basis, t) = Schur::try_new(matrix, f64::EPSILON, 10_000)?.unpack();
+    let smallest = f64::EPSILON * t.amax();
+    // Start and length of the diagonal blocks.
+    let mut places = Vec::with_capacity(size);
+    let mut at = 0;
+    while at < size {
+        let length = if at + 1 < size && t[(at + 1, at)] != 0.0 { 2 } else { 1 };
+        places.push((at, length));
+        at += length;
+    }
+    let mut blocks = Vec::with_capacity(places.len());
+    let mut inner = DMatrix::zeros(size, size);
+    let mut y = vec![Complex::new(0.0, 0.0); size];
+    for (i, &(at, length)) in places.iter().enumerate() {
+        y.fill(Complex::new(0.0, 0.0));
+        let value = if length == 1 {
+            y[at] = Complex::new(1.0, 0.0);
+            blocks.push(Block::Real { rate: t[(at, at)] });
+            Complex::new(t[(at, at)], 0.0)
+        } else {
+            let (a, b, c, d) = (t[(at, at)], t[(at, at + 1)], t[(at + 1, at)], t[(at + 1, at + 1)]);
+            let half = 0.5 * (a - d);
+            let square = -(half * half + b * c);
+            if square.is_nan() || square <= 0.0 {
+                return None;
+            }
+            let value = Complex::new(0.5 * (a + d), square.sqrt());
+            (y[at], y[at + 1]) = (Complex::new(b, 0.0), value - a);
+            blocks.push(Block::Pair { rate: value.re, omega: value.im });
+            value
+        };
+        let end = at + length;
+        for &(row, rows) in places[..i].iter().rev() {
+            let sum = |r: usize| (row + rows..end).map(|c| y[c] * t[(r, c)]).sum::<Complex<f64>>();
+            if rows == 1 {
+                let pivot = Complex::from(t[(row, row)]) - value;
+                let pivot = if pivot.norm() < smallest { Complex::from(smallest) } else { pivot };
+                y[row] = -sum(row) / pivot;
+            } else {
+                let (first, second) = (-sum(row), -sum(row + 1));
+                let (a, d) = (t[(row, row)] - value, t[(row + 1, row + 1)] - value);
+                let (b, c) = (t[(row, row + 1)], t[(row + 1, row)]);
+                let determinant = a * d - b * c;
+                let least = smallest * smallest;
+                let determinant = if determinant.norm() < least { Complex::from(least) } else { determinant };
+                y[row] = (first * d - second * b) / determinant;
+                y[row + 1] = (second * a - first * c) / determinant;
+            }
+        }
+        let largest = y.iter().fold(0.0f64, |m, c| m.max(c.norm()));
+        if !largest.is_finite() {
+            return None;
+        }
+        for r in 0..end {
+            inner[(r, at)] = y[r].re / largest;
+            if length == 2 {
+                inner[(r, at + 1)] = y[r].im / largest;
+            }
+        }
+    }
+    Some((blocks, basis * inner))
+}
+
 /// Eigenvalues of a matrix; None where they are not found.
-pub(super) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
-    let (rows, columns) = matrix.shape();
-    let values = faer::Mat::from_fn(rows, columns, |r, c| matrix[(r, c)]).eigenvalues().ok()?;
-    Some(values.into_iter().map(|value| Complex::new(value.re, value.im)).collect())
+pub(super) fn eigenvalues(matrix: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
+    let schur = Schur::try_new(matrix, f64::EPSILON, 10_000)?;
+    Some(schur.complex_eigenvalues().iter().copied().collect())
 }
 
 /// Multiplies a vector in the eigenvectors by A (from the right: a row) and `factor`.
@@ -389,8 +426,8 @@ impl TrainPropagator {
                 }
             }
         }
-        let free = (rows * &modes.outputs) * &self.z;
-        let Some(forces) = system.lu().solve(&free) else { return };
+        let Some(solution) = system.try_inverse() else { return };
+        let forces = (solution * (rows * &modes.outputs)) * &self.z;
         // End of the step: free motion, and the forces by Gauss quadrature.
         let inputs = DMatrix::from_fn(2 * (TERMS + 1), 2 * p, |r, c| {
             if r % 2 == c / p {

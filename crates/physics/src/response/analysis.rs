@@ -47,6 +47,9 @@ pub struct Analysis {
     /// several steady motions the other methods report the one reached from there. None: static deflection under the
     /// mean mesh stiffness, at rest; the other methods then prefer a motion without loss of contact.
     pub initial_state: Option<[f64; 24]>,
+    /// Coordinates of a train, then their velocities (1/s), in its order: in place of `initial_state`, of which a train has
+    /// more coordinates. Not used without a train.
+    pub initial_modal_state: Option<Vec<f64>>,
     /// Limit of the steps of one integration.
     pub max_steps: u64,
     /// Whether to check the recorded motion by its energy balance.
@@ -62,6 +65,7 @@ impl Default for Analysis {
             samples_per_mesh_period: 256,
             channels: Vec::new(),
             initial_state: None,
+            initial_modal_state: None,
             max_steps: 100_000_000,
             energy_balance: false,
         }
@@ -118,7 +122,8 @@ pub enum ContactState {
 /// Normal tooth force of a half, N, positive on driving flanks.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ToothForce {
-    /// T_p/(R_p cosβ) of the half's torque.
+    /// T_p/(R_p cosβ) of the half's torque; of a train the force that carries its load at rest, closed with its reference
+    /// stiffnesses.
     pub static_n: f64,
     /// Largest value of mesh force plus impact over the record.
     pub max_n: f64,
@@ -261,4 +266,7 @@ pub struct Response {
     /// neighbouring operating point can start from it. Of a train the motion has further coordinates, which a start
     /// from this state takes at least energy.
     pub final_state: [f64; 24],
+    /// State of a train at the end of the record: its coordinates, then their velocities (1/s), in its order. Empty
+    /// without a train.
+    pub final_modal_state: Vec<f64>,
 }

@@ -12,13 +12,17 @@ pub(super) const LONGEST_PERIOD: usize = 32;
 /// States at the starts of the last mesh periods.
 pub(super) struct PoincareSection<const D: usize> {
     states: VecDeque<MotionState<D>>,
+    /// Size of each state, see [`PoincareSection::size`].
+    sizes: VecDeque<f64>,
     rigid_body: RigidBodyModes<D>,
 }
 
 impl<const D: usize> PoincareSection<D> {
     /// Section of the complete states, for motions whose periodicity is not tested.
     pub(crate) fn new() -> Self {
-        Self { states: VecDeque::with_capacity(LONGEST_PERIOD + 1), rigid_body: RigidBodyModes::none() }
+        let room = LONGEST_PERIOD + 1;
+        let (states, sizes) = (VecDeque::with_capacity(room), VecDeque::with_capacity(room));
+        Self { states, sizes, rigid_body: RigidBodyModes::none() }
     }
 
     /// Section without rigid-body modes, whose drift does not prevent periodicity.
@@ -33,16 +37,18 @@ impl<const D: usize> PoincareSection<D> {
         (state.x, state.v) = self.rigid_body.project_out(&(state.x, state.v));
         if self.states.len() > LONGEST_PERIOD {
             self.states.pop_front();
+            self.sizes.pop_front();
         }
+        let parts =
+            |row: &[f64; D]| (0..D).filter(|c| !is_rigid_rotation(D, *c)).fold(0.0f64, |m, c| m.max(row[c].abs()));
+        self.sizes.push_back(parts(&state.v).max(1e-9 * parts(&state.x)));
         self.states.push_back(state);
     }
 
     /// Size of the motion: its largest velocity in scaled time, or 1e-9 of the largest displacement if that is larger
     /// (below it is rounding).
     pub(crate) fn size(&self) -> f64 {
-        let parts =
-            |row: &[f64; D]| (0..D).filter(|c| !is_rigid_rotation(D, *c)).fold(0.0f64, |m, c| m.max(row[c].abs()));
-        self.states.iter().fold(f64::MIN_POSITIVE, |m, s| m.max(parts(&s.v)).max(1e-9 * parts(&s.x)))
+        self.sizes.iter().fold(f64::MIN_POSITIVE, |m, size| m.max(*size))
     }
 
     /// Relative change of the state over `n` mesh periods.

@@ -125,6 +125,7 @@ pub(super) fn assemble_response<const D: usize>(
         })
         .collect();
     let final_state = model.physical_state(&last);
+    let final_modal_state = model.modal_state(&last);
     let interval = |id: ChannelId| {
         let (_, squares) = record.mean_squares.iter().find(|(other, _)| *other == id)?;
         rms_interval_95(squares)
@@ -163,7 +164,15 @@ pub(super) fn assemble_response<const D: usize>(
         damping_in_gap: input.p.damping_in_gap,
         counts: assessment.counts,
     };
-    Response { summary, channels: series, outputs, tooth_force_orders, poincare: record.points, final_state }
+    Response {
+        summary,
+        channels: series,
+        outputs,
+        tooth_force_orders,
+        poincare: record.points,
+        final_state,
+        final_modal_state,
+    }
 }
 
 /// Largest tooth force of a half over its static one, see [`Summary::dynamic_factor`].

@@ -21,7 +21,7 @@ impl ResponseProblem<'_> {
         if let Some(train) = &self.p.train {
             let unloaded = train.load_n.iter().all(|load| *load == 0.0)
                 && [left, right].iter().all(|h| h.impact.as_ref().is_none_or(ImpactExcitation::is_zero));
-            let still = self.analysis.initial_state.is_none_or(|start| start.iter().all(|c| *c == 0.0));
+            let still = self.given_start().is_none_or(|start| start.iter().all(|c| *c == 0.0));
             return unloaded && still && train.opens_freely();
         }
         let unloaded = [left, right]
@@ -43,7 +43,6 @@ impl ResponseProblem<'_> {
         match number_of_coordinates(self.p, true) {
             6 => self.rest_response_in::<6>(),
             12 => self.rest_response_in::<12>(),
-            28 => self.rest_response_in::<28>(),
             52 => self.rest_response_in::<52>(),
             _ => self.rest_response_in::<100>(),
         }
@@ -51,7 +50,7 @@ impl ResponseProblem<'_> {
 
     fn rest_response_in<const D: usize>(&self) -> Result<Response, DynamicsError> {
         let model = DynamicModel::<D>::new(self.p)?;
-        let touching = self.analysis.initial_state.is_none() || model.b == 0.0;
+        let touching = self.given_start().is_none() || model.b == 0.0;
         let (method, from, periods) = match self.analysis.method {
             SolutionMethod::Integrate { mesh_periods, record_mesh_periods } => {
                 let end = mesh_periods.max(1);

@@ -34,7 +34,6 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
             let mut responses = match number_of_coordinates(p, mirrored) {
                 6 => integrate::<6>(points, alone),
                 12 => integrate::<12>(points, alone),
-                28 => integrate::<28>(points, alone),
                 52 => integrate::<52>(points, alone),
                 _ => integrate::<100>(points, alone),
             }?;
@@ -48,7 +47,6 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
             // it.
             let found = match number_of_coordinates(p, false) {
                 12 => point.solve_steady::<12>(mirrored),
-                28 => point.solve_steady::<28>(false),
                 52 => point.solve_steady::<52>(false),
                 _ => point.solve_steady::<100>(false),
             }?;
@@ -145,7 +143,18 @@ fn validated_modes(p: &Parameters, analysis: &Analysis) -> Result<NaturalModes, 
             reason: "must be between 1e-13 and 0.1",
         });
     }
-    if let Some(bad) = analysis.initial_state.iter().flatten().find(|v| !v.is_finite()) {
+    let modal = analysis.initial_modal_state.as_ref().filter(|_| p.train.is_some());
+    if let (Some(modal), Some(train)) = (modal, &p.train)
+        && modal.len() != 2 * train.len()
+    {
+        return Err(DynamicsError::InvalidParameter {
+            name: "initial state",
+            value: modal.len() as f64,
+            reason: "needs a coordinate and a velocity of every mode of the train",
+        });
+    }
+    let numbers = analysis.initial_state.iter().flatten().chain(modal.into_iter().flatten());
+    if let Some(bad) = numbers.into_iter().find(|v| !v.is_finite()) {
         return Err(DynamicsError::InvalidParameter { name: "initial state", value: *bad, reason: "must be finite" });
     }
     NaturalModes::new(p)
@@ -163,8 +172,18 @@ pub(super) struct ResponseProblem<'a> {
 const OFF_SYMMETRY: f64 = 1e-3;
 
 impl ResponseProblem<'_> {
+    /// The initial state that is given, if one is: of a train in its coordinates, or the twelve displacements and
+    /// velocities.
+    pub(super) fn given_start(&self) -> Option<&[f64]> {
+        let modal = self.analysis.initial_modal_state.as_deref().filter(|_| self.p.train.is_some());
+        modal.or(self.analysis.initial_state.as_ref().map(|state| state.as_slice()))
+    }
+
     /// Initial state: as given, or at rest under the mean load.
     fn start<const D: usize>(&self, model: &DynamicModel<D>) -> MotionState<D> {
+        if let Some(modal) = self.analysis.initial_modal_state.as_ref().filter(|_| DynamicModel::<D>::IS_TRAIN) {
+            return model.state_from_modes(modal);
+        }
         if let Some(start) = &self.analysis.initial_state {
             return model.state_from(start);
         }
@@ -201,10 +220,10 @@ impl ResponseProblem<'_> {
             mean_stiffness_n_per_m: self.mean_stiffness_n_per_m(),
             limits: self.limits((1e-3 * self.analysis.accuracy).clamp(1e-14, 1e-6)),
             must_repeat: self.analysis.method == SolutionMethod::Periodic,
-            from_start: self.analysis.initial_state.is_some(),
+            from_start: self.given_start().is_some(),
         };
         let mut state = self.start(&model);
-        if self.analysis.initial_state.is_none() {
+        if self.given_start().is_none() {
             model.close_contact(&mut state);
         }
         if off_symmetry {
@@ -468,7 +487,7 @@ fn integrate<const D: usize>(
         let run = model.as_ref().map_err(Clone::clone).and_then(|model| {
             let recorder = point.recorder(model, end - record_from);
             let mut start = point.start(model);
-            if point.analysis.initial_state.is_none() {
+            if point.given_start().is_none() {
                 model.close_contact(&mut start);
             }
             let run = RecordedRun::new(model, start, tolerance, (record_from, end), recorder)?;

@@ -54,6 +54,8 @@ fn check_map<const D: usize>(p: &Parameters, name: &str) {
         }
     }
     let gap = if p.damping_in_gap { "" } else { ", no damping in the gap" };
+    let gap =
+        format!("{gap}{}", if p.halves[0].displacement_excitation.is_empty() { "" } else { ", flanks displaced" });
     let quantity = format!("map over two periods against differences, case {name}, {D} coordinates{gap}");
     check_worst("Dynamics: perturbations and multipliers", &quantity, errors, 1e-3);
 }
@@ -66,6 +68,9 @@ fn the_map_is_the_derivative_of_the_motion() {
         check_map::<12>(&p, name);
         p.damping_in_gap = false;
         check_map::<6>(&p, name);
+        let moved = Harmonic { amplitude: 1e-6, phase_rad: 0.4 };
+        p.halves.iter_mut().for_each(|h| h.displacement_excitation = vec![moved]);
+        check_map::<12>(&p, name);
     }
 }
 
