@@ -24,6 +24,7 @@ mod process;
 mod proxy;
 mod report;
 mod server;
+mod shafts;
 mod speed;
 mod start;
 mod sweep;

@@ -19,6 +19,10 @@ pub(crate) enum Control {
     },
     /// A list of objects, written as JSON.
     Json,
+    /// How many objects a list has, whose fields stand beside it ([`super::List`]).
+    Count,
+    /// Which of the objects in an object are given.
+    Parts(Vec<Choice>),
 }
 
 /// An option of a [`Control::Choice`].
@@ -35,6 +39,8 @@ pub(crate) struct FormField {
     pub label: String,
     /// Label of the row that the field shares with others; empty for a field in a row of its own.
     pub row: String,
+    /// What the field is of, where its label does not say it: "bearing #1, pinion" with a mark for the number.
+    pub context: String,
     /// Symbol of the quantity (letter and subscript), or empty.
     pub symbol: (&'static str, &'static str),
     pub help: String,
@@ -77,6 +83,7 @@ impl FormField {
             pointer: pointer.to_owned(),
             label: label(pointer, unit),
             row: String::new(),
+            context: String::new(),
             symbol: description.symbol,
             help: help(schema),
             range: range(schema, unit),
@@ -92,6 +99,31 @@ impl FormField {
         })
     }
 
+    /// A field for which the schema of the document has no control: an object, a list of objects.
+    pub(crate) fn bare(description: &FieldDescription) -> FormField {
+        let FieldDescription { pointer, schema, .. } = description;
+        FormField {
+            id: format!("field{}", pointer.replace('/', "-")),
+            pointer: pointer.to_owned(),
+            label: label(pointer, Unit::ONE),
+            row: String::new(),
+            context: String::new(),
+            symbol: description.symbol,
+            help: help(schema),
+            range: String::new(),
+            unit: "",
+            control: Control::Json,
+            value: String::new(),
+            default: String::new(),
+            placeholder: "",
+            // An empty list is said where its objects are missing.
+            required: false,
+            condition: None,
+            group: description.group,
+            order: description.order,
+        }
+    }
+
     /// Name of the control for the page's script.
     pub(crate) fn control_name(&self) -> &'static str {
         match self.control {
@@ -103,13 +135,32 @@ impl FormField {
             Control::List { of_numbers: true } => "numbers",
             Control::List { of_numbers: false } => "words",
             Control::Json => "json",
+            Control::Count => "list",
+            Control::Parts(_) => "parts",
         }
+    }
+
+    /// Whether the page offers to restore the default.
+    pub(crate) fn has_reset(&self) -> bool {
+        !self.required && !matches!(self.control, Control::Count)
+    }
+
+    /// The label with what the field is of.
+    pub(crate) fn full_label(&self) -> String {
+        if self.context.is_empty() { self.label.clone() } else { format!("{}, {}", self.label, self.context) }
+    }
+
+    /// Identifier of what the items of a list share: that of the field, with a word in place of the item's number.
+    pub(crate) fn shared_id(&self) -> String {
+        self.id
+            .rfind('*')
+            .map_or_else(|| self.id.clone(), |place| format!("{}each{}", &self.id[..place], &self.id[place + 1..]))
     }
 
     /// The default as displayed text, with its unit; the page offers to restore it in a field that differs.
     pub(crate) fn default_text(&self) -> String {
         let default = match (&self.control, self.default.as_str()) {
-            (Control::Choice(choices), word) => {
+            (Control::Choice(choices) | Control::Parts(choices), word) => {
                 choices.iter().find(|choice| choice.word == word).map_or(String::new(), |choice| choice.label.clone())
             }
             (_, "") => return "empty".to_owned(),
@@ -188,7 +239,7 @@ fn help(schema: &Value) -> String {
 }
 
 /// Names of objects that are already part of the title of the section or block.
-const SAID_BY_THE_SECTION: [&str; 14] = [
+const SAID_BY_THE_SECTION: [&str; 16] = [
     "axes",
     "0",
     "1",
@@ -199,6 +250,8 @@ const SAID_BY_THE_SECTION: [&str; 14] = [
     "right",
     "material",
     "supports",
+    "shafts",
+    "arrangement",
     "assembly",
     "operation",
     "model",

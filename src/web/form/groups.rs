@@ -28,6 +28,20 @@ pub(super) enum LayoutPlan {
     Fields(&'static str),
     /// Several objects with the same fields side by side: heading and pointer of each.
     Table(&'static [(&'static str, &'static str)]),
+    /// The objects of a list, as many as one wants.
+    List(ListPlan),
+}
+
+/// A list of objects in the form.
+#[derive(Clone, Copy)]
+pub(super) struct ListPlan<P = &'static str> {
+    /// Pointer of the list.
+    pub pointer: P,
+    /// What one of its objects is called, and what it is of.
+    pub item: &'static str,
+    pub of: &'static str,
+    /// Each object is a block of fields; otherwise a row of a table.
+    pub as_blocks: bool,
 }
 
 impl BlockPlan {
@@ -36,12 +50,17 @@ impl BlockPlan {
         match self.layout {
             LayoutPlan::Fields(object) => vec![object],
             LayoutPlan::Table(columns) => columns.iter().map(|(_, object)| *object).collect(),
+            LayoutPlan::List(_) => Vec::new(),
         }
     }
 }
 
 const fn block(title: &'static str, object: &'static str) -> BlockPlan {
     BlockPlan { title, folded: false, layout: LayoutPlan::Fields(object) }
+}
+
+const fn list(title: &'static str, plan: ListPlan) -> BlockPlan {
+    BlockPlan { title, folded: false, layout: LayoutPlan::List(plan) }
 }
 
 const fn folded(title: &'static str, columns: &'static [(&'static str, &'static str)]) -> BlockPlan {
@@ -71,6 +90,38 @@ const COAST_FLANKS: &[(&str, &str)] = &[
     ("Gear, left", "/design/gear/coast/left"),
     ("Gear, right", "/design/gear/coast/right"),
 ];
+
+/// Pointer of the shafts; its field says which of them are given.
+pub(super) const SHAFTS: &str = "/design/shafts";
+
+/// Objects in the shafts with the choices of [`SHAFTS`] for which their fields are in use.
+pub(super) const SHAFT_PARTS: [(&str, &str); 3] = [
+    ("/design/shafts/arrangement", "arrangement pinion gear"),
+    ("/design/shafts/pinion", "pinion given"),
+    ("/design/shafts/gear", "gear given"),
+];
+
+/// The choices of [`SHAFTS`].
+pub(super) const SHAFT_CHOICES: [(&str, &str); 5] = [
+    ("", "none: the bodies stand on the supports"),
+    ("arrangement", "from a few numbers"),
+    ("given", "segment by segment"),
+    ("pinion", "the pinion's by segments, the gear's from a few numbers"),
+    ("gear", "the gear's by segments, the pinion's from a few numbers"),
+];
+
+const SEGMENTS: ListPlan =
+    ListPlan { pointer: "/design/shafts/pinion/segments", item: "segment", of: "pinion", as_blocks: false };
+const BEARINGS: ListPlan =
+    ListPlan { pointer: "/design/shafts/pinion/bearings", item: "bearing", of: "pinion", as_blocks: true };
+const BODIES: ListPlan =
+    ListPlan { pointer: "/design/shafts/pinion/inertias", item: "body", of: "pinion", as_blocks: false };
+const GEAR_SEGMENTS: ListPlan = ListPlan { pointer: "/design/shafts/gear/segments", of: "gear", ..SEGMENTS };
+const GEAR_BEARINGS: ListPlan = ListPlan { pointer: "/design/shafts/gear/bearings", of: "gear", ..BEARINGS };
+const GEAR_BODIES: ListPlan = ListPlan { pointer: "/design/shafts/gear/inertias", of: "gear", ..BODIES };
+
+/// The list in the objects of another: the speeds in the table of a bearing.
+pub(super) const INNER_ITEM: &str = "speed";
 
 const DEFAULTS: &str = "as by default";
 
@@ -118,8 +169,31 @@ pub(super) const GROUPS: &[GroupPlan] = &[
         )
     },
     GroupPlan {
-        help: "Shafts and bearings, per half.",
+        help: "Springs of each half, in place of shafts and bearings.",
         ..section("supports", "Supports", false, &[block("", "/design/supports")])
+    },
+    GroupPlan {
+        short: "Shafts",
+        help: "Elastic shafts on bearings, in place of the supports. Positions are measured from the left end of each shaft; the two are \
+               aligned at their gear positions, the middle of the gap.",
+        nothing: "none",
+        ..section(
+            "shafts",
+            "Shafts and bearings",
+            false,
+            &[
+                block("", SHAFTS),
+                block("Arrangement", "/design/shafts/arrangement"),
+                block("Shaft of the pinion", "/design/shafts/pinion"),
+                list("Segments of the pinion's shaft, from left to right", SEGMENTS),
+                list("Bearings of the pinion", BEARINGS),
+                list("Further bodies on the pinion's shaft", BODIES),
+                block("Shaft of the gear", "/design/shafts/gear"),
+                list("Segments of the gear's shaft, from left to right", GEAR_SEGMENTS),
+                list("Bearings of the gear", GEAR_BEARINGS),
+                list("Further bodies on the gear's shaft", GEAR_BODIES),
+            ],
+        )
     },
     GroupPlan {
         short: "Assembly",

@@ -5,8 +5,9 @@ mod groups;
 
 pub(super) use field::{Control, FormField};
 
-use groups::{BlockPlan, GroupPlan, LayoutPlan};
-use herringbone_job::schema::{FieldDescription, field_descriptions};
+use field::Choice;
+use groups::{BlockPlan, GroupPlan, LayoutPlan, ListPlan};
+use herringbone_job::schema::{Condition, FieldDescription, field_descriptions};
 use serde_json::Value;
 use std::sync::LazyLock;
 
@@ -33,6 +34,32 @@ pub(super) struct Block {
 pub(super) enum Layout {
     Fields(Vec<FormField>),
     Table { columns: Vec<&'static str>, rows: Vec<Row> },
+    List(List),
+}
+
+/// The objects of a list, as many as one wants. The page's script makes an object of the fields, with its number in place
+/// of the first `*` of identifiers and pointers and of the mark in texts.
+pub(super) struct List {
+    /// The number of objects.
+    pub count: FormField,
+    /// What stands for the number of an object in texts.
+    pub mark: &'static str,
+    /// What one of them is called.
+    pub item: &'static str,
+    pub as_blocks: bool,
+    /// Fields of one object.
+    pub fields: Vec<FormField>,
+    /// Lists in one object.
+    pub lists: Vec<List>,
+}
+
+impl List {
+    /// All fields of the list and those of one of its objects.
+    #[cfg(test)]
+    fn all_fields(&self) -> Vec<&FormField> {
+        let inner = self.lists.iter().flat_map(List::all_fields);
+        std::iter::once(&self.count).chain(&self.fields).chain(inner).collect()
+    }
 }
 
 /// Row of the form: the same field of several objects, with their common texts.
@@ -55,6 +82,7 @@ impl Block {
         match &self.layout {
             Layout::Fields(fields) => fields.iter().collect(),
             Layout::Table { rows, .. } => rows.iter().flat_map(|row| &row.cells).collect(),
+            Layout::List(list) => list.all_fields(),
         }
     }
 }
@@ -80,7 +108,7 @@ pub(super) fn sweepable_pointers() -> &'static [String] {
     &SWEEPABLE
 }
 
-/// Every field that can be filled in, in the order declared.
+/// Every field that can be filled in, in the order declared, but those of lists.
 fn all_fields() -> Vec<FormField> {
     let example: Value = serde_json::from_str(EXAMPLE).unwrap_or_default();
     let mut fields = Vec::new();
@@ -94,6 +122,12 @@ fn all_fields() -> Vec<FormField> {
             };
             let axes = (0..groups::AXES).map(of_axis);
             fields.extend(axes.filter_map(|axis| FormField::new(&axis, example.pointer(&axis.pointer))));
+        } else if description.pointer == groups::SHAFTS {
+            fields.push(shaft_choice(&description));
+        } else if is_list_of_shafts(&description) {
+            // Its fields are those of a block.
+        } else if is_at_or_in(&description.pointer, groups::SHAFTS) {
+            fields.extend(of_shafts(&description, &example));
         } else if description.pointer != "/axes"
             && !description.pointer.contains("/*")
             // Filled in by the interface, not by people.
@@ -103,6 +137,84 @@ fn all_fields() -> Vec<FormField> {
         }
     }
     fields
+}
+
+/// The choice of which shafts are given.
+fn shaft_choice(description: &FieldDescription) -> FormField {
+    let choices = groups::SHAFT_CHOICES.map(|(word, label)| Choice {
+        word: word.to_owned(),
+        label: label.to_owned(),
+        chosen: word.is_empty(),
+    });
+    FormField { label: "Shafts".to_owned(), control: Control::Parts(choices.into()), ..FormField::bare(description) }
+}
+
+fn is_list_of_shafts(description: &FieldDescription) -> bool {
+    is_at_or_in(&description.pointer, groups::SHAFTS)
+        && (description.pointer.contains("/*") || description.schema["items"]["type"] == "object")
+}
+
+/// A field in an object of the shafts: in use while its object is chosen.
+fn of_shafts(description: &FieldDescription, example: &Value) -> Option<FormField> {
+    let field = FormField::new(description, example.pointer(&description.pointer))?;
+    let (_, values) = groups::SHAFT_PARTS.iter().find(|(object, _)| is_at_or_in(&description.pointer, object))?;
+    let condition = field.condition.or(Some(Condition { on: groups::SHAFTS.to_owned(), values }));
+    let context = ["pinion", "gear"].into_iter().find(|name| {
+        let object = format!("{}/{name}", groups::SHAFTS);
+        is_at_or_in(&description.pointer, &object)
+    });
+    // Of a body that may be left out, nothing is required.
+    let required = field.required && !description.pointer.contains("/half_body/");
+    Some(FormField { condition, context: context.unwrap_or_default().to_owned(), required, ..field })
+}
+
+/// A list with the fields of one of its objects.
+fn list_at(plan: &ListPlan) -> Option<List> {
+    let descriptions = field_descriptions();
+    list_of(&descriptions, plan, plan.of, "#1")
+}
+
+fn list_of(descriptions: &[FieldDescription], plan: &ListPlan<&str>, of: &str, mark: &'static str) -> Option<List> {
+    let (example, ListPlan { pointer, item, as_blocks, .. }) = (Value::Null, *plan);
+    let own = descriptions.iter().find(|description| description.pointer == pointer)?;
+    let in_item = |description: &&FieldDescription| {
+        let rest = description.pointer.strip_prefix(pointer).and_then(|rest| rest.strip_prefix("/*/"));
+        rest.is_some_and(|rest| !rest.contains('/'))
+    };
+    let (mut fields, mut lists) = (Vec::new(), Vec::new());
+    for description in descriptions.iter().filter(in_item) {
+        if description.schema["items"]["type"] == "object" {
+            let inner =
+                ListPlan { pointer: description.pointer.as_str(), item: groups::INNER_ITEM, of: "", as_blocks: false };
+            lists.extend(list_of(descriptions, &inner, &format!("{item} {mark}, {of}"), "#2"));
+        } else if let Some(field) = of_shafts(description, &example) {
+            // The pointer has the names of the list and of the objects around it too.
+            let name = field.label.rsplit(", ").next().unwrap_or_default().to_owned();
+            let label = name.chars().next().map(|first| first.to_uppercase().chain(name.chars().skip(1)).collect());
+            let row = if as_blocks { String::new() } else { label.clone().unwrap_or_default() };
+            fields.push(FormField {
+                label: label.unwrap_or_default(),
+                row,
+                context: format!("{item} {mark}, {of}"),
+                ..field
+            });
+        }
+    }
+    let count = FormField::bare(own);
+    let (_, values) = groups::SHAFT_PARTS.iter().find(|(object, _)| is_at_or_in(pointer, object))?;
+    let count = FormField {
+        label: format!("Number of {}", plural(item)),
+        context: of.to_owned(),
+        control: Control::Count,
+        value: "0".to_owned(),
+        condition: Some(Condition { on: groups::SHAFTS.to_owned(), values }),
+        ..count
+    };
+    Some(List { count, mark, item, as_blocks, fields, lists })
+}
+
+fn plural(item: &str) -> String {
+    item.strip_suffix('y').map_or_else(|| format!("{item}s"), |stem| format!("{stem}ies"))
 }
 
 /// Assigns each field to the section of its declaration; unknown sections are appended at the end.
@@ -135,6 +247,7 @@ fn section(group: &GroupPlan, fields: &mut Vec<FormField>) -> Group {
                 let taken = columns.iter().map(|(_, object)| take(object)).collect();
                 Layout::Table { columns: columns.iter().map(|(title, _)| *title).collect(), rows: rows(taken, columns) }
             }
+            LayoutPlan::List(ref plan) => list_at(plan).map_or_else(|| Layout::Fields(Vec::new()), Layout::List),
         },
     });
     Group {
@@ -184,18 +297,29 @@ mod tests {
         let unplaced: Vec<_> = groups().iter().filter(|group| group.id == "other").collect();
         let names = unplaced.iter().flat_map(|group| &group.blocks).flat_map(Block::fields);
         assert_eq!(names.map(|field| field.pointer.as_str()).collect::<Vec<_>>(), Vec::<&str>::new());
-        let mut placed = 0;
+        let (mut placed, mut of_lists) = (0, 0);
         for group in groups() {
             for block in &group.blocks {
                 assert!(!block.fields().is_empty(), "nothing in {} / {}", group.title, block.title);
-                placed += block.fields().len();
+                match block.layout {
+                    Layout::List(_) => of_lists += block.fields().len(),
+                    _ => placed += block.fields().len(),
+                }
             }
         }
         let fields = all_fields();
         assert_eq!(placed, fields.len());
+        // Segments, bearings with their tables, bodies: every field of their objects, and their numbers.
+        let of_items = field_descriptions()
+            .iter()
+            .filter(|one| one.pointer.starts_with("/design/shafts/") && is_list_of_shafts(one))
+            .count();
+        assert_eq!((of_lists, of_items > 50), (of_items, true));
         for condition in fields.iter().filter_map(|field| field.condition.as_ref()) {
             let other = fields.iter().find(|field| field.pointer == condition.on);
-            let Some(FormField { control: Control::Choice(choices), .. }) = other else { panic!("{}", condition.on) };
+            let Some(FormField { control: Control::Choice(choices) | Control::Parts(choices), .. }) = other else {
+                panic!("{}", condition.on)
+            };
             for word in condition.values.split(' ') {
                 assert!(choices.iter().any(|choice| choice.word == word), "{word} of {}", condition.on);
             }

@@ -1,6 +1,6 @@
 //! The inputs of a job document: label, symbol, range, unit, default and meaning, from their declarations.
 
-use super::super::form::{self, Block as FormBlock, FormField, Layout};
+use super::super::form::{self, Block as FormBlock, FormField, Layout, List};
 use super::anchor;
 
 pub(super) const TITLE: &str = "Inputs";
@@ -32,18 +32,30 @@ pub(super) fn blocks() -> Vec<Block> {
             id: group.id,
             title: group.title,
             about: group.help,
-            inputs: group.blocks.iter().flat_map(inputs_of).collect(),
+            inputs: group.blocks.iter().flat_map(inputs_of).filter(|input| !is_told_of_the_pinion(input)).collect(),
         })
         .collect()
 }
 
+/// Both shafts have the same fields.
+fn is_told_of_the_pinion(input: &Input) -> bool {
+    input.pointer.starts_with("/design/shafts/gear/")
+}
+
 fn inputs_of(block: &FormBlock) -> Vec<Input> {
     match &block.layout {
-        Layout::Fields(fields) => fields.iter().map(|field| Input::new(field, &field.label)).collect(),
+        Layout::Fields(fields) => fields.iter().map(|field| Input::new(field, &field.full_label())).collect(),
         Layout::Table { rows, .. } => {
             rows.iter().filter_map(|row| Some(Input::new(row.first()?, &row.label))).collect()
         }
+        Layout::List(list) => of_list(list),
     }
+}
+
+/// The fields of the objects of a list, and of the lists in them.
+fn of_list(list: &List) -> Vec<Input> {
+    let own = list.fields.iter().map(|field| Input::new(field, &format!("{} of a {}", field.label, list.item)));
+    own.chain(list.lists.iter().flat_map(of_list)).collect()
 }
 
 impl Input {

@@ -101,7 +101,7 @@ fn sections() -> Vec<Section> {
 
 /// The fragment of the address at which a number or an input is explained.
 fn anchor(pointer: &str) -> String {
-    pointer.trim_start_matches('/').replace(['/', '{', '}'], "-")
+    pointer.trim_start_matches('/').replace(['/', '{', '}', '*'], "-")
 }
 
 #[cfg(test)]

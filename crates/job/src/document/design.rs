@@ -56,9 +56,10 @@ pub struct DesignInput {
         derived(left_half_hand = "opposite of the pinion's")
     )]
     pub gear: GearInput,
-    /// Shafts and bearings, per half.
+    /// Springs of each half, in place of shafts and bearings.
     pub supports: SupportsInput,
     /// Shafts with their bearings, in place of the supports; without them the bodies stand on the supports.
+    #[input(group = "shafts")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shafts: Option<ShaftsInput>,
     /// Assembly errors.

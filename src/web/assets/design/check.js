@@ -5,6 +5,7 @@ import { byId, el, fillValues, show } from "../common/dom.js";
 import { labelOf, number, unitOf } from "../common/format.js";
 import { initDrawing } from "./drawing.js";
 import { clearErrors, isOfADerivedValue, linkTo, problemItems, showErrors, showWarnings, warningItems } from "./errors.js";
+import { initShaftsDrawing } from "./shafts.js";
 import { durationOf } from "./sweep_cost.js";
 
 /** @type {["transverse_contact_ratio" | "overlap_ratio" | "total_contact_ratio", string, string][]} */
@@ -42,7 +43,8 @@ const MARGINS = {
  * @param {{ checked: (report: CheckedDocument) => Promise<Field[]>, refused: () => void }} options
  */
 export function initCheck(form, { checked, refused }) {
-  const drawing = initDrawing();
+  const drawings = [initDrawing(), initShaftsDrawing()];
+  const fadeDrawings = () => drawings.forEach((drawing) => drawing.fade());
   /** @type {AbortController | null} */
   let asking = null;
 
@@ -65,14 +67,15 @@ export function initCheck(form, { checked, refused }) {
       clearErrors(form);
       showReport(form, report, stale);
       showWarnings(form, report.warnings);
-      if (report.drawing) drawing.show(report.drawing);
+      const { drawing: drawn } = report;
+      if (drawn) drawings.forEach((drawing) => drawing.show(drawn));
       return report;
     } catch (error) {
       if (signal.aborted) return null;
       if (!(error instanceof api.Problem)) throw error;
       refused();
       fade();
-      drawing.fade();
+      fadeDrawings();
       showRefusal(form, error, showErrors(form, error, { summary: false }));
       return null;
     } finally {
@@ -88,13 +91,13 @@ export function initCheck(form, { checked, refused }) {
     list(problemItems(form, entries));
     if (!entries.length) return;
     fade();
-    drawing.fade();
+    fadeDrawings();
   }
 
   /** Forgets the last pair: the form was filled with another. */
   function clear() {
     fade();
-    drawing.clear();
+    drawings.forEach((drawing) => drawing.clear());
     for (const value of byId("check-geometry").querySelectorAll("dd")) value.textContent = "–";
     byId("check-values").replaceChildren();
     byId("check-gears").tBodies[0].replaceChildren();

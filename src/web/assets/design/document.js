@@ -2,6 +2,7 @@
 
 import { byAnyId, byId } from "../common/dom.js";
 import { pointerLabel } from "../common/format.js";
+import { countAt, fillLists } from "./lists.js";
 import { readField, readList } from "./typed.js";
 
 /**
@@ -17,7 +18,7 @@ export function fieldsOf(form) {
   return [...form.querySelectorAll("[data-pointer]")].map((node) => /** @type {HTMLElement} */ (node)).map((box) => ({
     box,
     pointer: box.dataset.pointer ?? "",
-    label: box.querySelector("label")?.firstChild?.textContent?.trim() ?? "",
+    label: box.dataset.label ?? box.querySelector("label")?.firstChild?.textContent?.trim() ?? "",
     row: box.dataset.row,
     unit: box.dataset.unit ?? "",
     control: box.dataset.control ?? "",
@@ -96,7 +97,7 @@ export function readingOf(field) {
 export function isDefault(field) {
   if (field.control === "boolean") return String(field.input.checked) === field.default;
   const text = field.input.value.trim();
-  if (text === "") return true;
+  if (text === "" || (field.control === "list" && text === "0")) return true;
   if (field.required || field.default === "") return false;
   if (field.control === "number" || field.control === "integer") return readTyped(field).value === Number(field.default);
   return text === field.default;
@@ -111,6 +112,8 @@ export const textOf = ({ control, input }) => (control === "boolean" ? String(in
 /** Text that a field has for a document. @param {Field} field @param {JobInput} document */
 export function textIn(field, document) {
   const value = get(document, field.pointer) ?? null;
+  if (field.control === "parts") return partsOf(value);
+  if (field.control === "list") return String(Array.isArray(value) ? value.length : 0);
   return field.control === "boolean" ? String(value ?? field.default === "true") : asText(field, value);
 }
 
@@ -135,6 +138,19 @@ export function isSame(field, one, other) {
   return value !== undefined && value === readField(other, unit).value;
 }
 
+/**
+ * Objects in an object that a choice stands for: a member of `parts` for each.
+ * @type {Record<string, string[]>}
+ */
+const PARTS = { arrangement: ["arrangement"], pinion: ["arrangement", "pinion"], gear: ["arrangement", "gear"], given: ["pinion", "gear"] };
+
+/** The choice that an object of the document stands for. @param {any} value */
+function partsOf(value) {
+  if (typeof value !== "object" || value === null) return "";
+  const given = ["pinion", "gear"].filter((name) => typeof value[name] === "object" && value[name] !== null);
+  return given.length === 2 ? "given" : given[0] ?? "arrangement";
+}
+
 /** Members of documents without a field in the form: kept, so that the server reports the violations. */
 const extras = new Map();
 
@@ -142,8 +158,14 @@ const extras = new Map();
 export function readDocument(form) {
   /** @type {JobInput} */
   const root = {};
-  for (const field of fieldsOf(form)) {
-    if (!field.box.hidden && !isDefault(field)) put(root, field.pointer, valueOf(field));
+  const used = fieldsOf(form).filter(({ box }) => !box.hidden);
+  for (const field of used) {
+    if (field.control !== "list" && field.control !== "parts" && !isDefault(field)) put(root, field.pointer, valueOf(field));
+  }
+  // What is chosen or counted is there, even with every field in it at its default.
+  for (const { control, pointer, input, box } of used) {
+    const members = control === "parts" ? PARTS[input.value] ?? [] : control === "list" ? Array.from({ length: countAt(box) }, (_, index) => String(index)) : [];
+    for (const member of members) if (get(root, `${pointer}/${member}`) === undefined) put(root, `${pointer}/${member}`, {});
   }
   // The second axis without the first: the document has no gaps.
   if (root.axes) root.axes = root.axes.filter(Boolean);
@@ -161,15 +183,22 @@ export function readDocument(form) {
  * @param {JobInput} document
  */
 export function writeDocument(form, document) {
+  fillLists(form, (pointer) => {
+    const list = get(document, pointer);
+    return Array.isArray(list) ? list.length : 0;
+  });
   const known = new Set();
+  /** Of these, the members have fields of their own. @type {Set<string>} */
+  const holders = new Set();
   for (const field of fieldsOf(form)) {
+    if (field.control === "list" || field.control === "parts") holders.add(field.pointer);
     known.add(field.pointer);
     putText(field, textIn(field, document));
   }
   extras.clear();
   const places = [...known];
   for (const [pointer, value] of leavesOf(document)) {
-    const hasField = places.some((place) => pointer === place || pointer.startsWith(`${place}/`));
+    const hasField = places.some((place) => pointer === place || (!holders.has(place) && pointer.startsWith(`${place}/`)));
     const isEmptyGroup = typeof value === "object" && places.some((place) => place.startsWith(`${pointer}/`));
     if (!hasField && !isEmptyGroup) extras.set(pointer, value);
   }

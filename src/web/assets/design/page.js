@@ -1,7 +1,7 @@
 // The page with the design form: reactions to changes of its fields, and submission.
 
 import * as api from "../common/api.js";
-import { byId, download, el, show } from "../common/dom.js";
+import { byAnyId, byId, download, el, show } from "../common/dom.js";
 import { changesFrom, showChanges } from "./changes.js";
 import { initCheck } from "./check.js";
 import { initDependent } from "./dependent.js";
@@ -9,6 +9,7 @@ import { applyConditions, dropExtras, extraPointers, fieldsOf, readDocument, tex
 import { dropDraft, keepDraft, keepSubmitted } from "./draft.js";
 import { forgetEdits, linkTo, noteEdit, requireAll, say, showReadings } from "./errors.js";
 import { initHelp } from "./help.js";
+import { initLists } from "./lists.js";
 import { initStart } from "./start.js";
 import { initResets, showWhatIsSet } from "./summary.js";
 import { initSweep } from "./sweep.js";
@@ -84,12 +85,27 @@ function changed() {
   refresh();
 }
 
+/** Both shafts of the document that was checked last, as they are solved. @type {any} */
+let solvedShafts = null;
+
+/** Puts the derived shafts into the fields, so that they can be edited. */
+function editShafts() {
+  if (!solvedShafts) return;
+  const document = readDocument(form);
+  document.design.shafts = solvedShafts;
+  writeDocument(form, document);
+  changed();
+  byAnyId("field-design-shafts").focus();
+}
+
 /** @param {CheckedDocument} report @returns {Promise<import("./document.js").Field[]>} */
-async function checked({ derived }) {
+async function checked({ derived, shafts }) {
   unsettled = null;
   await settling;
   dependent.update(derived);
   showReadings(form);
+  solvedShafts = shafts ?? null;
+  show(byId("shafts-take-over"), Boolean(shafts && readDocument(form).design.shafts?.arrangement));
   const stale = dependent.stale();
   showChanges(form, started, stale);
   return stale;
@@ -255,7 +271,8 @@ function pasteList(event) {
 
 form.addEventListener("input", (event) => {
   const box = /** @type {HTMLElement | null} */ (/** @type {Element} */ (event.target).closest("[data-pointer]"));
-  if (!box) return;
+  // The number of objects in a list counts once it is entered.
+  if (!box || box.dataset.control === "list") return;
   noteEdit(box.dataset.pointer ?? "");
   changed();
 });
@@ -284,6 +301,8 @@ byId("sections").addEventListener("click", (event) => {
 show(byId("problems"), false);
 initHelp(form);
 initResets(form, changed);
+initLists(form, changed);
+byId("shafts-edit").addEventListener("click", editShafts);
 initSweep(form, { readDocument: () => readDocument(form), changed });
 const start = initStart({ fill, read: contents });
 start();
