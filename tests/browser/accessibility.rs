@@ -1,9 +1,9 @@
 //! What axe-core finds on the pages: WCAG 2.2 to level AA and its best practices.
 
 use crate::browser::{Browser, flow, flow_against};
-use crate::entry;
 use crate::pages;
 use crate::server::Server;
+use crate::{entry, shafts};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -117,6 +117,28 @@ async fn no_state_of_the_form_has_a_serious_finding() {
         browser.fill("/design/gear/teeth", "many").await;
         browser.until(&format!("{state}.includes('2 fields need attention')")).await;
         found.extend(everywhere(browser, &axe, "problems").await);
+        accept(&found);
+    })
+    .await;
+}
+
+/// The section of the shafts: a few numbers, then lists of segments and bearings with a mistake in one.
+#[tokio::test]
+async fn no_state_of_the_shafts_has_a_serious_finding() {
+    let axe = axe_core();
+    flow(async |browser| {
+        shafts::open_section(browser).await;
+        browser.choose(shafts::CHOICE, "arrangement").await;
+        browser.until("!document.querySelector('#shafts-take-over').hidden").await;
+        let mut found = everywhere(browser, &axe, "shafts from a few numbers").await;
+        browser.click("#shafts-edit").await;
+        browser.until("document.querySelector('#shafts-take-over').hidden").await;
+        browser.value("document.querySelector('.inner-list').open = true").await;
+        browser.click(".inner-list [data-act=add]").await;
+        browser.until("document.querySelectorAll('[aria-invalid=true]').length > 0").await;
+        // The line with the help of the field in use lies over what happens to stand below it.
+        browser.value("document.activeElement.blur()").await;
+        found.extend(everywhere(browser, &axe, "shafts segment by segment").await);
         accept(&found);
     })
     .await;

@@ -4,14 +4,15 @@ use crate::browser::{Browser, flow};
 use crate::form::{GOOD, document};
 use serde_json::{Value, json};
 
-const SHAFTS: &str = "[data-pointer='/design/shafts'] select";
+/// The choice of which shafts are given.
+pub(crate) const CHOICE: &str = "[data-pointer='/design/shafts'] select";
 
 /// Number of elements of a selector.
 async fn count(browser: &Browser, selector: &str) -> Value {
     browser.value(&format!("document.querySelectorAll(\"{selector}\").length")).await
 }
 
-async fn open_section(browser: &Browser) {
+pub(crate) async fn open_section(browser: &Browser) {
     browser.open("/").await;
     browser.until(GOOD).await;
     browser.click("#group-shafts > summary").await;
@@ -23,7 +24,7 @@ async fn a_straddle_arrangement_takes_four_fields_and_is_drawn() {
         open_section(browser).await;
         assert_eq!(document(browser).await["design"]["shafts"], Value::Null);
         assert_eq!(browser.value("document.querySelector('#shafts-drawing').hidden").await, json!(true));
-        browser.choose(SHAFTS, "arrangement").await;
+        browser.choose(CHOICE, "arrangement").await;
         // Nothing more is needed: the rest is derived, and said.
         browser.until("document.querySelectorAll('#drawing-shafts .bearing').length === 4").await;
         assert_eq!(document(browser).await["design"]["shafts"], json!({"arrangement": {}}));
@@ -35,7 +36,7 @@ async fn a_straddle_arrangement_takes_four_fields_and_is_drawn() {
         browser.until(GOOD).await;
         let arrangement = json!({"bearing_span_mm": 340, "pinion_shaft_diameter_mm": 80, "gear_shaft_diameter_mm": 110});
         assert_eq!(document(browser).await["design"]["shafts"], json!({"arrangement": arrangement}));
-        browser.until("document.querySelector('#drawing-shafts desc').textContent.includes('-170 mm, 170 mm')").await;
+        browser.until("document.querySelector('#drawing-shafts desc').textContent.includes('−170 mm, 170 mm')").await;
         assert_eq!(count(browser, "#drawing-shafts .axial").await, json!(1));
         // What is wrong is said at its field, and the drawing fades.
         browser.fill("/design/shafts/arrangement/bearing_span_mm", "150").await;
@@ -45,7 +46,7 @@ async fn a_straddle_arrangement_takes_four_fields_and_is_drawn() {
         browser.fill("/design/shafts/arrangement/bearing_span_mm", "340").await;
         browser.until(GOOD).await;
         // A sweep can vary what stands in the fields; hidden again, they are no part of the document.
-        browser.choose(SHAFTS, "").await;
+        browser.choose(CHOICE, "").await;
         browser.until("document.querySelector('#shafts-drawing').hidden").await;
         assert_eq!(document(browser).await["design"]["shafts"], Value::Null);
     })
@@ -56,7 +57,7 @@ async fn a_straddle_arrangement_takes_four_fields_and_is_drawn() {
 async fn derived_shafts_are_edited_segment_by_segment() {
     flow(async |browser| {
         open_section(browser).await;
-        browser.choose(SHAFTS, "arrangement").await;
+        browser.choose(CHOICE, "arrangement").await;
         browser.until("!document.querySelector('#shafts-take-over').hidden").await;
         browser.click("#shafts-edit").await;
         browser.until("document.querySelector('#shafts-take-over').hidden").await;
@@ -89,7 +90,7 @@ async fn derived_shafts_are_edited_segment_by_segment() {
 async fn a_malformed_bearing_is_marked_where_it_stands() {
     flow(async |browser| {
         open_section(browser).await;
-        browser.choose(SHAFTS, "arrangement").await;
+        browser.choose(CHOICE, "arrangement").await;
         browser.until("!document.querySelector('#shafts-take-over').hidden").await;
         browser.click("#shafts-edit").await;
         browser.until(GOOD).await;
@@ -139,7 +140,7 @@ async fn lists_are_filled_from_a_document_and_kept_with_what_is_not_known() {
         assert_eq!(shown["design"]["shafts"], given["design"]["shafts"]);
         browser.click("#extras button").await;
         browser.until(GOOD).await;
-        assert_eq!(browser.value(&format!("document.querySelector(\"{SHAFTS}\").value")).await, json!("pinion"));
+        assert_eq!(browser.value(&format!("document.querySelector(\"{CHOICE}\").value")).await, json!("pinion"));
         // The number of objects can be typed; a row of the inner list has its own numbers.
         browser.value("document.querySelector('#group-shafts').open = true").await;
         let speeds = "/design/shafts/pinion/bearings/0/speed_table";

@@ -140,6 +140,11 @@ impl FormField {
         }
     }
 
+    /// Whether the page offers to restore the default.
+    pub(crate) fn has_reset(&self) -> bool {
+        !self.required && !matches!(self.control, Control::Count)
+    }
+
     /// The label with what the field is of.
     pub(crate) fn full_label(&self) -> String {
         if self.context.is_empty() { self.label.clone() } else { format!("{}, {}", self.label, self.context) }

@@ -159,14 +159,14 @@ impl Body {
             face_width_mm: width_mm,
             reference_diameter_mm,
             // A gear whose root circle vanishes is refused elsewhere.
-            root_diameter_mm: root_mm.max(0.2 * reference_diameter_mm),
+            root_diameter_mm: rounded(root_mm.max(0.2 * reference_diameter_mm)),
             density_kg_m3: material.density_kg_m3,
         }
     }
 
     /// The body between the halves: a groove one module deep below the root circle, not below the shaft.
     fn groove_diameter_mm(&self, shaft_diameter_mm: f64, module_mm: f64) -> f64 {
-        (self.root_diameter_mm - module_mm).max(shaft_diameter_mm.min(self.root_diameter_mm))
+        rounded((self.root_diameter_mm - module_mm).max(shaft_diameter_mm.min(self.root_diameter_mm)))
     }
 
     /// The teeth of a half as a ring between root and reference circle.
@@ -176,11 +176,22 @@ impl Body {
         let mass_kg = self.density_kg_m3 * PI / 4.0 * (outer_m * outer_m - inner_m * inner_m) * width_m;
         let squares = outer_m * outer_m + inner_m * inner_m;
         (mass_kg > 0.0).then(|| RigidBodyInput {
-            mass_kg,
-            polar_inertia_kg_m2: mass_kg * squares / 8.0,
-            diametral_inertia_kg_m2: mass_kg * (squares / 16.0 + width_m * width_m / 12.0),
+            mass_kg: rounded(mass_kg),
+            polar_inertia_kg_m2: rounded(mass_kg * squares / 8.0),
+            diametral_inertia_kg_m2: rounded(mass_kg * (squares / 16.0 + width_m * width_m / 12.0)),
         })
     }
+}
+
+/// A derived value with four significant digits, as people give one.
+fn rounded(value: f64) -> f64 {
+    // The text of a number is read without an error of its last digits.
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+/// A sum of lengths without the errors of its last digits: to a picometre.
+fn cleaned(length_mm: f64) -> f64 {
+    (length_mm * 1e9).round() / 1e9
 }
 
 /// What a derived shaft needs: places from the middle of the gap, positive to the right.
@@ -197,7 +208,7 @@ impl Plan {
     fn shaft(&self, body: &Body, module_mm: f64) -> ShaftInput {
         let Self { diameter_mm, bearings_mm, coupling_mm, .. } = *self;
         let Faces { inner_mm, outer_mm, .. } = body.faces;
-        let seat_mm = SEAT * diameter_mm;
+        let seat_mm = rounded(SEAT * diameter_mm);
         let least = |places: [f64; 4]| places.into_iter().fold(f64::INFINITY, f64::min);
         let left_mm = least([-outer_mm, coupling_mm, bearings_mm[0] - seat_mm, bearings_mm[1] - seat_mm]);
         let right_mm = -least([-outer_mm, -coupling_mm, -bearings_mm[0] - seat_mm, -bearings_mm[1] - seat_mm]);
@@ -214,16 +225,16 @@ impl Plan {
         let mut start_mm = left_mm;
         for (_, end_mm, diameter_mm) in pieces {
             if end_mm - start_mm >= 0.1 {
-                segments.push(ShaftSegmentInput { length_mm: end_mm - start_mm, diameter_mm, bore_mm: 0.0 });
+                segments.push(ShaftSegmentInput { length_mm: cleaned(end_mm - start_mm), diameter_mm, bore_mm: 0.0 });
                 start_mm = end_mm;
             }
         }
         let length_mm: f64 = segments.iter().map(|segment| segment.length_mm).sum();
-        let position = |z_mm: f64| (z_mm - left_mm).clamp(0.0, length_mm);
+        let position = |z_mm: f64| cleaned(z_mm - left_mm).clamp(0.0, length_mm);
         let bearing = |index: usize| {
             let [radial, axial] = self.stiffness_n_per_um[index];
             let damping = |stiffness: f64| match stiffness > 0.0 {
-                true => self.damping_ns_per_m.unwrap_or(DAMPING_PER_STIFFNESS * stiffness),
+                true => self.damping_ns_per_m.unwrap_or_else(|| rounded(DAMPING_PER_STIFFNESS * stiffness)),
                 false => 0.0,
             };
             BearingInput {
@@ -261,6 +272,7 @@ fn derive(
     let [pinion, gear] = [&design.pinion, &design.gear].map(|gear| Body::of(design, gear));
     let mut derived = Vec::new();
     let mut take = |name: &str, given: Option<f64>, value: f64, basis: &'static str, is_used: bool| {
+        let value = rounded(value);
         if is_used {
             let pointer = format!("/design/shafts/arrangement/{name}");
             derived.push(DerivedShaftValue { pointer, value, unit: unit_of(name), basis });
@@ -329,7 +341,8 @@ fn derive(
         "a third of the radial stiffness",
         of_gear,
     );
-    let overhang = |diameter_mm: f64| arrangement.coupling_overhang_mm.unwrap_or(COUPLING_OVERHANG * diameter_mm);
+    let overhang =
+        |diameter_mm: f64| arrangement.coupling_overhang_mm.unwrap_or_else(|| rounded(COUPLING_OVERHANG * diameter_mm));
     let (input, output) = (arrangement.input, arrangement.output.unwrap_or(arrangement.input.opposite()));
     let pinion_bearings = match is_overhung {
         true => {
@@ -411,7 +424,7 @@ fn assume_stiffness(shaft: &mut ShaftInput, pointer: &str, assumed: &mut Vec<Der
         if !bearing.speed_table.is_empty() || bearing.given_radial_n_per_um().iter().all(Option::is_some) {
             continue;
         }
-        let value = RADIAL_PER_DIAMETER * shaft.diameter_at_mm(bearing.position_mm).unwrap_or_default();
+        let value = rounded(RADIAL_PER_DIAMETER * shaft.diameter_at_mm(bearing.position_mm).unwrap_or_default());
         shaft.bearings[index].radial_n_per_um = Some(value);
         let pointer = format!("{pointer}/bearings/{index}/radial_n_per_um");
         assumed.push(DerivedShaftValue { pointer, value, unit: "N/um", basis: "10 N/µm per mm of shaft ø" });

@@ -386,8 +386,8 @@ fn an_arrangement_of_four_numbers_gives_both_shafts() {
     }
     // d = z m_n / cos β, d_f = d - 2 · 1.25 m_n: 97.03 and 274.97 mm.
     let d = |teeth: f64| teeth * 6.0 / 24.43_f64.to_radians().cos();
-    near(pinion.segments[1].diameter_mm, d(17.0) - 15.0);
-    near(gear.segments[3].diameter_mm, d(44.0) - 15.0);
+    assert_eq!((pinion.segments[1].diameter_mm, gear.segments[3].diameter_mm), (97.03, 275.0));
+    assert!((97.03 - d(17.0) + 15.0).abs() < 5e-3 && (275.0 - d(44.0) + 15.0).abs() < 5e-2);
     assert_eq!(pinion.bearings[0].radial_n_per_um, Some(800.0));
     // The gear is located opposite of its coupling, which is opposite of the input.
     assert!(gear.bearings[0].axial_n_per_um > 0.0 && gear.bearings[1].axial_n_per_um == 0.0);

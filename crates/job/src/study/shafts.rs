@@ -350,9 +350,8 @@ mod tests {
             let found = report.derived.iter().find(|one| one.pointer == pointer);
             found.unwrap_or_else(|| panic!("no {name}")).value
         };
-        let root_mm = 17.0 * 6.0 / 24.43_f64.to_radians().cos() - 15.0;
-        assert!((of("pinion_shaft_diameter_mm") - 0.8 * root_mm).abs() < 1e-9);
-        assert!((of("bearing_span_mm") - 2.0 * (90.0 + 0.8 * root_mm)).abs() < 1e-9);
+        // 0.8 of the root circle of 97.03 mm; both halves with the gap are 180 mm wide.
+        assert_eq!((of("pinion_shaft_diameter_mm"), of("bearing_span_mm")), (77.62, 335.2));
         assert!(report.derived.iter().all(|one| !one.pointer.starts_with("/design/supports")));
     }
 }

@@ -9,7 +9,7 @@ import { group, put, svg, text } from "./svg.js";
 
 const WIDTH = 720;
 const MOST_HEIGHT = 420;
-const MARGIN = { x: 46, top: 22, bottom: 30 };
+const MARGIN = { x: 46, top: 22, bottom: 42 };
 
 /** The drawing in the section of the form: `show` draws or hides it, `fade` marks it as no longer that of the form. */
 export function initShaftsDrawing() {

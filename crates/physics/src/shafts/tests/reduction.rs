@@ -42,7 +42,7 @@ fn accuracy_grows_with_the_number_of_coordinates() {
         let case = case(name);
         let rotor = case.rotor();
         let mut before = f64::INFINITY;
-        for (coordinates, tolerance) in [(24, 0.5), (32, 0.05), (40, 0.02), (48, 0.005), (60, 2e-4)] {
+        for (coordinates, tolerance) in [(24, 0.03), (32, 0.01), (40, 5e-3), (48, 3e-4), (60, 2e-4)] {
             let reduced = rotor.reduce(&settings(&case, up_to_hz, coordinates)).unwrap();
             assert!(reduced.coordinates() <= coordinates);
             let mut errors = [0.0f64; 2];
