@@ -21,6 +21,8 @@ DEPENDENT = re.compile(
     r"/axes/\d+(/from|/to)?"
     # needed with source "given"
     r"|/model/mesh_stiffness/mean_n_per_um|/model/impact/(force_n|duration_mesh_periods)"
+    # needed without an arrangement; a spring and the machine on it need each other
+    r"|/design/shafts/(pinion|gear)(/coupling/(inertia_kg_m2|torsional_nm_per_rad))?"
     # one of the names that GET /jobs/{id}/series lists
     r"|/analysis/channels/\d+"
 )

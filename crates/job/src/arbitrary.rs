@@ -164,7 +164,8 @@ fn shafts(document: &mut Value) {
         }
     }
     let shafts = &mut design["shafts"];
-    if !(shafts["pinion"].is_object() && shafts["gear"].is_object()) && !shafts["arrangement"].is_object() {
+    let is_given = shafts["pinion"].is_object() && shafts["gear"].is_object();
+    if !is_given && !shafts["arrangement"].is_object() {
         shafts["arrangement"] = json!({});
     }
     if let Some(span_mm) = shafts["arrangement"]["bearing_span_mm"].as_f64() {

@@ -34,11 +34,11 @@ pub(super) struct Block {
 pub(super) enum Layout {
     Fields(Vec<FormField>),
     Table { columns: Vec<&'static str>, rows: Vec<Row> },
-    List(List),
+    List(Box<List>),
 }
 
-/// The objects of a list, as many as one wants. The page's script makes an object of the fields, with its number in place
-/// of the first `*` of identifiers and pointers and of the mark in texts.
+/// The objects of a list, as many as one wants. The page's script makes an object of the fields, with its number in
+/// place of the first `*` of identifiers and pointers and of the mark in texts.
 pub(super) struct List {
     /// The number of objects.
     pub count: FormField,
@@ -247,7 +247,9 @@ fn section(group: &GroupPlan, fields: &mut Vec<FormField>) -> Group {
                 let taken = columns.iter().map(|(_, object)| take(object)).collect();
                 Layout::Table { columns: columns.iter().map(|(title, _)| *title).collect(), rows: rows(taken, columns) }
             }
-            LayoutPlan::List(ref plan) => list_at(plan).map_or_else(|| Layout::Fields(Vec::new()), Layout::List),
+            LayoutPlan::List(ref plan) => {
+                list_at(plan).map_or_else(|| Layout::Fields(Vec::new()), |list| Layout::List(Box::new(list)))
+            }
         },
     });
     Group {

@@ -243,7 +243,7 @@ const MALFORMED: &[Malformed] = &[
         "a body that cannot be",
         |s| {
             s["pinion"]["half_body"] =
-                json!({"mass_kg": 1.0, "polar_inertia_kg_m2": 0.4, "diametral_inertia_kg_m2": 0.1})
+                json!({"mass_kg": 1.0, "polar_inertia_kg_m2": 0.4, "diametral_inertia_kg_m2": 0.1});
         },
         "/pinion/half_body/diametral_inertia_kg_m2",
         "0.2 kg·m² and more",

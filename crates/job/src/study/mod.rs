@@ -171,8 +171,8 @@ pub struct CheckReport {
     pub warnings: Vec<Warning>,
     /// Values that the rest of the document gives to fields which can be left out.
     pub derived: Vec<DerivedValue>,
-    /// Both shafts as they are solved, as a document gives them: bearings with their stiffness, derived shafts in full; absent without
-    /// `design.shafts`.
+    /// Both shafts as they are solved, as a document gives them: bearings with their stiffness, derived shafts in full;
+    /// absent without `design.shafts`.
     #[cfg_attr(feature = "schema", schema(value_type = Option<Object>))]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shafts: Option<SolvedShafts>,

@@ -119,7 +119,12 @@ function drawBearing(bearing, index, axis, x, scale) {
   return node;
 }
 
-/** @param {ShaftDrawing} shaft @param {"in" | "out"} torque @param {number} axis @param {(axial: number) => number} x */
+/**
+ * @param {ShaftDrawing} shaft
+ * @param {"in" | "out"} torque
+ * @param {number} axis
+ * @param {(axial: number) => number} x
+ */
 function drawCoupling(shaft, torque, axis, x) {
   const at = x(shaft.coupling_mm);
   /** @type {SVGElement[]} */

@@ -4,6 +4,7 @@ import { labelOf, number, sentence, shownUnit, unitOf } from "../common/format.j
 
 const GROUPS = [
   ["Operating point", "/operation"], ["Gear", "/design"], ["Material", "/design/material"], ["Pinion", "/design/pinion"], ["Wheel", "/design/gear"], ["Supports", "/design/supports"],
+  ["Arrangement of the shafts", "/design/shafts/arrangement"], ["Shaft of the pinion", "/design/shafts/pinion"], ["Shaft of the gear", "/design/shafts/gear"],
   ["Assembly errors", "/design/assembly"], ["Model", "/model"], ["Analysis", "/analysis"],
 ];
 
