@@ -46,7 +46,7 @@ const LARGEST_RANGE_HZ: f64 = 16_000.0;
 /// The finest accuracy that is asked of a reduction.
 const FINEST: f64 = 1e-3;
 /// Coordinates of the equations of motion at most.
-const MOST_COORDINATES: usize = 64;
+const MOST_COORDINATES: usize = 96;
 
 fn failed(error: &ShaftError) -> SolveError {
     SolveError::failed(Stage::Response, "shafts-failed", error)
