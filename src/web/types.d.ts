@@ -28,6 +28,10 @@ declare global {
   type PointColumns = Schemas["PointColumns"];
   type ProblemBody = Partial<Schemas["Problem"]>;
   type ResponseResult = Schemas["Response"];
+  type BearingForce = Schemas["BearingForceResult"];
+  type Rotor = Schemas["Rotor"];
+  type RotorMode = Schemas["RotorMode"];
+  type ShaftsResult = Schemas["Shafts"];
   type SectionDrawing = Schemas["Section"];
   type SeriesChannel = Schemas["Series"];
   /** Values that are not finite are null. */

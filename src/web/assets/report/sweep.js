@@ -12,7 +12,7 @@ import { campbell, resonancesOf } from "../sweep/resonances.js";
 import { HIGH, showFigures } from "./figures.js";
 
 /** Quantities that are drawn, as far as the sweep has them. */
-const DRAWN = ["mesh_circumferential_acceleration_rms", "pinion_axial_acceleration_rms", "dynamic_factor", "tooth_force_max", "transmission_error_pp"];
+const DRAWN = ["mesh_circumferential_acceleration_rms", "pinion_axial_acceleration_rms", "dynamic_factor", "tooth_force_max", "transmission_error_pp", "k_h_beta", "largest_bearing_force_rms"];
 /** @param {SweepQuantity} quantity */
 const isDrawn = ({ name }) => DRAWN.some((start) => name.startsWith(start));
 /** Lines of a sweep over two inputs that are drawn as curves. */
