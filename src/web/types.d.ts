@@ -99,6 +99,7 @@ declare global {
     id: string;
     name: string;
     data: import("./assets/sweep/data.js").SweepData;
+    quantities: SweepQuantity[];
     /** The result without its rows; null until the sweep has succeeded. */
     rest: JobResult | null;
     /** Mesh orders of the recorded spectra. */
@@ -135,6 +136,8 @@ declare global {
     label: string;
     unit: string;
     least: boolean;
+    /** Only points of documents with shafts have it. */
+    needsShafts: boolean;
     change: import("./assets/common/quantities.js").Quantity["change"];
     columns: { both?: string; left?: string; right?: string };
   }

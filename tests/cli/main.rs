@@ -290,7 +290,7 @@ fn the_forces_of_the_bearings_are_written_by_order() {
         assert_eq!(number(5), order as f64 * hertz, "{line}");
         rows += 1;
     }
-    assert!(rows >= 4 * 3 * 11, "{rows} rows");
+    assert!(rows >= 4 * 2 * 11, "{rows} rows");
     let example = example("given_stiffness.json");
     let without = herringbone(&["solve", example.to_str().expect("UTF-8"), "--bearing-forces", csv]);
     assert_eq!(without.status.code(), Some(2));

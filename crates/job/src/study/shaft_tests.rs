@@ -183,6 +183,7 @@ fn sweeps_vary_the_shafts() {
     input["kind"] = json!("sweep");
     input["model"]["mesh_stiffness"] =
         json!({"source": "ltca", "fidelity": "uniform", "line_stiffness_n_per_mm_um": 14.0, "corner_contact": false});
+    input["model"]["mesh_force"] = json!("stiffness");
     input["operation"]["pinion_torque_nm"] = json!(800.0);
     let derived = json!({"arrangement": {"bearing_span_mm": 340.0, "pinion_shaft_diameter_mm": 80.0}});
     let sweep = |shafts: Option<&Value>, axes: Value| {

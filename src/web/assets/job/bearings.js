@@ -24,13 +24,14 @@ export async function showBearings({ id, result: { response } }) {
     choice.checked = AXES[index] === (moved.includes("y") ? "y" : moved[0]);
     choice.addEventListener("change", update);
   });
+  byId("bearing-log").addEventListener("change", update);
   show(byId("bearings-figure"), moved.length > 0);
   await update();
 
   async function update() {
     const axis = AXES[choices.findIndex((choice) => choice.checked)];
     const picture = axis && bearingOrdersPlot(response, axis);
-    if (picture) await draw(byId("bearings-plot"), picture.traces, picture.axes);
+    if (picture) await draw(byId("bearings-plot"), picture.traces, { ...picture.axes, log: byId("bearing-log").checked });
   }
 }
 

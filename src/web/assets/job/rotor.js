@@ -100,8 +100,8 @@ export const nameOfMode = (mode, index) => `mode ${index + 1}: ${number(mode.fre
 const percent = (share) => number(Math.round(1000 * (share ?? 0)) / 10, 4);
 
 /**
- * Number, frequency, damping, shares of the strain energy, the bearing that holds most, shares of the kinetic energy and
- * name of each mode.
+ * Number, frequency, damping, shares of the strain energy, the bearing that holds most, shares of the kinetic energy
+ * and name of each mode.
  * @param {Rotor} rotor
  * @returns {string[][]}
  */

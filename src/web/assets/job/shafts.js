@@ -75,7 +75,7 @@ export function shaftsValues(shafts) {
     row("/shafts/{half}/axial_force_on_pinion_n", 4),
     row("/shafts/transmission_error/between_couplings_mean_um"),
     row("/shafts/transmission_error/between_couplings_pp_um", 4),
-    ["Its harmonics", shafts.transmission_error.harmonics_um.map((value) => number(value, 3)).join(", "), "µm", scalarAt("/shafts/transmission_error/harmonics_um/0")],
+    ["Transmission error between the couplings, harmonics 1 to 3", shafts.transmission_error.harmonics_um.map((value) => number(value, 3)).join(", "), "µm", scalarAt("/shafts/transmission_error/harmonics_um/0")],
     row("/shafts/{half}/approach_mid_face_mean_um", 4),
     ["Axial displacement of the pinion, mean", number(shafts.pinion_axial_float_um.mean, 3), "µm", scalarAt("/shafts/pinion_axial_float_um/mean")],
     row("/shafts/open_fraction", 3),

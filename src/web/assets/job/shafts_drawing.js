@@ -53,7 +53,7 @@ export function drawDeflection(root, drawing, shafts) {
       const at = place.x(shaft.bearings[index].axial_mm);
       ["x", "y"].forEach((name, direction) => {
         const length = longest > 0 ? (force[direction] / longest) * LONGEST_PX : 0;
-        if (Math.abs(length) > 2) put(node, arrow(`force ${name}`, at + (direction ? 6 : -6), axis, length));
+        if (Math.abs(length) > 2) put(node, ...arrow(name, at + (direction ? 6 : -6), axis, length));
       });
     });
     root.append(node);
@@ -63,10 +63,16 @@ export function drawDeflection(root, drawing, shafts) {
   return factor;
 }
 
-/** An arrow upwards by so many px. @param {string} name @param {number} x @param {number} from @param {number} length */
+/**
+ * An arrow upwards, or downwards where the length is negative; all in px.
+ * @param {string} name
+ * @param {number} x
+ * @param {number} from
+ * @param {number} length
+ */
 function arrow(name, x, from, length) {
   const [to, back] = [from - length, Math.sign(length) * 6];
-  return svg("path", { class: name, d: `M${x} ${from}V${to}m-3.5 ${back}L${x} ${to}l3.5 ${back}` });
+  return [svg("path", { class: `force ${name}`, d: `M${x} ${from}V${to + 0.5 * back}` }), svg("path", { class: "force head", d: `M${x - 3.5} ${to + back}L${x} ${to}l3.5 ${back}` })];
 }
 
 /**
