@@ -78,7 +78,7 @@ export function shaftsValues(shafts) {
     ["Transmission error between the couplings, harmonics 1 to 3", shafts.transmission_error.harmonics_um.map((value) => number(value, 3)).join(", "), "µm", scalarAt("/shafts/transmission_error/harmonics_um/0")],
     row("/shafts/{half}/approach_mid_face_mean_um", 4),
     ["Axial displacement of the pinion, mean", number(shafts.pinion_axial_float_um.mean, 3), "µm", scalarAt("/shafts/pinion_axial_float_um/mean")],
-    row("/shafts/open_fraction", 3),
+    rowsFrom({ shafts: { open_fraction: rounded(shafts.open_fraction, []) } })("/shafts/open_fraction", 3),
   ];
 }
 
