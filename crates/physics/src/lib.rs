@@ -10,7 +10,7 @@
 //! | [`compliance`] | compliance of teeth, gear bodies and local contact, analytic or from finite elements |
 //! | [`fe`] | finite elements of one gear |
 //! | [`contact`] | load distribution, mesh stiffness, transmission error, load shares over the mesh period |
-//! | [`iso6336`] | mesh stiffness by ISO 6336-1, method B |
+//! | [`iso6336`] | mesh stiffness by ISO 6336-1, method B; face load factor of the pinion by method C |
 //! | [`impact`] | mesh-in impact: first contact, velocity, force |
 //! | [`dynamics`] | equations of motion of both halves, integration, periodic solutions, natural modes |
 //! | [`equations`] | parameters of the equations of motion from a pair and its loaded contact |

@@ -1,5 +1,5 @@
-//! Geared rotors with their division into elements and their natural frequencies, as JSON on standard output: our side of
-//! the comparison with ROSS (`scripts/ross`).
+//! Geared rotors with their division into elements and their natural frequencies, as JSON on standard output: our side
+//! of the comparison with ROSS (`scripts/ross`).
 //!
 //! `scripts/tool rotor_frequencies`
 

@@ -34,8 +34,8 @@ fn canonical(requested: &str) -> String {
     }
 }
 
-/// The channels requested by a document; all if it names none. Without the `train` of its shafts their channels are left
-/// out.
+/// The channels requested by a document; all if it names none. Without the `train` of its shafts their channels are
+/// left out.
 ///
 /// # Errors
 /// [`DocumentError::Invalid`] for names that are no channel.

@@ -172,8 +172,8 @@ impl<'a> CycleBuilder<'a> {
         Self::resampled(pair, slices, states, (from, positions.error))
     }
 
-    /// The same with a force at every position: phase (ascending), F_bt and state; phase of the first curve position and
-    /// error of the positions.
+    /// The same with a force at every position: phase (ascending), F_bt and state; phase of the first curve position
+    /// and error of the positions.
     pub(super) fn resampled(
         pair: &'a Pair,
         slices: usize,

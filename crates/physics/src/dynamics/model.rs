@@ -310,8 +310,8 @@ impl<const D: usize> DynamicModel<D> {
 
     /// Taylor coefficient `n` of the total normal tooth force of a half, mesh force plus F_s/cosβ, N, from the
     /// rotational equation of motion and the polynomials `rows`; it does not depend on the law of the mesh force. Not
-    /// of a train. Over a periodic motion its mean is T_p/(R_p cosβ) if no torsional spring couples the halves, and always in the sum of
-    /// both halves.
+    /// of a train. Over a periodic motion its mean is T_p/(R_p cosβ) if no torsional spring couples the halves, and
+    /// always in the sum of both halves.
     pub(crate) fn tooth_force_coefficient(&self, j: usize, n: usize, rows: &[[f64; D]; MAX_ORDER + 1]) -> f64 {
         let n1 = (n + 1) as f64;
         let free = self.half_acceleration(j, &rows[n], &rows[n + 1].map(|c| c * n1), 0.0, 0.0);
@@ -451,8 +451,8 @@ impl<const D: usize> DynamicModel<D> {
         state
     }
 
-    /// For a tabulated contact force, not of a train: rotates the gears until each half carries its load at the phase of the state.
-    /// Halves coupled in torsion rotate by the mean of their angles.
+    /// For a tabulated contact force, not of a train: rotates the gears until each half carries its load at the phase
+    /// of the state. Halves coupled in torsion rotate by the mean of their angles.
     pub(crate) fn close_contact(&self, state: &mut MotionState<D>) {
         if Self::IS_TRAIN {
             return;

@@ -56,9 +56,9 @@ pub struct HalfParameters {
     pub mesh_damping_n_s_per_m: f64,
     /// F_s, tangential in the transverse plane; see [`Parameters::impact_acts_on`].
     pub impact: Option<ImpactExcitation>,
-    /// e, displacement of the flanks along the tooth normal by their shape, as a Fourier series over the mesh phase from
-    /// the first harmonic, amplitudes in m; positive opens a gap (material removed). The mesh force is that of s − e:
-    /// k_m f(s − e) + c_m d(s − e)/dt, or the contact force at s − e. Empty: none.
+    /// e, displacement of the flanks along the tooth normal by their shape, as a Fourier series over the mesh phase
+    /// from the first harmonic, amplitudes in m; positive opens a gap (material removed). The mesh force is that of s −
+    /// e: k_m f(s − e) + c_m d(s − e)/dt, or the contact force at s − e. Empty: none.
     pub displacement_excitation: Vec<Harmonic>,
     /// Delay of the excitations of this half, in mesh periods (stagger of the halves).
     pub phase_shift_mesh_periods: f64,
@@ -113,8 +113,8 @@ pub struct Parameters {
     pub halves: [HalfParameters; 2],
     /// Springs between the halves of the shafts.
     pub couplings: Couplings,
-    /// Shafts, bearings and bodies as a reduced train, in place of the masses, supports and couplings. Radii, helix angle
-    /// and pinion torques then serve the impact and the choice of the loaded flank alone.
+    /// Shafts, bearings and bodies as a reduced train, in place of the masses, supports and couplings. Radii, helix
+    /// angle and pinion torques then serve the impact and the choice of the loaded flank alone.
     pub train: Option<Arc<ModalTrain>>,
 }
 

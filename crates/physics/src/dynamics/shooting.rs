@@ -99,8 +99,8 @@ impl<'m, const D: usize> Shooting<'m, D> {
         Ok(PeriodMap { end: motion.state, monodromy, size, separated, counts: motion.counts })
     }
 
-    /// The motion over a mesh period from `start`, and its monodromy matrix with the reference mesh stiffnesses in place
-    /// of those along the motion. None for anything but a train, or if its complex modes are nearly dependent.
+    /// The motion over a mesh period from `start`, and its monodromy matrix with the reference mesh stiffnesses in
+    /// place of those along the motion. None for anything but a train, or if its complex modes are nearly dependent.
     ///
     /// # Errors
     /// [`DynamicsError`].

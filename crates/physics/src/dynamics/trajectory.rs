@@ -68,9 +68,9 @@ pub(crate) fn number_of_coordinates(p: &Parameters, mirrored_start: bool) -> usi
     }
 }
 
-/// Integrates several trajectories by Taylor series as [`advance`] does, eight per thread in vector lanes (trains one after the other)
-/// and on all threads of the pool. `starts` holds one state per entry of `points`. The results are bit-identical to those of
-/// [`advance`].
+/// Integrates several trajectories by Taylor series as [`advance`] does, eight per thread in vector lanes (trains one
+/// after the other) and on all threads of the pool. `starts` holds one state per entry of `points`. The results are
+/// bit-identical to those of [`advance`].
 ///
 /// # Errors
 /// [`Canceled`] for all; [`DynamicsError`] per point as [`advance`].

@@ -55,9 +55,9 @@ impl PinionOnShaft {
         self.arrangement.constant(self.reference_diameter_m / self.shaft_diameter_m >= STIFFENING)
     }
 
-    /// Equivalent misalignment f_sh (m) of the helix nearer to the torque under the line load F_m/b (N/m, b the width of
-    /// both helices): `f_sh = 0.046 (F_m/b) [|1.5 + K' l s/d_1² (d_1/d_sh)⁴ − 0.3| + 0.3] (b_B/d_1)²` in µm, N/mm and mm
-    /// (ISO 6336-1:2006, 7.6.2; all of the power through one end).
+    /// Equivalent misalignment f_sh (m) of the helix nearer to the torque under the line load F_m/b (N/m, b the width
+    /// of both helices): `f_sh = 0.046 (F_m/b) [|1.5 + K' l s/d_1² (d_1/d_sh)⁴ − 0.3| + 0.3] (b_B/d_1)²` in µm, N/mm
+    /// and mm (ISO 6336-1:2006, 7.6.2; all of the power through one end).
     pub fn equivalent_misalignment_m(&self, line_load_n_per_m: f64) -> f64 {
         let d = self.reference_diameter_m;
         let bending =

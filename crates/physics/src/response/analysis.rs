@@ -47,8 +47,8 @@ pub struct Analysis {
     /// several steady motions the other methods report the one reached from there. None: static deflection under the
     /// mean mesh stiffness, at rest; the other methods then prefer a motion without loss of contact.
     pub initial_state: Option<[f64; 24]>,
-    /// Coordinates of a train, then their velocities (1/s), in its order: in place of `initial_state`, of which a train has
-    /// more coordinates. Not used without a train.
+    /// Coordinates of a train, then their velocities (1/s), in its order: in place of `initial_state`, of which a train
+    /// has more coordinates. Not used without a train.
     pub initial_modal_state: Option<Vec<f64>>,
     /// Limit of the steps of one integration.
     pub max_steps: u64,
@@ -122,8 +122,8 @@ pub enum ContactState {
 /// Normal tooth force of a half, N, positive on driving flanks.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ToothForce {
-    /// T_p/(R_p cosβ) of the half's torque; of a train the force that carries its load at rest, closed with its reference
-    /// stiffnesses.
+    /// T_p/(R_p cosβ) of the half's torque; of a train the force that carries its load at rest, closed with its
+    /// reference stiffnesses.
     pub static_n: f64,
     /// Largest value of mesh force plus impact over the record.
     pub max_n: f64,

@@ -241,8 +241,8 @@ struct SupportedShaft {
     beam: ClampedBeam,
     stations: Vec<Station>,
     springs: Vec<SupportSpring>,
-    /// Equations of support forces and of the six displacements of the clamped section, factored; rows scaled by `rows`,
-    /// unknowns by `columns`.
+    /// Equations of support forces and of the six displacements of the clamped section, factored; rows scaled by
+    /// `rows`, unknowns by `columns`.
     equations: LU<f64, nalgebra::Dyn, nalgebra::Dyn>,
     rows: Vec<f64>,
     columns: Vec<f64>,
@@ -391,8 +391,8 @@ fn factored(
             a[(supports + motion, row)] = rigid_body(spring.direction, motion, t);
         }
     }
-    // Moments over the length and rotations times the length are comparable with forces and displacements; displacements
-    // are in units of 1 N over the largest stiffness.
+    // Moments over the length and rotations times the length are comparable with forces and displacements;
+    // displacements are in units of 1 N over the largest stiffness.
     let stiffest =
         springs.iter().filter_map(|s| s.stiffness.map(|row| row[s.direction] / lever(s.direction, length_m)));
     let softest_m_per_n = 1.0 / stiffest.fold(f64::MIN_POSITIVE, f64::max).min(1e300);

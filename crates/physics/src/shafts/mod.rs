@@ -7,9 +7,9 @@
 //! and moments (N m) F_x, F_y, F_z, M_x, M_y, M_z. In the plane x–z the slope is +φ_y, in y–z it is −φ_x.
 //!
 //! # Beams
-//! Straight Timoshenko beams with bending in two planes, torsion and tension; the shear coefficient of the hollow circle
-//! is Cowper's. Sections are rigid: a point at r from the axis moves by u + φ × r. Diameter steps are fully effective at
-//! the step.
+//! Straight Timoshenko beams with bending in two planes, torsion and tension; the shear coefficient of the hollow
+//! circle is Cowper's. Sections are rigid: a point at r from the axis moves by u + φ × r. Diameter steps are fully
+//! effective at the step.
 
 mod beam;
 mod error;

@@ -89,8 +89,8 @@ pub struct HalfOnShafts {
     pub openings_m: Vec<f64>,
 }
 
-/// Displacements of a shaft under load, mean over the mesh period. Sections: u_x, u_y, u_z (m), φ_x, φ_y, φ_z (rad), the
-/// rotation relative to the section at the coupling.
+/// Displacements of a shaft under load, mean over the mesh period. Sections: u_x, u_y, u_z (m), φ_x, φ_y, φ_z (rad),
+/// the rotation relative to the section at the coupling.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShaftState {
     /// Left outer, left inner, right inner, right outer end of the common face.
@@ -110,8 +110,8 @@ pub struct ShaftState {
 /// Loaded contact of both halves on elastic shafts over one mesh period of the left half.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LoadedContactOnShafts {
-    /// Curves of both halves. Approach (transmission error): between the mid-face sections; stiffness: of the teeth with
-    /// the bodies held in their displaced shape.
+    /// Curves of both halves. Approach (transmission error): between the mid-face sections; stiffness: of the teeth
+    /// with the bodies held in their displaced shape.
     pub contact: LoadedContact,
     /// Base-tangent displacement between the couplings at every position: wind-up and bending included.
     pub between_couplings_m: Vec<f64>,
@@ -134,10 +134,10 @@ pub struct LoadedContactOnShafts {
 
 /// Length of the pieces of the face over which the line load is averaged.
 const PIECE_M: f64 = 5e-3;
-/// Solves both halves of `pair` on `shafts` under the pinion's torque of the magnitude `torque_nm`. `half_stagger` (part
-/// of a transverse pitch) advances the right half. `axial_n`: axial force by which a coupling holds the floating member
-/// back, on the pinion and positive to the right. With `coast`, `shafts` are those of the frame of the coast flanks, and
-/// curves are given over the phase of `pair` in the order in which it happens, as in
+/// Solves both halves of `pair` on `shafts` under the pinion's torque of the magnitude `torque_nm`. `half_stagger`
+/// (part of a transverse pitch) advances the right half. `axial_n`: axial force by which a coupling holds the floating
+/// member back, on the pinion and positive to the right. With `coast`, `shafts` are those of the frame of the coast
+/// flanks, and curves are given over the phase of `pair` in the order in which it happens, as in
 /// [`solve_coast_halves`](crate::contact::solve_coast_halves).
 ///
 /// # Errors
@@ -338,7 +338,8 @@ fn report(
     })
 }
 
-/// The openings of a half between its bodies, relative to the mid-face sections at the pitch point, mean over the period.
+/// The openings of a half between its bodies, relative to the mid-face sections at the pitch point, mean over the
+/// period.
 fn displacement_field(shafts: &ContactShafts, half: &HalfOnShafts) -> DisplacementField {
     let mut openings_m = [0.0; NODES];
     openings_m.iter_mut().zip(&half.openings_m).for_each(|(o, mean)| *o = *mean);
@@ -615,8 +616,8 @@ fn shaft_state(shafts: &ContactShafts, body: Body, positions: &Positions) -> Sha
     }
 }
 
-/// Largest sum of the radial forces on a shaft, and of the axial ones where nothing but bearings holds it, over the tooth
-/// force.
+/// Largest sum of the radial forces on a shaft, and of the axial ones where nothing but bearings holds it, over the
+/// tooth force.
 fn balance_error(shafts: &ContactShafts, halves: &[HalfOnShafts; 2], states: [&ShaftState; 2]) -> f64 {
     let force: f64 = halves.iter().map(|half| half.normal_force_n[0]).sum();
     let mut worst = 0.0f64;

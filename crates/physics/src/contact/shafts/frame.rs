@@ -3,8 +3,8 @@
 //! Right-handed x, y, z: x from the axis of the pinion to that of the gear, z along the shafts from left to right, the
 //! apex plane at z = 0. With the sense of rotation σ (+1: the pinion turns positively about z) the base tangent along
 //! which the pinion pushes the gear is d = (sin α_wt, σ cos α_wt, 0), through T1 = r_b1 (cos α_wt, −σ sin α_wt, 0) and
-//! T1 + x d, x the roll coordinate. The force on the gear is along the flank normal n = cos β_b d − σ H sin β_b e_z, H =
-//! +1 for a right-hand and −1 for a left-hand half of the pinion.
+//! T1 + x d, x the roll coordinate. The force on the gear is along the flank normal n = cos β_b d − σ H sin β_b e_z, H
+//! = +1 for a right-hand and −1 for a left-hand half of the pinion.
 
 use crate::gear::{Half, Pair, Rotation};
 

@@ -1,9 +1,9 @@
 //! The linearised load distribution of both halves on elastic shafts.
 //!
-//! Within each half the shafts are part of the flexibility between the stations; what couples the halves is of low rank:
-//! the openings q at a few nodes of each half by the forces p = Vᵀ f at the nodes of the other one, the common approach,
-//! and the axial shift of the member that floats. Each half answers with A⁻¹ [c, V]; the small dense system of p closes
-//! the step.
+//! Within each half the shafts are part of the flexibility between the stations; what couples the halves is of low
+//! rank: the openings q at a few nodes of each half by the forces p = Vᵀ f at the nodes of the other one, the common
+//! approach, and the axial shift of the member that floats. Each half answers with A⁻¹ [c, V]; the small dense system
+//! of p closes the step.
 
 use std::ops::Range;
 

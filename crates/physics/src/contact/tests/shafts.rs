@@ -278,7 +278,8 @@ fn rigid_shafts_are_rigid_bodies() {
     }
 }
 
-/// With perfect flanks and the whole line of contact loaded, everything is linear: half the torque, half the deflection.
+/// With perfect flanks and the whole line of contact loaded, everything is linear: half the torque, half the
+/// deflection.
 #[test]
 fn half_the_torque_halves_the_deflections() {
     let mut case = case_of(&cases()[0]["input"]);
@@ -337,8 +338,8 @@ fn wind_up_has_its_closed_form() {
     }
 }
 
-/// Turned by 180° about x (the torque enters from the other side of a pair with exchanged halves) and mirrored at z = 0,
-/// everything turns and mirrors with it.
+/// Turned by 180° about x (the torque enters from the other side of a pair with exchanged halves) and mirrored at z =
+/// 0, everything turns and mirrors with it.
 #[test]
 fn turned_and_mirrored_trains_turn_and_mirror_the_result() {
     let entry = &cases().into_iter().find(|c| c["name"] == "axially_held_tilting_bearings").expect("the case");

@@ -63,8 +63,8 @@ impl NaturalModes {
     /// share of the strain energy (meshes; lateral, axial or torsional springs of pinion or gear, supports and
     /// couplings together) if that is at least half, otherwise those of the two largest; "meshes in phase" if the mode
     /// is its own mirror image, "meshes opposed" if it is the opposite of it. Rigid-body modes are named by their
-    /// kinetic energy: rotation, axial screw (rotation and axial), axial, lateral. Empty for a train, whose energies are
-    /// not those of the twelve displacements.
+    /// kinetic energy: rotation, axial screw (rotation and axial), axial, lateral. Empty for a train, whose energies
+    /// are not those of the twelve displacements.
     pub fn describe(&self, p: &Parameters) -> Vec<Mode> {
         if p.train.is_some() {
             return Vec::new();

@@ -47,7 +47,7 @@ fn force(free: f64) -> Arc<ContactForce> {
 }
 
 /// Case A of the references with a contact force in place of its stiffness, without its impact.
-fn case(load_nm: f64, free: f64) -> (Parameters, [f64; 24]) {
+pub(super) fn case(load_nm: f64, free: f64) -> (Parameters, [f64; 24]) {
     let mut p = parameters("A");
     let contact = force(free);
     for h in &mut p.halves {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use super::contact_force::case as contact_case;
 use super::reference::{parameters, reference};
 use crate::dynamics::*;
 use crate::response::{Analysis, ChannelId, Regime, Response, SolutionMethod, solve, solve_many};
@@ -316,6 +317,44 @@ fn a_linear_train_has_its_response_in_the_frequency_domain() {
         assert!(output.orders[4].amplitude < 1e-9 * output.rms);
         // The mean force of the right bearing: statics.
         assert!(response.summary.tooth_force.left.static_n > 0.0);
+    }
+}
+
+/// Tabulated contact force: states and steady motions of the twelve equations; with further modes the orbit by Newton's
+/// method is the motion that is left after a long time.
+#[test]
+fn a_contact_force_acts_on_a_train_as_on_the_twelve_equations() {
+    let (mut states, mut values) = (Vec::new(), Vec::new());
+    for (load_nm, stagger) in [(400.0, 0.0), (400.0, 0.3), (4.0, 0.3)] {
+        let (mut p, start) = contact_case(load_nm, 0.6e-6);
+        p.halves[1].phase_shift_mesh_periods = stagger;
+        let of = |p: &Parameters| advance(p, &start, 5, Integrator::Taylor, 1e-13, &Watch::none()).unwrap().state;
+        states.extend(differences(&of(&as_train(&p)), &of(&p)));
+        let analysis = Analysis { accuracy: 1e-9, ..Analysis::default() };
+        let twelve = solve_in_twelve(&p, &analysis).summary;
+        let train = solve(&as_train(&p), &analysis, &Watch::none()).unwrap().summary;
+        assert_eq!((train.regime, train.contact), (twelve.regime, twelve.contact));
+        if twelve.period_mesh_periods.is_some() {
+            let channels = &twelve.rms.channels;
+            values.extend(channels.iter().map(|(name, rms)| train.rms.channels[name] / rms - 1.0));
+        }
+    }
+    assert!(values.len() >= 20, "{}", values.len());
+    check_worst(TOPIC, "contact force: states after 5 mesh periods against twelve equations", states, 1e-9);
+    check_worst(TOPIC, "contact force: RMS values against twelve equations", values, 1e-8);
+    let (p, _) = contact_case(400.0, 0.6e-6);
+    for gyroscopic in [0.0, 0.02] {
+        let q = with_further_modes(&p, gyroscopic);
+        let orbit = solve(&q, &Analysis::default(), &Watch::none()).unwrap().summary;
+        assert_eq!((orbit.regime, orbit.method), (Regime::Period1, crate::response::AppliedMethod::Periodic));
+        assert!(orbit.error_estimate < 1e-6 && orbit.floquet_modulus.unwrap() < 1.0, "{}", orbit.error_estimate);
+        let method = SolutionMethod::Integrate { mesh_periods: 1200, record_mesh_periods: 2 };
+        let late =
+            solve(&q, &Analysis { method, accuracy: 1e-8, ..Analysis::default() }, &Watch::none()).unwrap().summary;
+        let errors = late.rms.channels.iter().map(|(name, rms)| orbit.rms.channels[name] / rms - 1.0);
+        let quantity =
+            format!("contact force, 40 modes, gyroscopic {gyroscopic}: orbit against the motion after 1200 periods");
+        check_worst(TOPIC, &quantity, errors, 1e-6);
     }
 }
 

@@ -108,7 +108,8 @@ impl<'a> ShiftedStiffness<'a> {
     }
 }
 
-/// Eigenvalues and vectors of a symmetric or Hermitian matrix; `None` if it is not finite or the method does not converge.
+/// Eigenvalues and vectors of a symmetric or Hermitian matrix; `None` if it is not finite or the method does not
+/// converge.
 pub(super) fn symmetric_eigen<T: ComplexField<RealField = f64>>(
     matrix: DMatrix<T>,
 ) -> Option<SymmetricEigen<T, nalgebra::Dyn>> {

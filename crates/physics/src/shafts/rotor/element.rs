@@ -13,8 +13,8 @@ pub(super) struct Element {
     pub(super) section: BeamSection,
 }
 
-/// Rows of deflection, section rotation and their moduli in one plane, over the deflection and the rotation of the left,
-/// then of the right end.
+/// Rows of deflection, section rotation and their moduli in one plane, over the deflection and the rotation of the
+/// left, then of the right end.
 struct PlaneRows {
     deflection: [f64; 4],
     rotation: [f64; 4],
@@ -72,8 +72,8 @@ impl Element {
         rows
     }
 
-    /// Rounding of an eigenvalue of the system, rad²/s²: the largest eigenvalue of the element alone, of its tension, in
-    /// units of the last place.
+    /// Rounding of an eigenvalue of the system, rad²/s²: the largest eigenvalue of the element alone, of its tension,
+    /// in units of the last place.
     pub(super) fn eigenvalue_rounding(&self) -> f64 {
         f64::EPSILON * 12.0 * self.section.axial_n / (self.section.mass_kg_per_m * self.length_m * self.length_m)
     }

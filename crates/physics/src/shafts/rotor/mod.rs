@@ -70,8 +70,8 @@ pub struct MeshElement {
     pub damping_n_s_per_m: f64,
     /// z of its section on both shafts, m, from the apex plane.
     pub position_m: f64,
-    /// Stiffness against the relative tilt of the sections in the plane of action, about e_z × n, N m/rad; k_m b²/12 for
-    /// a stiffness that is distributed evenly over the face width b, 0 for a plain mesh spring.
+    /// Stiffness against the relative tilt of the sections in the plane of action, about e_z × n, N m/rad; k_m b²/12
+    /// for a stiffness that is distributed evenly over the face width b, 0 for a plain mesh spring.
     pub tilting_nm_per_rad: f64,
     /// Moment of the tooth forces about the section at no relative tilt, on the same axis, N m: constant, so that it
     /// loads the reduced train but has no part in modes and harmonic vibration. 0 for forces in the section.

@@ -1,7 +1,7 @@
 //! Reduction of the geared rotor to modal coordinates, with an estimate of its error.
 //!
-//! The basis is made of the natural modes (meshes closed) below a frequency, and of the residual flexibility of both mesh
-//! springs, and of the bearings if that is needed: what the modes left out give under a static force there. So the
+//! The basis is made of the natural modes (meshes closed) below a frequency, and of the residual flexibility of both
+//! mesh springs, and of the bearings if that is needed: what the modes left out give under a static force there. So the
 //! reduced rotor is statically exact at the meshes. The residual vectors are made M-orthogonal to the modes and
 //! diagonalised among themselves (Craig, Structural Dynamics, 1981, chapter 19: residual attachment modes).
 
@@ -65,17 +65,17 @@ pub struct ReductionReport {
     pub highest_mode_hz: f64,
     /// Highest frequency of a coordinate, Hz: of a residual vector.
     pub highest_coordinate_hz: f64,
-    /// Estimated relative error up to the end of the range: the largest difference of the reduced from the full model in
-    /// the receptances of the meshes, open and closed, and in the bearing forces per mesh force, each over the norm of
-    /// all of its kind at that frequency, at some frequencies, with a loss factor of 2 %.
+    /// Estimated relative error up to the end of the range: the largest difference of the reduced from the full model
+    /// in the receptances of the meshes, open and closed, and in the bearing forces per mesh force, each over the norm
+    /// of all of its kind at that frequency, at some frequencies, with a loss factor of 2 %.
     pub estimated_error: f64,
     /// The sizes that were tried.
     pub steps: Vec<ReductionStep>,
 }
 
 impl GearedRotor {
-    /// Reduces the rotor to the first basis whose estimated error is below `settings.accuracy`, of increasing numbers of
-    /// modes, each with the residual vectors of the meshes, then with those of the bearings too; or to the best one
+    /// Reduces the rotor to the first basis whose estimated error is below `settings.accuracy`, of increasing numbers
+    /// of modes, each with the residual vectors of the meshes, then with those of the bearings too; or to the best one
     /// within `settings.most_coordinates`. The report tells the error that is left.
     ///
     /// # Errors
@@ -222,8 +222,8 @@ impl GearedRotor {
         DMatrix::from_fn(self.unknowns(), kept.len(), |i, j| kept[j][i])
     }
 
-    /// Generalised force per driving torque on the pinion, balanced by the torque on the gear: at the machines, or at the
-    /// couplings where there are none.
+    /// Generalised force per driving torque on the pinion, balanced by the torque on the gear: at the machines, or at
+    /// the couplings where there are none.
     fn torque_row(&self) -> SparseRow {
         let mut row = SparseRow::new();
         for (shaft, torque) in self.shafts.iter().zip([1.0, 1.0 / self.geometry.teeth_ratio]) {
@@ -235,9 +235,9 @@ impl GearedRotor {
         row
     }
 
-    /// Rows of y, z and θ of pinion and gear at the mid-face sections of the left, then of the right half, with the signs
-    /// of [`crate::dynamics`]: y along the base tangent, z so that the left half's axial force on the pinion is negative,
-    /// θ positive in the sense in which each turns.
+    /// Rows of y, z and θ of pinion and gear at the mid-face sections of the left, then of the right half, with the
+    /// signs of [`crate::dynamics`]: y along the base tangent, z so that the left half's axial force on the pinion is
+    /// negative, θ positive in the sense in which each turns.
     fn physical_rows(&self) -> [SparseRow; 12] {
         let geometry = &self.geometry;
         std::array::from_fn(|i| {

@@ -82,8 +82,8 @@ fn requested_accuracy_is_reached() {
     }
 }
 
-/// The equations of motion that are handed over, solved here for a harmonic excitation, against the full model: signs and
-/// order of the matrices, rows of the outputs.
+/// The equations of motion that are handed over, solved here for a harmonic excitation, against the full model: signs
+/// and order of the matrices, rows of the outputs.
 #[test]
 fn handed_over_equations_are_those_of_the_rotor() {
     let mut case = case("geared_straddle");
