@@ -5,6 +5,7 @@
 //! a closed list; the request middleware brings errors of the framework into the same form. (A request whose head
 //! cannot be parsed does not reach it: see `connections`.)
 
+mod bearing_forces;
 mod columns;
 mod config;
 mod connections;
@@ -27,6 +28,7 @@ mod telemetry;
 mod text_body;
 mod view;
 
+pub use bearing_forces::write_bearing_forces;
 pub use config::{HttpConfig, MAX_BODY_BYTES, MAX_WAIT_S};
 pub use connections::ConnectionConfig;
 pub use csv::{CsvField, CsvWriter, Decimal};

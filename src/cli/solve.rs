@@ -4,7 +4,7 @@ use super::cache::DirectoryStages;
 use super::input::{invalid, read_document};
 use super::{problem, table};
 use clap::Args;
-use herringbone::api::{CsvField, CsvWriter, Decimal, Problem};
+use herringbone::api::{CsvField, CsvWriter, Decimal, Problem, write_bearing_forces};
 use herringbone_job::document::JobDocument;
 use herringbone_job::study::{
     self, CheckedJob, NoStageStore, RecordedChannel, SolveContext, SolveError, Stage, StageStore,
@@ -22,6 +22,10 @@ pub(super) struct SolveArguments {
     /// Write a recorded channel, full resolution, as CSV (`t_s,value`); may be given several times.
     #[arg(long, value_name = "CHANNEL=FILE.csv", value_parser = series_target)]
     series: Vec<(String, PathBuf)>,
+    /// Write the forces that the bearings transmit, by mesh order, as CSV (`shaft,bearing,position_mm,axis,mesh_order,
+    /// frequency_hz,amplitude_n,phase_rad`; order 0 is the mean).
+    #[arg(long, value_name = "FILE.csv")]
+    bearing_forces: Option<PathBuf>,
     /// Decimal sign in these files: `comma` writes them as spreadsheets read them whose language has a decimal comma
     /// (fields between semicolons, a byte order mark).
     #[arg(long, value_name = "point|comma", default_value = "point", value_parser = decimal)]
@@ -81,6 +85,20 @@ pub(super) fn run(arguments: SolveArguments) -> ExitCode {
             return ExitCode::from(2);
         };
         if let Err(error) = write_csv(series, path, arguments.decimal) {
+            eprintln!("{}: {error}", path.display());
+            return ExitCode::FAILURE;
+        }
+    }
+    if let Some(path) = &arguments.bearing_forces {
+        let response = outcome.result.response.as_ref().filter(|response| !response.bearings.is_empty());
+        let Some(response) = response else {
+            eprintln!("--bearing-forces: no bearings in this job; one of kind response with design.shafts has them");
+            return ExitCode::from(2);
+        };
+        let written = std::fs::File::create(path).and_then(|file| {
+            write_bearing_forces(file, &response.bearings, response.mesh_frequency_hz, arguments.decimal)
+        });
+        if let Err(error) = written {
             eprintln!("{}: {error}", path.display());
             return ExitCode::FAILURE;
         }

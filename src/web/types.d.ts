@@ -28,6 +28,10 @@ declare global {
   type PointColumns = Schemas["PointColumns"];
   type ProblemBody = Partial<Schemas["Problem"]>;
   type ResponseResult = Schemas["Response"];
+  type BearingForce = Schemas["BearingForceResult"];
+  type Rotor = Schemas["Rotor"];
+  type RotorMode = Schemas["RotorMode"];
+  type ShaftsResult = Schemas["Shafts"];
   type SectionDrawing = Schemas["Section"];
   type SeriesChannel = Schemas["Series"];
   /** Values that are not finite are null. */
@@ -95,6 +99,7 @@ declare global {
     id: string;
     name: string;
     data: import("./assets/sweep/data.js").SweepData;
+    quantities: SweepQuantity[];
     /** The result without its rows; null until the sweep has succeeded. */
     rest: JobResult | null;
     /** Mesh orders of the recorded spectra. */
@@ -131,6 +136,8 @@ declare global {
     label: string;
     unit: string;
     least: boolean;
+    /** Only points of documents with shafts have it. */
+    needsShafts: boolean;
     change: import("./assets/common/quantities.js").Quantity["change"];
     columns: { both?: string; left?: string; right?: string };
   }

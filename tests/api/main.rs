@@ -4,6 +4,7 @@ mod support;
 
 mod any_request;
 mod backup;
+mod bearing_forces;
 mod cancel_job;
 mod command_line;
 mod connections;

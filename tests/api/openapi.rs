@@ -53,6 +53,7 @@ fn every_endpoint_is_described() {
         "get /api/v1/jobs",
         "get /api/v1/jobs/events",
         "get /api/v1/jobs/{id}",
+        "get /api/v1/jobs/{id}/bearing-forces",
         "get /api/v1/jobs/{id}/events",
         "get /api/v1/jobs/{id}/gear-data",
         "get /api/v1/jobs/{id}/input",

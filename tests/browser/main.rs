@@ -23,6 +23,7 @@ mod print;
 mod process;
 mod proxy;
 mod report;
+mod rotor;
 mod server;
 mod shafts;
 mod speed;

@@ -1,6 +1,7 @@
 //! Every page of the service, each in the states that people meet: for what holds of all of them.
 
 use crate::browser::Browser;
+use crate::rotor::on_shafts;
 use serde_json::{Value, json};
 
 /// A page with something on it.
@@ -78,12 +79,15 @@ pub(crate) async fn all(browser: &Browser) -> Vec<Page> {
             document["analysis"]["initial_state"] = json!(vec![1e6; 24]);
         }))
         .await;
+    let shafts = browser.solved(&on_shafts()).await;
     vec![
         Page::new("design", "/", CHECKED),
         Page { spoilt: true, ..Page::new("design with errors", "/", CHECKED) },
-        Page::new("jobs", "/jobs", "document.querySelectorAll('tr[data-id]').length === 5"),
+        Page::new("jobs", "/jobs", "document.querySelectorAll('tr[data-id]').length === 6"),
         Page::new("response", format!("/jobs/{response}"), SHOWN).with_plot(),
         Page::new("report", format!("/jobs/{response}/report"), SHOWN).with_plot(),
+        Page::new("response on shafts", format!("/jobs/{shafts}"), SHOWN).with_plot(),
+        Page::new("report on shafts", format!("/jobs/{shafts}/report"), SHOWN).with_plot(),
         Page::new("mesh", format!("/jobs/{mesh}"), SHOWN).with_plot(),
         Page::new("sweep", format!("/jobs/{sweep}"), SHOWN).with_plot(),
         Page::new("report of a sweep", format!("/jobs/{sweep}/report"), SHOWN).with_plot(),

@@ -258,3 +258,41 @@ fn the_document_of_the_interface_is_printed() {
     assert!(output.status.success());
     assert_eq!(json(&output.stdout)["info"]["title"], "herringbone");
 }
+
+#[test]
+fn the_forces_of_the_bearings_are_written_by_order() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, target) = (folder.path().join("job.json"), folder.path().join("forces.csv"));
+    let [path, csv] = [&file, &target].map(|path| path.to_str().expect("UTF-8"));
+    let cases = include_str!("../data/shafts_dynamic.json");
+    let cases: Value = serde_json::from_str(cases).expect("JSON");
+    std::fs::write(&file, cases[0]["input"].to_string()).expect("written");
+    let output = herringbone(&["solve", path, "--bearing-forces", csv]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = std::fs::read_to_string(&target).expect("written");
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("shaft,bearing,position_mm,axis,mesh_order,frequency_hz,amplitude_n,phase_rad"));
+    let result = json(&output.stdout);
+    let mut rows = 0;
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let number = |at: usize| cells[at].parse::<f64>().unwrap_or_else(|_| panic!("{line}"));
+        let bearings = result["response"]["bearings"].as_array().expect("bearings");
+        let bearing = bearings
+            .iter()
+            .find(|bearing| bearing["shaft"] == cells[0] && bearing["index"].as_f64() == Some(number(1) - 1.0))
+            .unwrap_or_else(|| panic!("{line}"));
+        let force = &bearing["force_n"][cells[3]];
+        let order = number(4) as usize;
+        let expected = if order == 0 { &force["mean"] } else { &force["amplitudes"][order - 1] };
+        assert_eq!((expected.as_f64(), bearing["position_mm"].as_f64()), (Some(number(6)), Some(number(2))), "{line}");
+        let hertz = result["response"]["mesh_frequency_hz"].as_f64().expect("a frequency");
+        assert_eq!(number(5), order as f64 * hertz, "{line}");
+        rows += 1;
+    }
+    assert!(rows >= 4 * 2 * 11, "{rows} rows");
+    let example = example("given_stiffness.json");
+    let without = herringbone(&["solve", example.to_str().expect("UTF-8"), "--bearing-forces", csv]);
+    assert_eq!(without.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&without.stderr).contains("design.shafts"));
+}

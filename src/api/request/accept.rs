@@ -41,6 +41,17 @@ pub(crate) fn negotiate_table(headers: &HeaderMap, query: &mut QueryParameters) 
     }
 }
 
+/// Selects the dialect of a table that there is only as CSV: by the query parameter `decimal`, or by the parameter
+/// `decimal` of `Accept: text/csv`.
+///
+/// # Errors
+/// 406 when `Accept` does not permit CSV.
+pub(crate) fn negotiate_csv(headers: &HeaderMap, query: &mut QueryParameters) -> Result<Decimal, ApiError> {
+    let decimal = query.choice("decimal", &Decimal::ALL);
+    negotiate(headers, &["text/csv"])?;
+    decimal.map_or_else(|| accepted_decimal(headers), Ok)
+}
+
 /// The parameter `decimal` of the range `text/csv` in `Accept`.
 fn accepted_decimal(headers: &HeaderMap) -> Result<Decimal, ApiError> {
     let lines = headers.get_all(ACCEPT).into_iter().filter_map(|value| value.to_str().ok());

@@ -8,7 +8,7 @@ mod patch;
 mod path;
 mod query;
 
-pub(super) use accept::{event_stream_only, json_only, negotiate, negotiate_table};
+pub(super) use accept::{event_stream_only, json_only, negotiate, negotiate_csv, negotiate_table};
 pub(super) use body::DocumentBody;
 pub(super) use cursor::Cursor;
 pub(super) use headers::{IdempotencyKey, IfNoneMatch, Prefer, RequestId};

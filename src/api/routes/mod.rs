@@ -8,6 +8,7 @@ mod list_jobs;
 mod list_kinds;
 mod list_points;
 mod list_series;
+mod read_bearing_forces;
 mod read_gear_data;
 mod read_input;
 mod read_job;
@@ -68,7 +69,8 @@ pub(super) fn versioned() -> OpenApiRouter<AppState> {
         .route_layer(from_fn(event_stream_only));
     let negotiated =
         OpenApiRouter::new().routes(routes!(read_series::read_series)).routes(routes!(list_points::list_points));
-    json.merge(stream).merge(negotiated)
+    let csv = OpenApiRouter::new().routes(routes!(read_bearing_forces::read_bearing_forces));
+    json.merge(stream).merge(negotiated).merge(csv)
 }
 
 /// The other endpoints, with their OpenAPI descriptions.

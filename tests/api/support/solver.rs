@@ -4,12 +4,15 @@ use super::Breakpoints;
 use herringbone::work::Solver;
 use herringbone_job::DocumentError;
 use herringbone_job::document::{Continuation, JobDocument, JobKind};
-use herringbone_job::result::{JobResult, Mesh, PerHalf, ResponseResult, ReusedStage, SweepPoint, SweepResult};
+use herringbone_job::result::{
+    BearingForceResult, BearingForces, DirectionForce, JobResult, Mesh, PerHalf, ResponseResult, ReusedStage,
+    SweepPoint, SweepResult,
+};
 use herringbone_job::study::{self, CheckedJob, LineEnd, Outcome, RecordedChannel, SolveContext, SolveError, Stage};
 use herringbone_physics::watch::Canceled;
 
-/// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`, `large`, `numbers`; anything
-/// else succeeds. Every calculation passes the breakpoint `solve`, and the one of its own name; `at its end` passes
+/// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`, `large`, `numbers`,
+/// `bearings`; anything else succeeds. Every calculation passes the breakpoint `solve`, and the one of its own name; `at its end` passes
 /// only its own, past which it does not notice a cancel.
 #[derive(Default)]
 pub(crate) struct ScriptedSolver {
@@ -64,6 +67,7 @@ impl Solver for ScriptedSolver {
             _ if document.kind == JobKind::Sweep => self.sweep(document, context),
             "large" => Ok(large()),
             "numbers" => Ok(with_numbers()),
+            "bearings" => Ok(with_bearings()),
             _ => Ok(outcome()),
         }
     }
@@ -106,6 +110,24 @@ impl ScriptedSolver {
         result.sweep = Some(SweepResult { points, ..SweepResult::default() });
         Ok(Outcome { result, series: Vec::new() })
     }
+}
+
+/// A result with forces in the bearings.
+fn with_bearings() -> Outcome {
+    let mut outcome = outcome();
+    let along = |mean| DirectionForce { mean, rms: 2.0, amplitudes: vec![2.5, 0.5], phases_rad: vec![0.25, -3.0] };
+    let bearing = |shaft: &str, index: u32| BearingForceResult {
+        shaft: shaft.to_owned(),
+        index,
+        position_mm: 120.5,
+        force_n: BearingForces { x: along(100.0), y: along(-7000.5), z: DirectionForce::default() },
+    };
+    outcome.result.response = Some(ResponseResult {
+        mesh_frequency_hz: 425.0,
+        bearings: vec![bearing("pinion", 0), bearing("pinion", 1), bearing("gear", 0)],
+        ..ResponseResult::default()
+    });
+    outcome
 }
 
 /// A result with the numbers that lists show.

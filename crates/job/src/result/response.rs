@@ -114,6 +114,22 @@ pub struct ResponseResult {
     /// Force of each bearing on its shaft, pinion's first; absent without `design.shafts`.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub bearings: Vec<BearingForceResult>,
+    /// Dynamic part of the force of that bearing where it is largest: root of the sum of squares of the RMS along x, y and z; absent without
+    /// `design.shafts`.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[scalar(
+        label = "bearing force RMS, largest",
+        headline,
+        change = Level,
+        lower_is_better,
+        theory = "shafts#forced-vibration-of-the-full-model",
+        help = "Root mean square of the dynamic force of a bearing, its three directions together, of the bearing where it is largest."
+    )]
+    pub largest_bearing_force_rms_n: Option<f64>,
+    /// Of the geared rotor, undamped, at rest; absent without `design.shafts`.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[scalar(label = "lowest natural frequency of the rotor", theory = "shafts#modes")]
+    pub lowest_natural_frequency_hz: Option<f64>,
     /// Mesh orders of the tooth forces; absent without `design.shafts`.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     #[scalar(skip)]

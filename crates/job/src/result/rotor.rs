@@ -26,6 +26,18 @@ pub struct BearingForces {
     pub z: DirectionForce,
 }
 
+impl BearingForces {
+    /// RMS of the dynamic force vector.
+    pub fn rms_n(&self) -> f64 {
+        self.axes().iter().map(|(_, force)| force.rms * force.rms).sum::<f64>().sqrt()
+    }
+
+    /// The components with the names of their axes.
+    pub fn axes(&self) -> [(&'static str, &DirectionForce); 3] {
+        [("x", &self.x), ("y", &self.y), ("z", &self.z)]
+    }
+}
+
 /// One component of a bearing's force.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]

@@ -144,6 +144,26 @@ pub struct SweepPoint {
     #[serde(default)]
     #[column(from = "/response/tooth_force_n/{half}/max")]
     pub tooth_force_max_n: Option<PerHalf>,
+    /// Of both halves on their shafts, like those below; null without `design.shafts`.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[column(from = "/shafts/{half}/k_h_beta_5mm")]
+    pub k_h_beta_5mm: Option<PerHalf>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[column(from = "/shafts/k_gamma")]
+    pub k_gamma: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[column(from = "/shafts/transmission_error/between_couplings_mean_um")]
+    pub between_couplings_mean_um: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[column(from = "/shafts/transmission_error/harmonics_um/0")]
+    pub between_couplings_harmonic_1_um: Option<f64>,
+    /// Dynamic part of the bearing force that is largest.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[column(from = "/response/largest_bearing_force_rms_n")]
+    pub largest_bearing_force_rms_n: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[column(from = "/response/lowest_natural_frequency_hz")]
+    pub lowest_natural_frequency_hz: Option<f64>,
     /// Why this point has no response.
     #[column]
     pub error: Option<String>,

@@ -142,6 +142,8 @@ pub(super) fn summary(
         energy_balance_residual: summary.energy_balance_residual,
         natural_modes: Vec::new(),
         bearings: Vec::new(),
+        largest_bearing_force_rms_n: None,
+        lowest_natural_frequency_hz: None,
         tooth_force_orders_n: None,
         rotor: None,
     }

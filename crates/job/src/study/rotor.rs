@@ -184,7 +184,10 @@ impl TurningRotor {
     ) -> Result<(), SolveError> {
         let rotor = &self.rotor;
         block.natural_frequencies_hz = rotor.reduced.modes.natural_frequencies_hz();
+        block.lowest_natural_frequency_hz = block.natural_frequencies_hz.iter().copied().find(|hz| *hz > 0.0);
         block.bearings = bearings(document, &response.outputs);
+        block.largest_bearing_force_rms_n =
+            block.bearings.iter().map(|bearing| bearing.force_n.rms_n()).reduce(f64::max);
         let orders = |orders: &[MeshOrder]| ForceOrders {
             amplitudes: orders.iter().map(|order| order.amplitude).collect(),
             phases_rad: orders.iter().map(|order| order.phase_rad).collect(),

@@ -174,3 +174,64 @@ fn the_reference_rotor_vibrates_as_the_reference_does() {
         }
     }
 }
+
+/// Sweeps over arrangements and single fields of the shafts fill the columns of the shafts; what moves together is
+/// named by `also`.
+#[test]
+fn sweeps_vary_the_shafts() {
+    let mut input = dynamic_cases()[0]["input"].clone();
+    input["kind"] = json!("sweep");
+    input["model"]["mesh_stiffness"] =
+        json!({"source": "ltca", "fidelity": "uniform", "line_stiffness_n_per_mm_um": 14.0, "corner_contact": false});
+    input["model"]["mesh_force"] = json!("stiffness");
+    input["operation"]["pinion_torque_nm"] = json!(800.0);
+    let derived = json!({"arrangement": {"bearing_span_mm": 340.0, "pinion_shaft_diameter_mm": 80.0}});
+    let sweep = |shafts: Option<&Value>, axes: Value| {
+        let mut document = input.clone();
+        shafts.into_iter().for_each(|shafts| document["design"]["shafts"] = shafts.clone());
+        document["axes"] = axes;
+        let points = solved(&document)["sweep"]["points"].take();
+        points.as_array().cloned().expect("rows")
+    };
+    let column = |points: &[Value], pointer: &str| -> Vec<f64> {
+        points
+            .iter()
+            .map(|row| row.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("{pointer} of {row}")))
+            .collect()
+    };
+    let all = [
+        "/k_h_beta_5mm/left",
+        "/k_h_beta_5mm/right",
+        "/k_gamma",
+        "/between_couplings_mean_um",
+        "/between_couplings_harmonic_1_um",
+        "/largest_bearing_force_rms_n",
+        "/lowest_natural_frequency_hz",
+    ];
+    let pinion = "/design/shafts/pinion";
+    let cases = [
+        (Some(&derived), json!([{"pointer": "/design/shafts/arrangement/bearing_span_mm", "values": [320, 500]}])),
+        (
+            Some(&derived),
+            json!([{"pointer": "/design/shafts/arrangement/pinion_shaft_diameter_mm", "values": [60, 95],
+                    "also": ["/design/shafts/arrangement/gear_shaft_diameter_mm"]}]),
+        ),
+        (Some(&derived), json!([{"pointer": "/design/gap_width_mm", "values": [10, 60]}])),
+        (None, json!([{"pointer": format!("{pinion}/bearings/0/position_mm"), "values": [60, 150]}])),
+        (
+            None,
+            json!([{"pointer": format!("{pinion}/segments/3/diameter_mm"), "values": [80, 97],
+                    "also": [format!("{pinion}/segments/5/diameter_mm")]}]),
+        ),
+        // The end where the torque enters.
+        (None, json!([{"pointer": format!("{pinion}/coupling/position_mm"), "values": [0, 480]}])),
+    ];
+    for (shafts, axes) in cases {
+        let points = sweep(shafts, axes.clone());
+        for pointer in all {
+            assert!(column(&points, pointer).iter().all(|value| *value > 0.0), "{pointer} of {axes}");
+        }
+        let [first, second] = [0, 1].map(|row| column(&points, "/k_h_beta_5mm/left")[row]);
+        assert!((first - second).abs() > 1e-3, "{axes}: {first} and {second}");
+    }
+}

@@ -4,6 +4,7 @@ import * as api from "../common/api.js";
 import { byAnyId, byId, el, show } from "../common/dom.js";
 import { number, shownUnit } from "../common/format.js";
 import { bars, draw, line, points, stems } from "../common/plots.js";
+import { nameOfBearing } from "../job/shafts_plots.js";
 import * as address from "./address.js";
 
 /** Channel that is shown at first. */
@@ -114,7 +115,7 @@ async function put({ id, traces, axes }) {
 /** Figures of what is read already. @param {Options} options */
 const curves = (options) => [
   meshCurve("stiffness", "Mesh stiffness", "N/µm", (curve) => curve.stiffness_n_per_um, options), meshCurve("error", "Transmission error", "µm", (curve) => curve.transmission_error_um, options),
-  share(options), impact(), spectrum(options),
+  share(options), faceLoad(), impact(), bearingForces(), spectrum(options),
 ];
 
 /** All figures of these jobs, for a report. @param {ComparedJob[]} all @param {Options} options */
@@ -170,6 +171,31 @@ function share({ half }) {
     return curve && values ? styledFor(job, line(curve.load_share_phase, values, job.short)) : { x: [] };
   });
   return figure("share", traces, { x: "Base pitches from the theoretical start of contact", y: "Share of the load", csvName: "compare-load-share" });
+}
+
+/** Line load along both faces, from the middle of the gap outwards. */
+function faceLoad() {
+  const traces = jobs.flatMap((job) => {
+    const { shafts } = job.result;
+    const { gap_width_mm: gap = 0 } = job.input?.design ?? {};
+    if (!shafts) return [];
+    return /** @type {const} */ (["left", "right"]).map((half) => {
+      const { station_from_inner_end_mm: stations, line_load_n_per_mm: load } = shafts[half];
+      const places = stations.map((inner) => (half === "left" ? -1 : 1) * (gap / 2 + inner));
+      return { ...styledFor(job, line(places, load, job.short)), showlegend: half === "left" };
+    });
+  });
+  return figure("face-load", traces, { x: "From the middle of the gap, mm", y: "Line load, N/mm", csvName: "compare-line-load", hover: "closest" });
+}
+
+/** Dynamic forces of all bearings: RMS of each along every axis. */
+function bearingForces() {
+  const traces = jobs.map((job) => {
+    const forces = (job.result.response?.bearings ?? []).flatMap((bearing) => /** @type {const} */ (["x", "y", "z"]).map((axis) => ({ name: `${nameOfBearing(bearing)}, ${axis}`, rms: bearing.force_n[axis].rms })));
+    const moved = forces.filter(({ rms }) => rms > 1e-6);
+    return { ...styledFor(job, bars(moved.map(({ name }) => name), moved.map(({ rms }) => rms), job.short)), showlegend: true };
+  });
+  return figure("bearing-forces", traces, { x: "Bearing and axis", y: "RMS of the force, N", csvName: "compare-bearing-forces", hover: "closest", layout: { barmode: "group" } });
 }
 
 /** The pulses: half sines from the corner's first touch. */

@@ -49,6 +49,11 @@ const CHOSEN = [
     { name: "stiffness_swing", label: "Mesh stiffness of one half, peak to peak", unit: scalarAt("/mesh/stiffness_mean_n_per_um").unit, pick: ({ result }) => swing(result?.mesh) },
     "/mesh/transmission_error_pp_um", "/mesh/transmission_error_mean_um", "/mesh/load_share_at_mesh_in", "/mesh/max_line_load_n_per_mm", "/mesh/max_contact_pressure_mpa",
   ]],
+  ["Shafts", [
+    "/shafts/{half}/k_h_beta", "/shafts/{half}/k_h_beta_5mm", "/shafts/k_gamma", "/shafts/transmission_error/between_couplings_mean_um",
+    "/shafts/transmission_error/harmonics_um/0", "/shafts/{half}/helix_modification/slope_um", "/shafts/{half}/helix_modification/crowning_um",
+    "/shafts/{half}/helix_modification/k_h_beta_5mm", "/response/largest_bearing_force_rms_n", "/response/lowest_natural_frequency_hz",
+  ]],
   ["Geometry", [
     "/geometry/transverse_contact_ratio", "/geometry/overlap_ratio", "/geometry/total_contact_ratio", "/mesh/loaded_contact_ratio", "/geometry/working_pressure_angle_deg",
     "/geometry/center_distance_mm",

@@ -32,10 +32,18 @@ export function initShaftsDrawing() {
 }
 
 /**
+ * Places of the drawing: along the axes and across them, and px per mm.
+ * @typedef {{ x: (axial: number) => number, y: (across: number) => number, scale: number }} Place
+ */
+
+/**
+ * Draws both shafts; `said` is told after them. Returns the places, for what is drawn on top.
  * @param {SVGSVGElement} root
  * @param {ShaftsDrawing} shafts
+ * @param {string} [said]
+ * @returns {Place}
  */
-export function drawShafts(root, shafts) {
+export function drawShafts(root, shafts, said = "") {
   const both = [shafts.pinion, shafts.gear];
   const ends = both.flatMap((shaft) => [...shaft.segments.flatMap((one) => one.axial_mm), shaft.coupling_mm]);
   const [left, right] = [Math.min(...ends), Math.max(...ends)];
@@ -59,18 +67,19 @@ export function drawShafts(root, shafts) {
     ...scaleBar(scale, height),
     text("note", WIDTH - 6, height - 6, "to scale; x upwards, z to the right", "end"),
   ];
-  const title = svg("title", { id: "drawing-shafts-title" });
+  const title = svg("title", { id: `${root.id}-title` });
   title.textContent = "Shafts and bearings of pinion and gear, to scale";
-  const desc = svg("desc", { id: "drawing-shafts-desc" });
-  desc.textContent = both.map((shaft, index) => described(index ? "gear" : "pinion", shaft)).join(" ");
+  const desc = svg("desc", { id: `${root.id}-desc` });
+  desc.textContent = [...both.map((shaft, index) => described(index ? "gear" : "pinion", shaft)), said].filter(Boolean).join(" ");
   root.replaceChildren(title, desc, group("world"), ...parts);
+  return place;
 }
 
 /**
  * @param {ShaftDrawing} shaft
  * @param {"pinion" | "gear"} name
  * @param {"in" | "out"} torque
- * @param {{ x: (axial: number) => number, y: (across: number) => number, scale: number }} place
+ * @param {Place} place
  */
 function drawShaft(shaft, name, torque, { x, y, scale }) {
   const node = group(`shaft ${name}`);

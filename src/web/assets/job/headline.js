@@ -4,6 +4,7 @@ import { byId, el, show, tip } from "../common/dom.js";
 import { number } from "../common/format.js";
 import { scalarAt } from "../common/scalars.js";
 import { nearestResonance } from "./motion_plots.js";
+import { nameOfBearing } from "./shafts_plots.js";
 import { IMPACTS, STIFFNESS, contactWords, regimeWords } from "./words.js";
 
 /** Standard gravity, m/s². */
@@ -13,7 +14,7 @@ const GRAVITY = 9.80665;
  * Name, number, unit, note and explanation of each headline; those without a value in the result are left out.
  * @param {JobResult} result
  */
-export function headlines({ geometry, mesh, impact, response, numerics, accuracy }) {
+export function headlines({ geometry, mesh, shafts, impact, response, numerics, accuracy }) {
   /** @type {[name: string, shown: string, unit: string, note: Child | Child[], meaning: Explained][]} */
   const tiles = [];
   /** @param {typeof tiles[number]} tile */
@@ -33,6 +34,11 @@ export function headlines({ geometry, mesh, impact, response, numerics, accuracy
     addScalar("/response/rms/mesh_circumferential_acceleration_m_s2/{half}", pair(rms.mesh_circumferential_acceleration_m_s2), sidesNote(rms.mesh_circumferential_acceleration_m_s2));
     addScalar("/response/rms/pinion_axial_acceleration_m_s2/{half}", pair(rms.pinion_axial_acceleration_m_s2), sidesNote(rms.pinion_axial_acceleration_m_s2));
   }
+  if (shafts) {
+    const { left, right, iso6336: iso } = shafts;
+    addScalar("/shafts/{half}/k_h_beta_5mm", pair({ left: left.k_h_beta_5mm, right: right.k_h_beta_5mm }), ["left / right", iso ? `; ISO 6336-1 ${number(iso.k_h_beta, 3)} (${iso.half})` : ""].join(""));
+  }
+  if (typeof response?.largest_bearing_force_rms_n === "number") addScalar("/response/largest_bearing_force_rms_n", number(response.largest_bearing_force_rms_n, 4), bearingNote(response));
   if (impact) addScalar("/impact/force_n", number(impact.force_n, 4), impactNote(impact));
   if (mesh) {
     const { transmission_error_pp_um: span, transmission_error_mean_um: mean } = mesh;
@@ -91,6 +97,14 @@ export function showHeadline(result) {
     ),
   );
   show(box, tiles.length > 0);
+}
+
+/** The bearing with the largest amplitude of any order. @param {ResponseResult} response */
+function bearingNote({ bearings = [] }) {
+  const strongest = bearings.flatMap((bearing) => /** @type {const} */ (["x", "y", "z"]).flatMap((axis) => bearing.force_n[axis].amplitudes.map((amplitude, at) => ({ bearing, axis, amplitude, order: at + 1 }))));
+  if (!strongest.length) return "";
+  const { bearing, axis, amplitude, order } = strongest.reduce((most, one) => (one.amplitude > most.amplitude ? one : most));
+  return `strongest: order ${order} of ${nameOfBearing(bearing)}, ${axis}, ${number(amplitude, 3)} N`;
 }
 
 /** @param {ImpactResult} impact */

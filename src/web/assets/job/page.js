@@ -5,6 +5,7 @@ import { byId, el, fillWarnings, notify, show } from "../common/dom.js";
 import { gearDataOf } from "../common/gear_data.js";
 import { watchJob } from "../common/watch.js";
 import { showSweep } from "../sweep/panel.js";
+import { showBearings } from "./bearings.js";
 import { showHeadline } from "./headline.js";
 import { showImpact } from "./impact.js";
 import { Life } from "./life.js";
@@ -13,7 +14,9 @@ import { showModes } from "./modes.js";
 import { showNumerics } from "./numerics.js";
 import { showPhase } from "./phase.js";
 import { showResponse } from "./response.js";
+import { showRotor } from "./rotor.js";
 import { showSeries } from "./series.js";
+import { shaftsDrawingOf, showShafts } from "./shafts.js";
 import { showSpectrum } from "./spectrum.js";
 import { showGeometry } from "./tables.js";
 import { showValues } from "./values.js";
@@ -47,6 +50,7 @@ async function showSweepOf(job) {
 /** @param {Job} job */
 async function showResult(job) {
   const [result, input, gearData] = await Promise.all([api.result(id), api.input(id), gearDataOf(id)]);
+  const shafts = result.shafts || result.response?.rotor ? await shaftsDrawingOf(input) : null;
   const catalogue = result.response ? (await api.catalogue(id)).items : [];
   /** @type {JobContext} */
   const all = { id, job, result, input, catalogue, gearData };
@@ -57,7 +61,8 @@ async function showResult(job) {
   showGeometry(all);
   showNumerics(all);
   showValues(all);
-  const drawn = [showSeries(all), showPhase(all), showSpectrum(all), showModes(all), showMesh(all), showImpact(all)];
+  const drawn = [showSeries(all), showPhase(all), showSpectrum(all), showModes(all), showMesh(all), showShafts(all, shafts), showBearings(all), showImpact(all)];
+  showRotor(all, shafts);
   // With the sections, so that nothing moves when their plots are drawn.
   showContents();
   await Promise.all(drawn);

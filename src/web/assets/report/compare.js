@@ -13,7 +13,7 @@ import { showSheet } from "./sheet.js";
 
 /** @type {Record<string, string>} */
 const TITLES = {
-  stiffness: "Mesh stiffness of one half", error: "Loaded transmission error", share: "Share of the load of one pair", impact: "Mesh-in impact",
+  stiffness: "Mesh stiffness of one half", error: "Loaded transmission error", share: "Share of the load of one pair", "face-load": "Line load along both faces, on the shafts", "bearing-forces": "Dynamic forces of the bearings", impact: "Mesh-in impact",
   series: "Time series, aligned at the mesh period", phase: "Phase plane of the mesh", spectrum: "Spectrum of the left circumferential acceleration",
 };
 

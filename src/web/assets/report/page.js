@@ -15,10 +15,12 @@ import { modeRows } from "../job/modes.js";
 import { halvesAlike, modesPlot, phasePlot, spectrumPlot } from "../job/motion_plots.js";
 import { numericsValues } from "../job/numerics.js";
 import { responseValues } from "../job/response.js";
+import { bearingOrdersPlot, deflectionPlot, faceLoadPlot, movedAxes, torquePlot, twistPlot } from "../job/shafts_plots.js";
 import { channelScale, channelWords } from "../job/words.js";
 import { drawPair } from "./drawing.js";
 import { HALF, WHOLE, showFigures } from "./figures.js";
 import { inputGroups } from "./inputs.js";
+import { showShaftsBlock } from "./shafts.js";
 import { showSheet } from "./sheet.js";
 import { showSweep } from "./sweep.js";
 
@@ -73,8 +75,8 @@ function showResults({ mesh, impact, response }, input) {
   }
 }
 
-/** @param {JobContext} context */
-async function showPlots({ result: { geometry, mesh, impact, response, numerics }, input, catalogue, gearData }) {
+/** @param {JobContext} context @param {import("../job/shafts_plots.js").ShaftsDrawing | null} drawing */
+async function showPlots({ result: { geometry, mesh, shafts, impact, response, numerics }, input, catalogue, gearData }, drawing) {
   const motion = response ? await motionPlots(response, numerics, input, catalogue) : [];
   /** @type {[string, Plot | null | undefined, typeof HALF?][]} */
   const plots = [
@@ -84,9 +86,14 @@ async function showPlots({ result: { geometry, mesh, impact, response, numerics 
     ["Sharing of the load between all pairs in mesh", sharingPlot(mesh)],
     ["Line load on the flanks of a pinion tooth, true to scale", flankPlot(mesh, gearData), WHOLE],
     ["Harmonics of the transmission error", harmonicsPlot(mesh)],
+    ["Line load along both faces, on the shafts", faceLoadPlot(shafts, gearData), WHOLE],
+    ["Face load factor over the torque", torquePlot(shafts, input.operation?.pinion_torque_nm)],
+    ["Deflection of the centre lines", deflectionPlot(shafts, drawing)],
+    ["Twist of the shafts from their couplings", twistPlot(shafts, drawing)],
     ["Impact pulse", pulsePlot(impact, geometry?.mesh_frequency_hz)],
     ...motion,
     ["Spectrum of the left circumferential acceleration", response && spectrumPlot(response, numerics)],
+    ...movedAxes(response).map((axis) => /** @type {[string, Plot | null]} */ ([`Mesh orders of the bearing forces, ${axis}`, bearingOrdersPlot(response, axis)])),
     ["Natural modes against the harmonics of the mesh frequency", response && modesPlot(response, numerics), WHOLE],
   ];
   const drawn = plots.flatMap(([title, plot, size = HALF]) => (plot ? [{ title, ...plot, size }] : []));
@@ -165,7 +172,7 @@ async function start() {
   showSheet(id, /** @type {Job & { notes?: string | null }} */ (job).notes ?? "");
   const isSweep = job.kind === "sweep";
   const [result, input, kinds, gearData] = await Promise.all([isSweep ? api.resultWithoutRows(id) : api.result(id), api.input(id), api.kinds(), gearDataOf(id)]);
-  await drawPair(input);
+  const shafts = (await drawPair(input))?.shafts ?? null;
   if (isSweep) {
     fillWarnings(byId("warnings"), result.warnings);
     show(byId("warned"), result.warnings.length > 0);
@@ -181,6 +188,7 @@ async function start() {
   show(byId("warned"), result.warnings.length > 0);
   if (gearData) showGearData(gearData);
   showResults(result, input);
+  showShaftsBlock(result, shafts);
   showInputs(input, kinds);
   if (result.response?.natural_modes?.length) {
     fillRows(byId("modes-table").tBodies[0], modeRows(result.response, input));
@@ -194,7 +202,7 @@ async function start() {
     ...numericsValues({ job: null, ...result }),
   ]);
   show(byId("numerics"));
-  await showPlots({ id, job, result, input, catalogue, gearData });
+  await showPlots({ id, job, result, input, catalogue, gearData }, shafts);
   ready();
 }
 

@@ -7,12 +7,12 @@ import { curves } from "../sweep/curves.js";
 import { SweepData } from "../sweep/data.js";
 import { findingsOf } from "../sweep/findings.js";
 import { map } from "../sweep/maps.js";
-import { ALWAYS, QUANTITIES, columnsOf } from "../sweep/quantities.js";
+import { ALWAYS, QUANTITIES, columnsOf, quantitiesOf } from "../sweep/quantities.js";
 import { campbell, resonancesOf } from "../sweep/resonances.js";
 import { HIGH, showFigures } from "./figures.js";
 
 /** Quantities that are drawn, as far as the sweep has them. */
-const DRAWN = ["mesh_circumferential_acceleration_rms", "pinion_axial_acceleration_rms", "dynamic_factor", "tooth_force_max", "transmission_error_pp"];
+const DRAWN = ["mesh_circumferential_acceleration_rms", "pinion_axial_acceleration_rms", "dynamic_factor", "tooth_force_max", "transmission_error_pp", "k_h_beta", "largest_bearing_force_rms"];
 /** @param {SweepQuantity} quantity */
 const isDrawn = ({ name }) => DRAWN.some((start) => name.startsWith(start));
 /** Lines of a sweep over two inputs that are drawn as curves. */
@@ -27,7 +27,7 @@ export async function showSweep({ id, job, input, result }) {
   await data.require([...ALWAYS, ...QUANTITIES.flatMap(columnsOf)]);
   await data.refresh();
   /** @type {SweepState} */
-  const sweep = { id, name: job.name ?? "Sweep", data, rest: result, orders: null };
+  const sweep = { id, name: job.name ?? "Sweep", data, quantities: quantitiesOf(input), rest: result, orders: null };
   /** @type {SweepView} */
   const view = {
     grid, name: "curves", quantity: QUANTITIES[0], kind: null, state: /** @type {any} */ (null), line: grid.secondOrder[0], branch: 0, halves: "both",
@@ -86,8 +86,8 @@ function showResonances(sweep, view) {
 }
 
 /** @param {SweepState} sweep @param {SweepView} view */
-function showPoints({ data }, { grid }) {
-  const shown = QUANTITIES.filter(isDrawn).flatMap(({ label, unit, columns }) =>
+function showPoints({ data, quantities }, { grid }) {
+  const shown = quantities.filter(isDrawn).flatMap(({ label, unit, columns }) =>
     Object.entries(columns).filter(([, name]) => varies(data.column(name))).map(([half, name]) => ({ name, title: [label, half === "both" ? "" : half, unit].filter(Boolean).join(", ") })));
   const branched = grid.branches.length > 1;
   const names = [...grid.axes.map(({ title }) => title), ...(branched ? ["Branch"] : []), ...shown.map(({ title }) => title), "Motion", "Contact"];

@@ -10,7 +10,7 @@ import { SweepData } from "./data.js";
 import { progressText, showFindings } from "./findings.js";
 import { KINDS, map, section } from "./maps.js";
 import { PointPanel, showLegend } from "./point.js";
-import { ALWAYS, CONTACTS, FAILED, QUANTITIES, REGIMES, columnsOf } from "./quantities.js";
+import { ALWAYS, CONTACTS, FAILED, QUANTITIES, REGIMES, columnsOf, quantitiesOf } from "./quantities.js";
 import { SPEED, campbell, campbellAt } from "./resonances.js";
 import { PointTable } from "./table.js";
 
@@ -54,7 +54,7 @@ class Panel {
   constructor(id, job, document) {
     this.grid = new Grid(document);
     /** @type {SweepState} */
-    this.sweep = { id, name: job.name ?? "Sweep", data: new SweepData(id, this.grid.total), rest: null, orders: null };
+    this.sweep = { id, name: job.name ?? "Sweep", data: new SweepData(id, this.grid.total), quantities: quantitiesOf(document), rest: null, orders: null };
     /** @type {string[]} */
     this.record = document.record ?? [];
     this.document = document;
@@ -108,7 +108,7 @@ class Panel {
     const told = new URLSearchParams(window.location.hash.slice(1));
     const name = told.get("view");
     if (name && VIEWS[name]) view.name = name;
-    view.quantity = QUANTITIES.find(({ name }) => name === told.get("quantity")) ?? view.quantity;
+    view.quantity = this.sweep.quantities.find(({ name }) => name === told.get("quantity")) ?? view.quantity;
     if (grid.axes.length === 2 && KINDS.some(({ name }) => name === told.get("quantity"))) view.kind = told.get("quantity");
     view.state = STATES.find(({ name }) => name === told.get("state")) ?? view.state;
     /** @param {string} name @param {number} end */
@@ -134,7 +134,7 @@ class Panel {
     const title = ({ label, unit }) => [label, unit].filter(Boolean).join(", ");
     /** @type {[string, string][]} */
     const kinds = axes.length === 2 ? KINDS.map(({ name, label }) => [name, label]) : [];
-    options("sweep-quantity", [...QUANTITIES.map((quantity) => /** @type {[string, string]} */ ([quantity.name, title(quantity)])), ...kinds]);
+    options("sweep-quantity", [...this.sweep.quantities.map((quantity) => /** @type {[string, string]} */ ([quantity.name, title(quantity)])), ...kinds]);
     options("sweep-state", STATES.map((state) => [state.name, title(state)]));
     if (axes[1]) {
       options("sweep-line", this.grid.secondOrder.map((index) => [String(index), valueText(axes[1], axes[1].values[index])]));

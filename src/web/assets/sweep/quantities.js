@@ -6,10 +6,13 @@ import { scalarAt } from "../common/scalars.js";
 /** @type {SweepQuantity[]} */
 export const QUANTITIES = [...new Set(SWEEP_COLUMNS.filter(({ kind }) => kind === "number").map(({ group }) => group))].map((group) => {
   const columns = SWEEP_COLUMNS.filter((column) => column.group === group);
-  const { label, unit, percent, change, lower_is_better: least } = scalarAt(/** @type {string} */ (columns[0].quantity));
+  const { label, unit, percent, change, theory, lower_is_better: least } = scalarAt(/** @type {string} */ (columns[0].quantity));
   // Rows have shares of 1.
-  return { name: group, label, unit: percent ? "" : unit, change, least, columns: Object.fromEntries(columns.map(({ half, name }) => [half ?? "both", name])) };
+  return { name: group, label, unit: percent ? "" : unit, change, least, needsShafts: theory.startsWith("shafts#"), columns: Object.fromEntries(columns.map(({ half, name }) => [half ?? "both", name])) };
 });
+
+/** Those that the points of a document can have. @param {JobInput} document */
+export const quantitiesOf = (document) => QUANTITIES.filter(({ needsShafts }) => !needsShafts || document?.design?.shafts);
 
 /** @param {SweepQuantity} quantity */
 export const columnsOf = (quantity) => Object.values(quantity.columns);

@@ -4,7 +4,6 @@ import * as api from "../common/api.js";
 import { decimal } from "../common/csv.js";
 import { byAnyId, byId, download, el, notify, show } from "../common/dom.js";
 import { number } from "../common/format.js";
-import { QUANTITIES } from "./quantities.js";
 
 const ROWS = 50;
 
@@ -36,7 +35,7 @@ export class PointTable {
   head() {
     const names = [
       ...this.grid.axes.map(({ title }) => title), ...(this.grid.branches[0] ? ["Branch"] : []),
-      ...QUANTITIES.flatMap(({ label, unit, columns }) => Object.keys(columns).map((side) => [label, side === "both" ? "" : side, unit].filter(Boolean).join(", "))),
+      ...this.sweep.quantities.flatMap(({ label, unit, columns }) => Object.keys(columns).map((side) => [label, side === "both" ? "" : side, unit].filter(Boolean).join(", "))),
       "Motion", "Contact", "Why there is no response",
     ];
     return el("tr", {}, ...names.map((name) => el("th", { scope: "col" }, name)));
@@ -104,7 +103,7 @@ export class PointTable {
       const solved = value("error") !== undefined;
       const cells = [
         ...others, ...(branch ? [branch] : []),
-        ...QUANTITIES.flatMap(({ columns }) => Object.values(columns).map((name) => number(value(name)))),
+        ...this.sweep.quantities.flatMap(({ columns }) => Object.values(columns).map((name) => number(value(name)))),
         value("regime") ?? (solved ? "–" : "not solved yet"), value("contact") ?? "–", value("error") ?? "",
       ];
       const row = el("tr", { class: position === this.selected ? "selected" : "" }, el("th", { scope: "row" }, button), ...cells.map((cell) => el("td", {}, cell)));
