@@ -7,9 +7,13 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use herringbone_physics::compliance::{Compliance, Settings};
-use herringbone_physics::contact::{HalfContact, HalfCycle, solve_half};
+use herringbone_physics::contact::{
+    ContactShafts, HalfContact, HalfCycle, Hand, MeshFrame, sense_of_rotation, solve_half, solve_on_shafts,
+    solve_pair_of_halves,
+};
 use herringbone_physics::fe::{FlankFlexibility, Resolution};
-use herringbone_physics::gear::{GearSpec, Half, Pair, PairSpec};
+use herringbone_physics::gear::{FlankModification, GearSpec, Half, Pair, PairSpec};
+use herringbone_physics::shafts::{Bearing, Coupling, Shaft, ShaftMaterial, ShaftSegment, ShaftTrain};
 use herringbone_physics::watch::Watch;
 
 /// Half of the example's pinion torque.
@@ -86,10 +90,50 @@ fn finite_elements(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// A shaft of one diameter between two bearings with the gear bodies in the middle.
+fn shaft(diameter_m: f64, body_m: f64, axial_n_per_m: f64) -> Shaft {
+    let segment = |length_m, diameter_m| ShaftSegment { length_m, diameter_m, bore_m: 0.0 };
+    Shaft {
+        segments: vec![segment(0.13, diameter_m), segment(0.18, body_m), segment(0.13, diameter_m)],
+        gear_position_m: 0.22,
+        bearings: vec![Bearing { axial_n_per_m, ..Bearing::radial(0.05, 1e9) }, Bearing::radial(0.39, 1e9)],
+        coupling: Coupling { position_m: 0.0, axial_n_per_m: 0.0, torsional: None },
+        half_body: None,
+        bodies: Vec::new(),
+        material: ShaftMaterial { youngs_modulus_pa: 206e9, poissons_ratio: 0.3, density_kg_m3: 7850.0 },
+    }
+}
+
+/// Both halves, unequal by a helix slope so that both are solved, on rigid bodies and on elastic shafts: 32 positions.
+fn on_shafts(criterion: &mut Criterion) {
+    let mut pair = example();
+    pair.spec.pinion.flanks[0] = FlankModification { helix_slope_m: 3e-6, ..FlankModification::NONE };
+    pair.spec.gap_width_m = 0.03;
+    let settings = Settings { positions: Some(32), ..Settings::default() };
+    let compliance = compliance(&pair, &settings);
+    let train = ShaftTrain { pinion: shaft(0.08, 0.097, 0.0), gear: shaft(0.12, 0.275, 4e8) };
+    let frame = || MeshFrame::new(&pair, sense_of_rotation(Hand::Left, pair.spec.rotation), Hand::Left, false);
+    let shafts = ContactShafts::new(&train, frame(), &compliance).expect("supported shafts");
+    let torque_nm = 2.0 * TORQUE_NM;
+    let mut group = criterion.benchmark_group("both halves");
+    group.bench_function("on rigid bodies", |b| {
+        b.iter(|| solve_pair_of_halves(black_box(&pair), torque_nm, 0.0, &compliance, &settings, Watch::none()));
+    });
+    group.bench_function("on shafts", |b| {
+        let with = (&compliance, &settings);
+        b.iter(|| solve_on_shafts(black_box(&pair), &shafts, (torque_nm, 0.0, 0.0), false, with, Watch::none()));
+    });
+    group.bench_function("flexibility of the shafts", |b| {
+        b.iter(|| ContactShafts::new(black_box(&train), frame(), &compliance));
+    });
+    group.finish();
+}
+
 /// Everything on this thread, as the figures are meant.
 fn on_one_thread(criterion: &mut Criterion) {
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global().expect("the first pool");
     analytic(criterion);
+    on_shafts(criterion);
     finite_elements(criterion);
 }
 

@@ -7,9 +7,9 @@
 
 use std::ops::Range;
 
-use super::super::point_contacts::PointContacts;
-use super::super::system::{ContactProblem, ContactSystem, LocalApproach, SystemWorkspace};
 use super::flexibility::{ContactShafts, NODES};
+use crate::contact::point_contacts::PointContacts;
+use crate::contact::system::{ContactProblem, ContactSystem, LocalApproach, SystemWorkspace};
 use crate::numerics::dense::lu_solve;
 use crate::watch::{Canceled, Meter};
 
