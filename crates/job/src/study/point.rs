@@ -139,7 +139,7 @@ pub(super) fn stage<'a>(
         };
         match &rotor {
             None => parameters,
-            Some(rotor) => rotor.into_equations(parameters, document),
+            Some(rotor) => rotor.in_equations(parameters, document),
         }
     });
     let result = JobResult {

@@ -160,7 +160,7 @@ pub(super) fn channel_names(document: &JobDocument) -> Vec<String> {
 
 impl TurningRotor {
     /// The parameters of the twelve equations with the reduced rotor in place of masses, supports and couplings.
-    pub(super) fn into_equations(&self, mut parameters: Parameters, document: &JobDocument) -> Parameters {
+    pub(super) fn in_equations(&self, mut parameters: Parameters, document: &JobDocument) -> Parameters {
         for (half, mesh) in parameters.halves.iter_mut().zip(&self.rotor.meshes) {
             half.mesh_damping_n_s_per_m = mesh.damping_n_s_per_m;
         }

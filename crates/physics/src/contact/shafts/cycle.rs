@@ -568,10 +568,10 @@ impl Strips {
         let strip = |place: f64| ((place / width_m).max(0.0) as usize).min(last);
         // An end on the border of two strips belongs to the one between it and the other end.
         let (first, end) = (strip(from + 1e-9 * width_m), strip(to - 1e-9 * width_m));
-        for i in first..=end.max(first) {
+        for (i, value) in values.iter_mut().enumerate().take(end.max(first) + 1).skip(first) {
             let low = if i == first { from } else { i as f64 * width_m };
             let high = if i >= end { to } else { (i + 1) as f64 * width_m };
-            values[i] += of(low, high);
+            *value += of(low, high);
         }
     }
 
