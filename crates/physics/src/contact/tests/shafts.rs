@@ -264,7 +264,7 @@ fn rigid_shafts_are_rigid_bodies() {
         let elastic = elastic.expect("a distribution").contact;
         let rigid = solve_pair_of_halves(&case.pair, case.torque_nm, 0.0, &compliance, &settings, Watch::none());
         let rigid = rigid.expect("a distribution");
-        for (elastic, rigid) in elastic.halves.iter().zip(&rigid.halves) {
+        for ((elastic, rigid), side) in elastic.halves.iter().zip(&rigid.halves).zip(["left", "right"]) {
             let curves: [(&str, &[f64], &[f64]); 3] = [
                 ("transmission error", &elastic.transmission_error_m, &rigid.transmission_error_m),
                 ("stiffness", &elastic.stiffness_n_per_m, &rigid.stiffness_n_per_m),
@@ -272,7 +272,7 @@ fn rigid_shafts_are_rigid_bodies() {
             ];
             for (name, elastic, rigid) in curves {
                 let errors = elastic.iter().zip(rigid).map(|(e, r)| e / r - 1.0).collect::<Vec<_>>();
-                check_worst(TOPIC, &format!("rigid shafts, positions {positions:?}: {name}"), errors, 1e-9);
+                check_worst(TOPIC, &format!("rigid shafts, positions {positions:?}, {side}: {name}"), errors, 1e-9);
             }
         }
     }
