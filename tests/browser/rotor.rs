@@ -1,4 +1,5 @@
-//! The page of a job on shafts: drawing, load along the faces, bearing forces with their file, modes in motion; the report.
+//! The page of a job on shafts: drawing, load along the faces, bearing forces with their file, modes in motion; the
+//! report.
 
 use crate::browser::{Browser, flow};
 use crate::job::{STICKING_OUT, assert_complete, succeeded};

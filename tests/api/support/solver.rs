@@ -12,8 +12,8 @@ use herringbone_job::study::{self, CheckedJob, LineEnd, Outcome, RecordedChannel
 use herringbone_physics::watch::Canceled;
 
 /// Name of the document: `fail`, `failing`, `fail oddly`, `panic`, `stage`, `not finite`, `large`, `numbers`,
-/// `bearings`; anything else succeeds. Every calculation passes the breakpoint `solve`, and the one of its own name; `at its end` passes
-/// only its own, past which it does not notice a cancel.
+/// `bearings`; anything else succeeds. Every calculation passes the breakpoint `solve`, and the one of its own name;
+/// `at its end` passes only its own, past which it does not notice a cancel.
 #[derive(Default)]
 pub(crate) struct ScriptedSolver {
     pub breakpoints: Breakpoints,

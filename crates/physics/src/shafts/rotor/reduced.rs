@@ -93,7 +93,7 @@ impl ReducedRotor {
     /// Response of the reduced rotor to a harmonic displacement excitation, meshes closed.
     ///
     /// # Errors
-    /// As [`GearedRotor::frequency_response`].
+    /// As [`GearedRotor::frequency_response`](super::GearedRotor::frequency_response).
     pub fn frequency_response(&self, excitation: &Harmonics) -> Result<FrequencyResponse, ShaftError> {
         let omega = excitation.omega()?;
         let impedance = [0, 1].map(|half| {
