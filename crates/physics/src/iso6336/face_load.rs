@@ -94,7 +94,7 @@ mod tests {
             arrangement: PinionArrangement::TowardsTorque,
         };
         let by_hand_um = 0.046 * 95.2 * 1.5 * (75.0f64 / 112.03).powi(2);
-        let topic = "ISO 6336-1, method C: face load";
+        let topic = "Shafts: face load by ISO 6336-1, method C";
         let got = pinion.equivalent_misalignment_m(95.2e3) * 1e6;
         check(topic, "f_sh of a symmetric pinion, µm", got, by_hand_um, Relative(1e-12));
         let expected = 1.0 + 1.33 * by_hand_um * 17.0 / (2.0 * 95.2);
