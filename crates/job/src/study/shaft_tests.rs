@@ -238,3 +238,58 @@ fn sweeps_vary_the_shafts() {
         assert!((first - second).abs() > 1e-3, "{axes}: {first} and {second}");
     }
 }
+
+/// Under negative torque the coast flanks carry: the mirror image of the drive flanks of a pair of the other hands.
+#[test]
+fn the_coast_flanks_are_the_mirror_image_of_drive_flanks() {
+    let cases = cases();
+    let case = cases.iter().find(|case| case["name"] == "axially_held_tilting_bearings").expect("the case");
+    let (mut coast, mut mirrored) = (case["input"].clone(), case["input"].clone());
+    coast["operation"]["pinion_torque_nm"] = json!(-800.0);
+    mirrored["design"]["pinion"]["left_half_hand"] = json!("right");
+    mirrored["operation"]["rotation"] = json!("apex_trailing");
+    let (coast, mirrored) = (&solved(&coast)["shafts"], &solved(&mirrored)["shafts"]);
+    let mut errors = Vec::new();
+    for half in ["left", "right"] {
+        for value in ["k_h_beta", "share", "axial_force_on_pinion_n"] {
+            let of = |result: &Value| result[half][value].as_f64().expect("a number");
+            errors.push(of(coast) / of(mirrored) - 1.0);
+        }
+    }
+    // Seen in the mirror of the plane of both axes.
+    for (value, sign) in [("x_um", 1.0), ("y_um", 1.0), ("z_um", 1.0), ("tilt_x_urad", -1.0), ("tilt_y_urad", 1.0)] {
+        let [own, image] = [coast, mirrored].map(|result| numbers(&result["pinion"][value]));
+        assert_eq!((own.len(), image.len()), (4, 4));
+        errors.extend(own.iter().zip(&image).map(|(own, image)| own / (sign * image) - 1.0));
+    }
+    check_worst(TOPIC, "coast flanks against the mirrored pair", errors, 1e-9);
+}
+
+/// The reactions of the bearings to the mean motion are those of the static contact, on either flank.
+#[test]
+fn the_mean_bearing_forces_are_the_static_ones() {
+    for torque_nm in [800.0, -800.0] {
+        let document = json!({
+            "kind": "response",
+            "design": {
+                "normal_module_mm": 6.0, "helix_angle_deg": 24.43, "face_width_mm": 75.0,
+                "pinion": {"teeth": 17}, "gear": {"teeth": 44},
+                "shafts": {"arrangement": {"type": "straddle", "input": "left"}}
+            },
+            "operation": {"pinion_speed_rpm": 2000.0, "pinion_torque_nm": torque_nm}
+        });
+        let result = solved(&document);
+        let members = ["pinion", "gear"].map(|member| result["shafts"][member]["bearings"].as_array().cloned());
+        let reactions: Vec<Value> = members.into_iter().flatten().flatten().collect();
+        let bearings = result["response"]["bearings"].as_array().expect("bearings");
+        assert_eq!((reactions.len(), bearings.len()), (4, 4));
+        let mut errors = Vec::new();
+        for (bearing, reaction) in bearings.iter().zip(&reactions) {
+            for (c, axis) in ["x", "y"].into_iter().enumerate() {
+                let mean = bearing["force_n"][axis]["mean"].as_f64().expect("a force");
+                errors.push((mean - numbers(&reaction["force_on_shaft_n"])[c]) / 7000.0);
+            }
+        }
+        check_worst(TOPIC, &format!("mean bearing forces against the static contact, {torque_nm} N m"), errors, 1e-3);
+    }
+}
