@@ -257,7 +257,7 @@ fn the_coast_flanks_are_the_mirror_image_of_drive_flanks() {
         }
     }
     // Seen in the mirror of the plane of both axes.
-    for (value, sign) in [("x_um", 1.0), ("y_um", 1.0), ("z_um", 1.0), ("tilt_x_urad", -1.0), ("tilt_y_urad", 1.0)] {
+    for (value, sign) in [("x_um", 1.0), ("y_um", -1.0), ("z_um", 1.0), ("tilt_x_urad", -1.0), ("tilt_y_urad", 1.0)] {
         let [own, image] = [coast, mirrored].map(|result| numbers(&result["pinion"][value]));
         assert_eq!((own.len(), image.len()), (4, 4));
         errors.extend(own.iter().zip(&image).map(|(own, image)| own / (sign * image) - 1.0));
