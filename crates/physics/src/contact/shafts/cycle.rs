@@ -359,13 +359,22 @@ pub struct MeshSection {
     pub tilting_moment_nm: f64,
 }
 
+impl HalfOnShafts {
+    /// Distance from mid-face, towards the mesh-in end, of the section at which approach and tilt of the loaded teeth do
+    /// not couple.
+    fn uncoupled_arm_m(&self) -> f64 {
+        let [stiffness, coupled, _] = self.tooth_stiffness;
+        if stiffness > 0.0 { coupled / stiffness } else { 0.0 }
+    }
+}
+
 impl LoadedContactOnShafts {
     /// The mesh of a half about its mean loaded state.
     pub fn mesh_section(&self, shafts: &ContactShafts, half: Half) -> MeshSection {
         let own = &self.halves[half.index()];
         let [stiffness_n_per_m, coupled_n, by_tilt_nm] = own.tooth_stiffness;
         let middle_m = 0.5 * shafts.frame.width_m;
-        let arm_m = if stiffness_n_per_m > 0.0 { coupled_n / stiffness_n_per_m } else { 0.0 };
+        let arm_m = own.uncoupled_arm_m();
         let position_m = shafts.frame.z_m(half, middle_m + arm_m);
         let tilting_nm_per_rad = (by_tilt_nm - arm_m * coupled_n).max(0.0);
         // Closing by tilt per distance along z: (e_z × n) · (φ_p − φ_g).
@@ -388,8 +397,7 @@ impl LoadedContactOnShafts {
     /// [`HalfContact::displaced`].
     pub fn field_about_mesh_section(&self, shafts: &ContactShafts, half: Half) -> DisplacementField {
         let own = &self.halves[half.index()];
-        let [stiffness, coupled, _] = own.tooth_stiffness;
-        let arm_m = if stiffness > 0.0 { coupled / stiffness } else { 0.0 };
+        let arm_m = own.uncoupled_arm_m();
         let mut field = displacement_field(shafts, own);
         let at_section_m = field.at(0.5 * shafts.frame.width_m + arm_m, shafts.frame.pitch_point_m);
         field.opening_m.iter_mut().for_each(|opening| *opening -= at_section_m);
