@@ -360,8 +360,8 @@ pub struct MeshSection {
 }
 
 impl HalfOnShafts {
-    /// Distance from mid-face, towards the mesh-in end, of the section at which approach and tilt of the loaded teeth do
-    /// not couple.
+    /// Distance from mid-face, towards the mesh-in end, of the section at which approach and tilt of the loaded teeth
+    /// do not couple.
     fn uncoupled_arm_m(&self) -> f64 {
         let [stiffness, coupled, _] = self.tooth_stiffness;
         if stiffness > 0.0 { coupled / stiffness } else { 0.0 }
