@@ -93,7 +93,7 @@ fn a_start_without_room_serves_what_is_stored_and_goes_on_when_there_is_room() {
     let service = program.start();
     let done = service.submit(&documents::response());
     service.ended(&done);
-    let sweep = service.submit(&documents::sweep(400));
+    let sweep = service.submit(&documents::sweep(8000));
     service.until(&sweep, |answer| answer.json()["progress"].as_f64() > Some(0.02));
     service.kill();
     // Room for the index of the log, 32 KiB, and not for another page of the log itself.

@@ -129,7 +129,7 @@ pub(super) fn stage<'a>(
     (context.progress)(Stage::Impact, 1.0);
 
     let mounted = MountedTrain::of(document, &prepared.pair).filter(|_| document.kind != JobKind::Mesh);
-    let rotor = mounted.map(|mounted| rotor::find(document, prepared, &mounted, &mesh, memo)).transpose()?;
+    let rotor = mounted.map(|mounted| rotor::find(document, prepared, &mounted, &mesh, (context, memo))).transpose()?;
     let parameters = (document.kind != JobKind::Mesh).then(|| {
         let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
         let parameters = equations::parameters(document, prepared, &plane, mesh.stiffness, impact.pulses, lead);

@@ -4,7 +4,7 @@ use super::hash::rotor_hash;
 use super::mesh::{MeshMemo, MeshStage};
 use super::prepare::Prepared;
 use super::shaft_contact::MountedTrain;
-use super::{SolveError, Stage};
+use super::{SolveContext, SolveError, Stage};
 use crate::document::JobDocument;
 use crate::result::{
     BearingForceResult, BearingForces, DirectionForce, ForceOrders, MidFaceShape, NaturalMode, PerHalf, ResponseResult,
@@ -17,6 +17,7 @@ use herringbone_physics::response::{MeshOrder, OutputResponse, Response};
 use herringbone_physics::shafts::{
     GearedRotor, MeshElement, ReducedRotor, ReductionSettings, RotationSense, Shaft, ShaftError,
 };
+use herringbone_physics::watch::Watch;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -49,7 +50,10 @@ const FINEST: f64 = 1e-3;
 const MOST_COORDINATES: usize = 96;
 
 fn failed(error: &ShaftError) -> SolveError {
-    SolveError::failed(Stage::Response, "shafts-failed", error)
+    match error {
+        ShaftError::Canceled(canceled) => (*canceled).into(),
+        other => SolveError::failed(Stage::Response, "shafts-failed", other),
+    }
 }
 
 /// The reduced rotor of a point, from the job's memo or computed.
@@ -61,7 +65,7 @@ pub(super) fn find(
     prepared: &Prepared,
     mounted: &MountedTrain,
     mesh: &MeshStage,
-    memo: &MeshMemo,
+    (context, memo): (&SolveContext, &MeshMemo),
 ) -> Result<TurningRotor, SolveError> {
     let speed_rad_s = mounted.sense * prepared.pinion_speed_rad_s;
     let pair = &prepared.pair;
@@ -82,7 +86,7 @@ pub(super) fn find(
     let full = GearedRotor::new(&mounted.train, pair, sense, &meshes).map_err(|error| failed(&error))?;
     let settings =
         ReductionSettings { up_to_hz, accuracy, most_coordinates: MOST_COORDINATES, pinion_speed_rad_s: speed_rad_s };
-    let reduced = full.reduce(&settings).map_err(|error| failed(&error))?;
+    let reduced = full.reduce(&settings, Watch::new(&|_| {}, context.canceled)).map_err(|error| failed(&error))?;
     let rotor = Arc::new(Rotor { full, reduced, meshes, up_to_hz });
     memo.rotors.put(key, rotor.clone());
     Ok(TurningRotor { rotor, speed_rad_s })

@@ -13,8 +13,9 @@ use crate::result::{
 };
 use herringbone_physics::compliance::Compliance;
 use herringbone_physics::contact::{
-    self, AxialFreedom, ContactError, ContactShafts, HelixModification, LoadedContactOnShafts, MeshFrame,
-    evening_modification, sense_of_rotation, solve_on_shafts, with_helix_modification,
+    self, AxialFreedom, ContactError, ContactShafts, CurveStatistics, HelixModification, LoadOnShafts,
+    LoadedContactOnShafts, MeshFrame, evening_modification, load_on_shafts, sense_of_rotation, solve_on_shafts,
+    with_helix_modification,
 };
 use herringbone_physics::gear::Pair;
 use herringbone_physics::iso6336::{Blank, MethodB, PinionArrangement, PinionOnShaft};
@@ -71,7 +72,10 @@ pub(super) struct ShaftContact {
 }
 
 pub(super) fn shafts_failed(error: &ShaftError) -> SolveError {
-    SolveError::failed(Stage::Mesh, "shafts-failed", error)
+    match error {
+        ShaftError::Canceled(canceled) => (*canceled).into(),
+        other => SolveError::failed(Stage::Mesh, "shafts-failed", other),
+    }
 }
 
 /// The flexibility of the shafts between the stations of the compliance, from the job's memo or computed.
@@ -152,21 +156,23 @@ pub(super) fn complete(
     let watch = || Watch::new(&|_| {}, context.canceled);
     let solve = |pair: &Pair, torque_nm: f64, axial_n: f64| {
         let loads = (torque_nm, case.half_stagger, axial_n);
-        solve_on_shafts(pair, &contact.shafts, loads, coast, (&compliance, &settings), watch())
+        load_on_shafts(pair, &contact.shafts, loads, coast, (&compliance, &settings), watch())
     };
     let torque_nm = case.torque_nm.abs();
     let loads = (torque_nm, case.half_stagger, 0.0);
-    let (proposed, _) = evening_modification(pair, &contact.shafts, loads, coast, (&compliance, &settings), watch())
-        .map_err(contact_failed)?;
+    let unmodified = &contact.loaded.load;
+    let (proposed, _) =
+        evening_modification(pair, &contact.shafts, loads, coast, unmodified, (&compliance, &settings), watch())
+            .map_err(contact_failed)?;
     let modified_pair = with_helix_modification(pair, &proposed, coast);
-    let factors = |loaded: &LoadedContactOnShafts| PerHalf {
+    // At the document's torque with all positions, as for its own flanks.
+    let modified =
+        load_on_shafts(&modified_pair, &contact.shafts, loads, coast, (&compliance, &case.settings), watch())
+            .map_err(contact_failed)?;
+    let factors = |loaded: &LoadOnShafts| PerHalf {
         left: loaded.halves[0].face.k_h_beta_5mm(),
         right: loaded.halves[1].face.k_h_beta_5mm(),
     };
-    // At the document's torque with all positions, as for its own flanks.
-    let full = (&*compliance, &case.settings);
-    let modified =
-        solve_on_shafts(&modified_pair, &contact.shafts, loads, coast, full, watch()).map_err(contact_failed)?;
     let others: Result<Vec<FaceLoadAtTorque>, ContactError> = TORQUE_PARTS
         .par_iter()
         .map(|part| {
@@ -180,7 +186,7 @@ pub(super) fn complete(
     let mut at_torques = others.map_err(contact_failed)?;
     at_torques.push(FaceLoadAtTorque {
         pinion_torque_nm: case.torque_nm,
-        k_h_beta_5mm: factors(&contact.loaded),
+        k_h_beta_5mm: factors(unmodified),
         k_h_beta_5mm_modified: factors(&modified),
     });
     at_torques.sort_by(|a, b| a.pinion_torque_nm.abs().total_cmp(&b.pinion_torque_nm.abs()));
@@ -202,7 +208,7 @@ pub(super) fn complete(
 fn friction(
     document: &JobDocument,
     contact: &ShaftContact,
-    solve: impl Fn(f64) -> Result<LoadedContactOnShafts, ContactError>,
+    solve: impl Fn(f64) -> Result<LoadOnShafts, ContactError>,
 ) -> Result<Option<AxialFrictionResult>, SolveError> {
     let Some(resolved) = document.design.resolved_shafts() else { return Ok(None) };
     let force_n = match contact.shafts.freedom() {
@@ -219,20 +225,11 @@ fn friction(
         Ok(AxialLimit {
             share: of(&|h| loaded.halves[h].share),
             k_gamma: k_gamma(&loaded),
-            pinion_axial_float_um: mean(&loaded.pinion_float_m) * 1e6,
+            pinion_axial_float_um: loaded.pinion_float_m * 1e6,
             k_h_beta: of(&|h| loaded.halves[h].face.k_h_beta()),
         })
     };
     Ok(Some(AxialFrictionResult { force_n, pushed_left: limit(-force_n)?, pushed_right: limit(force_n)? }))
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
-fn peak_to_peak(values: &[f64]) -> f64 {
-    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    largest - values.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 /// Amplitudes of the first three harmonics, µm.
@@ -240,30 +237,29 @@ fn harmonics_um(values: &[f64]) -> Vec<f64> {
     contact::harmonics(values).into_iter().take(3).map(|amplitude| amplitude * 1e6).collect()
 }
 
-fn k_gamma(loaded: &LoadedContactOnShafts) -> f64 {
+fn k_gamma(loaded: &LoadOnShafts) -> f64 {
     2.0 * loaded.halves.iter().map(|half| half.share).fold(0.0, f64::max)
 }
 
 /// The block `shafts` of a result, apart from what [`complete`] adds.
 pub(super) fn result(document: &JobDocument, pair: &Pair, contact: &ShaftContact) -> ShaftsResult {
     let loaded = &contact.loaded;
+    let between_couplings = CurveStatistics::of(&loaded.between_couplings_m);
+    let float = CurveStatistics::of(&loaded.pinion_float_m);
     let resolved = document.design.resolved_shafts();
     let half = |h: usize| half_result(loaded, h, pair);
     let member = |member: usize, input: Option<&ShaftInput>| member_result(contact, member, input);
     ShaftsResult {
-        line_load_mean_n_per_mm: loaded.line_load_n_per_m * 1e-3,
-        contact_line_length_mean_mm: loaded.line_length_m * 1e3,
+        line_load_mean_n_per_mm: loaded.load.line_load_n_per_m * 1e-3,
+        contact_line_length_mean_mm: loaded.load.line_length_m * 1e3,
         transmission_error: CouplingTransmissionError {
-            between_couplings_mean_um: mean(&loaded.between_couplings_m) * 1e6,
-            between_couplings_pp_um: peak_to_peak(&loaded.between_couplings_m) * 1e6,
+            between_couplings_mean_um: between_couplings.mean * 1e6,
+            between_couplings_pp_um: (between_couplings.max - between_couplings.min) * 1e6,
             harmonics_um: harmonics_um(&loaded.between_couplings_m),
         },
-        pinion_axial_float_um: AxialFloat {
-            mean: mean(&loaded.pinion_float_m) * 1e6,
-            pp: peak_to_peak(&loaded.pinion_float_m) * 1e6,
-        },
-        open_fraction: loaded.open_fraction,
-        k_gamma: k_gamma(loaded),
+        pinion_axial_float_um: AxialFloat { mean: float.mean * 1e6, pp: (float.max - float.min) * 1e6 },
+        open_fraction: loaded.load.open_fraction,
+        k_gamma: k_gamma(&loaded.load),
         left: half(0),
         right: half(1),
         pinion: member(0, resolved.as_ref().map(|shafts| &shafts.pinion)),
@@ -274,7 +270,7 @@ pub(super) fn result(document: &JobDocument, pair: &Pair, contact: &ShaftContact
 }
 
 fn half_result(loaded: &LoadedContactOnShafts, h: usize, pair: &Pair) -> ShaftHalfResult {
-    let half = &loaded.halves[h];
+    let half = &loaded.load.halves[h];
     let approach = &loaded.contact.halves[h].transmission_error_m;
     let face = &half.face;
     let per_mm = |values: &[f64]| values.iter().map(|load| load * 1e-3).collect::<Vec<_>>();
@@ -290,7 +286,7 @@ fn half_result(loaded: &LoadedContactOnShafts, h: usize, pair: &Pair) -> ShaftHa
         line_load_outer_end_n_per_mm: face.ends_n_per_m[1] * 1e-3,
         line_load_peak_over_mean: half.peak_over_mean,
         load_centroid_from_inner_end_mm: half.centroid_from_inner_m * 1e3,
-        approach_mid_face_mean_um: mean(approach) * 1e6,
+        approach_mid_face_mean_um: CurveStatistics::of(approach).mean * 1e6,
         approach_mid_face_harmonics_um: harmonics_um(approach),
         station_from_inner_end_mm: face.piece_m.iter().map(|place| place * 1e3).collect(),
         line_load_n_per_mm: face.piece_m.iter().map(|&place| face.at_n_per_m(place) * 1e-3).collect(),
@@ -312,8 +308,8 @@ fn member_result(contact: &ShaftContact, member: usize, input: Option<&ShaftInpu
     let bearings = input.map_or(&[][..], |shaft| &shaft.bearings);
     let floating = [AxialFreedom::Pinion, AxialFreedom::Gear][member];
     ShaftMemberResult {
-        k_h_beta: of_halves(&|h| loaded.halves[h].face.k_h_beta()),
-        k_h_beta_5mm: of_halves(&|h| loaded.halves[h].face.k_h_beta_5mm()),
+        k_h_beta: of_halves(&|h| loaded.load.halves[h].face.k_h_beta()),
+        k_h_beta_5mm: of_halves(&|h| loaded.load.halves[h].face.k_h_beta_5mm()),
         floats_axially: contact.shafts.freedom() == floating,
         face_ends: FACE_ENDS.map(str::to_owned).to_vec(),
         x_um: at_ends(0),

@@ -51,6 +51,8 @@ const MOST_KNOTS: usize = 192;
 const FINEST: f64 = 1.0 / 1024.0;
 /// Agreement between knots and levels, as a part of the accuracy required of the curves.
 const AGREEMENT: f64 = 0.2;
+/// The same where the bodies are held in a displaced shape, which is itself that of the working load alone.
+const DISPLACED_AGREEMENT: f64 = 1.0;
 /// Forces below this part of the working load need not be relatively accurate.
 const SMALL_FORCE: f64 = 0.2;
 
@@ -136,7 +138,8 @@ impl ForceTable {
         watch: Watch<'_>,
     ) -> Result<ForceTable, ContactError> {
         let sampler = Sampler { field, pair, half, compliance, settings, force_bt_n, watch };
-        let tolerance = AGREEMENT * settings.accuracy;
+        let agreement = if field.is_some() { DISPLACED_AGREEMENT } else { AGREEMENT };
+        let tolerance = agreement * settings.accuracy;
         let level_m = levels(&sampler, tolerance)?;
         // The first step is halved once more: its middle says how the contact begins.
         let mut solved_m = level_m.clone();

@@ -46,14 +46,15 @@ pub(super) fn reference_roll_m(pair: &Pair, phase: f64) -> f64 {
     pair.path_start_m + phase * pair.base_pitch_m - pair.spec.face_width_m * pair.base_helix_angle_rad.tan()
 }
 
-/// Collects the points of `half` into `out`.
+/// Collects the points of `half` into `out`. `displacement_m` is the opening of the flanks along the base tangent by
+/// displaced bodies, at a distance from the mesh-out end and a roll coordinate.
 pub(super) fn collect(
     pair: &Pair,
     corners: &CornerGaps,
     half: Half,
-    phase: f64,
-    slices: usize,
+    (phase, slices): (f64, usize),
     reach: &PairRange,
+    displacement_m: impl Fn(f64, f64) -> f64,
     out: &mut Vec<ContactPoint>,
 ) {
     out.clear();
@@ -106,7 +107,7 @@ pub(super) fn collect(
                         };
                         // entry_m is its own inverse.
                         let modified = pair.initial_gap_m(half, x.clamp(start, end), pair.entry_m(entry));
-                        Some((corner, corner.max(0.0) + modified))
+                        Some((corner, corner.max(0.0) + modified + displacement_m(entry, x)))
                     };
                     let (x, entry) = at(0.5);
                     let Some((corner, gap)) = gap_at((x, entry)) else { continue };

@@ -36,9 +36,9 @@ pub use lines::ContactPoint;
 pub use memory::{ComplianceModel, ContactMemory, ContactSizes};
 pub use position::LoadedPosition;
 pub use shafts::{
-    AxialFreedom, ContactShafts, DisplacementField, FaceLoad, HalfOnShafts, Hand, HelixModification,
+    AxialFreedom, ContactShafts, DisplacementField, FaceLoad, HalfOnShafts, Hand, HelixModification, LoadOnShafts,
     LoadedContactOnShafts, MeshFrame, MeshSection, ShaftState, evening_modification, helix_modification,
-    sense_of_rotation, solve_on_shafts, with_helix_modification,
+    load_on_shafts, sense_of_rotation, solve_on_shafts, with_helix_modification,
 };
 pub use short_face::{SHORT_FACE_NOTICE, stiffness_excess};
 

@@ -192,12 +192,14 @@ impl<'a> PositionSolver<'a> {
     /// Collects the points of possible contact, with the gaps of the displaced bodies.
     fn collect_points(&mut self, phase: f64, most: usize, reach: &PairRange) -> Result<(), Canceled> {
         self.watch.checkpoint_quietly()?;
-        collect(self.pair, &self.corners, self.half, phase, self.slices.min(most), reach, &mut self.points);
-        if let Mount::Displaced(field) = self.mount {
-            let cos = self.pair.base_helix_angle_rad.cos();
-            for p in &mut self.points {
-                p.gap_m += field.at(p.entry_m, p.x_m) / cos;
+        let (pair, corners, points) = (self.pair, &self.corners, &mut self.points);
+        let cut = (phase, self.slices.min(most));
+        match self.mount {
+            Mount::Displaced(field) => {
+                let cos = pair.base_helix_angle_rad.cos();
+                collect(pair, corners, self.half, cut, reach, |entry_m, x_m| field.at(entry_m, x_m) / cos, points);
             }
+            Mount::Rigid | Mount::Shafts(_) => collect(pair, corners, self.half, cut, reach, |_, _| 0.0, points),
         }
         Ok(())
     }

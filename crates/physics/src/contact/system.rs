@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::compliance::{STENCIL, Stencil};
-use crate::numerics::dense::{cholesky, cholesky_solve, dot, forward_solve, lu_solve};
+use crate::numerics::dense::{cholesky, cholesky_solve, dot, forward_solve, lu_solve, multiply_vectors};
 use crate::simd::vectorised;
 use crate::watch::{Canceled, Meter};
 
@@ -151,10 +151,14 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         } else if !self.add_lines(active, work, meter)? {
             return Ok(None);
         }
-        for side in work.sides.chunks_exact_mut(r.max(1)) {
-            work.station_force.clear();
-            work.station_force.extend_from_slice(side);
-            multiply(self.bulk, &work.station_force, side, meter)?;
+        if modes > 1 {
+            multiply_vectors(self.bulk, &mut work.sides, r, meter)?;
+        } else {
+            for side in work.sides.chunks_exact_mut(r.max(1)) {
+                work.station_force.clear();
+                work.station_force.extend_from_slice(side);
+                multiply(self.bulk, &work.station_force, side, meter)?;
+            }
         }
         if !lu_solve(&mut work.matrix, &mut work.sides, r, meter)? {
             return Ok(None);

@@ -40,6 +40,7 @@
 // Loops over coordinates and Taylor orders are written with an index, as the formulas are.
 #![allow(clippy::needless_range_loop)]
 
+mod broyden;
 mod contact_force;
 mod crossing;
 mod equations;
@@ -78,6 +79,7 @@ pub use parameters::{
 };
 pub use trajectory::{FinalState, advance, advance_many};
 
+pub(crate) use broyden::BroydenSteps;
 pub(crate) use equations::{PER_HALF, U, W, YG, YP, ZG, ZP, is_rigid_rotation, is_train, solved_halves};
 pub(crate) use excitation::MAX_ORDER;
 pub(crate) use integrate::{DIVERGENCE_LIMIT_M, Motion};

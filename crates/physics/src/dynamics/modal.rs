@@ -111,6 +111,7 @@ impl NaturalModes {
         if p.train.is_some() {
             return match number_of_coordinates(p, false) {
                 52 => of_train::<52>(p),
+                76 => of_train::<76>(p),
                 _ => of_train::<100>(p),
             };
         }

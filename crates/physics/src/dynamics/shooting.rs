@@ -1,6 +1,6 @@
 //! Shooting method for periodic motions: period map, monodromy matrix, Newton correction, Floquet multipliers.
 
-use nalgebra::{Complex, DMatrix, DVector, SymmetricEigen};
+use nalgebra::{Complex, DMatrix, DVector, Dyn, LU, SymmetricEigen};
 
 use super::equations::PER_HALF;
 use super::error::DynamicsError;
@@ -10,8 +10,8 @@ use super::modal_train::MAX_RIGID_BODY_MODES;
 use super::model::{DynamicModel, MotionState};
 use super::recurrence::norm;
 use super::segment::{Observer, Segment};
-use super::train_variation::eigenvalues;
 use super::variation::{ObserverPair, Perturbation, Variation};
+use crate::numerics::eigen::eigenvalues;
 use crate::watch::Watch;
 
 /// Accuracy and limits of the integrations of a search.
@@ -31,6 +31,42 @@ pub(crate) struct Shooting<'m, const D: usize> {
     /// Rigid-body modes, normalised to nᵀ M n = 1.
     rigid_body: Vec<[f64; D]>,
     limits: IntegrationLimits<'m>,
+}
+
+/// Newton corrections with one monodromy matrix.
+pub(crate) struct Corrector<'s, 'm, const D: usize> {
+    shooting: &'s Shooting<'m, D>,
+    projector: Option<DMatrix<f64>>,
+    /// I − monodromy, factored.
+    system: LU<f64, Dyn, Dyn>,
+    periods: u64,
+}
+
+impl<const D: usize> Corrector<'_, '_, D> {
+    /// Correction of the start; `defect` is end − start. Rigid-body modes get the velocity that cancels their drift.
+    /// None if the linear system is singular.
+    pub(crate) fn correction(&self, defect: &Perturbation<D>) -> Option<Perturbation<D>> {
+        let active = &self.shooting.active;
+        let n = active.len();
+        let r = DVector::from_fn(2 * n, |i, _| if i < n { defect.0[active[i]] } else { defect.1[active[i - n]] });
+        let solution = match &self.projector {
+            Some(projector) => projector * self.system.solve(&(projector * r))?,
+            None => self.system.solve(&r)?,
+        };
+        let (mut x, mut v) = ([0.0; D], [0.0; D]);
+        for (i, &c) in active.iter().enumerate() {
+            x[c] = solution[i];
+            v[c] = solution[i + n];
+        }
+        let time = self.periods as f64 * self.shooting.model.period_tau;
+        for mode in &self.shooting.rigid_body {
+            let speed = -self.shooting.along(mode, &defect.0) / time;
+            for c in 0..D {
+                v[c] += speed * mode[c];
+            }
+        }
+        x.iter().chain(&v).all(|c| c.is_finite()).then_some((x, v))
+    }
 }
 
 /// Motion over whole mesh periods, with its monodromy matrix.
@@ -140,38 +176,16 @@ impl<'m, const D: usize> Shooting<'m, D> {
         Some(q)
     }
 
-    /// Newton correction of the start for a motion that is to repeat after `periods` mesh periods; `defect` is end −
-    /// start. Rigid-body modes get the velocity that cancels their drift. None if the linear system is singular.
-    pub(crate) fn correction(
-        &self,
-        defect: &Perturbation<D>,
-        monodromy: &DMatrix<f64>,
-        periods: u64,
-    ) -> Option<Perturbation<D>> {
-        let n = self.active.len();
+    /// Newton corrections of the start for a motion that is to repeat after `periods` mesh periods, with this monodromy
+    /// matrix.
+    pub(crate) fn corrector<'s>(&'s self, monodromy: &DMatrix<f64>, periods: u64) -> Corrector<'s, 'm, D> {
+        let size = 2 * self.active.len();
         let projector = self.rigid_body_projector();
-        let r =
-            DVector::from_fn(2 * n, |i, _| if i < n { defect.0[self.active[i]] } else { defect.1[self.active[i - n]] });
-        let solution = match &projector {
-            Some(projector) => {
-                let system = DMatrix::identity(2 * n, 2 * n) - projector * monodromy * projector;
-                projector * system.lu().solve(&(projector * r))?
-            }
-            None => (DMatrix::identity(2 * n, 2 * n) - monodromy).lu().solve(&r)?,
+        let system = match &projector {
+            Some(projector) => DMatrix::identity(size, size) - projector * monodromy * projector,
+            None => DMatrix::identity(size, size) - monodromy,
         };
-        let (mut x, mut v) = ([0.0; D], [0.0; D]);
-        for (i, &c) in self.active.iter().enumerate() {
-            x[c] = solution[i];
-            v[c] = solution[i + n];
-        }
-        let time = periods as f64 * self.model.period_tau;
-        for mode in &self.rigid_body {
-            let speed = -self.along(mode, &defect.0) / time;
-            for c in 0..D {
-                v[c] += speed * mode[c];
-            }
-        }
-        x.iter().chain(&v).all(|c| c.is_finite()).then_some((x, v))
+        Corrector { shooting: self, projector, system: system.lu(), periods }
     }
 
     /// Largest mean force along a rigid-body mode over `periods`, N.

@@ -13,12 +13,12 @@ use super::modal_train::{LinearOutput, MAX_RIGID_BODY_MODES, ModalTrain};
 use super::train_variation::TrainModes;
 
 /// Sizes of the coordinate vectors of trains.
-const TRAIN_SIZES: [usize; 2] = [52, 100];
+const TRAIN_SIZES: [usize; 3] = [52, 76, 100];
 
 /// Smallest of the [`TRAIN_SIZES`] that holds a train.
 pub(crate) fn train_size(train: &ModalTrain) -> usize {
     let elastic = (0..train.len()).filter(|&i| !train.is_rigid_body_mode(i)).count();
-    TRAIN_SIZES.into_iter().find(|d| elastic + MAX_RIGID_BODY_MODES <= *d).unwrap_or(TRAIN_SIZES[1])
+    TRAIN_SIZES.into_iter().find(|d| elastic + MAX_RIGID_BODY_MODES <= *d).unwrap_or(TRAIN_SIZES[2])
 }
 
 /// One value per coordinate.

@@ -6,7 +6,7 @@
 //! at any time. The two g_j are polynomials through Gauss points (collocation): as many points per step as
 //! the fastest mode requires for the tolerance.
 
-use nalgebra::{Complex, DMatrix, Schur};
+use nalgebra::DMatrix;
 
 use super::excitation::MAX_ORDER;
 use super::expansion::ExcitationTerms;
@@ -14,6 +14,7 @@ use super::model::{ContactSide, DynamicModel};
 use super::segment::Segment;
 use super::train_equations::TrainEquations;
 use super::variation::Perturbation;
+use crate::numerics::eigen::eigenpairs;
 use crate::numerics::gauss::gauss_legendre_unit;
 
 /// Terms of the power series of the free motion over a step.
@@ -71,7 +72,7 @@ impl TrainModes {
                 matrix[(n + r, n + c)] = -dampers[r];
             }
         }
-        let (blocks, vectors) = eigenvectors(matrix)?;
+        let (blocks, vectors) = eigenvectors(&matrix)?;
         let inverse = vectors.clone().try_inverse()?;
         let condition = vectors.norm() * inverse.norm() / (2 * n) as f64;
         if condition.is_nan() || condition > WORST_CONDITION {
@@ -156,78 +157,20 @@ impl TrainModes {
     }
 }
 
-/// Eigenvalues of a matrix, of each conjugate pair the one above the real axis, and the real and imaginary parts of
-/// their eigenvectors as columns, largest component 1: back substitution in the real Schur form (G. H. Golub, C. F. Van
-/// Loan, Matrix Computations, section 7.6). None where the Schur form is not found.
-fn eigenvectors(matrix: DMatrix<f64>) -> Option<(Vec<Block>, DMatrix<f64>)> {
+/// Eigenvalues of a matrix and the real and imaginary parts of their eigenvectors as columns; None where they are not
+/// found.
+fn eigenvectors(matrix: &DMatrix<f64>) -> Option<(Vec<Block>, DMatrix<f64>)> {
     let size = matrix.nrows();
-    let (basis, t) = Schur::try_new(matrix, f64::EPSILON, 10_000)?.unpack();
-    let smallest = f64::EPSILON * t.amax();
-    // Start and length of the diagonal blocks.
-    let mut places = Vec::with_capacity(size);
-    let mut at = 0;
-    while at < size {
-        let length = if at + 1 < size && t[(at + 1, at)] != 0.0 { 2 } else { 1 };
-        places.push((at, length));
-        at += length;
-    }
-    let mut blocks = Vec::with_capacity(places.len());
-    let mut inner = DMatrix::zeros(size, size);
-    let mut y = vec![Complex::new(0.0, 0.0); size];
-    for (i, &(at, length)) in places.iter().enumerate() {
-        y.fill(Complex::new(0.0, 0.0));
-        let value = if length == 1 {
-            y[at] = Complex::new(1.0, 0.0);
-            blocks.push(Block::Real { rate: t[(at, at)] });
-            Complex::new(t[(at, at)], 0.0)
-        } else {
-            let (a, b, c, d) = (t[(at, at)], t[(at, at + 1)], t[(at + 1, at)], t[(at + 1, at + 1)]);
-            let half = 0.5 * (a - d);
-            let square = -(half * half + b * c);
-            if square.is_nan() || square <= 0.0 {
-                return None;
-            }
-            let value = Complex::new(0.5 * (a + d), square.sqrt());
-            (y[at], y[at + 1]) = (Complex::new(b, 0.0), value - a);
-            blocks.push(Block::Pair { rate: value.re, omega: value.im });
-            value
-        };
-        let end = at + length;
-        for &(row, rows) in places[..i].iter().rev() {
-            let sum = |r: usize| (row + rows..end).map(|c| y[c] * t[(r, c)]).sum::<Complex<f64>>();
-            if rows == 1 {
-                let pivot = Complex::from(t[(row, row)]) - value;
-                let pivot = if pivot.norm() < smallest { Complex::from(smallest) } else { pivot };
-                y[row] = -sum(row) / pivot;
-            } else {
-                let (first, second) = (-sum(row), -sum(row + 1));
-                let (a, d) = (t[(row, row)] - value, t[(row + 1, row + 1)] - value);
-                let (b, c) = (t[(row, row + 1)], t[(row + 1, row)]);
-                let determinant = a * d - b * c;
-                let least = smallest * smallest;
-                let determinant = if determinant.norm() < least { Complex::from(least) } else { determinant };
-                y[row] = (first * d - second * b) / determinant;
-                y[row + 1] = (second * a - first * c) / determinant;
-            }
-        }
-        let largest = y.iter().fold(0.0f64, |m, c| m.max(c.norm()));
-        if !largest.is_finite() {
-            return None;
-        }
-        for r in 0..end {
-            inner[(r, at)] = y[r].re / largest;
-            if length == 2 {
-                inner[(r, at + 1)] = y[r].im / largest;
-            }
-        }
-    }
-    Some((blocks, basis * inner))
-}
-
-/// Eigenvalues of a matrix; None where they are not found.
-pub(super) fn eigenvalues(matrix: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
-    let schur = Schur::try_new(matrix, f64::EPSILON, 10_000)?;
-    Some(schur.complex_eigenvalues().iter().copied().collect())
+    let pairs = eigenpairs(matrix)?;
+    let blocks = pairs
+        .iter()
+        .map(|pair| match pair.value.im {
+            0.0 => Block::Real { rate: pair.value.re },
+            omega => Block::Pair { rate: pair.value.re, omega },
+        })
+        .collect();
+    let columns: Vec<f64> = pairs.into_iter().flat_map(|pair| pair.vector).flatten().collect();
+    Some((blocks, DMatrix::from_vec(size, size, columns)))
 }
 
 /// Multiplies a vector in the eigenvectors by A (from the right: a row) and `factor`.

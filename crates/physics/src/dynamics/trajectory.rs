@@ -54,12 +54,13 @@ pub fn advance(
         6 => run::<6>(p, start, mesh_periods, by, watch),
         12 => run::<12>(p, start, mesh_periods, by, watch),
         52 => run::<52>(p, start, mesh_periods, by, watch),
+        76 => run::<76>(p, start, mesh_periods, by, watch),
         _ => run::<100>(p, start, mesh_periods, by, watch),
     }
 }
 
 /// Number of coordinates in which a pair is solved: 6 for equal halves with a mirrored start, 12, or the size that
-/// holds its train (52 or 100).
+/// holds its train (52, 76 or 100).
 pub(crate) fn number_of_coordinates(p: &Parameters, mirrored_start: bool) -> usize {
     match &p.train {
         Some(train) => train_size(train),

@@ -66,19 +66,94 @@ fn lu_solve_inlined(a: &mut [f64], sides: &mut [f64], n: usize, meter: &mut Mete
             }
         }
     }
-    for side in sides.chunks_exact_mut(n) {
-        for i in 1..n {
-            meter.count(i)?;
-            let (done, rest) = side.split_at_mut(i);
-            rest[0] -= dot(&a[i * n..i * n + i], done);
+    for group in sides.chunks_mut(GROUP * n.max(1)) {
+        if group.len() >= LEAST_GROUP * n {
+            let mut rows = by_rows(group, n);
+            for i in 1..n {
+                meter.count(i * GROUP)?;
+                let (done, rest) = rows.split_at_mut(i);
+                subtract_products(&a[i * n..i * n + i], done, &mut rest[0]);
+            }
+            for i in (0..n).rev() {
+                meter.count((n - i) * GROUP)?;
+                let (rest, done) = rows.split_at_mut(i + 1);
+                subtract_products(&a[i * n + i + 1..(i + 1) * n], done, &mut rest[i]);
+                rest[i].iter_mut().for_each(|value| *value /= a[i * n + i]);
+            }
+            from_rows(&rows, group, n);
+            continue;
         }
-        for i in (0..n).rev() {
-            meter.count(n - i)?;
-            let (rest, done) = side.split_at_mut(i + 1);
-            rest[i] = (rest[i] - dot(&a[i * n + i + 1..(i + 1) * n], done)) / a[i * n + i];
+        for side in group.chunks_exact_mut(n) {
+            for i in 1..n {
+                meter.count(i)?;
+                let (done, rest) = side.split_at_mut(i);
+                rest[0] -= dot(&a[i * n..i * n + i], done);
+            }
+            for i in (0..n).rev() {
+                meter.count(n - i)?;
+                let (rest, done) = side.split_at_mut(i + 1);
+                rest[i] = (rest[i] - dot(&a[i * n + i + 1..(i + 1) * n], done)) / a[i * n + i];
+            }
         }
     }
     Ok(true)
+}
+
+/// Vectors that are worked on together, and from how many on.
+const GROUP: usize = 12;
+const LEAST_GROUP: usize = 4;
+
+/// Up to [`GROUP`] vectors of length n that follow one another, row by row.
+#[inline(always)]
+fn by_rows(vectors: &[f64], n: usize) -> Vec<[f64; GROUP]> {
+    let mut rows = vec![[0.0; GROUP]; n];
+    for (k, vector) in vectors.chunks_exact(n).enumerate() {
+        rows.iter_mut().zip(vector).for_each(|(row, value)| row[k] = *value);
+    }
+    rows
+}
+
+#[inline(always)]
+fn from_rows(rows: &[[f64; GROUP]], vectors: &mut [f64], n: usize) {
+    for (k, vector) in vectors.chunks_exact_mut(n).enumerate() {
+        vector.iter_mut().zip(rows).for_each(|(value, row)| *value = row[k]);
+    }
+}
+
+/// `out` −= Σ_j factors_j rows_j.
+#[inline(always)]
+fn subtract_products(factors: &[f64], rows: &[[f64; GROUP]], out: &mut [f64; GROUP]) {
+    let mut sum = *out;
+    for (factor, row) in factors.iter().zip(rows) {
+        for k in 0..GROUP {
+            sum[k] -= factor * row[k];
+        }
+    }
+    *out = sum;
+}
+
+/// Multiplies vectors that follow one another by the square row-major matrix `a`.
+///
+/// # Errors
+/// [`Canceled`].
+pub(crate) fn multiply_vectors(a: &[f64], vectors: &mut [f64], n: usize, meter: &mut Meter) -> Result<(), Canceled> {
+    vectorised(
+        #[inline(always)]
+        || {
+            for group in vectors.chunks_mut(GROUP * n.max(1)) {
+                meter.count(n)?;
+                let mut rows = by_rows(group, n);
+                rows.iter_mut().flatten().for_each(|value| *value = -*value);
+                let mut products = vec![[0.0; GROUP]; n];
+                for (product, row) in products.iter_mut().zip(a.chunks_exact(n)) {
+                    meter.count(n * GROUP)?;
+                    subtract_products(row, &rows, product);
+                }
+                from_rows(&products, group, n);
+            }
+            Ok(())
+        },
+    )
 }
 
 /// Cholesky factor L (lower triangle, in place) of a symmetric positive definite n×n matrix given by its lower

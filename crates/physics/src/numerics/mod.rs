@@ -1,7 +1,8 @@
-//! Numerical methods that several modules share: Gauss–Legendre rules, interpolation, periodic splines, monotone cubics
-//! and dense linear algebra on flat row-major slices.
+//! Numerical methods that several modules share: Gauss–Legendre rules, interpolation, periodic splines, monotone cubics,
+//! dense linear algebra on flat row-major slices and eigenvalues of matrices without symmetry.
 
 pub(crate) mod dense;
+pub(crate) mod eigen;
 pub(crate) mod gauss;
 pub(crate) mod interpolation;
 mod monotone;

@@ -44,6 +44,7 @@ impl ResponseProblem<'_> {
             6 => self.rest_response_in::<6>(),
             12 => self.rest_response_in::<12>(),
             52 => self.rest_response_in::<52>(),
+            76 => self.rest_response_in::<76>(),
             _ => self.rest_response_in::<100>(),
         }
     }

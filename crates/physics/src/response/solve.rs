@@ -35,6 +35,7 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
                 6 => integrate::<6>(points, alone),
                 12 => integrate::<12>(points, alone),
                 52 => integrate::<52>(points, alone),
+                76 => integrate::<76>(points, alone),
                 _ => integrate::<100>(points, alone),
             }?;
             responses.pop().unwrap_or(Err(DynamicsError::Canceled(Canceled)))
@@ -48,6 +49,7 @@ pub fn solve(p: &Parameters, analysis: &Analysis, watch: &Watch<'_>) -> Result<R
             let found = match number_of_coordinates(p, false) {
                 12 => point.solve_steady::<12>(mirrored),
                 52 => point.solve_steady::<52>(false),
+                76 => point.solve_steady::<76>(false),
                 _ => point.solve_steady::<100>(false),
             }?;
             // A search in twelve coordinates or more always returns a motion.
@@ -374,7 +376,7 @@ impl ResponseProblem<'_> {
         let once = self.record(model, (start, tight), n, self.rms_recorder(model), None)?.record;
         let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tight))?;
         let defect = state_difference(&once.last, &start);
-        let Some(correction) = shooting.correction(&defect, monodromy, n) else { return Ok(f64::INFINITY) };
+        let Some(correction) = shooting.corrector(monodromy, n).correction(&defect) else { return Ok(f64::INFINITY) };
         let better = self
             .record(model, (displaced(model, start, &correction), tight), n, self.rms_recorder(model), None)?
             .recorder;

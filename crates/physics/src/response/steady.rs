@@ -6,8 +6,8 @@ use super::budget::{Budget, budget_exhausted, steps_per_period};
 use super::lyapunov::{CHAOS_PER_MESH_PERIOD, LYAPUNOV_MESH_PERIODS, lyapunov_exponent, perturbation_decay};
 use super::poincare::{PoincareSection, largest_component};
 use crate::dynamics::{
-    DIVERGENCE_LIMIT_M, DynamicModel, DynamicsError, IntegrationLimits, Integrator, Motion, MotionState, PER_HALF,
-    Perturbation, RigidBodyModes, Shooting, StepCounts, U, Unobserved, state_difference,
+    BroydenSteps, DIVERGENCE_LIMIT_M, DynamicModel, DynamicsError, IntegrationLimits, Integrator, Motion, MotionState,
+    PER_HALF, Perturbation, RigidBodyModes, Shooting, StepCounts, U, Unobserved, state_difference,
 };
 
 /// Mesh periods after which a motion that does not nearly repeat counts as aperiodic.
@@ -209,7 +209,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         self.check_load_balance(&shooting, &defect)?;
         let n = 2 * self.model.active().count();
         let zero_monodromy = DMatrix::zeros(n, n);
-        let Some(correction) = shooting.correction(&defect, &zero_monodromy, 1) else { return Ok(None) };
+        let Some(correction) = shooting.corrector(&zero_monodromy, 1).correction(&defect) else { return Ok(None) };
         Ok(Some(SteadyMotion {
             start: displaced(self.model, near, &correction),
             record: 1,
@@ -246,7 +246,9 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         let within = shooting.multipliers(&period_map.monodromy);
         let modulus = within.first().map(|m| m.norm());
         let Some(modulus) = modulus.filter(|m| *m < 1.0) else { return Ok(None) };
-        let Some(correction) = shooting.correction(&defect, &period_map.monodromy, 1) else { return Ok(None) };
+        let Some(correction) = shooting.corrector(&period_map.monodromy, 1).correction(&defect) else {
+            return Ok(None);
+        };
         let orbit_start = displaced(self.model, first, &correction);
         if orbit_start.contact != first.contact {
             return Ok(None);
@@ -299,6 +301,8 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         *counts += period_map.counts;
         let mut defect = state_difference(&period_map.end, &at);
         self.check_load_balance(&shooting, &defect)?;
+        let mut corrector = shooting.corrector(&period_map.monodromy, 1);
+        let mut steps = BroydenSteps::new();
         let mut last = f64::INFINITY;
         for _ in 0..MAX_ITERATIONS {
             let size = period_map.size.max(1e-9 * largest_component(&(at.x, [0.0; D])));
@@ -316,10 +320,14 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
                 if converged {
                     break;
                 }
+                corrector = shooting.corrector(&period_map.monodromy, 1);
+                steps.clear();
             }
             last = change;
-            let Some(correction) = shooting.correction(&defect, &period_map.monodromy, 1) else { return Ok(None) };
-            at = displaced(self.model, at, &correction);
+            let Some(newton) = corrector.correction(&defect) else { return Ok(None) };
+            // A train's approximate derivative is corrected by the steps themselves.
+            let step = if DynamicModel::<D>::IS_TRAIN { steps.step(newton) } else { newton };
+            at = displaced(self.model, at, &step);
             let mut motion = self.motion(at, budget);
             motion.advance_period(&mut Unobserved, self.limits.watch, 0.0)?;
             budget.spend(&motion.counts, 0);
@@ -504,7 +512,9 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
                 return self.stable_orbit(&shooting, start, n, period_map.monodromy, budget, &mut counts);
             }
             last = change;
-            let Some(correction) = shooting.correction(&defect, &period_map.monodromy, n) else { return Ok(None) };
+            let Some(correction) = shooting.corrector(&period_map.monodromy, n).correction(&defect) else {
+                return Ok(None);
+            };
             // The velocity along rigid-body modes is not limited.
             if largest_component(&rigid_body.project_out(&correction)) > 0.1 * size {
                 return Ok(None);
@@ -534,7 +544,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         }
         budget.spend(&motion.counts, 0);
         *counts += motion.counts;
-        let correction = shooting.correction(&state_difference(&motion.state, &start), monodromy, n);
+        let correction = shooting.corrector(monodromy, n).correction(&state_difference(&motion.state, &start));
         let better = correction.map(|by| displaced(self.model, start, &by));
         Ok(better.filter(|b| b.contact == start.contact).map_or(start, |b| MotionState { period: start.period, ..b }))
     }

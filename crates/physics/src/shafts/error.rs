@@ -1,5 +1,6 @@
 //! Errors of shafts and of the geared rotor.
 
+use crate::watch::Canceled;
 use std::fmt;
 
 /// The part of a shaft that an error is about. Indices count from 0 in the order of the shaft's lists.
@@ -75,6 +76,9 @@ impl fmt::Display for SupportDefect {
 /// Errors of a shaft or of the geared rotor.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ShaftError {
+    /// The calculation was canceled.
+    #[error(transparent)]
+    Canceled(#[from] Canceled),
     /// The shaft has no segments.
     #[error("the shaft has no segments")]
     NoSegments,

@@ -1,19 +1,20 @@
 //! Flexibility of both shafts under the tooth forces of both halves, as the load distribution uses it.
 //!
 //! The displacement of the contact points of one half by forces on the same half is tabulated between the stations of
-//! the contact lines, like that of the teeth. By forces on the other half it is smooth: sections without load between
-//! them bend as cubics, twist and stretch linearly, so that few nodes carry it.
+//! the contact lines, like that of the teeth. By forces on the other half it is smooth: a uniform shaft without load
+//! bends as a cubic, twists and stretches linearly, so that four nodes along the face and two along the path carry it
+//! exactly. Steps of a shaft within the face are followed to a polynomial of that order.
 
 use nalgebra::DMatrix;
 
 use super::frame::{Body, MeshFrame, Section};
 use crate::compliance::Compliance;
 use crate::gear::Half;
-use crate::numerics::interpolation::lagrange;
+use crate::numerics::dense::dot;
 use crate::shafts::{ShaftError, ShaftTrain};
 
 /// Nodes along the face for what comes from the other half, and along the path.
-const FACE_NODES: usize = 6;
+const FACE_NODES: usize = 4;
 const PATH_NODES: usize = 2;
 /// Nodes of a half.
 pub(crate) const NODES: usize = FACE_NODES * PATH_NODES;
@@ -39,8 +40,30 @@ impl DisplacementField {
 /// Nodes along the face (distance from the mesh-out end) and along the path.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NodeGrid {
-    entry_m: [f64; FACE_NODES],
-    path_m: [f64; PATH_NODES],
+    face: Nodes<FACE_NODES>,
+    path: Nodes<PATH_NODES>,
+}
+
+/// Nodes of Lagrange polynomials.
+#[derive(Debug, Clone, PartialEq)]
+struct Nodes<const N: usize> {
+    at_m: [f64; N],
+    /// 1/Π (a_k − a_i) over the other nodes i.
+    factor: [f64; N],
+}
+
+impl<const N: usize> Nodes<N> {
+    fn new(at_m: [f64; N]) -> Self {
+        let others = |k: usize| (0..N).filter(move |&i| i != k);
+        let factor = std::array::from_fn(|k| 1.0 / others(k).map(|i| at_m[k] - at_m[i]).product::<f64>());
+        Self { at_m, factor }
+    }
+
+    /// The polynomials at a place: each 1 at its node, 0 at the others.
+    fn polynomials(&self, place_m: f64) -> [f64; N] {
+        let distance_m: [f64; N] = std::array::from_fn(|i| place_m - self.at_m[i]);
+        std::array::from_fn(|k| (0..N).filter(|&i| i != k).fold(self.factor[k], |value, i| value * distance_m[i]))
+    }
 }
 
 impl NodeGrid {
@@ -49,19 +72,18 @@ impl NodeGrid {
             let angle = std::f64::consts::PI * (2 * i + 1) as f64 / (2 * FACE_NODES) as f64;
             0.5 * width_m * (1.0 - angle.cos())
         };
-        NodeGrid { entry_m: std::array::from_fn(chebyshev), path_m }
+        NodeGrid { face: Nodes::new(std::array::from_fn(chebyshev)), path: Nodes::new(path_m) }
     }
 
     /// Weights of the nodes at a point; they sum to one.
     pub(super) fn weights(&self, entry_m: f64, x_m: f64) -> [f64; NODES] {
-        let path: [f64; PATH_NODES] = std::array::from_fn(|a| lagrange(&self.path_m, a, x_m));
-        let face: [f64; FACE_NODES] = std::array::from_fn(|i| lagrange(&self.entry_m, i, entry_m));
+        let (face, path) = (self.face.polynomials(entry_m), self.path.polynomials(x_m));
         std::array::from_fn(|k| face[k / PATH_NODES] * path[k % PATH_NODES])
     }
 
     /// Place of a node.
     fn node(&self, k: usize) -> (f64, f64) {
-        (self.entry_m[k / PATH_NODES], self.path_m[k % PATH_NODES])
+        (self.face.at_m[k / PATH_NODES], self.path.at_m[k % PATH_NODES])
     }
 }
 
@@ -95,6 +117,8 @@ pub(super) struct ShaftSections {
 
 /// Reported sections before the bearings: four face ends, two mid-faces, the apex plane.
 const NAMED_SECTIONS: usize = 7;
+const MID_FACES_FROM: usize = 4;
+const APEX_SECTION: usize = 6;
 
 /// Displacements of the reported sections of one shaft.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,8 +128,21 @@ pub(super) struct SectionDisplacements {
     pub(super) apex: Section,
     pub(super) bearings: Vec<Section>,
     pub(super) shape: Vec<Section>,
-    /// Nodes along the face of either half.
-    nodes: [[Section; FACE_NODES]; 2],
+}
+
+/// Forces of the contact points of both halves at the stations: of every half and station the normal force and its
+/// first moment over x.
+pub(super) type StationLoads = [Vec<[f64; 2]>; 2];
+
+/// What a position needs of the displaced shafts.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Openings {
+    /// Of the mid-face section of either half at the pitch point, along the flank normal.
+    pub(super) mid_face_m: [f64; 2],
+    /// At the nodes of either half.
+    pub(super) nodes_m: [[f64; NODES]; 2],
+    /// Axial displacement of the pinion at the apex plane.
+    pub(super) apex_m: f64,
 }
 
 /// Axial freedom of the members.
@@ -131,8 +168,14 @@ pub struct ContactShafts {
     pub(super) across: [Vec<f64>; 2],
     pub(super) grid: NodeGrid,
     sections: [ShaftSections; 2],
-    stations_m: Vec<f64>,
+    /// [`Openings`] per force and per moment at the stations of both halves, row by row: mid-face and nodes of the left
+    /// half, of the right half, apex.
+    openings: Vec<f64>,
+    stations: usize,
 }
+
+/// Rows of the openings of a half.
+const HALF_ROWS: usize = 1 + NODES;
 
 impl ContactShafts {
     /// The flexibility of `train` in `frame` between the stations of `compliance`.
@@ -155,7 +198,7 @@ impl ContactShafts {
         };
         // Loaded sections: stations of left and right half, nodes of left and right half.
         let mut loaded_m = of_halves(&stations_m);
-        loaded_m.extend(of_halves(&grid.entry_m));
+        loaded_m.extend(of_halves(&grid.face.at_m));
         let mut reported_m = frame.face_ends_m().to_vec();
         reported_m.extend(Half::BOTH.map(|half| frame.mid_face_m(half)));
         reported_m.push(0.0);
@@ -225,14 +268,27 @@ impl ContactShafts {
             }
             table
         });
-        // The nodes come behind the reported sections, as rows of the stations' columns.
-        for (sections, all) in sections.iter_mut().zip([&pinion, &gear]) {
-            let nodes = all.view((12 * count, 0), (12 * FACE_NODES, 12 * count)).into_owned();
-            let mut flexibility = std::mem::replace(&mut sections.flexibility, DMatrix::zeros(0, 0));
-            let rows = flexibility.nrows();
-            flexibility = flexibility.resize_vertically(rows + nodes.nrows(), 0.0);
-            flexibility.view_mut((rows, 0), nodes.shape()).copy_from(&nodes);
-            sections.flexibility = flexibility;
+        let mid_face = |half: Half| 2 * (count + FACE_NODES) + MID_FACES_FROM + half.index();
+        let mut openings = Vec::with_capacity((2 * HALF_ROWS + 1) * 4 * count);
+        let loads = || (0..2 * count).map(|j| (if j < count { Half::Left } else { Half::Right }, j));
+        let mut add = |half: Half, section: usize, x_m: f64| {
+            for load in loads() {
+                let c = entry((half, section), load);
+                openings.extend([c[0] + x_m * c[2], c[1] + x_m * c[3]]);
+            }
+        };
+        for half in Half::BOTH {
+            add(half, mid_face(half), frame.pitch_point_m);
+            for k in 0..NODES {
+                let (_, x_m) = grid.node(k);
+                add(half, 2 * count + half.index() * FACE_NODES + k / PATH_NODES, x_m);
+            }
+        }
+        let apex = 6 * (2 * (count + FACE_NODES) + APEX_SECTION) + 2;
+        for (half, j) in loads() {
+            let [constant, at_one] = [0.0, 1.0].map(|x_m| frame.load(Body::Pinion, half, x_m));
+            let by = |force: &dyn Fn(usize) -> f64| (0..6).map(|c| -pinion[(apex, 6 * j + c)] * force(c)).sum::<f64>();
+            openings.extend([by(&|c| constant[c]), by(&|c| at_one[c] - constant[c])]);
         }
         let [pinion_sections, gear_sections] = [sections.remove(0), sections.remove(0)];
         Ok(ContactShafts {
@@ -243,7 +299,8 @@ impl ContactShafts {
             across,
             grid,
             sections: [pinion_sections, gear_sections],
-            stations_m,
+            openings,
+            stations: count,
         })
     }
 
@@ -252,10 +309,9 @@ impl ContactShafts {
         self.freedom
     }
 
-    /// Displacements of the sections of both shafts under normal forces at the stations of both halves: per station
-    /// the force and its first moment over x. `float_m` is the axial shift of the member that floats.
-    pub(super) fn displacements(&self, loads: &[Vec<[f64; 2]>; 2], float_m: f64) -> [SectionDisplacements; 2] {
-        let count = self.stations_m.len();
+    /// Displacements of the sections of both shafts. `float_m` is the axial shift of the member that floats.
+    pub(super) fn displacements(&self, loads: &StationLoads, float_m: f64) -> [SectionDisplacements; 2] {
+        let count = self.stations;
         Body::BOTH.map(|body| {
             let sign = if body == Body::Pinion { -1.0 } else { 1.0 };
             let mut forces = nalgebra::DVector::zeros(12 * count);
@@ -278,33 +334,31 @@ impl ContactShafts {
             let section =
                 |i: usize| -> Section { std::array::from_fn(|c| all[6 * i + c] + if c == 2 { shift } else { 0.0 }) };
             let shape_from = NAMED_SECTIONS + sections.bearings;
-            let nodes_from = shape_from + sections.shape_m.len();
             SectionDisplacements {
                 face_ends: std::array::from_fn(section),
-                mid_faces: std::array::from_fn(|i| section(4 + i)),
-                apex: section(6),
+                mid_faces: std::array::from_fn(|i| section(MID_FACES_FROM + i)),
+                apex: section(APEX_SECTION),
                 bearings: (NAMED_SECTIONS..shape_from).map(section).collect(),
-                shape: (shape_from..nodes_from).map(section).collect(),
-                nodes: std::array::from_fn(|half| std::array::from_fn(|i| section(nodes_from + half * FACE_NODES + i))),
+                shape: (shape_from..shape_from + sections.shape_m.len()).map(section).collect(),
             }
         })
     }
 
-    /// Opening along the flank normal at a section of a half, between both bodies displaced like this.
-    pub(super) fn opening_m(&self, half: Half, x_m: f64, [pinion, gear]: [&Section; 2]) -> f64 {
-        let product = |body, section: &Section| -> f64 {
-            self.frame.load(body, half, x_m).iter().zip(section).map(|(row, u)| row * u).sum()
+    /// Openings under the same loads.
+    pub(super) fn openings(&self, loads: &StationLoads, float_m: f64) -> Openings {
+        let forces: Vec<f64> = loads.iter().flatten().flatten().copied().collect();
+        let row = |i: usize| dot(&self.openings[i * forces.len()..(i + 1) * forces.len()], &forces);
+        let (closing_m, apex_m) = match self.freedom {
+            AxialFreedom::None => (0.0, 0.0),
+            AxialFreedom::Pinion => (float_m, float_m),
+            AxialFreedom::Gear => (-float_m, 0.0),
         };
-        product(Body::Gear, gear) - product(Body::Pinion, pinion)
-    }
-
-    /// Openings along the flank normal at the nodes of a half.
-    pub(super) fn node_openings(&self, half: Half, shafts: &[SectionDisplacements; 2]) -> [f64; NODES] {
-        std::array::from_fn(|k| {
-            let (_, x_m) = self.grid.node(k);
-            let of = |body: usize| &shafts[body].nodes[half.index()][k / PATH_NODES];
-            self.opening_m(half, x_m, [of(0), of(1)])
-        })
+        let of = |h: usize, i: usize| row(h * HALF_ROWS + i) - self.frame.axial[h] * closing_m;
+        Openings {
+            mid_face_m: [0, 1].map(|h| of(h, 0)),
+            nodes_m: [0, 1].map(|h| std::array::from_fn(|k| of(h, 1 + k))),
+            apex_m: row(2 * HALF_ROWS) + apex_m,
+        }
     }
 
     /// The field that takes these values at the nodes.

@@ -12,15 +12,19 @@
 //! SI.
 
 mod cycle;
+mod face_load;
 mod flexibility;
 mod frame;
+mod mesh_section;
 mod modification;
 mod position;
 mod system;
 
-pub use cycle::{FaceLoad, HalfOnShafts, LoadedContactOnShafts, MeshSection, ShaftState, solve_on_shafts};
+pub use cycle::{LoadOnShafts, LoadedContactOnShafts, ShaftState, load_on_shafts, solve_on_shafts};
+pub use face_load::{FaceLoad, HalfOnShafts};
 pub use flexibility::{AxialFreedom, ContactShafts, DisplacementField};
 pub use frame::{Hand, MeshFrame, sense_of_rotation};
+pub use mesh_section::MeshSection;
 pub use modification::{HelixModification, evening_modification, helix_modification, with_helix_modification};
 
 pub(crate) use flexibility::HalfFlexibility;

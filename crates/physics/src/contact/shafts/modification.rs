@@ -1,7 +1,7 @@
 //! The helix modification that evens the load along the faces at one torque: helix slope and crowning of each half of
 //! the pinion.
 
-use super::cycle::{LoadedContactOnShafts, solve_on_shafts};
+use super::cycle::{LoadOnShafts, load_on_shafts};
 use super::flexibility::ContactShafts;
 use crate::compliance::{Compliance, Settings};
 use crate::contact::ContactError;
@@ -30,7 +30,8 @@ const SETTLED: f64 = 2e-3;
 /// the faces is as even as slope and crowning can make it, and the contact with it. `coast`: of the coast flanks.
 ///
 /// The first step takes up the opening of the flanks by the shafts under load; the next ones the unevenness that is
-/// left, by the stiffness of the teeth. Fitted over the face by least squares.
+/// left, by the stiffness of the teeth. Fitted over the face by least squares. `unmodified` is the load with slope and
+/// crowning of `pair`.
 ///
 /// # Errors
 /// [`ContactError`].
@@ -39,18 +40,18 @@ pub fn evening_modification(
     shafts: &ContactShafts,
     loads: (f64, f64, f64),
     coast: bool,
+    unmodified: &LoadOnShafts,
     (compliance, settings): (&Compliance, &Settings),
     watch: Watch<'_>,
-) -> Result<([HelixModification; 2], LoadedContactOnShafts), ContactError> {
+) -> Result<([HelixModification; 2], LoadOnShafts), ContactError> {
     let quiet = Watch::new(&|_| {}, watch.canceled());
     let solve = |modification: &[HelixModification; 2]| {
         let modified = with_helix_modification(pair, modification, coast);
-        solve_on_shafts(&modified, shafts, loads, coast, (compliance, settings), quiet)
+        load_on_shafts(&modified, shafts, loads, coast, (compliance, settings), quiet)
     };
     let mut modification = helix_modification(pair, coast);
-    let mut solved = solve(&modification)?;
-    let worst =
-        |solved: &LoadedContactOnShafts| solved.halves.iter().map(|half| half.face.k_h_beta_5mm()).fold(0.0, f64::max);
+    let mut solved = unmodified.clone();
+    let worst = |solved: &LoadOnShafts| solved.halves.iter().map(|half| half.face.k_h_beta_5mm()).fold(0.0, f64::max);
     let mut best = (worst(&solved), modification, solved.clone());
     let mut last = f64::INFINITY;
     for step in 0..STEPS {
@@ -100,13 +101,7 @@ pub fn with_helix_modification(pair: &Pair, modification: &[HelixModification; 2
 
 /// Slope and crowning that make up the difference of the openings of the shafts along the face (`of_shafts`), or of the
 /// line load over the stiffness of the teeth per length of contact line.
-fn amounts(
-    pair: &Pair,
-    shafts: &ContactShafts,
-    solved: &LoadedContactOnShafts,
-    half: Half,
-    of_shafts: bool,
-) -> [f64; 2] {
+fn amounts(pair: &Pair, shafts: &ContactShafts, solved: &LoadOnShafts, half: Half, of_shafts: bool) -> [f64; 2] {
     let own = &solved.halves[half.index()];
     let cos = pair.base_helix_angle_rad.cos();
     let field = solved.displacement_field(shafts, half);

@@ -1,6 +1,6 @@
 //! One position of both halves on elastic shafts.
 
-use super::flexibility::{ContactShafts, NODES, SectionDisplacements};
+use super::flexibility::{ContactShafts, NODES, StationLoads};
 use super::system::{HalvesOnShafts, HalvesWorkspace};
 use super::{Mount, SPUR};
 use crate::compliance::{Compliance, Settings};
@@ -20,8 +20,11 @@ pub(super) struct JointPosition {
     pub halves: [LoadedPosition; 2],
     /// Approach between the couplings, along the base tangent.
     pub approach_m: f64,
-    /// Displaced sections of pinion and gear.
-    pub shafts: [SectionDisplacements; 2],
+    /// Loads at the stations, and axial shift of the member that floats.
+    pub loads: StationLoads,
+    pub float_m: f64,
+    /// Axial displacement of the pinion at the apex plane.
+    pub apex_m: f64,
     /// Openings by the shafts at the nodes of either half, relative to the mid-face section at the pitch point.
     pub openings_m: [[f64; NODES]; 2],
     /// Force and moment of the teeth of either half by unit approach and unit tilt about the middle of the face, along
@@ -119,21 +122,18 @@ impl<'a> JointSolver<'a> {
                 super::AxialFreedom::Gear => -shift_m,
                 _ => shift_m,
             };
-            let shafts = self.shafts.displacements(&loads, float_m);
-            let pitch_m = self.shafts.frame.pitch_point_m;
-            // Approach of the mid-face sections, and openings relative to them. The shift is in the sections.
+            let displaced = self.shafts.openings(&loads, float_m);
+            // Approach of the mid-face sections, and openings relative to them. The shift is in the openings.
             let approach = solved.approach;
-            let mut openings_m = [[0.0; NODES]; 2];
-            let mut mid_m = [0.0; 2];
-            let mut highest_m = 0.0f64;
-            for half in Half::BOTH {
-                let h = half.index();
-                let opening = self.shafts.opening_m(half, pitch_m, [&shafts[0].mid_faces[h], &shafts[1].mid_faces[h]]);
-                mid_m[h] = approach - opening;
-                let nodes = self.shafts.node_openings(half, &shafts);
-                highest_m = nodes.iter().fold(highest_m, |most, opening| most.max((approach - opening) / cos));
-                openings_m[h] = nodes.map(|node| node - opening);
-                self.halves[h].store(&forces[h]);
+            let mid_m = displaced.mid_face_m.map(|opening| approach - opening);
+            let mut openings_m = displaced.nodes_m;
+            let lowest_m = openings_m.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+            let highest_m = (approach - lowest_m) / cos;
+            for (nodes, mid_face) in openings_m.iter_mut().zip(displaced.mid_face_m) {
+                nodes.iter_mut().for_each(|node| *node -= mid_face);
+            }
+            for (solver, own) in self.halves.iter_mut().zip(&forces) {
+                solver.store(own);
             }
             if self.corner_contact && highest_m > self.corner_gap_m {
                 self.corner_gap_m = 1.25 * highest_m;
@@ -154,7 +154,9 @@ impl<'a> JointSolver<'a> {
                 stiffness_n_per_m: tilting[h][0] * cos * cos,
                 iterations: solved.iterations,
             });
-            return Ok(JointPosition { halves, approach_m: approach / cos, shafts, openings_m, tilting });
+            let apex_m = displaced.apex_m;
+            let approach_m = approach / cos;
+            return Ok(JointPosition { halves, approach_m, loads, float_m, apex_m, openings_m, tilting });
         }
         Err(failed(PositionError::NoContact))
     }

@@ -185,7 +185,7 @@ fn contact_lines_follow_the_uniform_series() {
         let (mut points, mut errors) = (Vec::new(), Vec::new());
         for i in 0..16 {
             let phase = (f64::from(i) + 0.5) / 16.0;
-            collect(&pair, &CornerGaps::default(), Half::Left, phase, 24, &reach, &mut points);
+            collect(&pair, &CornerGaps::default(), Half::Left, (phase, 24), &reach, |_, _| 0.0, &mut points);
             let length: f64 = points.iter().map(|p| p.width_m).sum::<f64>() / (ea * width);
             let series: f64 = 1.0
                 + 2.0
@@ -225,7 +225,7 @@ fn a_constant_foundation_gives_the_length_of_the_lines_and_relief_unloads_it() {
         let mut points = Vec::new();
         for i in 0..16 {
             let phase = (f64::from(i) + 0.5) / 16.0;
-            collect(&pair, &CornerGaps::default(), Half::Left, phase, 90, &reach, &mut points);
+            collect(&pair, &CornerGaps::default(), Half::Left, (phase, 90), &reach, |_, _| 0.0, &mut points);
             let gaps: Vec<f64> = points.iter().map(|p| p.gap_m * cos).collect();
             let local = Foundation(points.iter().map(|p| STIFFNESS * p.width_m).collect());
             let stencils = vec![Stencil { first: 0, weights: [0.25; 4] }; points.len()];

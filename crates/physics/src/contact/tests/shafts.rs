@@ -9,7 +9,7 @@ use super::pair;
 use crate::compliance::{Compliance, Settings};
 use crate::contact::{
     ContactShafts, HalfOnShafts, Hand, LoadedContactOnShafts, MeshFrame, evening_modification, harmonics,
-    sense_of_rotation, solve_on_shafts, solve_pair_of_halves, with_helix_modification,
+    load_on_shafts, sense_of_rotation, solve_on_shafts, solve_pair_of_halves, with_helix_modification,
 };
 use crate::gear::{FlankModification, GearSpec, Pair, PairSpec, Rotation};
 use crate::shafts::{Bearing, Coupling, Shaft, ShaftMaterial, ShaftSegment, ShaftTrain};
@@ -167,15 +167,15 @@ fn ten_arrangements_agree_with_the_reference() {
         let expected = &entry["result"];
         let got = solve(&case_of(&entry["input"]));
         let open = number(expected, "open_fraction");
-        for (half, side) in got.halves.iter().zip(["left", "right"]) {
+        for (half, side) in got.load.halves.iter().zip(["left", "right"]) {
             check_half(name, side, half, &expected[side], open > 0.0);
         }
-        check(TOPIC, &format!("{name}: open fraction"), got.open_fraction, open, Absolute(0.02));
+        check(TOPIC, &format!("{name}: open fraction"), got.load.open_fraction, open, Absolute(0.02));
         let length = number(expected, "contact_line_length_mean_mm");
         check(
             TOPIC,
             &format!("{name}: mean length of the contact lines, mm"),
-            got.line_length_m * 1e3,
+            got.load.line_length_m * 1e3,
             length,
             Relative(1e-3),
         );
@@ -330,7 +330,7 @@ fn wind_up_has_its_closed_form() {
         let polar_m4 = std::f64::consts::PI / 32.0 * f64::powi(diameter_mm * 1e-3, 4);
         let stiffness = c * 2.0 * pair.base_helix_angle_rad.cos() * pair.pinion.base_radius_m.powi(2);
         let lambda_b = (stiffness / (shear_pa * polar_m4)).sqrt() * pair.spec.face_width_m;
-        let face = &got.halves[0].face;
+        let face = &got.load.halves[0].face;
         let [inner, outer] = face.ends_n_per_m.map(|end| end / face.mean_n_per_m);
         let what = |end: &str| format!("wind-up of one half, d = {diameter_mm} mm: {end}");
         check(TOPIC, &what("end towards the torque"), outer, lambda_b / lambda_b.tanh(), Relative(2e-3));
@@ -375,7 +375,7 @@ fn turned_and_mirrored_trains_turn_and_mirror_the_result() {
     let mirrored = run(&other, -1.0, Hand::Left);
     let compare = |name: &str, got: &LoadedContactOnShafts, signs: [f64; 6]| {
         let mut errors = Vec::new();
-        for (half, opposite) in plain.halves.iter().zip(got.halves.iter().rev()) {
+        for (half, opposite) in plain.load.halves.iter().zip(got.load.halves.iter().rev()) {
             errors.push(half.face.k_h_beta() - opposite.face.k_h_beta());
             errors.push(half.share - opposite.share);
         }
@@ -402,12 +402,14 @@ fn the_proposed_helix_modification_evens_the_load() {
         let shafts = shafts_of(&case, &compliance);
         let load = (case.torque_nm, 0.0, 0.0);
         let with = (&compliance, &settings);
-        let (proposed, contact) =
-            evening_modification(&case.pair, &shafts, load, false, with, Watch::none()).expect("a modification");
+        let unmodified = load_on_shafts(&case.pair, &shafts, load, false, with, Watch::none()).expect("loads");
+        let (proposed, evened) =
+            evening_modification(&case.pair, &shafts, load, false, &unmodified, with, Watch::none())
+                .expect("a modification");
         // What is proposed does what is said when it is solved by itself.
         let pair = with_helix_modification(&case.pair, &proposed, false);
         let again = solve_on_shafts(&pair, &shafts, load, false, with, Watch::none()).expect("a cycle");
-        for ((half, same), side) in contact.halves.iter().zip(&again.halves).zip(["left", "right"]) {
+        for ((half, same), side) in evened.halves.iter().zip(&again.load.halves).zip(["left", "right"]) {
             let factor = half.face.k_h_beta_5mm();
             check(
                 TOPIC,

@@ -478,6 +478,7 @@ fn a_start_has_the_twelve_displacements() {
         }
         let through = match number_of_coordinates(&q, false) {
             52 => of::<52>(&q, &physical),
+            76 => of::<76>(&q, &physical),
             _ => of::<100>(&q, &physical),
         };
         errors.extend(differences(&through, &physical));

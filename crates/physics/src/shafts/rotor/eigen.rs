@@ -6,6 +6,7 @@ use super::sparse::{CholeskyFactor, Envelope, SparseMatrix};
 use crate::numerics::dense::dot;
 use crate::shafts::error::ShaftError;
 use crate::simd::vectorised;
+use crate::watch::Watch;
 
 /// Vectors that are treated together; more than the multiplicity of any natural frequency of axisymmetric shafts.
 const BLOCK: usize = 8;
@@ -65,8 +66,8 @@ impl<'a> ShiftedStiffness<'a> {
     /// Loan, Matrix Computations, 2013, chapter 10.3).
     ///
     /// # Errors
-    /// [`ShaftError::ModesNotConverged`].
-    pub(super) fn lowest_modes(&self, wanted: usize) -> Result<Eigenmodes, ShaftError> {
+    /// [`ShaftError::ModesNotConverged`], [`ShaftError::Canceled`].
+    pub(super) fn lowest_modes(&self, wanted: usize, watch: Watch<'_>) -> Result<Eigenmodes, ShaftError> {
         let n = self.mass.size();
         let wanted = wanted.min(n);
         if wanted == 0 {
@@ -75,6 +76,7 @@ impl<'a> ShiftedStiffness<'a> {
         let mut space = KrylovSpace::new(self);
         let mut next_check = (wanted + wanted / 2 + 2 * BLOCK).min(n);
         loop {
+            watch.checkpoint_quietly()?;
             space.grow();
             let size = space.projected.len();
             if size < next_check && size < n {

@@ -8,6 +8,7 @@ use super::eigen::{Eigenmodes, ShiftedStiffness, count_below};
 use super::sparse::{SparseRow, dot};
 use super::{GearedRotor, RotorBearing};
 use crate::shafts::error::ShaftError;
+use crate::watch::Watch;
 
 /// Eigenvalue over the limit of the range below which a mode is a rigid-body mode.
 const RIGID_BODY: f64 = 1e-9;
@@ -113,7 +114,7 @@ impl GearedRotor {
     pub fn modes(&self, range: ModeRange) -> Result<RotorModes, ShaftError> {
         let limit = limit_of(range.up_to_hz)?;
         let wanted = count_below(&self.stiffness, &self.mass, limit).min(range.most);
-        Ok(self.described(self.eigenmodes(limit, wanted)?))
+        Ok(self.described(self.eigenmodes(limit, wanted, Watch::none())?))
     }
 
     /// The lowest modes with their shares and shapes.
@@ -124,8 +125,8 @@ impl GearedRotor {
     }
 
     /// The `wanted` lowest modes, of which most are below the eigenvalue `limit`; 0 for rigid-body modes.
-    pub(super) fn eigenmodes(&self, limit: f64, wanted: usize) -> Result<Eigenmodes, ShaftError> {
-        let mut modes = self.shifted_stiffness(limit)?.lowest_modes(wanted)?;
+    pub(super) fn eigenmodes(&self, limit: f64, wanted: usize, watch: Watch<'_>) -> Result<Eigenmodes, ShaftError> {
+        let mut modes = self.shifted_stiffness(limit)?.lowest_modes(wanted, watch)?;
         let rigid = (RIGID_BODY * limit).max(RIGID_BODY_OVER_ROUNDING * self.rounding);
         if let Some(&lowest) = modes.eigenvalues.first().filter(|&&lowest| lowest < -rigid) {
             return Err(self.negative(lowest));

@@ -17,6 +17,7 @@ use super::whirl::projected;
 use super::{GearedRotor, RotorBearing};
 use crate::dynamics::LinearOutput;
 use crate::shafts::error::ShaftError;
+use crate::watch::Watch;
 
 /// Highest frequencies of the modes that are tried, over the end of the frequency range.
 const CUTS: [f64; 6] = [1.0, 1.25, 1.5, 2.0, 2.5, 3.0];
@@ -80,8 +81,8 @@ impl GearedRotor {
     ///
     /// # Errors
     /// [`ShaftError::InvalidRange`], [`ShaftError::NegativeStiffness`], [`ShaftError::IllConditioned`],
-    /// [`ShaftError::ModesNotConverged`].
-    pub fn reduce(&self, settings: &ReductionSettings) -> Result<ReducedRotor, ShaftError> {
+    /// [`ShaftError::ModesNotConverged`], [`ShaftError::Canceled`].
+    pub fn reduce(&self, settings: &ReductionSettings, watch: Watch<'_>) -> Result<ReducedRotor, ShaftError> {
         let limit = limit_of(settings.up_to_hz)?;
         let flexibility = self.flexibility(limit)?;
         let inputs = [self.meshes.len(), flexibility.ncols()];
@@ -93,18 +94,21 @@ impl GearedRotor {
         let omegas: Vec<f64> = (1..=CHECKED).map(|i| TAU * settings.up_to_hz * i as f64 / CHECKED as f64).collect();
         let mut exact = Vec::with_capacity(omegas.len());
         for &omega in &omegas {
+            watch.checkpoint_quietly()?;
             exact.push(self.receptance(omega, settings.pinion_speed_rad_s)?);
         }
         let mut steps: Vec<ReductionStep> = Vec::new();
         let mut modes = Eigenmodes { eigenvalues: Vec::new(), vectors: DMatrix::zeros(self.unknowns(), 0) };
         let mut best: Option<(Projection, ReductionReport)> = None;
         for (place, &(size, inputs)) in sizes.iter().enumerate() {
+            watch.checkpoint_quietly()?;
             if modes.eigenvalues.len() < size {
                 // The next sizes are likely to be needed too: their modes cost less together.
                 let ahead = sizes[place..].iter().take(AHEAD).map(|(modes, _)| *modes).max().unwrap_or(size);
-                modes = self.eigenmodes(limit, ahead)?;
+                modes = self.eigenmodes(limit, ahead, watch)?;
             }
             let projection = self.projection(&modes, size, &flexibility.columns(0, inputs).into_owned())?;
+            watch.checkpoint_quietly()?;
             let errors = omegas.iter().zip(&exact);
             let error = errors
                 .map(|(&omega, exact)| projection.error(exact, omega, settings.pinion_speed_rad_s))

@@ -8,6 +8,7 @@ use super::GearedRotor;
 use super::eigen::symmetric_eigen;
 use super::modes::RotorModes;
 use super::sparse::SparseMatrix;
+use crate::numerics::eigen::eigenvalues;
 use crate::shafts::error::ShaftError;
 
 /// A natural motion of the damped, turning rotor.
@@ -81,11 +82,10 @@ impl GearedRotor {
         if !state.iter().all(|value| value.is_finite()) {
             return Err(ShaftError::IllConditioned { reason: "the damping or the speed is too large" });
         }
-        let Some(schur) = nalgebra::Schur::try_new(state, f64::EPSILON, 100_000) else {
+        let Some(values) = eigenvalues(state) else {
             return Err(ShaftError::IllConditioned { reason: "the eigenvalues of the damped rotor do not converge" });
         };
-        let mut found: Vec<DampedMode> = schur
-            .complex_eigenvalues()
+        let mut found: Vec<DampedMode> = values
             .iter()
             .filter(|value| value.im > 1e-7 * value.norm().max(1e-3))
             .map(|value| DampedMode { frequency_hz: value.im * scale / TAU, damping_ratio: -value.re / value.norm() })

@@ -9,6 +9,7 @@ use crate::shafts::{
     Bearing, Coupling, GearedRotor, Harmonics, Machine, MeshElement, ModeRange, ReductionSettings, RigidBody,
     RotationSense, SectionLoad, Shaft, ShaftError, ShaftMaterial, ShaftSegment, ShaftTrain,
 };
+use crate::watch::Watch;
 
 /// A positive number over many orders of magnitude, zero, or (seldom) something that is no use.
 fn wild(low: f64, high: f64) -> impl Strategy<Value = f64> {
@@ -134,12 +135,10 @@ fn solved(train: &ShaftTrain, [left, right, damping, tilting]: [f64; 4], leading
         let modes = rotor.modes(ModeRange { up_to_hz: 5000.0, most: 60 })?;
         let whirl = rotor.whirl_frequencies_hz(&modes, 300.0)?;
         let damped = rotor.damped_modes(&modes, 300.0)?;
-        let reduced = rotor.reduce(&ReductionSettings {
-            up_to_hz: 2500.0,
-            accuracy: 1e-2,
-            most_coordinates: 60,
-            pinion_speed_rad_s: 300.0,
-        })?;
+        let reduced = rotor.reduce(
+            &ReductionSettings { up_to_hz: 2500.0, accuracy: 1e-2, most_coordinates: 60, pinion_speed_rad_s: 300.0 },
+            Watch::none(),
+        )?;
         let response = rotor.frequency_response(&Harmonics {
             frequency_hz: 431.0,
             excitation_m: [Complex::new(1e-6, 0.0); 2],
@@ -228,6 +227,6 @@ fn results_repeat() {
     let case = case("motor_and_load");
     let settings =
         ReductionSettings { up_to_hz: 3000.0, accuracy: 1e-3, most_coordinates: 60, pinion_speed_rad_s: 200.0 };
-    let solve = || case.rotor().reduce(&settings).unwrap().train(200.0, 500.0);
+    let solve = || case.rotor().reduce(&settings, Watch::none()).unwrap().train(200.0, 500.0);
     assert_eq!(solve(), solve());
 }

@@ -7,6 +7,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::reference::{Case, case};
 use crate::shafts::{FrequencyResponse, Harmonics, ReductionSettings, SectionLoad};
+use crate::watch::Watch;
 
 const TOPIC: &str = "Shafts: reduction to modal coordinates";
 
@@ -43,7 +44,7 @@ fn accuracy_grows_with_the_number_of_coordinates() {
         let rotor = case.rotor();
         let mut before = f64::INFINITY;
         for (coordinates, tolerance) in [(24, 0.03), (32, 0.01), (40, 5e-3), (48, 3e-4), (60, 2e-4)] {
-            let reduced = rotor.reduce(&settings(&case, up_to_hz, coordinates)).unwrap();
+            let reduced = rotor.reduce(&settings(&case, up_to_hz, coordinates), Watch::none()).unwrap();
             assert!(reduced.coordinates() <= coordinates);
             let mut errors = [0.0f64; 2];
             // Not the frequencies of the estimate, and away from resonances.
@@ -71,7 +72,8 @@ fn requested_accuracy_is_reached() {
     let case = case("motor_and_load");
     let rotor = case.rotor();
     for accuracy in [1e-2, 1e-3] {
-        let reduced = rotor.reduce(&ReductionSettings { accuracy, ..settings(&case, 3000.0, 98) }).unwrap();
+        let reduced =
+            rotor.reduce(&ReductionSettings { accuracy, ..settings(&case, 3000.0, 98) }, Watch::none()).unwrap();
         assert!(reduced.report.estimated_error <= accuracy);
         let errors = (0..29).flat_map(|step| {
             let excitation = excitation(&case, 3000.0 * (0.03 + 0.0345 * f64::from(step)));
@@ -92,7 +94,7 @@ fn handed_over_equations_are_those_of_the_rotor() {
         bearing.tilting_nm_per_rad = 1e5;
     }
     let rotor = case.rotor();
-    let reduced = rotor.reduce(&settings(&case, 4000.0, 70)).unwrap();
+    let reduced = rotor.reduce(&settings(&case, 4000.0, 70), Watch::none()).unwrap();
     let excitation = excitation(&case, 900.0);
     let train = reduced.train(excitation.pinion_speed_rad_s, 800.0);
     train.validate().unwrap();
@@ -136,7 +138,7 @@ fn handed_over_equations_are_those_of_the_rotor() {
 fn static_bearing_forces() {
     let case = case("geared_straddle");
     let (rotor, torque_nm) = (case.rotor(), 800.0);
-    let train = rotor.reduce(&settings(&case, 4000.0, 70)).unwrap().train(0.0, torque_nm);
+    let train = rotor.reduce(&settings(&case, 4000.0, 70), Watch::none()).unwrap().train(0.0, torque_nm);
     let q: Vec<f64> = (train.load_n.iter().zip(&train.eigenvalues_rad2_s2))
         .map(|(load, eigenvalue)| if *eigenvalue > 0.0 { load / eigenvalue } else { 0.0 })
         .collect();
@@ -177,7 +179,7 @@ fn static_bearing_forces() {
 #[test]
 fn twelve_displacements() {
     let case = case("geared_straddle");
-    let reduced = case.rotor().reduce(&settings(&case, 4000.0, 60)).unwrap();
+    let reduced = case.rotor().reduce(&settings(&case, 4000.0, 60), Watch::none()).unwrap();
     let train = reduced.train(0.0, 0.0);
     let pair = &case.pair;
     let (alpha, beta) = (pair.working_pressure_angle_rad, pair.base_helix_angle_rad);
