@@ -169,6 +169,46 @@ async fn pictures_of_every_page() {
     .await;
 }
 
+/// What the page of a job on shafts has drawn by scripts: both faces, torques, bearing forces, a mode that stands still.
+const SHAFTS_DRAWN: &str = "document.querySelector('#job')?.dataset.ready && document.querySelectorAll('#deflection-drawing .deflected').length === 4 \
+    && document.querySelector('#mode-drawing .deflected')";
+
+#[tokio::test]
+#[ignore = "makes pictures: scripts/screenshots"]
+async fn pictures_of_shafts() {
+    flow(async |browser| {
+        browser.open("/nowhere").await;
+        let straddle = browser.solved(&example(include_str!("../../examples/shafts.json"), |_| {})).await;
+        let overhung = browser.solved(&example(include_str!("../../examples/shafts_overhung.json"), |_| {})).await;
+        // Modes that move would be caught at any moment.
+        let calm = json!({"features": [{"name": "prefers-reduced-motion", "value": "reduce"}]});
+        browser.command("Emulation.setEmulatedMedia", calm).await;
+        // Longer than the other pages: drawing, loads, bearings and modes stand behind the vibration.
+        for (name, width) in [("shafts", 1280), ("shafts-narrow", 390)] {
+            browser.resize(width).await;
+            browser.open(&format!("/jobs/{straddle}")).await;
+            browser.until(SHAFTS_DRAWN).await;
+            take(browser, name, 3 * LONGEST).await;
+        }
+        browser.resize(1280).await;
+        browser.open(&format!("/jobs/{overhung}")).await;
+        browser.until(SHAFTS_DRAWN).await;
+        take(browser, "shafts-overhung", 3 * LONGEST).await;
+        let compared = format!("/compare?jobs={straddle},{overhung}");
+        browser.open(&compared).await;
+        browser.until("document.querySelector('#curves[data-ready]')").await;
+        take(browser, "shafts-compare", LONGEST).await;
+        // The form draws the shafts as one types.
+        browser.open("/").await;
+        browser.until(CHECKED).await;
+        browser.choose("#start-from", "shafts").await;
+        browser.until(&format!("document.querySelector('#start-note').textContent.includes('Both shafts drawn') && {CHECKED}")).await;
+        browser.value("document.querySelector('#group-shafts').open = true").await;
+        take(browser, "shafts-design", LONGEST).await;
+    })
+    .await;
+}
+
 #[tokio::test]
 #[ignore = "makes pictures: scripts/screenshots"]
 async fn pictures_of_the_login() {
