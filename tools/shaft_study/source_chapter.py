@@ -56,11 +56,16 @@ def write(page, answers):
     page.table("ε | impact by Zhou, kN: one body, straddle, overhung | reduction, %: one body, straddle, overhung | mesh stiffness, N/µm: one body, straddle, overhung | "
                "axial RMS, m/s²: one body, straddle, overhung | contact ratio under load: one body, straddle, overhung",
                [[SHOWN[name]] + [", ".join(sig(of(answers.ratios[name, mounting]), digits) for mounting in ("one body", "straddle", "overhung"))
-                                 for of, digits in ((lambda entry: at(entry["point"], "impact/zhou2008_force_n") / 1e3, 3),
-                                                    (lambda entry: at(entry["point"], "impact/reduction_percent"), 2),
+                                 for of, digits in ((lambda entry: round(at(entry["point"], "impact/zhou2008_force_n") / 1e3, 2), 3),
+                                                    (lambda entry: round(at(entry["point"], "impact/reduction_percent"), 2), 2),
                                                     (lambda entry: entry["point"]["mesh"]["stiffness_mean_n_per_um"], 4),
                                                     (lambda entry: band(entry["sweep"], AXIAL), 3),
                                                     (lambda entry: entry["point"]["mesh"]["loaded_contact_ratio"], 3))] for name in RATIOS])
+    own = {mounting: [rms(entry["point"]) for entry in (answers.ratios[name, mounting] for name in RATIOS)] for mounting in ("source", "straddle, source's model")}
+    free, pulse = own.values()
+    page.claim(min(pulse) > max(free),
+               f"The source's own model, stiffness and pulse, on the straddle gives {', '.join(sig(value) for value in pulse)} m/s² at 2000 r/min, where its free halves have "
+               f"{', '.join(sig(value) for value in free)}: bodies as light as they are drawn, and shafts that ring, make more of a pulse that is not there in the contact.")
     draw_ratios(page, answers)
 
 
