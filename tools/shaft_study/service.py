@@ -24,12 +24,16 @@ def solve(document):
     name = hashlib.sha256((version + text).encode()).hexdigest()[:24]
     path = KEPT / f"{name}.json"
     if path.exists():
-        return json.loads(path.read_text())
+        kept = json.loads(path.read_text())
+        if "refused" in kept:
+            raise Refused(kept["refused"])
+        return kept
     KEPT.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
     run = subprocess.run([PROGRAM, "solve", "-"], input=text, capture_output=True, text=True)
     if run.returncode != 0:
-        raise Refused((run.stderr or run.stdout)[-2000:])
+        path.write_text(json.dumps({"refused": (run.stderr or run.stdout)[-2000:]}))
+        return solve(document)
     result = slim(json.loads(run.stdout))
     result["seconds"] = time.monotonic() - began
     print(f"{document.get('name', '')}: {result['seconds']:.1f} s", file=sys.stderr, flush=True)
