@@ -117,7 +117,8 @@ def frequency(page, one, combined, turbo):
     most_low, most_middle = ([most(bands[i]) for bands in straddle if len(bands[i]) > 20] for i in (0, 1))
     page.claim(max(low) < 1.25 and max(middle) < 1.35 and min(high) > 1.4,
                f"**Straddle-mounted**: below half of f_lim half of all amplitudes agree within {percent(low)} and nine of ten within {percent(most_low)}; up to 0.9 f_lim within {percent(middle)} and {percent(most_middle)}. "
-               f"Beyond, a factor of {span(high)} is typical and nothing can be said of a single order. The limit was found on the cases with one change; the combined ones, drawn blindly afterwards, and the second pair only tested it.")
+               f"Beyond, a factor of {span(high)} is typical and nothing can be said of a single order. The limit was found on the cases with one change; the combined ones, drawn afterwards, tested it. The second pair meshes above its limit at every speed and can only say that there "
+               f"it is the same: a factor of {sig(typical(numbers['second pair'][3]))}.")
     softer = [ratio_of_supports(found["document"]) for found in one if overhung(found)]
     page.claim(typical(numbers["overhung"][0]) > max(low) and min(softer) > 1.5,
                f"**Overhung**: not even there (below half of the limit {sig(typical(numbers['overhung'][0]))} typically, {sig(most(numbers['overhung'][0]))} for nine of ten). The support of the outer half is {span(softer)} times softer than that of the inner one, and "
