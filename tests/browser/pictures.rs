@@ -191,7 +191,7 @@ async fn pictures_of_every_page() {
     .await;
 }
 
-/// What the page of a job on shafts has drawn by scripts: both faces, torques, bearing forces, a mode that stands still.
+/// What scripts have drawn on the page of a job on shafts: deflections, and a mode that stands still.
 const SHAFTS_DRAWN: &str = "document.querySelector('#job')?.dataset.ready && document.querySelectorAll('#deflection-drawing .deflected').length === 4 \
     && document.querySelector('#mode-drawing .deflected')";
 
