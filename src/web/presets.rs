@@ -65,6 +65,26 @@ pub(super) const GROUPS: &[PresetGroup] = &[
         ],
     },
     PresetGroup {
+        title: "On shafts",
+        presets: &[
+            preset!(
+                "shafts",
+                "Example pair on its shafts",
+                "Both shafts drawn: steps, bearings, couplings. The pinion floats between its bearings, the torque enters on the left."
+            ),
+            preset!(
+                "shafts_arrangement",
+                "Shafts from four numbers",
+                "Straddle-mounted pinion: mounting, input side, bearing span and shaft diameter; the rest is derived."
+            ),
+            preset!(
+                "shafts_overhung",
+                "Overhung pinion",
+                "Pinion beside both of its bearings: the load leans on the inner ends and lifts off elsewhere."
+            ),
+        ],
+    },
+    PresetGroup {
         title: "Contact ratios of the source's Table 2",
         presets: &[
             preset!("table2_2_72", "Contact ratio 2.72", "By addenda of 0.686 m_n."),

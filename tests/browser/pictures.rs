@@ -11,14 +11,36 @@ const LONGEST: u64 = 3600;
 
 /// Takes a picture of the page as a whole, drawn to its end, `limit` pixels of it at most.
 async fn take(browser: &Browser, name: &str, limit: u64) {
+    let [width, height] = draw(browser, limit).await;
+    shoot(browser, name, [0.0, 0.0, width as f64, height as f64]).await;
+}
+
+/// Takes a picture of one section of the page.
+async fn take_section(browser: &Browser, name: &str, selector: &str) {
+    draw(browser, u64::MAX).await;
+    let edges = format!(
+        "(({{left, top, width, height}}) => [left, top, width, height])(document.querySelector('{selector}').getBoundingClientRect())"
+    );
+    let edges = browser.value(&edges).await;
+    let edge = |index: usize| edges[index].as_f64().unwrap();
+    shoot(browser, name, [edge(0), edge(1), edge(2), edge(3)]).await;
+}
+
+/// Makes the window as high as the page, `limit` pixels at most: plots are drawn when they come into it. Returns its
+/// width and height.
+async fn draw(browser: &Browser, limit: u64) -> [u64; 2] {
     let width = browser.value("window.innerWidth").await.as_u64().unwrap();
     let height = browser.value("document.documentElement.scrollHeight").await.as_u64().unwrap().min(limit);
-    // Plots are drawn when they come into the window: here it is as high as the page.
     browser.command("Emulation.setScrollbarsHidden", json!({"hidden": true})).await;
     let size = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
     browser.command("Emulation.setDeviceMetricsOverride", size).await;
     browser.until(DRAWN).await;
-    let clip = json!({"x": 0, "y": 0, "width": width, "height": height, "scale": 1});
+    [width, height]
+}
+
+/// A picture of a part of the window: left edge, top edge, width, height.
+async fn shoot(browser: &Browser, name: &str, [x, y, width, height]: [f64; 4]) {
+    let clip = json!({"x": x, "y": y, "width": width, "height": height, "scale": 1});
     let shot = browser.command("Page.captureScreenshot", json!({"format": "png", "clip": clip})).await;
     let folder = std::env::var_os("HERRINGBONE_PICTURES")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("docs/screenshots"), PathBuf::from);
@@ -165,6 +187,51 @@ async fn pictures_of_every_page() {
         browser.prefer_dark(false).await;
         browser.open("/nowhere").await;
         take(browser, "not-found", 500).await;
+    })
+    .await;
+}
+
+/// What scripts have drawn on the page of a job on shafts: deflections, and a mode that stands still.
+const SHAFTS_DRAWN: &str = "document.querySelector('#job')?.dataset.ready && document.querySelectorAll('#deflection-drawing .deflected').length === 4 \
+    && document.querySelector('#mode-drawing .deflected')";
+
+#[tokio::test]
+#[ignore = "makes pictures: scripts/screenshots"]
+async fn pictures_of_shafts() {
+    flow(async |browser| {
+        browser.open("/nowhere").await;
+        let straddle = browser.solved(&example(include_str!("../../examples/shafts.json"), |_| {})).await;
+        let overhung = browser.solved(&example(include_str!("../../examples/shafts_overhung.json"), |_| {})).await;
+        // Modes that move would be caught at any moment.
+        let calm = json!({"features": [{"name": "prefers-reduced-motion", "value": "reduce"}]});
+        browser.command("Emulation.setEmulatedMedia", calm).await;
+        for (name, width) in [("", 1280), ("-narrow", 390)] {
+            browser.resize(width).await;
+            browser.open(&format!("/jobs/{straddle}")).await;
+            browser.until(SHAFTS_DRAWN).await;
+            take_section(browser, &format!("shafts{name}"), "#shafts").await;
+            take_section(browser, &format!("shafts-modes{name}"), "#rotor").await;
+            take_section(browser, &format!("shafts-bearings{name}"), "#bearings").await;
+        }
+        browser.resize(1280).await;
+        browser.open(&format!("/jobs/{overhung}")).await;
+        browser.until(SHAFTS_DRAWN).await;
+        take_section(browser, "shafts-overhung", "#shafts").await;
+        let compared = format!("/compare?jobs={straddle},{overhung}");
+        browser.open(&compared).await;
+        browser.until("document.querySelector('#curves[data-ready]')").await;
+        take(browser, "shafts-compare", LONGEST).await;
+        // The form draws the shafts as one types.
+        browser.open("/").await;
+        browser.until(CHECKED).await;
+        browser.choose("#start-from", "shafts").await;
+        browser
+            .until(&format!(
+                "document.querySelector('#start-note').textContent.includes('Both shafts drawn') && {CHECKED}"
+            ))
+            .await;
+        browser.value("document.querySelector('#group-shafts').open = true").await;
+        take(browser, "shafts-design", 2200).await;
     })
     .await;
 }

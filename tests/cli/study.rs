@@ -1,5 +1,5 @@
 //! docs/STUDY.md says what the program answers: its Tables 2 and 3, by the source's model and with the contact in the
-//! equations, in the digits that it prints.
+//! equations, in the digits that it prints; docs/study/shafts.md, the answers to the examples on shafts.
 
 use super::*;
 
@@ -81,5 +81,32 @@ fn the_page_of_the_study_says_what_the_program_answers() {
             assert!((value - stated).abs() <= rounding, "{name}: the page says {cell}, the program {value}");
         }
         assert_eq!(vibration[6], result["response"]["contact"].as_str().expect("a word"));
+    }
+}
+
+#[test]
+fn the_page_of_the_study_on_shafts_says_what_the_program_answers() {
+    let page =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/study/shafts.md")).expect("the page");
+    let table = rows(&page, "shafts");
+    assert_eq!(table.len(), 3);
+    for row in table {
+        let name = row[0].trim_matches('`').trim_start_matches("examples/").to_owned();
+        let result = solve(&name);
+        for (cell, pointer) in row[1..].iter().zip([
+            "/shafts/left/k_h_beta_5mm",
+            "/shafts/right/k_h_beta_5mm",
+            "/response/rms/mesh_circumferential_acceleration_m_s2/left",
+            "/response/rms/pinion_axial_acceleration_m_s2/left",
+            "/response/dynamic_factor",
+            "/response/largest_bearing_force_rms_n",
+        ]) {
+            let (stated, rounding) = printed(cell);
+            let value = result.pointer(pointer).and_then(Value::as_f64).expect("a number");
+            assert!(
+                (value - stated).abs() <= rounding,
+                "{name}: the page says {cell}, the program {value} ({pointer})"
+            );
+        }
     }
 }

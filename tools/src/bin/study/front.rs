@@ -109,7 +109,7 @@ pub(crate) fn beginning(verdicts: &[Verdict]) -> String {
     let mut page = Page::default();
     page.say(
         "# The source paper's results, side by side, and a design guide\n\nWhat *Effect of Contact Ratio on Dynamic Behavior of a Herringbone Gear Nonlinear System* reports, beside what this service answers to the same questions, by the source's model and with the contact in the equations; why they differ; and the design guide that the paper leaves as \
-         future work. `scripts/study` asks the service, over its HTTP interface, and writes every number and figure of this page; a sentence that the numbers no longer bear out stops it. `tests/cli/study.rs` holds the tables to the program.",
+         future work. `scripts/study` asks the service, over its HTTP interface, and writes every number and figure of this page; a sentence that the numbers no longer bear out stops it. `tests/cli/study.rs` holds the tables to the program. What elastic shafts change, and when twelve degrees of freedom are enough: [Real shafts](study/shafts.md).",
     );
     page.say("## In short");
     let rows: Vec<_> = verdicts
