@@ -355,6 +355,11 @@ fn standard_estimate(document: &JobDocument, pair: &Pair, shaft: &ShaftInput) ->
     } else {
         return None;
     };
+    // s: from the middle of the span, of an overhung pinion from the nearer bearing.
+    let offset_mm = match arrangement {
+        PinionArrangement::Overhung => (gear_mm - right_mm).max(left_mm - gear_mm),
+        PinionArrangement::TowardsTorque | PinionArrangement::AwayFromTorque => offset_mm.abs(),
+    };
     let half_mm = 0.5 * document.design.gap_width_mm + document.design.face_width_mm;
     let diameter_mm = bending_diameter_mm(shaft, (left_mm, right_mm), (gear_mm - half_mm, gear_mm + half_mm))?;
     let pinion = PinionOnShaft {
@@ -362,7 +367,7 @@ fn standard_estimate(document: &JobDocument, pair: &Pair, shaft: &ShaftInput) ->
         shaft_diameter_m: diameter_mm * 1e-3,
         helix_width_m: pair.spec.face_width_m,
         bearing_span_m: (right_mm - left_mm) * 1e-3,
-        offset_m: offset_mm.abs() * 1e-3,
+        offset_m: offset_mm * 1e-3,
         arrangement,
     };
     let torque_nm = document.operation.pinion_torque_nm.abs();
@@ -382,7 +387,7 @@ fn standard_estimate(document: &JobDocument, pair: &Pair, shaft: &ShaftInput) ->
         basis: format!(
             "arrangement {figure} ({word}), l = {:.1} mm, s = {:.1} mm, d_sh = {diameter_mm:.1} mm, d_1 = {:.1} mm",
             right_mm - left_mm,
-            offset_mm.abs(),
+            offset_mm,
             pinion.reference_diameter_m * 1e3
         ),
     })

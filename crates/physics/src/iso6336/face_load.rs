@@ -13,7 +13,7 @@ pub enum PinionArrangement {
 }
 
 impl PinionArrangement {
-    /// Constant K' of a pinion that is one with its shaft or shrunk on it (`stiffened`), or slides on it.
+    /// Constant K' of a pinion that stiffens its shaft, being one with it (`stiffened`), or does not.
     pub fn constant(self, stiffened: bool) -> f64 {
         match (self, stiffened) {
             (PinionArrangement::TowardsTorque, true) => 0.48,
@@ -36,7 +36,8 @@ pub struct PinionOnShaft {
     pub helix_width_m: f64,
     /// Bearing span l, m.
     pub bearing_span_m: f64,
-    /// Distance s of the middle of the pinion from the middle of the bearing span, m.
+    /// Distance s of the middle of the pinion from the middle of the bearing span, of an overhung one from the nearer
+    /// bearing, m.
     pub offset_m: f64,
     /// Arrangement.
     pub arrangement: PinionArrangement,
@@ -104,5 +105,29 @@ mod tests {
         let away = PinionOnShaft { arrangement: PinionArrangement::AwayFromTorque, ..off };
         assert!(off.equivalent_misalignment_m(95.2e3) > pinion.equivalent_misalignment_m(95.2e3));
         assert!(away.equivalent_misalignment_m(95.2e3) < pinion.equivalent_misalignment_m(95.2e3));
+    }
+
+    /// K' = 1.33 of an overhung pinion stands for the slope F s l/(3 E I) of a beam of length l between its bearings
+    /// under the moment F s at one of them, times the width b of a helix, to 7 %.
+    #[test]
+    fn an_overhung_pinion_is_counted_from_its_nearer_bearing() {
+        let (youngs_pa, d, l, s, b) = (206e9, 0.1f64, 0.4, 0.1, 0.05);
+        let load_n_per_m = 100e3;
+        let area_m4 = std::f64::consts::PI / 64.0 * d.powi(4);
+        let slope = load_n_per_m * 2.0 * b * s * l / (3.0 * youngs_pa * area_m4);
+        let by_beam_m = slope * b;
+        let pinion = PinionOnShaft {
+            reference_diameter_m: d,
+            shaft_diameter_m: d,
+            helix_width_m: b,
+            bearing_span_m: l,
+            offset_m: s,
+            arrangement: PinionArrangement::Overhung,
+        };
+        let straight = PinionOnShaft { offset_m: 0.0, ..pinion };
+        let of = |pinion: &PinionOnShaft| pinion.equivalent_misalignment_m(load_n_per_m);
+        let topic = "Shafts: face load by ISO 6336-1, method C";
+        let bending_m = of(&pinion) - of(&straight);
+        check(topic, "bending of an overhung pinion against a beam, m", bending_m, by_beam_m, Relative(0.12));
     }
 }

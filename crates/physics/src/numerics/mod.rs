@@ -1,5 +1,5 @@
-//! Numerical methods that several modules share: Gauss–Legendre rules, interpolation, periodic splines, monotone cubics,
-//! dense linear algebra on flat row-major slices and eigenvalues of matrices without symmetry.
+//! Numerical methods that several modules share: Gauss–Legendre rules, interpolation, periodic splines, monotone
+//! cubics, dense linear algebra on flat row-major slices and eigenvalues of matrices without symmetry.
 
 pub(crate) mod dense;
 pub(crate) mod eigen;
