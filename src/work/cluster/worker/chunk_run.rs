@@ -102,14 +102,22 @@ impl ChunkRun {
             // Delivered again although this worker computes it.
             return;
         }
+        tracing::debug!(delivered, "chunk taken");
         let done = tokio::select! {
             done = self.compute(&chunk, &sender, progress) => done,
             () = self.extend() => Err(Unsent),
         };
         match (done, stop.reason()) {
-            (Ok(()), _) => self.acknowledge().await,
-            (Err(Unsent), Some(StopReason::Cancel)) => self.acknowledge().await,
+            (Ok(()), _) => {
+                tracing::debug!("chunk computed");
+                self.acknowledge().await;
+            }
+            (Err(Unsent), Some(StopReason::Cancel)) => {
+                tracing::debug!("chunk left: it is not wanted any more");
+                self.acknowledge().await;
+            }
             (Err(Unsent), _) => {
+                tracing::debug!("chunk left: it is given back");
                 let give_back = AckKind::Nak(Some(GIVE_BACK_AFTER));
                 let _ = self.message.ack_with(give_back).await;
             }
