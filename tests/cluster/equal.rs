@@ -20,7 +20,7 @@ fn all_documents() -> Vec<Value> {
     let mut impossible = documents::sweep(40);
     impossible["axes"] = json!([{"pointer": "/design/face_width_mm", "from": 5.0, "to": 400.0, "points": 40}]);
     let mut recorded = documents::integration(400);
-    recorded["analysis"]["channels"] = json!(["a_x_left", "mesh_force_left"]);
+    recorded["analysis"]["channels"] = json!(["a_x_left", "f_n_left"]);
     recorded["analysis"]["record_mesh_periods"] = json!(300);
     recorded["analysis"]["samples_per_mesh_period"] = json!(512);
     let mut contact = documents::mesh();

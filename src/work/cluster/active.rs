@@ -176,9 +176,18 @@ impl State {
 
     /// Numbers of chunks that are not stored, of jobs of one operating point and of sweeps.
     pub(super) fn open(&self) -> (usize, usize) {
+        self.count(|job| job.open.len())
+    }
+
+    /// As [`State::open`]; a job of which no chunk is cut yet counts as one.
+    pub(super) fn open_soon(&self) -> (usize, usize) {
+        self.count(|job| job.open.len().max(1))
+    }
+
+    fn count(&self, chunks: impl Fn(&ActiveJob) -> usize) -> (usize, usize) {
         self.jobs.values().fold((0, 0), |(singles, sweeps), job| match job.class {
-            WorkClass::Single => (singles + job.open.len(), sweeps),
-            WorkClass::Sweep => (singles, sweeps + job.open.len()),
+            WorkClass::Single => (singles + chunks(job), sweeps),
+            WorkClass::Sweep => (singles, sweeps + chunks(job)),
         })
     }
 

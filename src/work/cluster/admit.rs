@@ -47,7 +47,7 @@ fn has_room(shared: &Shared, class: WorkClass) -> bool {
     }
     let (state, now) = (shared.state(), Instant::now());
     let (slots, _) = state.members.totals(now);
-    let (singles, of_sweeps) = state.open();
+    let (singles, of_sweeps) = state.open_soon();
     match class {
         WorkClass::Single => singles < (SINGLES_BY_SLOT * slots).max(LEAST_WINDOW),
         WorkClass::Sweep => {
