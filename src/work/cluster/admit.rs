@@ -10,6 +10,7 @@ use crate::work::failure::{document_failure, public_failure};
 use crate::work::job_run::retry;
 use crate::work::measure;
 use crate::work::reuse::stored_completion;
+use crate::work::stop_signal::StopReason;
 use herringbone_job::document::{JobDocument, JobKind, MethodInput};
 use herringbone_job::study::SweepOrder;
 use std::sync::Arc;
@@ -96,6 +97,13 @@ async fn take_up(shared: &Arc<Shared>, claim: Claim, class: WorkClass) {
     tracing::info!("job started");
     let solver = solver_for(shared, &document);
     shared.state().insert(ActiveJob::new(claim, solver, plan, stored, Instant::now()));
+    // A cancellation that came before it was known here.
+    let job = until_stored(shared, || shared.store().job(id)).await.flatten();
+    if job.is_some_and(|job| job.cancel_requested_at.is_some())
+        && let Some(active) = shared.state().jobs.get_mut(&id)
+    {
+        active.stop = Some(StopReason::Cancel);
+    }
 }
 
 /// The plan of a sweep, and the number of its rows that are stored.

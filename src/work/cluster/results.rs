@@ -11,6 +11,7 @@ use crate::store::{
     ChunkContent, ChunkKey, ChunkOutcome, ChunkResult, Completion, Failure, LineEndRow, PointBatch, SampleBatch,
 };
 use crate::work::measure;
+use crate::work::stop_signal::StopReason;
 use async_nats::jetstream::consumer::PullConsumer;
 use async_nats::jetstream::{AckKind, Message};
 use futures_util::StreamExt;
@@ -279,12 +280,14 @@ async fn store_whole(shared: &Shared, messages: &[Message], key: ChunkKey, run: 
         unwritten: PointBatch::default(),
         reused_from: None,
     };
-    if held(shared, messages, || shared.recorder().succeed(&job, &completion)).await.is_none() {
-        return false;
-    }
-    let is_canceled = shared.state().job(key).is_some_and(|job| job.stop.is_some());
-    if !is_canceled {
-        shared.state().remove(key.job);
+    let done = held(shared, messages, || shared.recorder().succeed(&job, &completion)).await;
+    let Some(is_stored) = done else { return false };
+    let mut state = shared.state();
+    if is_stored {
+        state.remove(key.job);
+    } else if let Some(job) = state.job(key) {
+        // It is to be canceled, or no longer ours: the database says which when it is ended.
+        job.stop = Some(StopReason::Cancel);
     }
     true
 }

@@ -110,3 +110,95 @@ fn no_such_part() -> SolveError {
         step: None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{NoStageStore, PointStore, StoredPoints, solve};
+    use super::*;
+    use crate::result::SweepPoint;
+    use serde_json::{Value, json};
+    use std::collections::BTreeMap;
+    use std::sync::Mutex;
+
+    fn sweep(change: impl Fn(&mut Value)) -> CheckedJob {
+        let mut value: Value = serde_json::from_str(include_str!("../../../../examples/speed_sweep.json")).unwrap();
+        value["model"] = json!({
+            "mesh_stiffness": {"source": "given", "mean_n_per_um": 900.0, "harmonics": [{"amplitude": 0.1}]},
+            "impact": {"source": "none"},
+        });
+        value["axes"] = json!([
+            {"pointer": "/operation/pinion_speed_rpm", "values": [3000.0, 1000.0, 2000.0, 4000.0]},
+            {"pointer": "/operation/pinion_torque_nm", "values": [300.0, 600.0]},
+        ]);
+        change(&mut value);
+        CheckedJob::new(crate::parse(value.to_string().as_bytes()).unwrap()).unwrap()
+    }
+
+    /// The rows of parts, by position.
+    #[derive(Default)]
+    struct Rows(Mutex<BTreeMap<usize, SweepPoint>>);
+
+    impl PointStore for Rows {
+        fn load(&self) -> StoredPoints {
+            StoredPoints::default()
+        }
+
+        fn save(&self, position: usize, row: &SweepPoint, _end: Option<&LineEnd>) {
+            assert!(self.0.lock().unwrap().insert(position, row.clone()).is_none(), "{position} twice");
+        }
+    }
+
+    impl Rows {
+        fn solve(&self, job: &CheckedJob, part: &SweepPart) -> Option<LineEnd> {
+            let none = SolveContext::none();
+            let context = SolveContext { stages: &NoStageStore, points: self, ..none };
+            solve_part(job, part, &context).unwrap()
+        }
+
+        fn assert_are_those_of(self, job: &CheckedJob) {
+            let whole = solve(job, &SolveContext::none()).unwrap().result.sweep.unwrap().points;
+            let text = |rows: Vec<SweepPoint>| serde_json::to_string(&rows).unwrap();
+            assert_eq!(text(self.0.into_inner().unwrap().into_values().collect()), text(whole));
+        }
+    }
+
+    #[test]
+    fn points_apart_are_those_of_the_sweep() {
+        for method in ["auto", "integrate"] {
+            let job = sweep(|value| value["analysis"] = json!({"method": method, "mesh_periods": 100}));
+            let rows = Rows::default();
+            for part in [vec![7, 0], vec![1, 2, 3, 4, 6], vec![5], Vec::new()] {
+                assert_eq!(rows.solve(&job, &SweepPart::Points(part)), None);
+            }
+            rows.assert_are_those_of(&job);
+        }
+    }
+
+    #[test]
+    fn stretches_of_lines_are_those_of_the_sweep() {
+        let job = sweep(|value| {
+            value["continuation"] = json!("both");
+            value["analysis"] = json!({"method": "integrate", "mesh_periods": 100});
+        });
+        let rows = Rows::default();
+        for line in (0..4).rev() {
+            let mut start = None;
+            for (from, to) in [(0, 1), (1, 3), (3, 4)] {
+                let end = rows.solve(&job, &SweepPart::Stretch { line, from, to, start: start.take() }).unwrap();
+                assert_eq!((end.line, end.position), (line, SweepOrder::of(job.document()).line(line)[to - 1]));
+                start = end.state;
+            }
+        }
+        rows.assert_are_those_of(&job);
+    }
+
+    #[test]
+    fn what_is_no_part_is_refused() {
+        let (plain, followed) = (sweep(|_| {}), sweep(|value| value["continuation"] = json!("up")));
+        let stretch = |line, from, to| SweepPart::Stretch { line, from, to, start: None };
+        let refused = |job, part| solve_part(job, &part, &SolveContext::none()).is_err();
+        assert!(refused(&plain, SweepPart::Points(vec![8])) && refused(&plain, stretch(0, 0, 1)));
+        assert!(refused(&followed, SweepPart::Points(vec![0])) && refused(&followed, stretch(2, 0, 1)));
+        assert!(refused(&followed, stretch(0, 1, 1)) && refused(&followed, stretch(0, 3, 5)));
+    }
+}
