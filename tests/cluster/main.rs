@@ -18,6 +18,7 @@ mod equal;
 mod faults;
 mod lives;
 mod nats;
+mod proxy;
 mod queue;
 mod rights;
 mod setting;

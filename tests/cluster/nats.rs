@@ -49,17 +49,44 @@ impl NatsServer {
         Some(server)
     }
 
+    /// Three servers that keep what is stored together.
+    pub(crate) fn start_three(folder: &Path) -> Option<[Self; 3]> {
+        let (program, ports) = (program()?, free_ports::<9>());
+        let routes = [6, 7, 8].map(|place: usize| format!("nats://127.0.0.1:{}", ports[place])).join(",");
+        let mut servers = [0, 1, 2].map(|one: usize| {
+            let listen = format!("nats://127.0.0.1:{}", ports[6 + one]);
+            let name = format!("n{one}");
+            let words = ["--name", &name, "--cluster_name", "three", "--cluster", &listen, "--routes", &routes];
+            let options = words.map(str::to_owned).to_vec();
+            let (program, folder) = (program.clone(), folder.join(name.as_str()));
+            Self { program, folder, port: ports[one], monitor: ports[3 + one], options, process: None }
+        });
+        servers.iter_mut().for_each(Self::spawn);
+        servers.iter().for_each(Self::wait);
+        Some(servers)
+    }
+
     pub(crate) fn url(&self) -> String {
         format!("nats://127.0.0.1:{}", self.port)
     }
 
     /// Starts it and waits until it is healthy.
     pub(crate) fn start_again(&mut self) {
+        self.spawn();
+        self.wait();
+    }
+
+    /// Starts it.
+    pub(crate) fn spawn(&mut self) {
         let (port, monitor) = (self.port.to_string(), self.monitor.to_string());
         let mut command = Command::new(&self.program);
         command.args(["--addr", "127.0.0.1", "--port", &port, "--http_port", &monitor, "--jetstream", "--store_dir"]);
         command.arg(&self.folder).args(&self.options).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
         self.process = Some(command.spawn().expect("nats-server starts"));
+    }
+
+    /// Waits until it is healthy.
+    fn wait(&self) {
         let (address, deadline) = (SocketAddr::from(([127, 0, 0, 1], self.monitor)), Instant::now() + PATIENCE);
         while client::send(address, "GET", "/healthz", &[], "").map_or(true, |answer| answer.status != 200) {
             assert!(Instant::now() < deadline, "nats-server does not become healthy");
@@ -73,6 +100,20 @@ impl NatsServer {
             process.kill().expect("killed");
             process.wait().expect("it ends");
         }
+    }
+
+    fn signal(&self, name: &str) {
+        let id = self.process.as_ref().expect("it runs").id().to_string();
+        assert!(Command::new("kill").args([name, &id]).status().expect("kill runs").success());
+    }
+
+    /// Stops it, as a machine that hangs.
+    pub(crate) fn pause(&self) {
+        self.signal("-STOP");
+    }
+
+    pub(crate) fn go_on(&self) {
+        self.signal("-CONT");
     }
 
     /// Deletes everything that it has stored.

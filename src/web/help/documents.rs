@@ -49,7 +49,7 @@ pub(super) const SECTIONS: &[(&str, &[&str])] = &[
             "validation/tables/job",
         ],
     ),
-    ("Background", &["design", "study", "benchmarks", "glossary", "operations", "reliability"]),
+    ("Background", &["design", "study", "benchmarks", "glossary", "operations", "scaling", "reliability"]),
 ];
 
 /// The page at an address of the help.

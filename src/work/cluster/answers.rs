@@ -121,8 +121,20 @@ pub(super) async fn run_stage_reads(shared: Arc<Shared>, mut requests: Subscribe
     }
 }
 
+/// A stage that arrives in parts.
+struct PartialStage {
+    since: Instant,
+    parts: Vec<Option<Vec<u8>>>,
+}
+
+impl PartialStage {
+    fn new(parts: usize) -> Self {
+        Self { since: Instant::now(), parts: vec![None; parts] }
+    }
+}
+
 pub(super) async fn run_stage_writes(shared: Arc<Shared>, mut requests: Subscriber) {
-    let mut partial: HashMap<String, (Instant, Vec<Option<Vec<u8>>>)> = HashMap::new();
+    let mut partial: HashMap<String, PartialStage> = HashMap::new();
     while let Some(request) = next(&shared, &mut requests).await {
         let named = stage_key(&request).zip(stage_of(&request));
         let numbers = number(&request, PART).zip(number(&request, PARTS));
@@ -131,17 +143,17 @@ pub(super) async fn run_stage_writes(shared: Arc<Shared>, mut requests: Subscrib
             continue;
         }
         if partial.len() >= MOST_PARTIAL
-            && let Some(oldest) = partial.iter().min_by_key(|(_, (since, _))| *since).map(|(key, _)| key.clone())
+            && let Some(oldest) = partial.iter().min_by_key(|(_, stage)| stage.since).map(|(key, _)| key.clone())
         {
             partial.remove(&oldest);
         }
-        let (_, pieces) = partial.entry(key.clone()).or_insert_with(|| (Instant::now(), vec![None; parts]));
-        if pieces.len() != parts {
-            *pieces = vec![None; parts];
+        let arriving = partial.entry(key.clone()).or_insert_with(|| PartialStage::new(parts));
+        if arriving.parts.len() != parts {
+            *arriving = PartialStage::new(parts);
         }
-        pieces[part] = Some(request.payload.to_vec());
-        if pieces.iter().all(Option::is_some) {
-            let bytes = pieces.drain(..).flatten().collect::<Vec<_>>().concat();
+        arriving.parts[part] = Some(request.payload.to_vec());
+        if arriving.parts.iter().all(Option::is_some) {
+            let bytes = arriving.parts.drain(..).flatten().collect::<Vec<_>>().concat();
             partial.remove(&key);
             let (version, now) = (shared.solver.version(), shared.recorder().now());
             if let Err(error) = shared.store().save_stage(&key, stage.as_str(), version, &bytes, now).await {

@@ -86,9 +86,10 @@ impl SweepPlan {
         self.take(length.max(1)).map(|part| (ChunkClass::Sweep, part))
     }
 
-    /// Points spread over the axes, or the first ones of a line.
+    /// Points spread over the axes; the first ones of a line that is followed, or of points that go in groups.
     fn scout(&mut self) -> Option<ChunkPart> {
-        if self.order.is_continued() {
+        let goes_in_groups = (0..2).any(|position| self.order.group(position).is_some());
+        if self.order.is_continued() || goes_in_groups {
             return self.take(SCOUT_POINTS);
         }
         let Left::Points(ranges) = &mut self.left else { return None };
@@ -105,18 +106,22 @@ impl SweepPlan {
     fn take(&mut self, length: usize) -> Option<ChunkPart> {
         match &mut self.left {
             Left::Points(left) => {
-                let (mut ranges, mut missing) = (Vec::new(), length as u64);
-                while missing > 0 {
-                    let Some(front) = left.front_mut() else { break };
-                    let to = front[1].min(front[0] + missing);
-                    ranges.push([front[0], to]);
-                    missing -= to - front[0];
-                    front[0] = to;
+                let (mut positions, mut last) = (Vec::new(), None);
+                while let Some(front) = left.front_mut() {
+                    // To the end of a group, in which points may lie that are solved alone.
+                    let next = [front[0], front[0] + 1].map(|position| self.order.group(position as usize));
+                    let is_within = last.is_some() && (next[0] == last || (next[0].is_none() && next[1] == last));
+                    if positions.len() >= length && !is_within {
+                        break;
+                    }
+                    last = next[0].or(last);
+                    positions.push(front[0]);
+                    front[0] += 1;
                     if front[0] == front[1] {
                         left.pop_front();
                     }
                 }
-                (!ranges.is_empty()).then_some(ChunkPart::Points { ranges })
+                (!positions.is_empty()).then(|| ChunkPart::Points { ranges: ranges_of(&positions) })
             }
             Left::Lines(lines) => {
                 let length_of_line = self.order.length;
@@ -246,12 +251,17 @@ mod tests {
     use std::collections::BTreeSet;
 
     fn order(first: usize, second: usize, continuation: &str) -> SweepOrder {
+        order_by("auto", first, second, continuation)
+    }
+
+    fn order_by(method: &str, first: usize, second: usize, continuation: &str) -> SweepOrder {
         let mut document: Value = serde_json::from_str(include_str!("../../../examples/speed_sweep.json")).unwrap();
         document["axes"] = json!([
             {"pointer": "/operation/pinion_speed_rpm", "from": 1000.0, "to": 2000.0, "points": first},
             {"pointer": "/operation/pinion_torque_nm", "from": 100.0, "to": 200.0, "points": second},
         ]);
         document["continuation"] = continuation.into();
+        document["analysis"]["method"] = method.into();
         let document: JobDocument = herringbone_job::parse(document.to_string().as_bytes()).unwrap();
         SweepOrder::of(&document)
     }
@@ -282,6 +292,23 @@ mod tests {
         assert_eq!((lengths[0], lengths[1]), (8, 133));
         assert!(lengths[lengths.len() - 1] <= 14, "{lengths:?}");
         assert!(lengths[1..].windows(2).all(|two| two[0] >= two[1]), "{lengths:?}");
+    }
+
+    #[test]
+    fn points_that_are_integrated_side_by_side_go_in_whole_groups() {
+        let order = order_by("integrate", 100, 5, "none");
+        let mut plan = SweepPlan::new(order.clone(), &[], Vec::new());
+        let mut lengths = Vec::new();
+        let mut groups = BTreeSet::new();
+        while let Some((_, part)) = plan.cut(3) {
+            let own = positions(&plan, &part);
+            let of_part: BTreeSet<usize> = own.iter().filter_map(|one| order.group(*one as usize)).collect();
+            assert!(of_part.iter().all(|group| groups.insert(*group)), "{own:?} has a part of a group");
+            plan.store(&part, Some((own.len() as u64, own.len() as f64 * 0.05)), None);
+            lengths.push(own.len());
+        }
+        assert_eq!((lengths[0], lengths.iter().sum::<usize>()), (33, 500));
+        assert!(lengths.iter().all(|length| (1..=70).contains(length)), "{lengths:?}");
     }
 
     #[test]

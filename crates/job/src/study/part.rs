@@ -2,11 +2,12 @@
 //! line that is followed by continuation.
 
 use super::mesh::MeshMemo;
-use super::sweep::{Points, ways};
+use super::sweep::{Points, together, ways};
 use super::{CheckedJob, LineEnd, SolveContext, SolveError, branches};
 use crate::document::{Axis, JobDocument, JobKind};
 use crate::result::BranchDirection;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// The lines of a sweep and the order in which their points are solved.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +19,8 @@ pub struct SweepOrder {
     ways: &'static [BranchDirection],
     /// Indices on the first axis from its least value up.
     upwards: Vec<usize>,
+    /// Number of points that are solved in one go.
+    together: usize,
 }
 
 impl SweepOrder {
@@ -27,7 +30,8 @@ impl SweepOrder {
         let values = document.axes.get(1).map_or(1, Axis::len);
         let first = document.axes.first();
         let upwards = first.map(|first| branches::order(first, BranchDirection::Up)).unwrap_or_default();
-        Self { lines: values * ways.len().max(1), length: first.map_or(0, Axis::len), ways, upwards }
+        let (lines, length) = (values * ways.len().max(1), first.map_or(0, Axis::len));
+        Self { lines, length, ways, upwards, together: together(document) }
     }
 
     /// Whether each point of a line continues the motion of the one before.
@@ -49,6 +53,13 @@ impl SweepOrder {
             Some(BranchDirection::Up) => self.upwards.iter().map(position).collect(),
             Some(BranchDirection::Down) => self.upwards.iter().rev().map(position).collect(),
         }
+    }
+
+    /// The group with which a point without continuation is solved in one go; `None` for one that is solved alone. The
+    /// last bits of a row may depend on the others of its group, so a part of a sweep has whole groups where it can.
+    pub fn group(&self, position: usize) -> Option<usize> {
+        let (line, index) = (position / self.length.max(1), position % self.length.max(1));
+        (self.together > 1 && index > 0).then(|| (line * (self.length - 1) + index - 1) / self.together)
     }
 
     /// Direction in which a line is followed.
@@ -83,10 +94,11 @@ pub fn solve_part(job: &CheckedJob, part: &SweepPart, context: &SolveContext) ->
                 return Err(no_such_part());
             }
             let points = Points::new(document, context, &memo, positions.len());
-            // The first point computes the parts that the others share (compliance, contact).
-            let (first, others) = positions.split_at(positions.len().min(1));
-            points.solve(first)?;
-            others.par_chunks(points.together()).try_for_each(|group| points.solve(group).map(drop))?;
+            let groups = groups(&order, positions);
+            // The first one computes the parts that the others share (compliance, contact).
+            let (first, others) = groups.split_at(groups.len().min(1));
+            first.iter().try_for_each(|group| points.solve(group).map(drop))?;
+            others.par_iter().try_for_each(|group| points.solve(group).map(drop))?;
             Ok(None)
         }
         SweepPart::Stretch { line, from, to, start } => {
@@ -99,6 +111,20 @@ pub fn solve_part(job: &CheckedJob, part: &SweepPart, context: &SolveContext) ->
             Ok(Some(LineEnd { line: *line, position: positions[*to - 1], state }))
         }
     }
+}
+
+/// Points in the groups that are solved in one go, those that are solved alone first.
+fn groups(order: &SweepOrder, positions: &[usize]) -> Vec<Vec<usize>> {
+    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    let mut alone = Vec::new();
+    for &position in positions {
+        match order.group(position) {
+            Some(group) => groups.entry(group).or_default().push(position),
+            None => alone.push(vec![position]),
+        }
+    }
+    alone.extend(groups.into_values());
+    alone
 }
 
 fn no_such_part() -> SolveError {
@@ -166,12 +192,36 @@ mod tests {
     fn points_apart_are_those_of_the_sweep() {
         for method in ["auto", "integrate"] {
             let job = sweep(|value| value["analysis"] = json!({"method": method, "mesh_periods": 100}));
+            assert_eq!(SweepOrder::of(job.document()).group(5), (method == "integrate").then_some(0));
             let rows = Rows::default();
             for part in [vec![7, 0], vec![1, 2, 3, 4, 6], vec![5], Vec::new()] {
                 assert_eq!(rows.solve(&job, &SweepPart::Points(part)), None);
             }
             rows.assert_are_those_of(&job);
         }
+    }
+
+    /// Where contact is lost at some speeds, neighbours in the lanes set steps, and with them the last bits of the largest
+    /// force.
+    #[test]
+    fn whole_groups_are_those_of_the_sweep_to_the_last_bit() {
+        let job = sweep(|value| {
+            value["model"]["mesh_stiffness"]["harmonics"][0]["amplitude"] = json!(0.2);
+            value["analysis"] = json!({"method": "integrate", "mesh_periods": 40, "record_mesh_periods": 10});
+            value["axes"] = json!([
+                {"pointer": "/operation/pinion_speed_rpm", "from": 1500.0, "to": 9000.0, "points": 25},
+                {"pointer": "/design/backlash_um", "values": [2.0, 30.0, 60.0]},
+            ]);
+        });
+        let order = SweepOrder::of(job.document());
+        let mut parts: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
+        (0..order.points()).for_each(|position| parts.entry(order.group(position)).or_default().push(position));
+        assert_eq!(parts.iter().map(|(_, part)| part.len()).collect::<Vec<_>>(), [3, 32, 32, 8]);
+        let rows = Rows::default();
+        for part in parts.into_values().rev() {
+            rows.solve(&job, &SweepPart::Points(part));
+        }
+        rows.assert_are_those_of(&job);
     }
 
     #[test]

@@ -16,6 +16,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Points that are integrated side by side: a multiple of the lanes, few enough to keep all threads busy.
 const POINTS_TOGETHER: usize = 32;
 
+/// Number of points that are solved in one go. Points that are integrated go side by side; the others take very
+/// different times, so each is for the next free thread.
+pub(super) fn together(sweep: &JobDocument) -> usize {
+    if sweep.analysis.method == MethodInput::Integrate { POINTS_TOGETHER } else { 1 }
+}
+
 /// The points of a sweep and how each is solved.
 ///
 /// Positions of the result go line after line; with two directions the lines of the second follow those of the first.
@@ -47,12 +53,6 @@ impl<'a> Points<'a> {
     fn count(&self, solved: usize) {
         let count = self.solved.fetch_add(solved, Ordering::Relaxed) + solved;
         (self.context.progress)(Stage::Sweep, count as f64 / self.all as f64);
-    }
-
-    /// Number of points that are solved in one go. Points that are integrated go side by side; the others take very
-    /// different times, so each is for the next free thread.
-    pub(super) fn together(&self) -> usize {
-        if self.sweep.analysis.method == MethodInput::Integrate { POINTS_TOGETHER } else { 1 }
     }
 
     /// Solves and stores points without continuation.
@@ -125,7 +125,7 @@ pub(super) fn run(
     if ways.is_empty() {
         let rows: HashMap<_, _> = stored.rows.into_iter().filter(|(position, _)| *position < all).collect();
         points.count(rows.len());
-        sweep.points = independent((lines, length), points.together(), rows, |positions| points.solve(positions))?;
+        sweep.points = independent((lines, length), together(document), rows, |positions| points.solve(positions))?;
     } else {
         let follow = |line: usize| -> Result<Vec<SweepPoint>, SolveError> {
             let positions = order.line(line);
