@@ -205,7 +205,19 @@ impl Store {
         Ok(rows.iter().map(ChunkRecord::from_row).collect::<Result<_, _>>()?)
     }
 
-    /// Reads the running jobs with chunks that are not stored, oldest first.
+    /// Deletes the chunks of a job of which everything is stored, before its result is put together: from then on it runs
+    /// in this process.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn end_chunks(&self, job: JobId) -> Result<(), StoreError> {
+        let mut transaction = self.begin_with_reserve().await?;
+        drop_chunks(&mut transaction, job).await?;
+        transaction.commit().await?;
+        Ok(())
+    }
+
+    /// Reads the running jobs that have chunks, oldest first.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -214,7 +226,7 @@ impl Store {
             "SELECT input, computed_us, ",
             job_columns!(),
             " FROM jobs WHERE state = 'running' AND EXISTS (SELECT 1 FROM chunks WHERE chunks.job_id = jobs.id \
-             AND chunks.attempt = jobs.attempt AND chunks.state <> 'stored') ORDER BY id"
+             AND chunks.attempt = jobs.attempt) ORDER BY id"
         ))
         .fetch_all(&self.reader)
         .await?;

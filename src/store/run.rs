@@ -59,11 +59,10 @@ pub struct Recovery {
     pub queued: u64,
 }
 
-/// Whether other machines compute a running job: chunks of its attempt are not stored. A literal for `concat!`.
+/// Whether other machines compute a running job: its attempt has chunks. A literal for `concat!`.
 macro_rules! is_distributed {
     () => {
-        "EXISTS (SELECT 1 FROM chunks WHERE chunks.job_id = jobs.id AND chunks.attempt = jobs.attempt \
-         AND chunks.state <> 'stored')"
+        "EXISTS (SELECT 1 FROM chunks WHERE chunks.job_id = jobs.id AND chunks.attempt = jobs.attempt)"
     };
 }
 

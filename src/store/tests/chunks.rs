@@ -61,6 +61,8 @@ async fn results_are_stored_once_and_a_chunk_ends_with_all_its_rows() {
     assert_eq!(second, [stored(1), ChunkOutcome::Done, duplicate.clone(), duplicate.clone()]);
     assert_eq!(store_all(store, &[end(key, 0, 4)]).await, [duplicate]);
     assert_eq!(store.point_positions(job.id).await.unwrap(), [0, 1, 2, 3]);
+    assert_eq!(store.distributed_jobs().await.unwrap().len(), 1);
+    store.end_chunks(job.id).await.unwrap();
     assert!(store.distributed_jobs().await.unwrap().is_empty());
 }
 

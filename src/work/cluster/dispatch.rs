@@ -86,7 +86,7 @@ impl Dispatcher {
         admit(&self.shared).await?;
         self.cut().await;
         self.publish().await;
-        self.finish();
+        self.finish().await;
         self.store_progress().await
     }
 
@@ -294,14 +294,18 @@ impl Dispatcher {
     }
 
     /// Has the results of computed sweeps put together.
-    fn finish(&self) {
+    async fn finish(&self) {
         let computed: Vec<ActiveJob> = {
             let mut state = self.shared.state();
             let ids: Vec<JobId> = state.jobs.values().filter(|job| job.is_computed()).map(|job| job.job.id).collect();
             ids.into_iter().filter_map(|id| state.remove(id)).collect()
         };
         for job in computed {
-            let rows_are_own = job.rows_are_own;
+            // A crash while the result is put together counts as a loss.
+            let (id, rows_are_own) = (job.job.id, job.rows_are_own);
+            if until_stored(&self.shared, || self.shared.store().end_chunks(id)).await.is_none() {
+                return;
+            }
             run_here(&self.shared, claim_of(job), WorkClass::Sweep, rows_are_own, None);
         }
     }
