@@ -1,7 +1,7 @@
 //! The lives of jobs with workers: canceled, given up, taken up again after a restart.
 
 use crate::documents;
-use crate::setting::{Setting, number, slow_sweep, wait_for_rows, wait_until};
+use crate::setting::{Setting, change, number, slow_sweep, wait_for_rows, wait_until};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
@@ -135,6 +135,25 @@ fn a_service_goes_on_alone_with_what_workers_had() {
     let losses = number(setting.program.database(), "SELECT MAX(losses) FROM jobs");
     assert_eq!(losses, 0, "an orderly end is no loss");
     setting.audit(service, &[&path]);
+}
+
+/// After an upgrade of the service: rows of two versions are not mixed.
+#[test]
+fn a_job_that_workers_of_another_version_had_begins_again() {
+    let Some(setting) = Setting::new(&[]) else { return };
+    let service = setting.program.start();
+    let _worker = setting.worker();
+    let path = service.submit(&slow_sweep(200));
+    wait_for_rows(&setting, 20);
+    service.kill();
+    change(setting.program.database(), "UPDATE chunks SET solver = '0_0_1-1'");
+    change(setting.program.database(), "UPDATE sweep_points SET solver_version = '0.0.1-1', body = '{}'");
+    let service = setting.program.start();
+    let job = service.ended(&path);
+    assert_eq!((&job["state"], &job["attempt"]), (&json!("succeeded"), &json!(2)), "{job}");
+    let mixed = "SELECT COUNT(*) FROM sweep_points WHERE body = '{}' OR solver_version = '0.0.1-1'";
+    assert_eq!(number(setting.program.database(), mixed), 0);
+    assert_eq!(setting.audit(service, &[&path]).points, 200);
 }
 
 #[test]

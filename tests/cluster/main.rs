@@ -20,6 +20,7 @@ mod lives;
 mod nats;
 mod proxy;
 mod queue;
+mod rates;
 mod rights;
 mod setting;
 mod worker;

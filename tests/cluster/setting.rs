@@ -71,6 +71,17 @@ pub(crate) fn number(database: &Path, sql: &'static str) -> i64 {
     })
 }
 
+/// Changes a database that no service has open.
+pub(crate) fn change(database: &Path, sql: &'static str) {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
+    runtime.block_on(async {
+        let mut connection = SqliteConnectOptions::new().filename(database).connect().await.expect("it opens");
+        let done = sqlx::query(sql).execute(&mut connection).await.expect("executed");
+        assert!(done.rows_affected() > 0);
+        connection.close().await.expect("closed");
+    });
+}
+
 /// Waits until something holds.
 pub(crate) fn wait_until(what: &str, holds: impl Fn() -> bool) {
     let deadline = Instant::now() + PATIENCE;

@@ -1,10 +1,10 @@
 //! Taking up jobs: from the queue, as many as can be computed soon, and those of an earlier process.
 
 use super::active::{ActiveJob, OpenChunk};
-use super::names::{depends_on_processor, processor_class, solver_of, solver_of_class};
+use super::names::{depends_on_processor, is_of_version, processor_class, solver_of, solver_of_class};
 use super::plan::SweepPlan;
 use super::shared::Shared;
-use crate::store::{ChunkState, Claim, StoreError, WorkClass};
+use crate::store::{ChunkState, Claim, ReleaseReason, StoreError, WorkClass};
 use crate::work::estimate::estimate;
 use crate::work::failure::{document_failure, public_failure};
 use crate::work::job_run::retry;
@@ -196,6 +196,12 @@ pub(super) async fn resume(shared: &Arc<Shared>) -> Result<(), StoreError> {
             }
         };
         let chunks = shared.store().chunks(claim.job.id, claim.job.attempt).await?;
+        if chunks.iter().any(|chunk| !is_of_version(&chunk.solver, shared.solver.version())) {
+            // Rows of two versions are never mixed: it begins again.
+            shared.recorder().release(&claim.job, ReleaseReason::Shutdown, Duration::ZERO).await?;
+            tracing::info!(job = %claim.job.id, "job of another version begins again");
+            continue;
+        }
         let solver = chunks.first().map_or_else(|| solver_for(shared, &document), |chunk| chunk.solver.clone());
         let mut job = ActiveJob::new(claim, solver, plan, stored, now);
         // As many rows as the chunks that are stored have: none is of an earlier attempt.

@@ -42,7 +42,12 @@ impl Members {
     pub(super) fn largest_class(&self, solver: &str, now: Instant) -> Option<String> {
         let mut slots: BTreeMap<&str, usize> = BTreeMap::new();
         for known in self.live(now) {
-            for own in known.beat.solvers.iter().filter(|own| own.starts_with(solver) && *own != solver) {
+            for own in known
+                .beat
+                .solvers
+                .iter()
+                .filter(|own| own.strip_prefix(solver).is_some_and(|rest| rest.starts_with('-')))
+            {
                 *slots.entry(own).or_default() += known.beat.slots as usize;
             }
         }

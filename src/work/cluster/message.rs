@@ -123,7 +123,6 @@ pub(super) struct LineEndMessage {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Summary {
     pub body: String,
-    pub input_hash: String,
     pub series: Vec<SeriesEntry>,
     /// Number of parts of samples that were sent.
     pub sample_parts: u64,

@@ -71,6 +71,12 @@ pub(super) fn solver_of_class(version: &str, class: &str) -> String {
     format!("{}-{class}", solver_of(version))
 }
 
+/// Whether work for these workers is work of this version.
+pub(super) fn is_of_version(solver: &str, version: &str) -> bool {
+    let own = solver_of(version);
+    solver.strip_prefix(&own).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'))
+}
+
 /// Whether the result of a job depends on the class of the processor in its last bits: dense linear algebra chooses its
 /// kernels by it.
 pub(super) fn depends_on_processor(document: &JobDocument) -> bool {
@@ -133,6 +139,8 @@ mod tests {
     fn a_solver_is_one_token() {
         assert_eq!(solver_of("0.1.0-7"), "0_1_0-7");
         assert_eq!(solver_of_class("0.1.0-7", "x86-64-v3"), "0_1_0-7-x86-64-v3");
+        let is_own = |solver| is_of_version(solver, "0.1.0-7");
+        assert!(is_own("0_1_0-7") && is_own("0_1_0-7-x86-64-v3") && !is_own("0_1_0-70") && !is_own("0_1_0-6"));
         assert_eq!(consumer("0_1_0-7", ChunkClass::Scout), "0_1_0-7_scout");
     }
 

@@ -8,7 +8,8 @@ use super::message::{
 use super::reconcile::reissue;
 use super::shared::Shared;
 use crate::store::{
-    ChunkContent, ChunkKey, ChunkOutcome, ChunkResult, Completion, Failure, LineEndRow, PointBatch, SampleBatch,
+    ChunkContent, ChunkKey, ChunkOutcome, ChunkPart, ChunkResult, Completion, Failure, LineEndRow, PointBatch,
+    SampleBatch,
 };
 use crate::work::measure;
 use crate::work::stop_signal::StopReason;
@@ -164,6 +165,9 @@ fn read(shared: &Shared, payload: &[u8]) -> Option<Checked> {
                 Err(_) => return dropped("unfit"),
             }
         }
+        ResultContent::Samples { .. } | ResultContent::Piece { .. } if !is_whole(&mut shared.state(), key) => {
+            return dropped("unfit");
+        }
         ResultContent::Samples { position, part } => {
             Content::Part(ChunkContent::Samples(SampleBatch::of_part(position as usize, part as usize, bytes.to_vec())))
         }
@@ -185,6 +189,11 @@ fn read(shared: &Shared, payload: &[u8]) -> Option<Checked> {
         }
     };
     Some(Checked { key, worker, content })
+}
+
+/// Whether an open chunk is a whole job, or is not open.
+fn is_whole(state: &mut State, key: ChunkKey) -> bool {
+    state.chunk(key).is_none_or(|chunk| chunk.part == ChunkPart::Whole)
 }
 
 /// Positions of the points of an open chunk of a sweep.
@@ -249,7 +258,8 @@ fn note_time(shared: &Shared, key: ChunkKey, work_s: f64) {
 
 /// Stores the result of a whole job. False when the service closes before that.
 async fn store_whole(shared: &Shared, messages: &[Message], key: ChunkKey, run: &str, end: &EndMessage) -> bool {
-    let Some(job) = shared.state().job(key).map(|job| job.job.clone()) else {
+    let known = shared.state().job(key).map(|job| (job.job.clone(), job.input.clone()));
+    let Some((job, input)) = known else {
         metrics::counter!("herringbone_results_dropped_total", "reason" => "late").increment(1);
         return true;
     };
@@ -270,9 +280,11 @@ async fn store_whole(shared: &Shared, messages: &[Message], key: ChunkKey, run: 
     }
     metrics::histogram!("herringbone_chunk_seconds", "of" => "work").record(end.work_s.max(0.0));
     note_time(shared, key, end.work_s);
+    // By the document here: it decides for which jobs the result is reused.
+    let Ok(document) = herringbone_job::parse(input.as_bytes()) else { return true };
     let completion = Completion {
         body: summary.body,
-        input_hash: summary.input_hash,
+        input_hash: shared.solver.input_hash(&document),
         solver_version: shared.solver.version().to_owned(),
         series: summary.series,
         samples: SampleBatch::default(),

@@ -216,7 +216,7 @@ mod tests {
         let order = SweepOrder::of(job.document());
         let mut parts: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
         (0..order.points()).for_each(|position| parts.entry(order.group(position)).or_default().push(position));
-        assert_eq!(parts.iter().map(|(_, part)| part.len()).collect::<Vec<_>>(), [3, 32, 32, 8]);
+        assert_eq!(parts.values().map(Vec::len).collect::<Vec<_>>(), [3, 32, 32, 8]);
         let rows = Rows::default();
         for part in parts.into_values().rev() {
             rows.solve(&job, &SweepPart::Points(part));

@@ -338,14 +338,13 @@ impl SolveTask {
             clock_ms: &|| started.elapsed().as_secs_f64() * 1e3,
         };
         let solver = &self.worker.solver;
-        let input_hash = solver.input_hash(&document);
         let job = match solver.check(document) {
             Ok(job) => job,
             Err(error) => return Solved::Failed(document_failure(error)),
         };
         let solved = match self.sweep_part() {
             Some(part) => solve_part(&job, &part, &context).map(Solved::Part),
-            None => solver.solve(&job, &context).map(|outcome| self.whole(outcome, input_hash)),
+            None => solver.solve(&job, &context).map(|outcome| self.whole(outcome)),
         };
         match solved {
             Ok(solved) => solved,
@@ -375,7 +374,7 @@ impl SolveTask {
     }
 
     /// The result of a whole job, with its series compressed.
-    fn whole(&self, outcome: Outcome, input_hash: String) -> Solved {
+    fn whole(&self, outcome: Outcome) -> Solved {
         let Outcome { mut result, series } = outcome;
         result.note_not_finite();
         let body = match serde_json::to_string(&result) {
@@ -394,7 +393,7 @@ impl SolveTask {
                 Err(error) => return Solved::Failed(internal_failure(&error.to_string())),
             }
         }
-        let summary = Summary { body, input_hash, series: entries, sample_parts: parts.len() as u64 };
+        let summary = Summary { body, series: entries, sample_parts: parts.len() as u64 };
         Solved::Whole { summary: Box::new(summary), parts }
     }
 }
