@@ -183,11 +183,11 @@ fn three_servers_lose_nothing() {
     let rows = || number(program.database(), "SELECT COUNT(*) FROM sweep_points");
     let more = |least: i64| wait_until("rows", || rows() >= least.min(900));
     more(20);
-    for one in 0..servers.len() {
-        servers[one].kill();
+    for server in &mut servers {
+        server.kill();
         // Two of three go on.
         more(rows() + 60);
-        servers[one].start_again();
+        server.start_again();
     }
     servers.iter_mut().for_each(NatsServer::kill);
     servers.iter_mut().for_each(NatsServer::spawn);
