@@ -70,8 +70,8 @@ impl DropReason {
 }
 
 impl Store {
-    /// Stores parts of results in one transaction, in their order. Each is fenced by the attempt of its job and the state
-    /// of its chunk; what is stored already stays as it is.
+    /// Stores parts of results in one transaction, in their order. Each is fenced by the attempt of its job and the
+    /// state of its chunk; what is stored already stays as it is.
     ///
     /// # Errors
     /// The database cannot be written; nothing is stored then.

@@ -169,8 +169,8 @@ impl Store {
         Ok(row.map(|row| row.try_get("issue")).transpose()?)
     }
 
-    /// Whether a chunk is still to be computed: its job runs in this attempt and is not to be canceled, the chunk is not
-    /// stored, and this is its last issue.
+    /// Whether a chunk is still to be computed: its job runs in this attempt and is not to be canceled, the chunk is
+    /// not stored, and this is its last issue.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -205,8 +205,8 @@ impl Store {
         Ok(rows.iter().map(ChunkRecord::from_row).collect::<Result<_, _>>()?)
     }
 
-    /// Deletes the chunks of a job of which everything is stored, before its result is put together: from then on it runs
-    /// in this process.
+    /// Deletes the chunks of a job of which everything is stored, before its result is put together: from then on it
+    /// runs in this process.
     ///
     /// # Errors
     /// The database cannot be written.

@@ -1,5 +1,5 @@
-//! The two streams and their consumers. Only the service makes them, and it never deletes one: a stream or consumer that
-//! is made again under the same name may stay without a quorum.
+//! The two streams and their consumers. Only the service makes them, and it never deletes one: a stream or consumer
+//! that is made again under the same name may stay without a quorum.
 
 use super::connect::{ClusterError, Nats, START_WAIT, waited};
 use super::names::{RESULT_CONSUMER, Space, consumer};

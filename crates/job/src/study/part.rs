@@ -201,8 +201,8 @@ mod tests {
         }
     }
 
-    /// Where contact is lost at some speeds, neighbours in the lanes set steps, and with them the last bits of the largest
-    /// force.
+    /// Where contact is lost at some speeds, neighbours in the lanes set steps, and with them the last bits of the
+    /// largest force.
     #[test]
     fn whole_groups_are_those_of_the_sweep_to_the_last_bit() {
         let job = sweep(|value| {
