@@ -11,6 +11,8 @@ mod solve;
 mod table;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "cluster")]
+mod worker;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -27,6 +29,9 @@ pub(crate) struct Arguments {
 enum Command {
     /// Serve the HTTP interface and the web pages.
     Serve(Box<serve::ServeArguments>),
+    /// Compute for a service on another machine.
+    #[cfg(feature = "cluster")]
+    Worker(Box<worker::WorkerArguments>),
     /// Copy the database, also while the service runs.
     Backup(backup::BackupArguments),
     /// Solve one job document in place: the result as JSON on standard output.
@@ -41,6 +46,8 @@ enum Command {
 pub(crate) fn run(arguments: Arguments) -> ExitCode {
     match arguments.command {
         Command::Serve(arguments) => serve::run(*arguments),
+        #[cfg(feature = "cluster")]
+        Command::Worker(arguments) => worker::run(*arguments),
         Command::Backup(arguments) => backup::run(arguments),
         Command::Solve(arguments) => solve::run(arguments),
         Command::Check(arguments) => check::run(arguments),

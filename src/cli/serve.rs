@@ -5,6 +5,8 @@ use clap::Args;
 use herringbone::api::{self, Access, AppState, HttpConfig, LoginRenderer, Pages};
 use herringbone::store::{Store, StoreConfig};
 use herringbone::web;
+#[cfg(feature = "cluster")]
+use herringbone::work::cluster::{ClusterConfig, NatsSetup, QueueTarget};
 use herringbone::work::{self, Jobs, StudySolver, WorkConfig};
 use jiff::Timestamp;
 use std::process::ExitCode;
@@ -24,13 +26,16 @@ pub(super) struct ServeArguments {
     store: StoreConfig,
     #[command(flatten)]
     work: WorkConfig,
+    #[cfg(feature = "cluster")]
+    #[command(flatten)]
+    cluster: ClusterConfig,
     #[command(flatten)]
     log: LogConfig,
 }
 
 /// Settings of the log, which is written to standard error.
 #[derive(Debug, Args)]
-struct LogConfig {
+pub(super) struct LogConfig {
     /// Levels, for example `info` or `warn,herringbone=debug`.
     #[arg(long, env = "HERRINGBONE_LOG", value_name = "LEVELS", default_value = "info", value_parser = levels)]
     log: EnvFilter,
@@ -55,7 +60,7 @@ fn levels(text: &str) -> Result<EnvFilter, String> {
     EnvFilter::try_new(text).map_err(|error| error.to_string())
 }
 
-fn start_log(config: &LogConfig) {
+pub(super) fn start_log(config: &LogConfig) {
     let log = tracing_subscriber::fmt().with_env_filter(config.log.clone()).with_writer(std::io::stderr);
     let log = log.with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()));
     match config.log_json {
@@ -71,17 +76,14 @@ fn start_log(config: &LogConfig) {
 
 #[tokio::main]
 async fn serve(arguments: &ServeArguments) -> anyhow::Result<()> {
-    let (http, work) = (&arguments.http, &arguments.work);
+    let http = &arguments.http;
     let mut terminate = signal(SignalKind::terminate()).context("signal handler")?;
     let mut interrupt = signal(SignalKind::interrupt()).context("signal handler")?;
     let access = Access::new(&http.access, http.listen)?;
     raise_file_limit(http.connections.max_connections);
     let listener = TcpListener::bind(http.listen).await.with_context(|| format!("cannot listen on {}", http.listen))?;
     let store = Store::open(&arguments.store).await?;
-    let jobs = Jobs::start(store, work, Arc::new(StudySolver), Arc::new(Timestamp::now))
-        .await
-        .map_err(anyhow::Error::from_boxed)
-        .with_context(|| format!("the database {}", arguments.store.database.display()))?;
+    let jobs = start_jobs(store, arguments).await?;
     tokio::spawn(work::run_retention(jobs.clone(), arguments.store.retention, Arc::new(Timestamp::now)));
     tokio::spawn(work::run_file_watch(jobs.clone()));
     let state = AppState::new(jobs.clone(), Timestamp::now());
@@ -97,6 +99,19 @@ async fn serve(arguments: &ServeArguments) -> anyhow::Result<()> {
     };
     api::serve(listener, app, &http.connections, jobs, shutdown).await;
     Ok(())
+}
+
+/// Starts the jobs: computed in this process, or by workers.
+async fn start_jobs(store: Store, arguments: &ServeArguments) -> anyhow::Result<Jobs> {
+    let (work, solver, clock) = (&arguments.work, Arc::new(StudySolver), Arc::new(Timestamp::now));
+    let database = || format!("the database {}", arguments.store.database.display());
+    #[cfg(feature = "cluster")]
+    if let QueueTarget::Nats(servers) = &arguments.cluster.queue {
+        let setup = NatsSetup::new(servers, &arguments.cluster, &store).await?;
+        let jobs = Jobs::start_with_workers(store, (work, &arguments.cluster), setup, solver, clock).await;
+        return jobs.map_err(anyhow::Error::from_boxed).with_context(database);
+    }
+    Jobs::start(store, work, solver, clock).await.map_err(anyhow::Error::from_boxed).with_context(database)
 }
 
 fn pages(has_login: bool) -> Pages {

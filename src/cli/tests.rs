@@ -1,12 +1,16 @@
 //! Tests of the documented settings.
 
 use super::Arguments;
-use clap::{Arg, CommandFactory};
-use std::collections::BTreeMap;
+use clap::CommandFactory;
 
+#[cfg(feature = "cluster")]
+use {clap::Arg, std::collections::BTreeMap};
+
+#[cfg(feature = "cluster")]
 const DOCUMENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/OPERATIONS.md");
 
 /// The cells of each table row that begins with a flag, by flag.
+#[cfg(feature = "cluster")]
 fn documented() -> BTreeMap<String, Vec<String>> {
     let text = std::fs::read_to_string(DOCUMENT).expect("docs/OPERATIONS.md");
     let mut rows = BTreeMap::new();
@@ -19,6 +23,7 @@ fn documented() -> BTreeMap<String, Vec<String>> {
 }
 
 /// Flag, variable and default of an argument as in a table row.
+#[cfg(feature = "cluster")]
 fn row(argument: &Arg) -> (String, [String; 2]) {
     let flag = format!("`--{}`", argument.get_long().expect("a long flag"));
     let variable = argument.get_env().map(|name| format!("`{}`", name.to_string_lossy())).unwrap_or_default();
@@ -29,6 +34,7 @@ fn row(argument: &Arg) -> (String, [String; 2]) {
     (flag, [variable, default.join(", ")])
 }
 
+#[cfg(feature = "cluster")]
 #[test]
 fn the_documented_settings_are_those_of_the_program() {
     let mut documented = documented();

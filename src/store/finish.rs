@@ -1,5 +1,6 @@
 //! The transitions from running to succeeded and failed.
 
+use super::chunks::drop_chunks;
 use super::connect::{Store, StoreError};
 use super::dataset::{dataset_of, drop_unused_dataset, ensure_dataset};
 use super::failure::Failure;
@@ -96,6 +97,7 @@ pub(super) async fn fail_in(
     if let Some(job) = &failed {
         record_event(transaction, job, now).await?;
         drop_samples(transaction, id).await?;
+        drop_chunks(transaction, id).await?;
     }
     Ok(failed)
 }
@@ -155,6 +157,7 @@ pub(super) async fn complete(
     .execute(&mut **transaction)
     .await?;
     drop_line_ends(transaction, id).await?;
+    drop_chunks(transaction, id).await?;
     if dataset != id {
         // Of an earlier attempt, before there was a result to be reused.
         drop_unused_dataset(transaction, id).await?;

@@ -6,6 +6,8 @@
 
 mod backup;
 mod cancel;
+mod chunk_results;
+mod chunks;
 mod connect;
 mod dataset;
 mod describe;
@@ -35,6 +37,8 @@ mod write_probe;
 
 pub use backup::{BackupError, BackupSummary, backup};
 pub use cancel::{Cancellation, Deletion};
+pub use chunk_results::{ChunkContent, ChunkOutcome, ChunkResult, DropReason};
+pub use chunks::{ChunkClass, ChunkKey, ChunkPart, ChunkRecord, ChunkState};
 pub use connect::{Store, StoreConfig};
 pub use describe::{Described, JobDescription};
 pub use durations::{CalculationClass, MeasuredDuration};

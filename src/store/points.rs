@@ -86,10 +86,7 @@ impl Store {
         solver_version: &str,
     ) -> Result<PointBatch, StoreError> {
         let mut transaction = self.begin().await?;
-        if is_current(&mut transaction, id, attempt).await? {
-            drop_other_versions(&mut transaction, id, solver_version).await?;
-            copy_points_of_same_input(&mut transaction, id, input_hash, solver_version).await?;
-        }
+        collect_points(&mut transaction, id, attempt, input_hash, solver_version).await?;
         let rows = sqlx::query_as("SELECT position, body FROM sweep_points WHERE dataset_id = $1 ORDER BY position")
             .bind(id.to_string())
             .fetch_all(&mut *transaction)
@@ -100,6 +97,23 @@ impl Store {
             .await?;
         transaction.commit().await?;
         Ok(PointBatch { solver_version: solver_version.to_owned(), rows, end_states: Vec::new(), ends })
+    }
+
+    /// As [`Store::resume_points`], for an attempt that other machines compute: nothing is read.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub async fn collect_points(
+        &self,
+        id: JobId,
+        attempt: i64,
+        input_hash: &str,
+        solver_version: &str,
+    ) -> Result<(), StoreError> {
+        let mut transaction = self.begin().await?;
+        collect_points(&mut transaction, id, attempt, input_hash, solver_version).await?;
+        transaction.commit().await?;
+        Ok(())
     }
 
     /// Reads up to `limit` rows of a job with positions in `from..to`, in their order.
@@ -138,6 +152,29 @@ impl Store {
         Ok(bytes.flatten().map(|bytes| unpack_state(&bytes)))
     }
 
+    /// Reads the positions of the rows of a running job, in their order.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn point_positions(&self, id: JobId) -> Result<Vec<u64>, StoreError> {
+        let rows = sqlx::query("SELECT position FROM sweep_points WHERE dataset_id = $1 ORDER BY position")
+            .bind(id.to_string())
+            .fetch_all(&self.reader)
+            .await?;
+        rows.iter().map(|row| Ok(row.try_get::<i64, _>("position")?.unsigned_abs())).collect()
+    }
+
+    /// Reads how far each line of a running job was followed.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn line_ends(&self, id: JobId) -> Result<Vec<LineEndRow>, StoreError> {
+        Ok(sqlx::query_as("SELECT line, position, state FROM sweep_line_ends WHERE job_id = $1 ORDER BY line")
+            .bind(id.to_string())
+            .fetch_all(&self.reader)
+            .await?)
+    }
+
     /// Counts the rows of a job.
     ///
     /// # Errors
@@ -149,6 +186,21 @@ impl Store {
             .await?;
         Ok(row.try_get::<i64, _>("n")?.unsigned_abs())
     }
+}
+
+/// Collects the rows from which an attempt resumes.
+async fn collect_points(
+    transaction: &mut Transaction<'static, Sqlite>,
+    id: JobId,
+    attempt: i64,
+    input_hash: &str,
+    solver_version: &str,
+) -> Result<(), StoreError> {
+    if is_current(transaction, id, attempt).await? {
+        drop_other_versions(transaction, id, solver_version).await?;
+        copy_points_of_same_input(transaction, id, input_hash, solver_version).await?;
+    }
+    Ok(())
 }
 
 async fn drop_other_versions(
@@ -215,18 +267,20 @@ async fn copy_points_of_same_input(
     Ok(())
 }
 
-/// Stores points, in a transaction that has checked that the job belongs to this attempt.
+/// Stores points, in a transaction that has checked that the job belongs to this attempt. Rows that are stored already
+/// stay as they are. Returns the number of those that were not.
 pub(super) async fn insert_points(
     transaction: &mut Transaction<'static, Sqlite>,
     id: JobId,
     batch: &PointBatch,
-) -> Result<(), StoreError> {
+) -> Result<u64, StoreError> {
     if !batch.rows.is_empty() {
         ensure_dataset(transaction, id).await?;
     }
     let id = id.to_string();
+    let mut inserted = 0;
     for row in &batch.rows {
-        sqlx::query(
+        let done = sqlx::query(
             "INSERT INTO sweep_points (dataset_id, position, solver_version, body) VALUES ($1, $2, $3, $4) \
              ON CONFLICT (dataset_id, position) DO NOTHING",
         )
@@ -236,6 +290,7 @@ pub(super) async fn insert_points(
         .bind(&row.body)
         .execute(&mut **transaction)
         .await?;
+        inserted += done.rows_affected();
     }
     for EndStateRow { position, state } in &batch.end_states {
         sqlx::query("UPDATE sweep_points SET end_state = $3 WHERE dataset_id = $1 AND position = $2")
@@ -258,7 +313,7 @@ pub(super) async fn insert_points(
         .execute(&mut **transaction)
         .await?;
     }
-    Ok(())
+    Ok(inserted)
 }
 
 pub(super) async fn drop_line_ends(

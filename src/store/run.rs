@@ -1,5 +1,6 @@
 //! Claiming, progress and release of jobs by workers, and recovery after a restart.
 
+use super::chunks::drop_chunks;
 use super::connect::{Store, StoreError};
 use super::failure::Failure;
 use super::lifecycle::{JobId, JobState};
@@ -56,6 +57,13 @@ pub struct Recovery {
     pub given_up: u64,
     /// Queued jobs, including those that were queued again.
     pub queued: u64,
+}
+
+/// Whether other machines compute a running job: its attempt has chunks. A literal for `concat!`.
+macro_rules! is_distributed {
+    () => {
+        "EXISTS (SELECT 1 FROM chunks WHERE chunks.job_id = jobs.id AND chunks.attempt = jobs.attempt)"
+    };
 }
 
 impl Store {
@@ -164,16 +172,28 @@ impl Store {
         Ok(released)
     }
 
-    /// Queues the jobs that were running when the last process ended, unless they were lost `max_losses` times.
+    /// Queues the jobs that were running when the last process ended, unless they were lost `max_losses` times. Those
+    /// that other machines compute go on where `keep_distributed` says so; else they are queued too, and that does not
+    /// count as a loss.
     ///
     /// # Errors
     /// The database cannot be written.
-    pub async fn recover(&self, max_losses: u32, now: Timestamp) -> Result<Recovery, StoreError> {
+    pub async fn recover(
+        &self,
+        max_losses: u32,
+        keep_distributed: bool,
+        now: Timestamp,
+    ) -> Result<Recovery, StoreError> {
         let mut transaction = self.begin_with_reserve().await?;
         let lost = sqlx::query(concat!(
-            "UPDATE jobs SET losses = losses + 1 WHERE state = 'running' RETURNING losses, ",
+            "UPDATE jobs SET losses = losses + 1 - ",
+            is_distributed!(),
+            " WHERE state = 'running' AND NOT ($1 AND cancel_requested_at_us IS NULL AND ",
+            is_distributed!(),
+            ") RETURNING losses, ",
             job_columns!()
         ))
+        .bind(keep_distributed)
         .fetch_all(&mut *transaction)
         .await?;
         let mut recovery = Recovery::default();
@@ -225,6 +245,7 @@ async fn release_in(
     if let Some(job) = &released {
         record_event(transaction, job, now).await?;
         drop_samples(transaction, id).await?;
+        drop_chunks(transaction, id).await?;
     }
     Ok(released)
 }

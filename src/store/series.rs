@@ -4,6 +4,7 @@ use super::connect::{Store, StoreError};
 use super::dataset::{ensure_dataset, is_current};
 use super::lifecycle::JobId;
 use herringbone_job::study::RecordedChannel;
+use serde::{Deserialize, Serialize};
 use sqlx::sqlite::SqliteRow;
 use sqlx::{FromRow, Row, Sqlite, Transaction};
 
@@ -15,7 +16,7 @@ const BATCH_BYTES: usize = 2 << 20;
 const ZSTD_LEVEL: i32 = 3;
 
 /// The description of a channel, without its samples.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SeriesEntry {
     pub channel: String,
     pub quantity: String,
@@ -66,9 +67,21 @@ impl PackedSeries {
     /// # Errors
     /// The compression fails, for want of memory.
     pub fn pack(channel: &RecordedChannel, is_stopped: &dyn Fn() -> bool) -> Result<Option<Self>, StoreError> {
+        Self::pack_in_parts(channel, PART_SAMPLES, is_stopped)
+    }
+
+    /// As [`PackedSeries::pack`], in parts of so many samples.
+    ///
+    /// # Errors
+    /// The compression fails, for want of memory.
+    pub fn pack_in_parts(
+        channel: &RecordedChannel,
+        part_samples: usize,
+        is_stopped: &dyn Fn() -> bool,
+    ) -> Result<Option<Self>, StoreError> {
         let mut parts = Vec::new();
         // A channel without samples has one part without content.
-        let chunks = channel.values.chunks(PART_SAMPLES).chain(channel.values.is_empty().then_some(&[][..]));
+        let chunks = channel.values.chunks(part_samples).chain(channel.values.is_empty().then_some(&[][..]));
         for values in chunks {
             if is_stopped() {
                 return Ok(None);
@@ -89,6 +102,11 @@ impl PackedSeries {
             rms: Some(channel.rms).filter(|value| value.is_finite()),
         };
         Ok(Some(Self { entry, parts }))
+    }
+
+    /// The description, and the compressed parts of the samples.
+    pub fn into_parts(self) -> (SeriesEntry, Vec<Vec<u8>>) {
+        (self.entry, self.parts)
     }
 
     /// Decompresses the samples. Takes milliseconds per million: not for async threads.
@@ -115,6 +133,11 @@ impl PackedSeries {
 }
 
 impl SampleBatch {
+    /// One compressed part of a channel, by the index of the channel and of the part.
+    pub fn of_part(position: usize, part: usize, samples: Vec<u8>) -> Self {
+        Self(vec![SamplePart { position, part, samples }])
+    }
+
     /// The descriptions of channels in their order, and their samples in batches of about two megabytes.
     pub fn split(series: Vec<PackedSeries>) -> (Vec<SeriesEntry>, Vec<SampleBatch>) {
         let (mut entries, mut batches, mut bytes) = (Vec::new(), vec![SampleBatch::default()], 0);

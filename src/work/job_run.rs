@@ -14,7 +14,7 @@ use crate::store::{
     WorkClass,
 };
 use herringbone_job::document::JobDocument;
-use herringbone_job::result::JobResult;
+use herringbone_job::result::{JobResult, ReusedStage};
 use herringbone_job::study::{Outcome, SolveContext, SolveError, Stage};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -52,6 +52,8 @@ pub(super) struct JobRun<'a> {
     /// Computing time of earlier attempts.
     pub computed_before: Duration,
     pub class: WorkClass,
+    /// Whether the stored rows are of this attempt, and not reused.
+    pub rows_are_own: bool,
     pub config: &'a WorkConfig,
     pub recorder: &'a JobRecorder,
     pub solver: &'a Arc<dyn Solver>,
@@ -123,10 +125,17 @@ impl JobRun<'_> {
             now: self.recorder.now(),
         };
         let (solver, stop, shared_points) = (Arc::clone(self.solver), Arc::clone(self.stop), Arc::clone(points));
+        let rows_are_own = self.rows_are_own;
         let span = tracing::Span::current();
         self.pool.spawn(move || {
             let _entered = span.entered();
-            let task = SolveTask { solver: solver.as_ref(), stages: &stages, points: &shared_points, stop: &stop };
+            let task = SolveTask {
+                solver: solver.as_ref(),
+                stages: &stages,
+                points: &shared_points,
+                stop: &stop,
+                rows_are_own,
+            };
             // A panic that leaves the closure would abort the process.
             let outcome = catch_unwind(AssertUnwindSafe(|| task.solve(document, input_hash, &progress)));
             let _ = send.send(outcome.unwrap_or_else(|panic| SolveOutcome::Failed(panic_failure(panic.as_ref()))));
@@ -257,7 +266,7 @@ impl JobRun<'_> {
 }
 
 /// Retries an operation at growing intervals until it succeeds; `None` when `given_up` ends first.
-async fn retry<T, F>(mut attempt: impl FnMut() -> F, given_up: impl Future<Output = ()>) -> Option<T>
+pub(super) async fn retry<T, F>(mut attempt: impl FnMut() -> F, given_up: impl Future<Output = ()>) -> Option<T>
 where
     F: Future<Output = Result<T, StoreError>>,
 {
@@ -281,6 +290,7 @@ struct SolveTask<'a> {
     stages: &'a DatabaseStages,
     points: &'a RunningPoints,
     stop: &'a StopSignal,
+    rows_are_own: bool,
 }
 
 impl SolveTask<'_> {
@@ -317,6 +327,9 @@ impl SolveTask<'_> {
     fn complete(&self, outcome: Outcome, input_hash: String) -> Result<Option<SolvedJob>, String> {
         let Outcome { mut result, series } = outcome;
         let is_stopped = || self.stop.is_requested();
+        if self.rows_are_own {
+            result.numerics.reused.retain(|reused| *reused != ReusedStage::Points);
+        }
         measure::record_stages(&result.numerics);
         let points = result.sweep.as_mut().map(|sweep| std::mem::take(&mut sweep.points));
         result.note_not_finite();

@@ -1,12 +1,14 @@
 //! Operations on jobs: submit, wait, cancel, delete.
 
+#[cfg(feature = "cluster")]
+use super::cluster::{ClusterConfig, NatsQueue, NatsSetup};
 use super::config::WorkConfig;
 use super::estimate::{Estimate, estimate};
 use super::hub::{JobEventListener, JobSubscription};
 use super::local_queue::LocalQueue;
 use super::measure;
 use super::memory::MemoryLimit;
-use super::queue::{Queue, Workers};
+use super::queue::{Member, Queue, WaitingWork, Workers};
 use super::recorder::{Clock, JobRecorder};
 use super::reuse::stored_completion;
 use super::solver::Solver;
@@ -76,43 +78,35 @@ impl Jobs {
     ///
     /// # Errors
     /// The database cannot be written, or the threads cannot be started.
-    pub async fn start(
-        store: Store,
-        config: &WorkConfig,
-        solver: Arc<dyn Solver>,
-        clock: Clock,
-    ) -> Result<Self, Box<dyn std::error::Error + Send + Sync>> {
+    pub async fn start(store: Store, config: &WorkConfig, solver: Arc<dyn Solver>, clock: Clock) -> Started<Self> {
         let recorder = JobRecorder::new(store, clock);
-        let is_recovered = watch::Sender::new(false);
-        let refusal = match recover(&recorder, config.max_losses).await {
-            Ok(()) => None,
-            Err(error) if error.unavailable().is_some() => Some(error),
-            Err(error) => return Err(error.into()),
-        };
-        is_recovered.send_replace(refusal.is_none());
-        let queue = LocalQueue::start(config, recorder.clone(), Arc::clone(&solver), is_recovered.subscribe())?;
+        let recovery = Recovery::begin(&recorder, config, false).await?;
+        let is_recovered = recovery.is_done.subscribe();
+        let queue = LocalQueue::start(config, recorder.clone(), Arc::clone(&solver), is_recovered)?;
         let jobs = Self::with_queue(recorder, solver, Arc::new(queue), config);
-        if let Some(error) = refusal {
-            tracing::error!(%error, "jobs of an earlier run not taken up; none runs until the database can be written");
-            tokio::spawn(jobs.clone().recover_later(config.max_losses, is_recovered));
-        }
+        recovery.finish(&jobs);
         Ok(jobs)
     }
 
-    /// Tries to recover the jobs of an earlier process until that succeeds, then lets the workers begin.
-    async fn recover_later(self, max_losses: u32, is_recovered: watch::Sender<bool>) {
-        loop {
-            tokio::select! {
-                () = tokio::time::sleep(RECOVER_AFTER) => {}
-                () = self.0.closing.cancelled() => return,
-            }
-            match recover(&self.0.recorder, max_losses).await {
-                Ok(()) => break,
-                Err(error) => tracing::debug!(%error, "jobs of an earlier run not taken up"),
-            }
-        }
-        self.publish_resync();
-        is_recovered.send_replace(true);
+    /// As [`Jobs::start`], with jobs that workers on other machines compute. Those of an earlier process go on.
+    ///
+    /// # Errors
+    /// The database cannot be written, or the threads cannot be started.
+    #[cfg(feature = "cluster")]
+    pub async fn start_with_workers(
+        store: Store,
+        (config, cluster): (&WorkConfig, &ClusterConfig),
+        setup: NatsSetup,
+        solver: Arc<dyn Solver>,
+        clock: Clock,
+    ) -> Started<Self> {
+        let recorder = JobRecorder::new(store, clock);
+        let recovery = Recovery::begin(&recorder, config, true).await?;
+        let is_recovered = recovery.is_done.subscribe();
+        let queue = NatsQueue::start(setup, (config, cluster), recorder.clone(), Arc::clone(&solver), is_recovered)?;
+        let jobs = Self::with_queue(recorder, solver, Arc::new(queue), config);
+        recovery.finish(&jobs);
+        Ok(jobs)
     }
 
     /// Jobs with a queue that is running already.
@@ -141,6 +135,16 @@ impl Jobs {
 
     pub fn workers(&self) -> Workers {
         self.0.queue.workers()
+    }
+
+    /// The workers on other machines.
+    pub fn members(&self) -> Vec<Member> {
+        self.0.queue.members()
+    }
+
+    /// Work that waits for workers on other machines.
+    pub fn waiting_work(&self) -> Vec<WaitingWork> {
+        self.0.queue.waiting_work()
     }
 
     /// Largest number of queued jobs.
@@ -315,9 +319,56 @@ impl Jobs {
     }
 }
 
-/// Takes up the jobs that were running or queued when the last process ended.
-async fn recover(recorder: &JobRecorder, max_losses: u32) -> Result<(), StoreError> {
-    let recovery = recorder.store().recover(max_losses, recorder.now()).await?;
+/// The jobs, started.
+type Started<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;
+
+/// Takes up the jobs that were running or queued when the last process ended, later if the database refuses now.
+struct Recovery {
+    max_losses: u32,
+    keep_distributed: bool,
+    is_done: watch::Sender<bool>,
+    refusal: Option<StoreError>,
+}
+
+impl Recovery {
+    /// `keep_distributed`: jobs that workers on other machines compute go on.
+    async fn begin(recorder: &JobRecorder, config: &WorkConfig, keep_distributed: bool) -> Result<Self, StoreError> {
+        let max_losses = config.max_losses;
+        let refusal = match recover(recorder, max_losses, keep_distributed).await {
+            Ok(()) => None,
+            Err(error) if error.unavailable().is_some() => Some(error),
+            Err(error) => return Err(error),
+        };
+        Ok(Self { max_losses, keep_distributed, is_done: watch::Sender::new(refusal.is_none()), refusal })
+    }
+
+    /// Goes on with the recovery if the database refused.
+    fn finish(self, jobs: &Jobs) {
+        if let Some(error) = &self.refusal {
+            tracing::error!(%error, "jobs of an earlier run not taken up; none runs until the database can be written");
+            tokio::spawn(self.try_later(jobs.clone()));
+        }
+    }
+
+    /// Tries until it succeeds, then lets the workers begin.
+    async fn try_later(self, jobs: Jobs) {
+        loop {
+            tokio::select! {
+                () = tokio::time::sleep(RECOVER_AFTER) => {}
+                () = jobs.closing().cancelled() => return,
+            }
+            match recover(&jobs.0.recorder, self.max_losses, self.keep_distributed).await {
+                Ok(()) => break,
+                Err(error) => tracing::debug!(%error, "jobs of an earlier run not taken up"),
+            }
+        }
+        jobs.publish_resync();
+        self.is_done.send_replace(true);
+    }
+}
+
+async fn recover(recorder: &JobRecorder, max_losses: u32, keep_distributed: bool) -> Result<(), StoreError> {
+    let recovery = recorder.store().recover(max_losses, keep_distributed, recorder.now()).await?;
     if recovery.queued > 0 || recovery.given_up > 0 || recovery.canceled > 0 {
         let (waiting, requeued, given_up) = (recovery.queued, recovery.requeued, recovery.given_up);
         tracing::info!(waiting, requeued, given_up, canceled = recovery.canceled, "jobs of an earlier run taken up");

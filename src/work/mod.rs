@@ -3,6 +3,8 @@
 //!
 //! Invariant: no HTTP and no SQL here; the state of a job changes only through the [`JobRecorder`].
 
+#[cfg(feature = "cluster")]
+pub mod cluster;
 mod config;
 mod database_stages;
 mod estimate;
@@ -18,6 +20,7 @@ mod queue;
 mod recorder;
 mod retention;
 mod reuse;
+mod runner;
 mod running_points;
 mod solver;
 mod stop_signal;
@@ -28,7 +31,7 @@ pub use file_watch::run_file_watch;
 pub use hub::{JobEvent, JobEventListener, JobSubscription};
 pub use jobs::{Jobs, SubmitError, SubmitRequest, Submitted};
 pub use local_queue::LocalQueue;
-pub use queue::{BoxFuture, Queue, Workers};
+pub use queue::{BoxFuture, Member, MemberChunk, Queue, WaitingWork, Workers};
 pub use recorder::{Clock, JobRecorder};
 pub use retention::{RetentionPass, run_retention, run_retention_pass};
 pub use solver::{Solver, StudySolver};

@@ -1,6 +1,7 @@
 //! The interface of job queues.
 
 use crate::store::{JobId, WorkClass};
+use jiff::Timestamp;
 use std::future::Future;
 use std::pin::Pin;
 use std::time::Duration;
@@ -18,6 +19,42 @@ pub struct Workers {
     pub sweeps_busy: usize,
 }
 
+/// A worker on another machine, as it was heard of last.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Member {
+    pub id: String,
+    pub host: String,
+    /// Version of the program.
+    pub version: String,
+    /// Version of the calculation: it computes only work of the same.
+    pub solver_version: String,
+    /// Chunks that it computes at once.
+    pub slots: u32,
+    pub last_beat_at: Timestamp,
+    pub running: Vec<MemberChunk>,
+}
+
+/// What a worker computes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MemberChunk {
+    pub job: String,
+    pub chunk: u32,
+    pub stage: String,
+    /// Fraction of the chunk that is done, 0 to 1.
+    pub fraction: f64,
+}
+
+/// Work that waits for workers of one kind.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WaitingWork {
+    /// Version of the calculation, and the class of processors where that matters.
+    pub solver: String,
+    /// Chunks that are published and not computed.
+    pub chunks: usize,
+    /// Slots of the workers that can take them.
+    pub slots: usize,
+}
+
 /// Runs queued jobs and reports their outcome to the [`super::JobRecorder`]. A queue has no state of its own that must
 /// survive a restart: queued jobs are in the database.
 pub trait Queue: Send + Sync + 'static {
@@ -28,6 +65,16 @@ pub trait Queue: Send + Sync + 'static {
     fn stop(&self, job: JobId);
 
     fn workers(&self) -> Workers;
+
+    /// The workers on other machines.
+    fn members(&self) -> Vec<Member> {
+        Vec::new()
+    }
+
+    /// Work that waits for workers on other machines.
+    fn waiting_work(&self) -> Vec<WaitingWork> {
+        Vec::new()
+    }
 
     /// Starts no further job, requests the running ones to stop and waits for them, for `limit` at most; jobs that
     /// still run then run again after the restart. Returns whether all have stopped.

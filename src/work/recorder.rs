@@ -175,6 +175,11 @@ impl JobRecorder {
         Ok(cancellation)
     }
 
+    /// Publishes and counts a job that has ended, as results of other machines say.
+    pub fn publish_ended(&self, job: JobRecord) {
+        self.publish_end(Some(job));
+    }
+
     /// Publishes a changed job. Returns whether there is one.
     fn publish(&self, job: Option<JobRecord>) -> bool {
         if let Some(job) = &job {

@@ -38,7 +38,7 @@ async fn a_job_that_ran_when_the_process_died_runs_again() {
     let store = Store::open(&StoreConfig::at(directory.path().join("jobs.db"))).await.unwrap();
     let id = path.rsplit('/').next().unwrap().parse().unwrap();
     assert_eq!(store.job(id).await.unwrap().unwrap().state.as_str(), "running");
-    assert_eq!(store.recover(3, Timestamp::now()).await.unwrap().requeued, 1);
+    assert_eq!(store.recover(3, false, Timestamp::now()).await.unwrap().requeued, 1);
     let claim = store.claim_next(WorkClass::Single, Timestamp::now()).await.unwrap().unwrap();
     assert_eq!((claim.job.id, claim.job.attempt), (id, 2));
     let kept = store.job(done.rsplit('/').next().unwrap().parse().unwrap()).await.unwrap().unwrap();

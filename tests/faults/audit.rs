@@ -251,6 +251,3 @@ fn is_step(from: &str, to: &str) -> bool {
         _ => false,
     }
 }
-
-#[cfg(test)]
-mod tests;

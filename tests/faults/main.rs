@@ -2,6 +2,7 @@
 //! load.
 
 mod audit;
+mod audit_tests;
 mod chance;
 mod client;
 mod clock;

@@ -5,6 +5,7 @@ use crate::api::config::{
 };
 use crate::api::problem::ApiError;
 use crate::api::state::AppState;
+use crate::work::{Member, MemberChunk, WaitingWork};
 use axum::Json;
 use axum::extract::State;
 use serde::Serialize;
@@ -22,6 +23,10 @@ pub(super) struct SystemView {
     pub shutting_down: bool,
     pub queue: QueueView,
     pub workers: WorkersView,
+    /// Workers on other machines (`herringbone worker`).
+    pub machines: Vec<MachineView>,
+    /// What waits for workers on other machines, by their kind.
+    pub waiting_work: Vec<WaitingWorkView>,
     pub limits: RequestLimits,
 }
 
@@ -45,6 +50,44 @@ pub(super) struct WorkersView {
     pub sweeps_busy: usize,
 }
 
+/// A worker on another machine, as it was heard of last.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Machine)]
+pub(super) struct MachineView {
+    pub id: String,
+    pub host: String,
+    pub version: String,
+    /// It computes only work of the same version of the calculation.
+    pub solver_version: String,
+    /// Chunks that it computes at once.
+    pub slots: u32,
+    pub last_beat_at: String,
+    pub running: Vec<ChunkView>,
+}
+
+/// A part of a job that a worker computes.
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = Chunk)]
+pub(super) struct ChunkView {
+    /// Id of the job.
+    pub job: String,
+    pub chunk: u32,
+    pub stage: String,
+    /// Completed fraction of the chunk, 0 to 1.
+    pub fraction: f64,
+}
+
+#[derive(Debug, Serialize, ToSchema)]
+#[schema(as = WaitingWork)]
+pub(super) struct WaitingWorkView {
+    /// Version of the calculation, and the class of processors where results depend on it.
+    pub solver: String,
+    /// Chunks that no worker computes yet.
+    pub chunks: usize,
+    /// Slots of the workers that can take them; 0: there is no worker of this version.
+    pub slots: usize,
+}
+
 /// Limits of requests.
 #[derive(Debug, Serialize, ToSchema)]
 #[schema(as = Limits)]
@@ -57,6 +100,21 @@ pub(super) struct RequestLimits {
     pub series_points_max: u64,
     /// Samples per request with `method=none`.
     pub series_samples_max: u64,
+}
+
+impl MachineView {
+    fn of(member: Member) -> Self {
+        let chunk = |MemberChunk { job, chunk, stage, fraction }| ChunkView { job, chunk, stage, fraction };
+        Self {
+            id: member.id,
+            host: member.host,
+            version: member.version,
+            solver_version: member.solver_version,
+            slots: member.slots,
+            last_beat_at: member.last_beat_at.to_string(),
+            running: member.running.into_iter().map(chunk).collect(),
+        }
+    }
 }
 
 /// Read version, queue, workers and limits.
@@ -80,6 +138,12 @@ pub(super) async fn read_system(State(state): State<AppState>) -> Result<Json<Sy
             sweeps_total: workers.sweeps_total,
             sweeps_busy: workers.sweeps_busy,
         },
+        machines: jobs.members().into_iter().map(MachineView::of).collect(),
+        waiting_work: jobs
+            .waiting_work()
+            .into_iter()
+            .map(|WaitingWork { solver, chunks, slots }| WaitingWorkView { solver, chunks, slots })
+            .collect(),
         limits: RequestLimits {
             max_body_bytes: MAX_BODY_BYTES,
             max_wait_s: MAX_WAIT_S,

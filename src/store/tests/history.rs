@@ -38,7 +38,7 @@ async fn apply(store: &Store, id: JobId, step: Step) {
             drop(store.release(id, attempt, ReleaseReason::Shutdown, Duration::ZERO, at(1)).await.unwrap());
         }
         Step::Cancel => drop(store.cancel(id, at(1)).await.unwrap()),
-        Step::Recover => drop(store.recover(3, at(1)).await.unwrap()),
+        Step::Recover => drop(store.recover(3, false, at(1)).await.unwrap()),
     }
 }
 

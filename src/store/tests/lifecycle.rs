@@ -109,7 +109,7 @@ async fn jobs_of_a_dead_process_are_queued_again() {
     store.close().await;
     drop(store);
     let store = Store::open(&StoreConfig::at(directory.path().join("jobs.db"))).await.unwrap();
-    let recovery = store.recover(3, at(10)).await.unwrap();
+    let recovery = store.recover(3, false, at(10)).await.unwrap();
     assert_eq!(recovery, Recovery { requeued: 1, canceled: 1, given_up: 0, queued: 2 });
     assert_eq!(store.claim_next(WorkClass::Single, at(11)).await.unwrap().unwrap().job.id, lost.id);
     assert_eq!(store.claim_next(WorkClass::Single, at(11)).await.unwrap().unwrap().job.id, waiting.id);
@@ -125,9 +125,9 @@ async fn a_job_that_keeps_killing_its_process_fails() {
         store.release(job.id, attempt, ReleaseReason::Shutdown, Duration::ZERO, at(2)).await.unwrap().unwrap();
         store.claim_next(WorkClass::Single, at(2)).await.unwrap().unwrap();
     }
-    assert_eq!(store.recover(2, at(2)).await.unwrap().requeued, 1);
+    assert_eq!(store.recover(2, false, at(2)).await.unwrap().requeued, 1);
     store.claim_next(WorkClass::Single, at(3)).await.unwrap().unwrap();
-    assert_eq!(store.recover(2, at(4)).await.unwrap().given_up, 1);
+    assert_eq!(store.recover(2, false, at(4)).await.unwrap().given_up, 1);
     let failed = store.job(job.id).await.unwrap().unwrap();
     assert_eq!((failed.state, failed.error.unwrap().code.as_str()), (JobState::Failed, "worker-lost"));
 }

@@ -1,3 +1,4 @@
+mod chunks;
 mod history;
 mod lifecycle;
 mod listing;

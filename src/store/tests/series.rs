@@ -183,7 +183,7 @@ async fn samples_of_a_job_that_does_not_succeed_are_deleted() {
     store.close().await;
     drop(store);
     let store = Store::open(&StoreConfig::at(&path)).await.unwrap();
-    assert_eq!(store.recover(3, at(5)).await.unwrap().requeued, 1);
+    assert_eq!(store.recover(3, false, at(5)).await.unwrap().requeued, 1);
     assert_eq!(number(&store, SAMPLES).await, 0);
     // The next attempt stores all of it.
     let again = store.claim_next(WorkClass::Single, at(6)).await.unwrap().unwrap().job;

@@ -49,7 +49,10 @@ pub(super) const SECTIONS: &[(&str, &[&str])] = &[
             "validation/tables/job",
         ],
     ),
-    ("Background", &["design", "study", "study/shafts", "benchmarks", "glossary", "operations", "reliability"]),
+    (
+        "Background",
+        &["design", "study", "study/shafts", "benchmarks", "glossary", "operations", "scaling", "reliability"],
+    ),
 ];
 
 /// The page at an address of the help.

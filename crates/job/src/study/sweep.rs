@@ -3,6 +3,7 @@
 use super::axes::base;
 use super::branches;
 use super::mesh::MeshMemo;
+use super::part::SweepOrder;
 use super::points::{LineEnd, StoredPoints};
 use super::row;
 use super::{SolveContext, SolveError, Stage, campbell, response_result};
@@ -14,6 +15,85 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Points that are integrated side by side: a multiple of the lanes, few enough to keep all threads busy.
 const POINTS_TOGETHER: usize = 32;
+
+/// Number of points that are solved in one go. Points that are integrated go side by side; the others take very
+/// different times, so each is for the next free thread.
+pub(super) fn together(sweep: &JobDocument) -> usize {
+    if sweep.analysis.method == MethodInput::Integrate { POINTS_TOGETHER } else { 1 }
+}
+
+/// The points of a sweep and how each is solved.
+///
+/// Positions of the result go line after line; with two directions the lines of the second follow those of the first.
+pub(super) struct Points<'a> {
+    base: JobDocument,
+    sweep: &'a JobDocument,
+    context: &'a SolveContext<'a>,
+    memo: &'a MeshMemo,
+    order: SweepOrder,
+    solved: AtomicUsize,
+    /// Points that are to be solved altogether.
+    all: usize,
+}
+
+impl<'a> Points<'a> {
+    /// Of a sweep of which `all` points are to be solved, for the progress.
+    pub(super) fn new(sweep: &'a JobDocument, context: &'a SolveContext<'a>, memo: &'a MeshMemo, all: usize) -> Self {
+        let (base, order) = (base(sweep), SweepOrder::of(sweep));
+        Self { base, sweep, context, memo, order, solved: AtomicUsize::new(0), all: all.max(1) }
+    }
+
+    fn values(&self, position: usize) -> Vec<f64> {
+        let (first, second) = (&self.sweep.axes[0], self.sweep.axes.get(1));
+        let mut values = vec![first.value(position % first.len())];
+        values.extend(second.map(|axis| axis.value(position / first.len() % axis.len())));
+        values
+    }
+
+    fn count(&self, solved: usize) {
+        let count = self.solved.fetch_add(solved, Ordering::Relaxed) + solved;
+        (self.context.progress)(Stage::Sweep, count as f64 / self.all as f64);
+    }
+
+    /// Solves and stores points without continuation.
+    ///
+    /// # Errors
+    /// [`SolveError::Canceled`].
+    pub(super) fn solve(&self, positions: &[usize]) -> Result<Vec<SweepPoint>, SolveError> {
+        let group = positions.iter().map(|position| self.values(*position)).collect();
+        let solved = row::solve_together(&self.base, self.sweep, group, self.context, self.memo)?;
+        let rows: Vec<SweepPoint> = solved.into_iter().map(|solved| solved.row).collect();
+        positions.iter().zip(&rows).for_each(|(position, row)| self.context.points.save(*position, row, None));
+        self.count(positions.len());
+        Ok(rows)
+    }
+
+    /// Follows a line along points that are given in the order of its continuation, from the state at the end of the
+    /// point before them. Returns the rows and the state at the end of the last one.
+    ///
+    /// # Errors
+    /// [`SolveError::Canceled`].
+    pub(super) fn follow(
+        &self,
+        line: usize,
+        positions: &[usize],
+        mut state: Option<Vec<f64>>,
+    ) -> Result<(Vec<SweepPoint>, Option<Vec<f64>>), SolveError> {
+        let mut rows = Vec::with_capacity(positions.len());
+        for &position in positions {
+            let start = state.as_deref();
+            let values = self.values(position);
+            let mut solved = row::solve(&self.base, self.sweep, values, start, self.context, self.memo)?;
+            solved.row.branch = self.order.way(line);
+            let end = LineEnd { line, position, state: solved.end_state };
+            self.context.points.save(position, &solved.row, Some(&end));
+            state = end.state;
+            rows.push(solved.row);
+            self.count(1);
+        }
+        Ok((rows, state))
+    }
+}
 
 /// Solves every point that is not in `stored`. Points without continuation are independent and run in parallel; with
 /// it, each line along the first axis is followed in order, the lines of the second axis in parallel, and upwards
@@ -27,23 +107,11 @@ pub(super) fn run(
     context: &SolveContext,
     memo: &MeshMemo,
 ) -> Result<SweepResult, SolveError> {
-    let base = base(document);
     let (first, second) = (&document.axes[0], document.axes.get(1));
-    let lines = second.map_or(1, Axis::len);
-    let length = first.len();
-    let ways = ways(document);
+    let order = SweepOrder::of(document);
+    let (lines, length, ways) = (second.map_or(1, Axis::len), first.len(), ways(document));
     let all = lines * length * ways.len().max(1);
-    let done = AtomicUsize::new(0);
-    // Positions of the result, line after line; with two directions the lines of the second follow those of the first.
-    let values = |position: usize| {
-        let mut values = vec![first.value(position % length)];
-        values.extend(second.map(|axis| axis.value(position / length % lines)));
-        values
-    };
-    let count = |solved: usize| {
-        let count = done.fetch_add(solved, Ordering::Relaxed) + solved;
-        (context.progress)(Stage::Sweep, count as f64 / all as f64);
-    };
+    let points = Points::new(document, context, memo, all);
     let axes = document.axes.iter().map(|axis| SweepAxis {
         pointer: axis.pointer.clone(),
         also: axis.also.clone(),
@@ -55,39 +123,19 @@ pub(super) fn run(
         ..SweepResult::default()
     };
     if ways.is_empty() {
-        let solve = |points: &[usize]| -> Result<Vec<SweepPoint>, SolveError> {
-            let group = points.iter().map(|position| values(*position)).collect();
-            let solved = row::solve_together(&base, document, group, context, memo)?;
-            let rows: Vec<SweepPoint> = solved.into_iter().map(|solved| solved.row).collect();
-            points.iter().zip(&rows).for_each(|(position, row)| context.points.save(*position, row, None));
-            count(points.len());
-            Ok(rows)
-        };
-        // Points that are integrated go side by side; the others take very different times, so each is for the next
-        // free thread.
-        let together = if document.analysis.method == MethodInput::Integrate { POINTS_TOGETHER } else { 1 };
         let rows: HashMap<_, _> = stored.rows.into_iter().filter(|(position, _)| *position < all).collect();
-        count(rows.len());
-        sweep.points = independent((lines, length), together, rows, solve)?;
+        points.count(rows.len());
+        sweep.points = independent((lines, length), together(document), rows, |positions| points.solve(positions))?;
     } else {
         let follow = |line: usize| -> Result<Vec<SweepPoint>, SolveError> {
-            let way = ways[line / lines];
-            let order = branches::order(first, way);
-            let (mut followed, mut state) = followed(&stored, line, length, &order);
-            count(followed.len());
-            for &index in &order[followed.len()..] {
-                let position = line * length + index;
-                let mut solved = row::solve(&base, document, values(position), state.as_deref(), context, memo)?;
-                solved.row.branch = Some(way);
-                let end = LineEnd { line, position, state: solved.end_state };
-                context.points.save(position, &solved.row, Some(&end));
-                state = end.state;
-                followed.push(solved.row);
-                count(1);
-            }
+            let positions = order.line(line);
+            let (mut followed, state) = followed(&stored, line, &positions);
+            points.count(followed.len());
+            let (rows, _) = points.follow(line, &positions[followed.len()..], state)?;
+            followed.extend(rows);
             // In the order of the axis.
-            let mut rows: Vec<_> = order.into_iter().zip(followed).collect();
-            rows.sort_by_key(|(index, _)| *index);
+            let mut rows: Vec<_> = positions.into_iter().zip(followed).collect();
+            rows.sort_by_key(|(position, _)| *position);
             Ok(rows.into_iter().map(|(_, row)| row).collect())
         };
         // The first line computes the parts that the others share (compliance, contact).
@@ -107,12 +155,12 @@ pub(super) fn run(
         }
         sweep.points = rows.into_iter().flatten().collect();
     }
-    sweep.campbell = campbell::run(&base, document, context, memo)?;
+    sweep.campbell = campbell::run(&points.base, document, context, memo)?;
     Ok(sweep)
 }
 
 /// Directions in which the branches of a sweep are followed, in the order of its rows; none without continuation.
-fn ways(document: &JobDocument) -> &'static [BranchDirection] {
+pub(super) fn ways(document: &JobDocument) -> &'static [BranchDirection] {
     match document.continuation.unwrap_or(Continuation::None) {
         Continuation::None => &[],
         Continuation::Up => &[BranchDirection::Up],
@@ -154,11 +202,11 @@ fn independent(
 }
 
 /// Rows of a line solved by an earlier run, in the order of the continuation, and the state from which it resumes.
-fn followed(stored: &StoredPoints, line: usize, length: usize, order: &[usize]) -> (Vec<SweepPoint>, Option<Vec<f64>>) {
+/// `positions`: those of the line, in that order.
+fn followed(stored: &StoredPoints, line: usize, positions: &[usize]) -> (Vec<SweepPoint>, Option<Vec<f64>>) {
     let Some(end) = stored.ends.get(&line) else { return Default::default() };
-    let upto = order.iter().position(|index| line * length + index == end.position).map_or(0, |last| last + 1);
-    let rows: Vec<_> =
-        order[..upto].iter().map_while(|index| stored.rows.get(&(line * length + index)).cloned()).collect();
+    let upto = positions.iter().position(|position| *position == end.position).map_or(0, |last| last + 1);
+    let rows: Vec<_> = positions[..upto].iter().map_while(|position| stored.rows.get(position).cloned()).collect();
     // Without every row up to the end the line is followed afresh.
     if rows.len() == upto { (rows, end.state.clone()) } else { Default::default() }
 }

@@ -1,9 +1,11 @@
 //! The audit of a sound database finds nothing; of each doctored one, what is wrong with it.
 
-use super::*;
+use crate::audit::{Accepted, audit};
 use crate::documents::{response, sweep};
 use crate::program::Program;
 use rstest::rstest;
+use sqlx::sqlite::SqliteConnectOptions;
+use sqlx::{ConnectOptions, Connection};
 use tempfile::TempDir;
 
 /// A response and a sweep of five points that succeeded.
