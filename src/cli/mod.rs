@@ -3,8 +3,10 @@
 mod backup;
 mod cache;
 mod check;
+mod import;
 mod input;
 mod openapi;
+mod output;
 mod problem;
 mod serve;
 mod solve;
@@ -33,6 +35,8 @@ enum Command {
     Solve(solve::SolveArguments),
     /// Check one job document: geometry and warnings, or every violation.
     Check(check::CheckArguments),
+    /// Make a job document of a gear model of another program (REXS).
+    Import(import::ImportArguments),
     /// Print the description of the HTTP interface (OpenAPI, JSON).
     Openapi,
 }
@@ -44,6 +48,7 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Backup(arguments) => backup::run(arguments),
         Command::Solve(arguments) => solve::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Import(arguments) => import::run(arguments),
         Command::Openapi => openapi::run(),
     }
 }

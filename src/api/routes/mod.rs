@@ -4,6 +4,7 @@ mod cancel_job;
 mod delete_job;
 mod explain_problem;
 mod health;
+mod import_file;
 mod list_jobs;
 mod list_kinds;
 mod list_points;
@@ -71,6 +72,11 @@ pub(super) fn versioned() -> OpenApiRouter<AppState> {
         OpenApiRouter::new().routes(routes!(read_series::read_series)).routes(routes!(list_points::list_points));
     let csv = OpenApiRouter::new().routes(routes!(read_bearing_forces::read_bearing_forces));
     json.merge(stream).merge(negotiated).merge(csv)
+}
+
+/// The endpoint that takes files, with its OpenAPI description.
+pub(super) fn imports() -> OpenApiRouter<AppState> {
+    OpenApiRouter::new().routes(routes!(import_file::import_file)).route_layer(from_fn(json_only))
 }
 
 /// The other endpoints, with their OpenAPI descriptions.
