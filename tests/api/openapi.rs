@@ -70,6 +70,7 @@ fn every_endpoint_is_described() {
         "get /problems/{code}",
         "get /readyz",
         "patch /api/v1/jobs/{id}",
+        "post /api/v1/import",
         "post /api/v1/jobs",
         "post /api/v1/jobs/validate",
         "post /api/v1/jobs/{id}/cancel",

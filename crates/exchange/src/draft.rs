@@ -83,6 +83,11 @@ impl Draft {
 
     /// A field from one reading or several; `why` where the value is not the one in the file.
     pub(crate) fn take(&mut self, pointer: &str, value: f64, readings: &[Reading], why: &str) {
+        if !value.is_finite() {
+            let froms: Vec<String> = readings.iter().map(Reading::from).collect();
+            self.refuse(pointer, "out-of-range", format!("does not follow from {}: no finite number", froms.join(", ")));
+            return;
+        }
         self.set(pointer, value);
         self.note_taken(pointer, value.into(), readings, why);
     }

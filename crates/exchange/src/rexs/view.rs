@@ -7,6 +7,11 @@ use crate::unit::{Quantity, clean};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashSet};
 
+/// Largest size of a number: placeholders go to 1e23, and what is calculated from it stays finite.
+const LARGEST: f64 = 1e30;
+/// Largest coordinate of a vector, mm.
+const LARGEST_MM: f64 = 1e9;
+
 /// Attributes of a model, in a load case where there is one. It notes which were read.
 #[derive(Debug)]
 pub(super) struct View<'m> {
@@ -83,7 +88,7 @@ impl<'m> View<'m> {
             },
         };
         let converted = if factor == 1.0 { value } else { clean(value * factor) };
-        if !converted.is_finite() {
+        if converted.abs() > LARGEST {
             return refuse(format!("is {value} {}, which is out of range", short(unit)));
         }
         let file_unit = if unit_assumed { quantity.unit() } else { unit };
@@ -146,7 +151,8 @@ impl<'m> View<'m> {
         };
         let Value::Numbers(numbers) = &attribute.value else { return None };
         let vector: [f64; 3] = numbers.as_slice().try_into().ok()?;
-        vector.iter().all(|number| number.is_finite()).then(|| vector.map(|number| number * factor))
+        let vector = vector.map(|number| number * factor);
+        vector.iter().all(|number| number.abs() <= LARGEST_MM).then_some(vector)
     }
 
     /// A direction of length 1.
