@@ -85,7 +85,11 @@ impl Draft {
     pub(crate) fn take(&mut self, pointer: &str, value: f64, readings: &[Reading], why: &str) {
         if !value.is_finite() {
             let froms: Vec<String> = readings.iter().map(Reading::from).collect();
-            self.refuse(pointer, "out-of-range", format!("does not follow from {}: no finite number", froms.join(", ")));
+            self.refuse(
+                pointer,
+                "out-of-range",
+                format!("does not follow from {}: no finite number", froms.join(", ")),
+            );
             return;
         }
         self.set(pointer, value);

@@ -60,10 +60,12 @@ export function torqueQuestion(answer) {
 export function showImport(form, start) {
   const { report } = start;
   show(byId("imported"), Boolean(report));
-  const [taken, assumed] = [report?.taken ?? [], report?.assumed ?? []].map((lines) => new Map(lines.map((line) => [line.pointer, line])));
+  const taken = new Map((report?.taken ?? []).map((line) => [line.pointer, line]));
+  const assumed = new Map((report?.assumed ?? []).map((line) => [line.pointer, line]));
   for (const field of fieldsOf(form)) {
     const unchanged = report && isSame(field, textOf(field), textIn(field, start.document));
-    const [from, why] = unchanged ? [taken.get(field.pointer), assumed.get(field.pointer)] : [];
+    const from = unchanged ? taken.get(field.pointer) : undefined;
+    const why = unchanged ? assumed.get(field.pointer) : undefined;
     const origin = from ? `from the file: ${from.from}${from.why ? ` (${from.why})` : ""}` : why ? `assumed: ${why.why}` : "";
     if (origin) field.box.dataset.origin = from ? "taken" : "assumed";
     else delete field.box.dataset.origin;
