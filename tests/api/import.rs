@@ -89,3 +89,20 @@ async fn files_that_are_none_and_bodies_that_are_too_large() {
         .await
         .assert_problem(406, "not-acceptable");
 }
+
+#[tokio::test]
+async fn a_job_as_a_model_for_other_programs() {
+    let app = app().await;
+    let (job, _) = app.run(&document()).await;
+    let xml = app.get(&format!("{job}/rexs")).await;
+    assert_eq!((xml.status, xml.header("content-type")), (200, "application/xml"));
+    assert!(xml.header("content-disposition").ends_with(".rexs\""), "{xml:?}");
+    let back = app.send(Method::POST, PATH, &[XML], xml.text()).await;
+    assert_eq!(back.status, 200, "{back:?}");
+    assert_eq!(back.json["document"]["design"]["pinion"]["teeth"], document()["design"]["pinion"]["teeth"]);
+    assert_eq!(back.json["source"]["application"].as_str().map(|name| name.starts_with("herringbone")), Some(true));
+    let json = app.get(&format!("{job}/rexs?format=json&version=1.7")).await;
+    assert_eq!((json.status, &json.json["model"]["version"]), (200, &"1.7".into()));
+    app.get(&format!("{job}/rexs?version=2.0")).await.assert_problem(400, "invalid-parameter");
+    app.get("/api/v1/jobs/0199f3c4-6f0b-7c41-9d5e-2f1f0f6f3c11/rexs").await.assert_problem(404, "not-found");
+}

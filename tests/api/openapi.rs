@@ -61,6 +61,7 @@ fn every_endpoint_is_described() {
         "get /api/v1/jobs/{id}/points/columns",
         "get /api/v1/jobs/{id}/points/{position}/input",
         "get /api/v1/jobs/{id}/result",
+        "get /api/v1/jobs/{id}/rexs",
         "get /api/v1/jobs/{id}/series",
         "get /api/v1/jobs/{id}/series/{channel}",
         "get /api/v1/kinds",

@@ -89,3 +89,21 @@ fn refusals_end_with_2_and_a_problem() {
         assert_eq!(herringbone(&["import", path(&industrial), wrong[0], wrong[1]]).status.code(), Some(2), "{wrong:?}");
     }
 }
+
+#[test]
+fn what_is_exported_is_imported() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let example = super::example("tip_relief.json");
+    let [xml, json_file] = ["pair.rexs", "pair.rexsj"].map(|name| directory.path().join(name));
+    for file in [&xml, &json_file] {
+        let output = herringbone(&["export", path(&example), "--rexs", path(file)]);
+        assert!(output.status.success(), "{output:?}");
+    }
+    assert!(std::fs::read_to_string(&xml).expect("written").starts_with("<?xml"));
+    let [from_xml, from_json] = [&xml, &json_file].map(|file| herringbone(&["import", path(file)]));
+    assert!(from_xml.status.success(), "{from_xml:?}");
+    assert_eq!(from_xml.stdout, from_json.stdout);
+    let (sent, back) = (json(&std::fs::read(&example).expect("read")), json(&from_xml.stdout));
+    assert_eq!(back["design"]["pinion"]["tip_relief"], sent["design"]["pinion"]["tip_relief"]);
+    assert_eq!(herringbone(&["export", path(&example)]).status.code(), Some(2), "a format is needed");
+}

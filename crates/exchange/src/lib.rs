@@ -1,7 +1,8 @@
-//! Exchange formats: gear models of other programs as job documents.
+//! Exchange formats: gear models of other programs as job documents, and job documents as such models.
 //!
 //! Bytes in, a job document and a report out: [`import`]. No I/O, no clock. The report has a line for every field of the
-//! document that was taken from the file or assumed, and for what the file has and the document has not.
+//! document that was taken from the file or assumed, and for what the file has and the document has not. The other way:
+//! [`export_rexs`].
 
 mod container;
 mod draft;
@@ -16,6 +17,7 @@ pub use report::{
     Alternative, Assumed, Check, Ignored, Import, ImportSource, ImportWarning, ImportedPair, Offered, OperatingPoint,
     StageKind, Taken,
 };
+pub use rexs::{ExportForm, ExportOptions, export_rexs};
 
 use sha2::{Digest, Sha256};
 

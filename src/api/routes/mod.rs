@@ -18,6 +18,7 @@ mod read_openapi;
 mod read_point_columns;
 mod read_point_input;
 mod read_result;
+mod read_rexs;
 mod read_series;
 mod read_system;
 mod submit_job;
@@ -70,8 +71,10 @@ pub(super) fn versioned() -> OpenApiRouter<AppState> {
         .route_layer(from_fn(event_stream_only));
     let negotiated =
         OpenApiRouter::new().routes(routes!(read_series::read_series)).routes(routes!(list_points::list_points));
-    let csv = OpenApiRouter::new().routes(routes!(read_bearing_forces::read_bearing_forces));
-    json.merge(stream).merge(negotiated).merge(csv)
+    let files = OpenApiRouter::new()
+        .routes(routes!(read_bearing_forces::read_bearing_forces))
+        .routes(routes!(read_rexs::read_rexs));
+    json.merge(stream).merge(negotiated).merge(files)
 }
 
 /// The endpoint that takes files, with its OpenAPI description.

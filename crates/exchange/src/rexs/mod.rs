@@ -1,6 +1,7 @@
 //! REXS: the exchange format for gear units of the FVA (Forschungsvereinigung Antriebstechnik), versions 1.0 to 2.0.0.
 
 mod choice;
+mod export;
 mod flanks;
 mod geometry;
 mod json;
@@ -23,6 +24,7 @@ use crate::draft::{Draft, Reading};
 use crate::refusal::{Refusal, short};
 use crate::report::{Import, ImportSource, ImportedPair};
 use crate::unit::{Quantity, clean};
+pub use export::{ExportForm, ExportOptions, export_rexs};
 use herringbone_job::document::JobDocument;
 use herringbone_job::study::{CheckReport, CheckedJob};
 use herringbone_job::{DocumentError, Violation};

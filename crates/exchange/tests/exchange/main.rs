@@ -2,6 +2,7 @@
 
 mod archive;
 mod dialects;
+mod export;
 mod files;
 mod gearbox;
 mod modifications;

@@ -1,5 +1,6 @@
 //! The outline of a shaft: sections and gear bodies as pieces of one diameter.
 
+use super::super::export::BODIES_INCLUDED;
 use super::super::geometry::Basic;
 use super::super::model::Handle;
 use super::super::pair::Pair;
@@ -117,6 +118,8 @@ pub(super) fn of(pair: &Pair, draft: &mut Draft, basic: &Basic, teeth: &Teeth, m
             places.push(cut);
         }
     }
+    // Sections that this program wrote have the bodies in them.
+    let is_complete = pair.view.flag(shaft, BODIES_INCLUDED) == Some(true);
     let mut segments: Vec<Piece> = Vec::new();
     let mut has_hole = false;
     for ends in places.windows(2) {
@@ -126,6 +129,7 @@ pub(super) fn of(pair: &Pair, draft: &mut Draft, basic: &Basic, teeth: &Teeth, m
         let mut bore_mm = covering.iter().map(|piece| piece.bore_mm).min_by(f64::total_cmp).unwrap_or(0.0);
         let is_body = bodies.iter().any(|[start, end]| *start <= at_mm && at_mm <= *end);
         let diameter_mm = match (outer, is_body) {
+            (Some(outer), true) if is_complete => outer,
             (Some(outer), true) => outer.max(root_mm).min(teeth.tip_mm[member]),
             (None, true) => root_mm,
             (Some(outer), false) => outer,
