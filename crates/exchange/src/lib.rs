@@ -1,8 +1,8 @@
 //! Exchange formats: gear models of other programs as job documents, and job documents as such models.
 //!
-//! Bytes in, a job document and a report out: [`import`]. No I/O, no clock. The report has a line for every field of the
-//! document that was taken from the file or assumed, and for what the file has and the document has not. The other way:
-//! [`export_rexs`].
+//! Bytes in, a job document and a report out: [`import`]. No I/O, no clock. The report has a line for every field of
+//! the document that was taken from the file or assumed, and for what the file has and the document has not. The other
+//! way: [`export_rexs`].
 
 mod container;
 mod draft;

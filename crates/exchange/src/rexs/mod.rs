@@ -1,5 +1,6 @@
 //! REXS: the exchange format for gear units of the FVA (Forschungsvereinigung Antriebstechnik), versions 1.0 to 2.0.0.
 
+mod center;
 mod choice;
 mod export;
 mod flanks;

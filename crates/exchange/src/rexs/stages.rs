@@ -180,8 +180,8 @@ pub(super) fn flanks_of(model: &Model, gear: Handle) -> Vec<(&'static str, Handl
         .collect()
 }
 
-/// Whether two stages are the halves of a double-helical pair, left half first; `None` for stages that have nothing to do
-/// with each other, or the reason why two that have are none.
+/// Whether two stages are the halves of a double-helical pair, left half first; `None` for stages that have nothing to
+/// do with each other, or the reason why two that have are none.
 fn double(model: &Model, first: &Stage, second: &Stage) -> Option<Result<Vec<Stage>, String>> {
     let shared: Vec<Handle> =
         [first.pinion, first.wheel].into_iter().filter(|gear| [second.pinion, second.wheel].contains(gear)).collect();

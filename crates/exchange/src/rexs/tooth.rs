@@ -161,8 +161,8 @@ fn dedendum(pair: &Pair, draft: &mut Draft, basic: &Basic, member: usize) -> f64
     DEFAULT_DEDENDUM
 }
 
-/// Largest tip rounding of a rack, in normal modules: the arc's centre on its centreline, and an arc that ends below the
-/// datum line.
+/// Largest tip rounding of a rack, in normal modules: the arc's centre on its centreline, and an arc that ends below
+/// the datum line.
 fn largest_fillet(basic: &Basic, dedendum: f64) -> f64 {
     let (sin, cos) = basic.pressure_angle_deg.to_radians().sin_cos();
     let on_centreline = (std::f64::consts::FRAC_PI_4 - dedendum * sin / cos) * cos / (1.0 - sin);
