@@ -113,8 +113,9 @@ fn summary(imported: &Import) -> String {
     line(format_args!("taken ({}):", imported.taken.len()));
     for taken in &imported.taken {
         let why = taken.why.as_deref().map(|why| format!(" ({why})")).unwrap_or_default();
-        let unit = taken.unit.as_deref().unwrap_or_default();
-        line(format_args!("  {} = {} {unit} ← {}{why}", taken.pointer, shown(&taken.value), taken.from));
+        let unit = taken.unit.as_deref().filter(|_| !taken.value.is_null()).map(|unit| format!(" {unit}"));
+        let unit = unit.unwrap_or_default();
+        line(format_args!("  {} = {}{unit} ← {}{why}", taken.pointer, shown(&taken.value), taken.from));
     }
     line(format_args!("assumed ({}):", imported.assumed.len()));
     for assumed in &imported.assumed {

@@ -129,6 +129,8 @@ export const pointInput = (id, position) => request("GET", `${at(id)}/points/${p
 
 /** @param {string} id */
 export const inputUrl = (id) => `${BASE}${at(id)}/input`;
+/** The pair as a REXS model. @param {string} id */
+export const rexsUrl = (id) => `${BASE}${at(id)}/rexs`;
 /** @param {string} id */
 export const resultUrl = (id) => `${BASE}${at(id)}/result`;
 /** @type {(id: string, channel: string) => string} */
