@@ -74,7 +74,11 @@ pub(super) fn write(pair: &Pair, draft: &mut Draft, basic: &Basic, teeth: &Teeth
     }
     match found {
         0 => {
-            draft.warn("no-shafts", SHAFTS, "are not in the file (no shaft sections): the halves stand on the supports")
+            draft.warn(
+                "no-shafts",
+                SHAFTS,
+                "are not in the file (no shaft sections): the halves stand on the supports",
+            );
         }
         1 => draft.assume(
             &format!("{SHAFTS}/arrangement"),
