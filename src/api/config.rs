@@ -7,6 +7,10 @@ use std::time::Duration;
 
 /// Largest request body.
 pub const MAX_BODY_BYTES: usize = 1 << 20;
+/// Largest file that is imported.
+pub const MAX_IMPORT_BYTES: usize = 32 << 20;
+/// Most imports at once, from the reading of the file until it is answered: each takes a few times its file in memory.
+pub(super) const MAX_IMPORTS: usize = 2;
 /// Longest wait of `Prefer: wait=`, in seconds.
 pub const MAX_WAIT_S: u64 = 30;
 /// Jobs per page of a list: default and maximum.

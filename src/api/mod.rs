@@ -29,7 +29,7 @@ mod text_body;
 mod view;
 
 pub use bearing_forces::write_bearing_forces;
-pub use config::{HttpConfig, MAX_BODY_BYTES, MAX_WAIT_S};
+pub use config::{HttpConfig, MAX_BODY_BYTES, MAX_IMPORT_BYTES, MAX_WAIT_S};
 pub use connections::ConnectionConfig;
 pub use csv::{CsvField, CsvWriter, Decimal};
 pub use guard::{Access, AccessConfig, AccessError, LoginNotice, LoginRenderer};

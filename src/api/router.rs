@@ -1,6 +1,6 @@
 //! The router and its layers.
 
-use super::config::{HttpConfig, MAX_BODY_BYTES};
+use super::config::{HttpConfig, MAX_BODY_BYTES, MAX_IMPORT_BYTES};
 use super::guard::{
     Access, LoginRenderer, check_credentials, check_header_fields, check_host, check_origin, login_routes,
 };
@@ -38,7 +38,12 @@ pub struct Pages {
 pub fn router(state: AppState, config: &HttpConfig, access: &Access, pages: Pages) -> Router {
     let not_found = pages.not_found;
     let state = state.with_limits(config);
-    let (api, _document) = openapi::documented_routes().split_for_parts();
+    let (api, _document) = openapi::document_routes().split_for_parts();
+    let (imports, _document) = openapi::import_routes().split_for_parts();
+    let imports = imports
+        .with_state(state.clone())
+        .layer(DefaultBodyLimit::max(MAX_IMPORT_BYTES))
+        .layer(RequestBodyLimitLayer::new(MAX_IMPORT_BYTES));
     api.merge(routes::undocumented())
         .with_state(state)
         .merge(pages.routes)
@@ -47,6 +52,8 @@ pub fn router(state: AppState, config: &HttpConfig, access: &Access, pages: Page
         .layer(DefaultBodyLimit::max(MAX_BODY_BYTES))
         // The same bound on `Content-Length`, before any of the body is requested.
         .layer(RequestBodyLimitLayer::new(MAX_BODY_BYTES))
+        // Files are larger than documents.
+        .merge(imports)
         .layer(TimeoutLayer::with_status_code(StatusCode::REQUEST_TIMEOUT, config.request_timeout()))
         .layer(from_fn_with_state(access.clone(), check_credentials))
         .layer(check_origin())

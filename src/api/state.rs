@@ -1,6 +1,6 @@
 //! The state shared by handlers.
 
-use super::config::{HttpConfig, MAX_LARGE_BODIES, MAX_LARGE_READS, RETRY_LARGE_S};
+use super::config::{HttpConfig, MAX_IMPORTS, MAX_LARGE_BODIES, MAX_LARGE_READS, RETRY_LARGE_S};
 use super::problem::{ApiError, ProblemCode};
 use super::telemetry;
 use crate::work::Jobs;
@@ -17,6 +17,7 @@ pub struct AppState {
     follower_permits: Arc<Semaphore>,
     large_bodies: Arc<Semaphore>,
     large_reads: Arc<Semaphore>,
+    imports: Arc<Semaphore>,
     large_body_wait: Duration,
 }
 
@@ -36,6 +37,7 @@ impl AppState {
             follower_permits: semaphore(Semaphore::MAX_PERMITS),
             large_bodies: semaphore(MAX_LARGE_BODIES),
             large_reads: semaphore(MAX_LARGE_READS),
+            imports: semaphore(MAX_IMPORTS),
             large_body_wait: HttpConfig::default().large_body_wait(),
         }
     }
@@ -80,11 +82,26 @@ impl AppState {
         self.permit_in_time(&self.large_reads).await
     }
 
+    /// Waits for the permit to import a file; to be kept while the file is in memory.
+    ///
+    /// # Errors
+    /// 503 when it takes too long.
+    pub(super) async fn import_permit(&self) -> Result<OwnedSemaphorePermit, ApiError> {
+        self.acquired_in_time(&self.imports).await.ok_or_else(|| {
+            let detail = "As many files are being imported as the service allows.";
+            ApiError::new(ProblemCode::TooManyImports, detail).retry_after(RETRY_LARGE_S)
+        })
+    }
+
     async fn permit_in_time(&self, semaphore: &Arc<Semaphore>) -> Result<OwnedSemaphorePermit, ApiError> {
-        let acquired = tokio::time::timeout(self.large_body_wait, semaphore.clone().acquire_owned()).await;
-        acquired.ok().and_then(Result::ok).ok_or_else(|| {
+        self.acquired_in_time(semaphore).await.ok_or_else(|| {
             let detail = "As many large answers are being sent as the service allows.";
             ApiError::new(ProblemCode::TooManyLargeAnswers, detail).retry_after(RETRY_LARGE_S)
         })
+    }
+
+    async fn acquired_in_time(&self, semaphore: &Arc<Semaphore>) -> Option<OwnedSemaphorePermit> {
+        let acquired = tokio::time::timeout(self.large_body_wait, semaphore.clone().acquire_owned()).await;
+        acquired.ok().and_then(Result::ok)
     }
 }

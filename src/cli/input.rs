@@ -15,7 +15,7 @@ const MAX_BYTES: u64 = MAX_BODY_BYTES as u64;
 /// # Errors
 /// The exit code, after the error was printed on standard error.
 pub(super) fn read_document(path: &Path) -> Result<JobDocument, ExitCode> {
-    let bytes = read_bytes(path).map_err(|error| {
+    let bytes = read_bytes(path, MAX_BYTES).map_err(|error| {
         eprintln!("{}: {error}", path.display());
         ExitCode::from(2)
     })?;
@@ -28,15 +28,19 @@ pub(super) fn invalid(error: DocumentError) -> ExitCode {
     ExitCode::from(2)
 }
 
-fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
+/// Reads a file (`-`: standard input) of at most so many bytes.
+///
+/// # Errors
+/// The file cannot be read, or is larger.
+pub(super) fn read_bytes(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     if path == Path::new("-") {
-        std::io::stdin().lock().take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+        std::io::stdin().lock().take(most + 1).read_to_end(&mut bytes)?;
     } else {
-        std::fs::File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+        std::fs::File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
     }
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(std::io::Error::other(format!("larger than {MAX_BYTES} bytes")));
+    if bytes.len() as u64 > most {
+        return Err(std::io::Error::other(format!("larger than {most} bytes")));
     }
     Ok(bytes)
 }

@@ -3,8 +3,11 @@
 mod backup;
 mod cache;
 mod check;
+mod export;
+mod import;
 mod input;
 mod openapi;
+mod output;
 mod problem;
 mod serve;
 mod solve;
@@ -38,6 +41,10 @@ enum Command {
     Solve(solve::SolveArguments),
     /// Check one job document: geometry and warnings, or every violation.
     Check(check::CheckArguments),
+    /// Write a job document as a gear model for other programs (REXS).
+    Export(export::ExportArguments),
+    /// Make a job document of a gear model of another program (REXS).
+    Import(import::ImportArguments),
     /// Print the description of the HTTP interface (OpenAPI, JSON).
     Openapi,
 }
@@ -51,6 +58,8 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Backup(arguments) => backup::run(arguments),
         Command::Solve(arguments) => solve::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Export(arguments) => export::run(arguments),
+        Command::Import(arguments) => import::run(arguments),
         Command::Openapi => openapi::run(),
     }
 }

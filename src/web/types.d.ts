@@ -17,6 +17,7 @@ declare global {
   type CheckedDocument = Schemas["Checked"];
   type GearData = Schemas["GearData"];
   type Geometry = Schemas["Geometry"];
+  type ImportedModel = Schemas["Import"];
   type ImpactResult = Schemas["Impact"];
   type MeshResult = Schemas["Mesh"];
   type MeshCurve = Schemas["MeshCurve"];
@@ -45,6 +46,15 @@ declare global {
    * some.
    */
   type JobInput = any;
+
+  /** What a file leaves to whoever imports it: query parameters of POST /api/v1/import. */
+  interface ImportChoices {
+    pair?: number;
+    mirror?: boolean;
+    gap_mm?: number;
+    torque_nm?: number;
+    point?: number | string;
+  }
 
   /** Text or a node that is put into an element; nothing stands for no child. */
   type Child = Node | string | number | null | undefined;

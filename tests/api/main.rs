@@ -14,6 +14,7 @@ mod documents;
 mod errors;
 mod header_fields;
 mod idempotency;
+mod import;
 mod kinds;
 mod lifecycle;
 mod list_jobs;

@@ -10,6 +10,7 @@ mod compare;
 mod entry;
 mod form;
 mod help;
+mod import;
 mod job;
 mod keyboard;
 mod links;

@@ -3,6 +3,7 @@
 mod backup;
 mod cases;
 mod deploy;
+mod import;
 mod opening;
 mod study;
 

@@ -61,6 +61,10 @@ fn reference(name: &str) -> Value {
 
 /// Sets the schema of the document in the request and response bodies that are documents.
 pub(super) fn set_schemas(path: &str, operation: &mut Value) {
+    if path == "/api/v1/import" {
+        // What is imported is another program's.
+        return;
+    }
     let is_document =
         |body: &&mut Value| body["schema"]["$ref"].as_str().is_none_or(|name| name.ends_with("/JobDocument"));
     if let Some(body) = operation.pointer_mut("/requestBody/content/application~1json").filter(is_document) {

@@ -37,16 +37,21 @@ use utoipa_axum::router::OpenApiRouter;
 )]
 struct GeneralDescription;
 
-/// The endpoints with their descriptions.
-pub(super) fn documented_routes() -> OpenApiRouter<AppState> {
+/// The endpoints with their descriptions, without that of files.
+pub(super) fn document_routes() -> OpenApiRouter<AppState> {
     OpenApiRouter::with_openapi(GeneralDescription::openapi())
         .nest("/api/v1", routes::versioned())
         .merge(routes::operational())
 }
 
+/// The endpoint that takes files, larger than documents.
+pub(super) fn import_routes() -> OpenApiRouter<AppState> {
+    OpenApiRouter::new().nest("/api/v1", routes::imports())
+}
+
 /// The OpenAPI document as JSON text.
 pub fn openapi_json() -> String {
-    let (_, document) = documented_routes().split_for_parts();
+    let (_, document) = document_routes().merge(import_routes()).split_for_parts();
     let mut document = serde_json::to_value(document).unwrap_or_default();
     documents::add_schemas(&mut document);
     responses::add_components(&mut document);

@@ -29,8 +29,8 @@ const NOT_ACCEPTABLE: (&str, &str) = ("406", "No representation fits the header 
 const STORED: (&str, &str) = ("503", "The database cannot be used for now (`storage-unavailable`).");
 
 /// Endpoints that do not use the database.
-const WITHOUT_DATABASE: [&str; 5] =
-    ["/api/v1/kinds", "/api/v1/jobs/validate", "/healthz", "/metrics", "/problems/{code}"];
+const WITHOUT_DATABASE: [&str; 6] =
+    ["/api/v1/kinds", "/api/v1/jobs/validate", "/api/v1/import", "/healthz", "/metrics", "/problems/{code}"];
 
 /// Statuses of responses that may have the header `Retry-After`.
 const RETRIED: [&str; 3] = ["409", "429", "503"];

@@ -7,6 +7,7 @@ use crate::work::SubmitError;
 use axum::http::HeaderValue;
 use axum::http::header::RETRY_AFTER;
 use axum::response::{IntoResponse, Response};
+use herringbone_exchange::Refusal;
 use herringbone_job::DocumentError;
 
 /// An error response. Its body is written by the request middleware, which knows the request id.
@@ -57,6 +58,12 @@ impl From<Problem> for ApiError {
 impl From<DocumentError> for ApiError {
     fn from(error: DocumentError) -> Self {
         Problem::from(error).into()
+    }
+}
+
+impl From<Refusal> for ApiError {
+    fn from(refusal: Refusal) -> Self {
+        Problem::from(refusal).into()
     }
 }
 

@@ -29,6 +29,7 @@ pub enum ProblemCode {
     QueueFull,
     TooManyStreams,
     TooManyLargeAnswers,
+    TooManyImports,
     ShuttingDown,
     NotConverged,
     Diverged,
@@ -64,7 +65,7 @@ const fn entry(
 }
 
 /// Every code, by status.
-pub(crate) const CODES: [CodeEntry; 34] = [
+pub(crate) const CODES: [CodeEntry; 35] = [
     entry(
         ProblemCode::MalformedJson,
         "malformed-json",
@@ -159,14 +160,15 @@ pub(crate) const CODES: [CodeEntry; 34] = [
         "payload-too-large",
         413,
         "The request body is too large",
-        "A job document has at most 1 MiB (1048576 bytes).",
+        "A job document has at most 1 MiB (1048576 bytes), a file to import at most 32 MiB.",
     ),
     entry(
         ProblemCode::UnsupportedMediaType,
         "unsupported-media-type",
         415,
         "The request body has the wrong media type",
-        "Send job documents with `Content-Type: application/json`, uncompressed.",
+        "Send job documents with `Content-Type: application/json`, uncompressed; files to import as `application/xml`, \
+         `application/json`, `application/zip` or `application/octet-stream`.",
     ),
     entry(
         ProblemCode::MisdirectedRequest,
@@ -182,14 +184,17 @@ pub(crate) const CODES: [CodeEntry; 34] = [
         422,
         "The job document is invalid",
         "Fields are missing, unknown, of the wrong type or out of range, contradict each other, or the gear cannot exist. \
-         `errors` has every violation found, with its pointer, permitted range and unit.",
+         `errors` has every violation found, with its pointer, permitted range and unit. Of a file to import: it cannot be \
+         read, or lacks what a document needs; the details name components and attributes of the file.",
     ),
     entry(
         ProblemCode::UnsupportedDesign,
         "unsupported-design",
         422,
         "The job document asks for something unsupported",
-        "The document is valid, but this version does not compute what it asks for; `errors` names the fields.",
+        "The document is valid, but this version does not compute what it asks for; `errors` names the fields. Of a file to \
+         import: it has no double-helical pair, or several; `errors` lists what it has, the number of a pair at the end of \
+         the pointer.",
     ),
     entry(
         ProblemCode::InvalidPatch,
@@ -305,6 +310,13 @@ pub(crate) const CODES: [CodeEntry; 34] = [
         "Too many large answers are being sent",
         "Series in full and large results have a bound, so that clients that read slowly cannot use up the memory. Try again \
          after `Retry-After`, or ask for less: a downsampled series, fewer points of a sweep.",
+    ),
+    entry(
+        ProblemCode::TooManyImports,
+        "too-many-imports",
+        503,
+        "Too many files are being imported",
+        "Files that are read have a bound, so that they cannot use up the memory. Try again after `Retry-After`.",
     ),
     entry(
         ProblemCode::ShuttingDown,

@@ -2,6 +2,7 @@
 
 use super::{Problem, ProblemCode};
 use crate::store::{Failure, JobRecord};
+use herringbone_exchange::{Refusal, RefusalKind};
 use herringbone_job::study::SolveError;
 use herringbone_job::{DocumentError, Violation};
 
@@ -18,6 +19,16 @@ impl From<DocumentError> for Problem {
                 Problem::new(ProblemCode::UnsupportedDesign, text).with_errors(errors)
             }
         }
+    }
+}
+
+impl From<Refusal> for Problem {
+    fn from(refusal: Refusal) -> Self {
+        let code = match refusal.kind {
+            RefusalKind::Invalid => ProblemCode::InvalidDesign,
+            RefusalKind::Unsupported => ProblemCode::UnsupportedDesign,
+        };
+        Problem::new(code, refusal.summary).with_errors(refusal.errors)
     }
 }
 

@@ -9,7 +9,7 @@ mod path;
 mod query;
 
 pub(super) use accept::{event_stream_only, json_only, negotiate, negotiate_csv, negotiate_table};
-pub(super) use body::DocumentBody;
+pub(super) use body::{DocumentBody, read_file};
 pub(super) use cursor::Cursor;
 pub(super) use headers::{IdempotencyKey, IfNoneMatch, Prefer, RequestId};
 pub(super) use patch::{JobPatch, PatchBody};

@@ -4,6 +4,7 @@ mod cancel_job;
 mod delete_job;
 mod explain_problem;
 mod health;
+mod import_file;
 mod list_jobs;
 mod list_kinds;
 mod list_points;
@@ -17,6 +18,7 @@ mod read_openapi;
 mod read_point_columns;
 mod read_point_input;
 mod read_result;
+mod read_rexs;
 mod read_series;
 mod read_system;
 mod submit_job;
@@ -69,8 +71,15 @@ pub(super) fn versioned() -> OpenApiRouter<AppState> {
         .route_layer(from_fn(event_stream_only));
     let negotiated =
         OpenApiRouter::new().routes(routes!(read_series::read_series)).routes(routes!(list_points::list_points));
-    let csv = OpenApiRouter::new().routes(routes!(read_bearing_forces::read_bearing_forces));
-    json.merge(stream).merge(negotiated).merge(csv)
+    let files = OpenApiRouter::new()
+        .routes(routes!(read_bearing_forces::read_bearing_forces))
+        .routes(routes!(read_rexs::read_rexs));
+    json.merge(stream).merge(negotiated).merge(files)
+}
+
+/// The endpoint that takes files, with its OpenAPI description.
+pub(super) fn imports() -> OpenApiRouter<AppState> {
+    OpenApiRouter::new().routes(routes!(import_file::import_file)).route_layer(from_fn(json_only))
 }
 
 /// The other endpoints, with their OpenAPI descriptions.

@@ -14,7 +14,8 @@ export class Problem extends Error {
 }
 
 /**
- * @typedef {{ body?: unknown, headers?: Record<string, string>, signal?: AbortSignal, base?: string }} RequestOptions
+ * @typedef {{ body?: unknown, file?: Blob, headers?: Record<string, string>, signal?: AbortSignal, base?: string }}
+ * RequestOptions `file` is a body of its own
  */
 
 /**
@@ -24,12 +25,16 @@ export class Problem extends Error {
  * @returns {Promise<any>} the JSON of the answer
  * @throws {Problem}
  */
-async function request(method, path, { body, headers = {}, signal, base = BASE } = {}) {
+async function request(method, path, { body, file, headers = {}, signal, base = BASE } = {}) {
   /** @type {RequestInit & { headers: Record<string, string> }} */
   const options = { method, headers: { Accept: "application/json, application/problem+json", ...headers }, signal };
   if (body !== undefined) {
     options.body = JSON.stringify(body);
     options.headers["Content-Type"] = "application/json";
+  }
+  if (file) {
+    options.body = file;
+    options.headers["Content-Type"] = "application/octet-stream";
   }
   let response;
   try {
@@ -72,6 +77,11 @@ export const validate = (document, { drawing, signal } = {}) =>
   request("POST", `/jobs/validate${query({ drawing })}`, { body: document, signal });
 /** @type {() => Promise<{ id: string, title: string, about: string, document: JobInput }[]>} */
 export const presets = () => request("GET", "/assets/presets.json", { base: "" });
+/**
+ * Makes a job document of a gear model of another program; nothing is submitted.
+ * @type {(file: Blob, choices?: ImportChoices) => Promise<ImportedModel>}
+ */
+export const importModel = (file, choices = {}) => request("POST", `/import${query(choices)}`, { file });
 /** @type {(document: JobInput, key: string) => Promise<Job>} */
 export const submit = (document, key) =>
   request("POST", "/jobs", { body: document, headers: { "Idempotency-Key": key } });
@@ -119,6 +129,8 @@ export const pointInput = (id, position) => request("GET", `${at(id)}/points/${p
 
 /** @param {string} id */
 export const inputUrl = (id) => `${BASE}${at(id)}/input`;
+/** The pair as a REXS model. @param {string} id */
+export const rexsUrl = (id) => `${BASE}${at(id)}/rexs`;
 /** @param {string} id */
 export const resultUrl = (id) => `${BASE}${at(id)}/result`;
 /** @type {(id: string, channel: string) => string} */

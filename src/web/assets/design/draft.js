@@ -10,7 +10,8 @@ const MOST_DRAFTS = 5;
 
 /**
  * A document as it stood in the form, with what it was started from and which values of other geometry it has.
- * @typedef {{ kind: string, title: string, document: JobInput, id?: string }} Start
+ * @typedef {Omit<ImportedModel, "document">} ImportReport
+ * @typedef {{ kind: string, title: string, document: JobInput, id?: string, report?: ImportReport }} Start
  * @typedef {Record<string, { text: string, derived: number }>} Entered texts of fields, derived values at their entry
  * @typedef {{ document: JobInput, at: string, start?: Start, entered?: Entered, nameKept?: boolean }} Kept
  */

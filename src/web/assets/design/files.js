@@ -1,4 +1,4 @@
-// Files that are opened or dropped on the form: a job document, or the reason why it is none.
+// Files that are opened or dropped on the form: a job document, a gear model of another program, or neither.
 
 import { byId } from "../common/dom.js";
 import { number } from "../common/format.js";
@@ -21,6 +21,17 @@ const OTHER_FILES = [
 /** @param {number} bytes */
 const size = (bytes) => (bytes < 1e6 ? `${number(bytes / 1024, 3)} KiB` : `${number(bytes / 1024 / 1024, 3)} MiB`);
 
+/** Names of gear models. */
+const MODEL_NAMES = /\.(rexs|rexsj|rexsz|rexs\.(xml|json|zip)|z12)$/i;
+
+/** Whether a file is a gear model of another program, which the service reads. @param {File} file */
+export async function isModel(file) {
+  if (MODEL_NAMES.test(file.name)) return true;
+  const head = String.fromCharCode(...new Uint8Array(await file.slice(0, 4096).arrayBuffer()));
+  if (head.startsWith("PK\u0003\u0004")) return /\.rexs|\.rexsj/i.test(head);
+  return (/^[^{[]*<[!?a-z]/i.test(head) && /\brexs\b|<model\b/i.test(head)) || /^[^{]*\{\s*"model"\s*:\s*\{/.test(head);
+}
+
 /**
  * The job document in a file.
  * @param {File} file
@@ -33,9 +44,6 @@ export async function documentOf(file) {
   const other = OTHER_FILES.find(([start]) => head.startsWith(start))?.[1];
   if (other) throw new Error(`is ${other}, not a job document (JSON).`);
   const isXml = /^[^{[]*<[!?a-z]/i.test(head);
-  if (/\.rexsz?$/i.test(file.name) || (isXml && /\brexs\b|<model\b/i.test(head))) {
-    throw new Error("is a REXS model. REXS import is not there yet: type the values in, or open a job document (JSON).");
-  }
   if (head.startsWith("PK\u0003\u0004")) throw new Error("is a ZIP archive or a spreadsheet, not a job document (JSON). Columns of a spreadsheet can be pasted into lists.");
   if (isXml) throw new Error("is an XML or HTML file, not a job document (JSON).");
   if (file.size > MOST_BYTES) throw new Error(`has ${size(file.size)}; a job document has ${size(MOST_BYTES)} at most.`);

@@ -9,6 +9,7 @@ import { applyConditions, dropExtras, extraPointers, fieldsOf, readDocument, tex
 import { dropDraft, keepDraft, keepSubmitted } from "./draft.js";
 import { forgetEdits, linkTo, noteEdit, requireAll, say, showReadings } from "./errors.js";
 import { initHelp } from "./help.js";
+import { listImport, showImport } from "./imported.js";
 import { initLists } from "./lists.js";
 import { initStart } from "./start.js";
 import { initResets, showWhatIsSet } from "./summary.js";
@@ -54,6 +55,7 @@ function refresh() {
   showWhatIsSet(form);
   showReadings(form);
   showChanges(form, started, dependent.stale());
+  showImport(form, started);
   const document = readDocument(form);
   byId("document-text").textContent = JSON.stringify(document, null, 2);
   showExtras();
@@ -165,6 +167,7 @@ function fill({ document, start, entered, nameKept: kept = false }, isChosen = f
   if (start.kind === "empty") check.clear();
   unsettled = document;
   touched = isChosen;
+  listImport(form, start);
   refresh();
 }
 

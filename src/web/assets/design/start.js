@@ -1,12 +1,13 @@
-// Initial document of the form: an empty pair, an example, the document submitted last, a file, a draft of this
-// browser, a job.
+// Initial document of the form: an empty pair, an example, the document submitted last, a file, a gear model of another
+// program, a draft of this browser, a job.
 
 import * as api from "../common/api.js";
 import { byId, el } from "../common/dom.js";
 import { instant } from "../common/format.js";
 import { emptyDocument } from "./document.js";
 import { draft, dropDraft, dropOther, otherDrafts, rememberedStart, rememberStart, submitted, submittedFromHere } from "./draft.js";
-import { documentOf, initDrop } from "./files.js";
+import { documentOf, initDrop, isModel } from "./files.js";
+import { refusalOf, summaryOf, torqueQuestion } from "./imported.js";
 
 /** @typedef {import("./draft.js").Start} Start */
 /** @typedef {import("./draft.js").Kept} Kept */
@@ -105,8 +106,37 @@ export function initStart({ fill, read }) {
     return others;
   }
 
+  /** @param {File} file @param {ImportChoices} [choices] */
+  async function openModel(file, choices = {}) {
+    say(`Reading ${file.name} …`);
+    try {
+      const { document, ...report } = await api.importModel(file, choices);
+      choice.value = "";
+      /** @type {Start} */
+      const start = { kind: "import", title: `the model ${file.name}`, document, report };
+      const before = read();
+      fill(startOf(start), true);
+      /** @type {Record<string, () => void>} */
+      const others = { Undo: () => fill(before, true) };
+      for (const point of report.operating_points.filter(({ chosen }) => !chosen)) {
+        others[`Load case ${point.number}`] = () => void openModel(file, { ...choices, point: point.number });
+      }
+      say(summaryOf(file.name, report), others);
+    } catch (error) {
+      const { text, pairs, needsTorque } = refusalOf(file.name, error);
+      /** @type {Record<string, () => void>} */
+      const actions = {};
+      for (const { label, pair, mirror } of pairs) {
+        actions[label] = () => void openModel(file, { ...choices, pair, ...(mirror ? { mirror } : {}) });
+      }
+      say(text, actions);
+      if (needsTorque) note.append(" ", torqueQuestion((torque) => void openModel(file, { ...choices, torque_nm: torque })));
+    }
+  }
+
   /** @param {File} file */
   async function open(file) {
+    if (await isModel(file)) return openModel(file);
     try {
       const document = await documentOf(file);
       choice.value = "";
@@ -141,7 +171,7 @@ export function initStart({ fill, read }) {
       return;
     }
     fill(example);
-    if (remembered) return say("The example pair. A job document can be dropped anywhere on the page.", drafts);
+    if (remembered) return say("The example pair. A job document or a gear model (REXS) can be dropped anywhere on the page.", drafts);
     say("The form shows the example pair.", {
       [EMPTY_CHOICE]: () => {
         rememberStart("empty");

@@ -58,6 +58,7 @@ export class Life {
     show(byId("delete"), ended);
     for (const name of ["compare", "report", "download-result"]) show(byAnyId(name), job.state === "succeeded");
     byId("download-input").href = api.inputUrl(this.id);
+    byId("download-rexs").href = api.rexsUrl(this.id);
     byId("download-result").href = api.resultUrl(this.id);
     this.showValues(job);
     if (job.state === "failed") showFailure(job).then(() => show(byId("life")));
