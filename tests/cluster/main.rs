@@ -5,6 +5,9 @@
 #[path = "../faults/audit.rs"]
 mod audit;
 #[allow(dead_code)]
+#[path = "../faults/chance.rs"]
+mod chance;
+#[allow(dead_code)]
 #[path = "../faults/client.rs"]
 mod client;
 #[allow(dead_code)]
@@ -14,6 +17,7 @@ mod documents;
 #[path = "../faults/program.rs"]
 mod program;
 
+mod chaos;
 mod equal;
 mod faults;
 mod lives;
