@@ -22,7 +22,7 @@ pub(super) fn read(text: &str) -> Result<RawModel, Refusal> {
         let event = reader.read_event().map_err(|error| not_well_formed(text, reader.error_position(), &error))?;
         match event {
             Event::Start(start) => reading.start(&start)?,
-            Event::End(end) => reading.end(end.local_name().as_ref())?,
+            Event::End(_) => reading.end(),
             Event::Text(content) => reading.text(&content),
             Event::CData(content) => reading.text(&content),
             Event::GeneralRef(entity) => {
@@ -39,14 +39,30 @@ pub(super) fn read(text: &str) -> Result<RawModel, Refusal> {
             Event::Empty(_) | Event::Comment(_) | Event::Decl(_) | Event::PI(_) => {}
         }
     }
-    if let Some(open) = reading.open.last() {
-        let detail = format!("ends inside of <{}>: it is not complete", short(open));
+    if !reading.open.is_empty() {
+        // The reader remembers the names of the elements that are open; the last one says where.
+        let detail = format!("ends inside of <{}>: it is not complete", last_open(text));
         return Err(Refusal::unreadable("not-readable", detail));
     }
     if !reading.has_root {
         return Err(Refusal::unreadable("not-readable", "has no XML element"));
     }
     Ok(reading.model)
+}
+
+/// Name of the element that was opened last and is still open at the end of a text that is not complete.
+fn last_open(text: &str) -> String {
+    let mut reader = Reader::from_str(text);
+    let mut open = Vec::new();
+    while let Ok(event) = reader.read_event() {
+        match event {
+            Event::Start(start) => open.push(start.local_name().as_ref().to_owned()),
+            Event::End(_) => drop(open.pop()),
+            Event::Eof => break,
+            _ => {}
+        }
+    }
+    open.last().map(|name| short(name)).unwrap_or_default()
 }
 
 fn predefined(name: &str) -> Option<&'static str> {
@@ -90,12 +106,50 @@ struct OpenAttribute {
     code: Option<String>,
 }
 
+/// The elements of a model; others are read over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Element {
+    Model,
+    Relation,
+    Ref,
+    Component,
+    Attribute,
+    Array,
+    Matrix,
+    Cell,
+    LoadCase,
+    Accumulation,
+    Other,
+}
+
+impl Element {
+    fn of(name: &str) -> Element {
+        match name {
+            "c" => Element::Cell,
+            "attribute" => Element::Attribute,
+            "component" => Element::Component,
+            "ref" => Element::Ref,
+            "relation" => Element::Relation,
+            "array" => Element::Array,
+            "matrix" | "array_of_arrays" => Element::Matrix,
+            "load_case" => Element::LoadCase,
+            "accumulation" => Element::Accumulation,
+            "model" => Element::Model,
+            _ => Element::Other,
+        }
+    }
+
+    /// Whether it has attributes that are read.
+    fn is_read(self) -> bool {
+        !matches!(self, Element::Cell | Element::Accumulation | Element::Other)
+    }
+}
+
 #[derive(Default)]
 struct Reading {
     model: RawModel,
     has_root: bool,
-    /// Names of the open elements.
-    open: Vec<String>,
+    open: Vec<Element>,
     elements: usize,
     component: Option<Component>,
     relation: Option<RawRelation>,
@@ -103,93 +157,129 @@ struct Reading {
     attribute: Option<OpenAttribute>,
 }
 
-/// The value of an XML attribute.
-fn value_of(start: &BytesStart, name: &str) -> Result<Option<String>, Refusal> {
-    for attribute in start.attributes() {
-        let attribute = attribute.map_err(|error| refused(&error))?;
-        if attribute.key.local_name().as_ref() == name {
-            let raw = &attribute.value;
-            let text = quick_xml::escape::unescape(raw).map_err(|_| entities(raw))?;
-            return Ok(Some(text.into_owned()));
-        }
-    }
-    Ok(None)
+/// The attributes of an element.
+#[derive(Default)]
+struct Given {
+    id: Option<String>,
+    kind: Option<String>,
+    name: Option<String>,
+    role: Option<String>,
+    order: Option<String>,
+    unit: Option<String>,
+    origin: Option<String>,
+    code: Option<String>,
+    version: Option<String>,
+    application: Option<String>,
+    application_version: Option<String>,
 }
 
-/// The id of a component or relation.
-fn id_of(start: &BytesStart) -> Result<Option<i64>, Refusal> {
-    Ok(value_of(start, "id")?.and_then(|text| text.trim().parse().ok()))
+impl Given {
+    fn of(start: &BytesStart) -> Result<Given, Refusal> {
+        let mut given = Given::default();
+        // Of an attribute that is given twice, the first one counts.
+        for attribute in start.attributes().with_checks(false) {
+            let attribute = attribute.map_err(|error| refused(&error))?;
+            let place = match attribute.key.local_name().as_ref() {
+                "id" => &mut given.id,
+                "type" => &mut given.kind,
+                "name" => &mut given.name,
+                "role" => &mut given.role,
+                "order" => &mut given.order,
+                "unit" => &mut given.unit,
+                "origin" => &mut given.origin,
+                "code" => &mut given.code,
+                "version" => &mut given.version,
+                "applicationId" => &mut given.application,
+                "applicationVersion" => &mut given.application_version,
+                _ => continue,
+            };
+            if place.is_none() {
+                let text = quick_xml::escape::unescape(&attribute.value).map_err(|_| entities(&attribute.value))?;
+                *place = Some(text.into_owned());
+            }
+        }
+        Ok(given)
+    }
+
+    /// The id of a component or relation.
+    fn number(&self) -> Option<i64> {
+        self.id.as_deref().and_then(|text| text.trim().parse().ok())
+    }
 }
 
 impl Reading {
     fn start(&mut self, start: &BytesStart) -> Result<(), Refusal> {
-        let name = start.local_name().as_ref().to_owned();
-        let parent = self.open.last().cloned().unwrap_or_default();
-        if self.open.is_empty() {
-            if self.has_root || name != "model" {
-                let detail = format!("is XML, but its root element is <{}>, not <model>: no REXS model", short(&name));
-                return Err(Refusal::unreadable("not-rexs", detail));
-            }
-            self.has_root = true;
-            self.model.version = value_of(start, "version")?.unwrap_or_default();
-            self.model.application = value_of(start, "applicationId")?.unwrap_or_default();
-            self.model.application_version = value_of(start, "applicationVersion")?.unwrap_or_default();
+        let name = start.local_name();
+        let element = Element::of(name.as_ref());
+        if self.open.is_empty() && (self.has_root || element != Element::Model) {
+            let name = short(name.as_ref());
+            let detail = format!("is XML, but its root element is <{name}>, not <model>: no REXS model");
+            return Err(Refusal::unreadable("not-rexs", detail));
         }
         if self.open.len() > 32 {
             return Err(Refusal::unreadable("not-rexs", "is XML nested deeper than a REXS model is"));
         }
-        if matches!(name.as_str(), "component" | "attribute" | "relation" | "ref") {
+        if matches!(element, Element::Component | Element::Attribute | Element::Relation | Element::Ref) {
             self.elements += 1;
             if self.elements > MAX_ELEMENTS {
                 let detail = format!("has more than {MAX_ELEMENTS} components, attributes and relations");
                 return Err(Refusal::unreadable("too-large", detail));
             }
         }
-        match name.as_str() {
-            "relation" => {
-                let order = value_of(start, "order")?.and_then(|text| text.trim().parse().ok());
-                let kind = value_of(start, "type")?.unwrap_or_default();
-                self.relation = Some(RawRelation { id: id_of(start)?, kind, order, refs: Vec::new() });
+        let given = if element.is_read() { Given::of(start)? } else { Given::default() };
+        match element {
+            Element::Model if self.open.is_empty() => {
+                self.has_root = true;
+                self.model.version = given.version.unwrap_or_default();
+                self.model.application = given.application.unwrap_or_default();
+                self.model.application_version = given.application_version.unwrap_or_default();
             }
-            "ref" => {
-                if let (Some(relation), Some(id)) = (&mut self.relation, id_of(start)?) {
-                    relation.refs.push((value_of(start, "role")?.unwrap_or_default(), id));
+            Element::Relation => {
+                let order = given.order.as_deref().and_then(|text| text.trim().parse().ok());
+                let id = given.number();
+                let kind = given.kind.unwrap_or_default();
+                self.relation = Some(RawRelation { id, kind, order, refs: Vec::new() });
+            }
+            Element::Ref => {
+                if let (Some(relation), Some(id)) = (&mut self.relation, given.number()) {
+                    relation.refs.push((given.role.unwrap_or_default(), id));
                 }
             }
-            "component" => {
-                let Some(id) = id_of(start)? else {
-                    let kind = value_of(start, "type")?.unwrap_or_default();
+            Element::Component => {
+                let id = given.number();
+                let kind = given.kind.unwrap_or_default();
+                let Some(id) = id else {
                     let detail = format!("has a component ({}) whose id is not a whole number", short(&kind));
                     return Err(Refusal::unreadable("not-rexs", detail));
                 };
-                let kind = value_of(start, "type")?.unwrap_or_default();
-                let name = value_of(start, "name")?;
-                self.component = Some(Component { id, kind, name, attributes: Vec::new() });
+                self.component = Some(Component { id, kind, name: given.name, attributes: Vec::new() });
             }
-            "attribute" => {
+            Element::Attribute => {
                 self.attribute = Some(OpenAttribute {
-                    id: value_of(start, "id")?.unwrap_or_default(),
-                    unit: value_of(start, "unit")?,
-                    is_user_defined: value_of(start, "origin")?.as_deref() == Some("user_defined"),
+                    id: given.id.unwrap_or_default(),
+                    unit: given.unit,
+                    is_user_defined: given.origin.as_deref() == Some("user_defined"),
                     ..OpenAttribute::default()
                 });
             }
-            "array" | "matrix" | "array_of_arrays" => {
+            Element::Array | Element::Matrix => {
                 if let Some(attribute) = &mut self.attribute {
-                    attribute.array = Some(name == "array" && attribute.array.is_none());
-                    attribute.code = value_of(start, "code")?;
+                    attribute.array = Some(element == Element::Array && attribute.array.is_none());
+                    attribute.code = given.code;
                     attribute.text.clear();
                 }
             }
-            "c" if parent == "array" || parent == "r" => {
+            Element::Cell => {
                 if let Some(attribute) = &mut self.attribute {
                     attribute.text.clear();
                 }
             }
-            "load_case" => self.case = Some(RawCase { id: id_of(start)?.unwrap_or(0), components: Vec::new() }),
-            _ => {}
+            Element::LoadCase => {
+                self.case = Some(RawCase { id: given.number().unwrap_or(0), components: Vec::new() });
+            }
+            Element::Model | Element::Accumulation | Element::Other => {}
         }
-        self.open.push(name);
+        self.open.push(element);
         Ok(())
     }
 
@@ -200,11 +290,11 @@ impl Reading {
         }
     }
 
-    fn end(&mut self, name: &str) -> Result<(), Refusal> {
-        self.open.pop();
-        match name {
-            "c" => {
-                if let Some(attribute) = &mut self.attribute {
+    fn end(&mut self) {
+        let Some(element) = self.open.pop() else { return };
+        match element {
+            Element::Cell => {
+                if let Some(attribute) = self.attribute.as_mut().filter(|attribute| attribute.array != Some(false)) {
                     match attribute.text.trim().parse::<f64>() {
                         Ok(number) if attribute.numbers.len() < MAX_ARRAY => attribute.numbers.push(number),
                         _ => attribute.array = Some(false),
@@ -212,29 +302,24 @@ impl Reading {
                     attribute.text.clear();
                 }
             }
-            "attribute" => {
-                let inside = self.component.is_some();
-                if let (Some(attribute), true) = (self.attribute.take(), inside) {
-                    let attribute = attribute.close();
-                    if let Some(component) = &mut self.component {
-                        component.attributes.extend(attribute);
-                    }
+            Element::Attribute => {
+                if let (Some(attribute), Some(component)) = (self.attribute.take(), &mut self.component) {
+                    component.attributes.extend(attribute.close());
                 }
             }
-            "component" => {
+            Element::Component => {
                 if let Some(component) = self.component.take() {
-                    match (&mut self.case, self.open.iter().any(|name| name == "accumulation")) {
+                    match (&mut self.case, self.open.contains(&Element::Accumulation)) {
                         (_, true) => {}
                         (Some(case), false) => case.components.push(component),
                         (None, false) => self.model.components.push(component),
                     }
                 }
             }
-            "relation" => self.model.relations.extend(self.relation.take()),
-            "load_case" => self.model.cases.extend(self.case.take()),
+            Element::Relation => self.model.relations.extend(self.relation.take()),
+            Element::LoadCase => self.model.cases.extend(self.case.take()),
             _ => {}
         }
-        Ok(())
     }
 }
 
