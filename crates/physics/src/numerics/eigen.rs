@@ -103,7 +103,7 @@ mod tests {
                 }
             }
         }
-        check_worst("Numerics: eigenvectors without symmetry", "A v against λ v", errors, 1e-11);
+        check_worst("Dynamics: eigenvectors without symmetry", "A v against λ v", errors, 1e-11);
     }
 
     #[test]
@@ -118,7 +118,7 @@ mod tests {
         let other = sorted(schur.complex_eigenvalues().iter().copied().collect());
         let errors: Vec<f64> = blocked.iter().zip(&other).map(|(a, b)| (a - b).norm()).collect();
         assert_eq!(errors.len(), 90);
-        check_worst("Numerics: eigenvectors without symmetry", "eigenvalues by both methods", errors, 1e-11);
+        check_worst("Dynamics: eigenvectors without symmetry", "eigenvalues by both methods", errors, 1e-11);
     }
 
     #[test]
