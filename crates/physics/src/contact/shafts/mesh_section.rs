@@ -61,8 +61,8 @@ impl LoadedContactOnShafts {
         }
     }
 
-    /// The openings between the bodies of a half relative to those of its [`MeshSection`], for
-    /// [`HalfContact::displaced`].
+    /// The openings between the bodies of a half relative to those of its [`MeshSection`], for a
+    /// [displaced half](crate::contact::HalfContact::displaced).
     pub fn field_about_mesh_section(&self, shafts: &ContactShafts, half: Half) -> DisplacementField {
         let own = &self.load.halves[half.index()];
         let arm_m = own.uncoupled_arm_m();
@@ -74,7 +74,7 @@ impl LoadedContactOnShafts {
 }
 
 impl LoadOnShafts {
-    /// The openings between the bodies of a half, for [`HalfContact::displaced`].
+    /// The openings between the bodies of a half, for a [displaced half](crate::contact::HalfContact::displaced).
     pub fn displacement_field(&self, shafts: &ContactShafts, half: Half) -> DisplacementField {
         displacement_field(shafts, &self.halves[half.index()])
     }
