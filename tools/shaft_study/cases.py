@@ -99,16 +99,21 @@ def with_changes(document, changes):
     return document
 
 
-def document(case):
-    """The document of a case, on shafts."""
+def contact_document(start, base_arrangement, damping, case):
+    """The document of a case that changes an example, on shafts, with the contact in the equations."""
     name, words, arrangement, changes = case
-    base = with_changes(example("contact"), changes)
+    base = with_changes(example(start), changes)
     base["name"] = f"{name}: {words}"
-    base["model"] = {"mesh_force": "contact", "plane": "base", "mesh_damping_ns_per_m": DAMPING,
+    base["model"] = {"mesh_force": "contact", "plane": "base", "mesh_damping_ns_per_m": damping,
                      "mesh_stiffness": {"source": "ltca", "fidelity": "analytic", "body": "rim", "corner_contact": True}}
     for gear in ("pinion", "gear"):
         base["design"][gear].pop("inertia_kg_m2", None)
-    return on_shafts(base, **{**BASE, **arrangement})
+    return on_shafts(base, **{**base_arrangement, **arrangement})
+
+
+def document(case):
+    """The document of a case, on shafts."""
+    return contact_document("contact", BASE, DAMPING, case)
 
 
 TURBO_SPEEDS = [round(exp(log(2000) + i * (log(12000) - log(2000)) / 15), 1) for i in range(16)]
@@ -123,12 +128,7 @@ TURBO_DAMPING = 64000.0
 
 def turbo_document(case):
     """The document of a case of the second pair."""
-    name, words, arrangement, changes = case
-    base = with_changes(example("study/documents/turbo"), changes)
-    base["name"] = f"{name}: {words}"
-    base["model"] = {"mesh_force": "contact", "plane": "base", "mesh_damping_ns_per_m": TURBO_DAMPING,
-                     "mesh_stiffness": {"source": "ltca", "fidelity": "analytic", "body": "rim", "corner_contact": True}}
-    return on_shafts(base, **{**TURBO_BASE, **arrangement})
+    return contact_document("study/documents/turbo", TURBO_BASE, TURBO_DAMPING, case)
 
 
 # Mesh damping of a half, N·s/m: a ratio of 0.1 on the base case's mesh mode, the same in every model.

@@ -1,5 +1,6 @@
 """Runs documents with the program on the command line, and keeps the results."""
 
+import functools
 import hashlib
 import json
 import os
@@ -17,9 +18,16 @@ class Refused(Exception):
     """A document that is refused or cannot be solved."""
 
 
+@functools.cache
+def solver_version():
+    """The version of the program's calculation."""
+    example = str(ROOT / "examples/given_stiffness.json")
+    return json.loads(subprocess.run([PROGRAM, "solve", example], capture_output=True, text=True, check=True).stdout)["numerics"]["solver_version"]
+
+
 def solve(document):
-    """The result of a document; kept under a hash of the document and of the program's version."""
-    version = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True).stdout
+    """The result of a document; kept under a hash of the document and of the calculation's version."""
+    version = solver_version()
     text = json.dumps(document, sort_keys=True)
     name = hashlib.sha256((version + text).encode()).hexdigest()[:24]
     path = KEPT / f"{name}.json"
