@@ -3,7 +3,7 @@
 use super::hash::rotor_hash;
 use super::mesh::{MeshMemo, MeshStage};
 use super::prepare::Prepared;
-use super::shaft_contact::MountedTrain;
+use super::shaft_contact::{MountedTrain, shafts_failed};
 use super::{SolveContext, SolveError, Stage};
 use crate::document::JobDocument;
 use crate::result::{
@@ -49,11 +49,8 @@ const FINEST: f64 = 1e-3;
 /// Coordinates of the equations of motion at most.
 const MOST_COORDINATES: usize = 96;
 
-fn failed(error: &ShaftError) -> SolveError {
-    match error {
-        ShaftError::Canceled(canceled) => (*canceled).into(),
-        other => SolveError::failed(Stage::Response, "shafts-failed", other),
-    }
+fn failed(error: ShaftError) -> SolveError {
+    shafts_failed(Stage::Response, error)
 }
 
 /// The reduced rotor of a point, from the job's memo or computed.
@@ -83,10 +80,10 @@ pub(super) fn find(
         return Ok(TurningRotor { rotor, speed_rad_s });
     }
     let sense = if mounted.sense > 0.0 { RotationSense::Positive } else { RotationSense::Negative };
-    let full = GearedRotor::new(&mounted.train, pair, sense, &meshes).map_err(|error| failed(&error))?;
+    let full = GearedRotor::new(&mounted.train, pair, sense, &meshes).map_err(failed)?;
     let settings =
         ReductionSettings { up_to_hz, accuracy, most_coordinates: MOST_COORDINATES, pinion_speed_rad_s: speed_rad_s };
-    let reduced = full.reduce(&settings, Watch::new(&|_| {}, context.canceled)).map_err(|error| failed(&error))?;
+    let reduced = full.reduce(&settings, Watch::new(&|_| {}, context.canceled)).map_err(failed)?;
     let rotor = Arc::new(Rotor { full, reduced, meshes, up_to_hz });
     memo.rotors.put(key, rotor.clone());
     Ok(TurningRotor { rotor, speed_rad_s })
@@ -272,8 +269,7 @@ impl Rotor {
     ) -> Result<RotorResult, SolveError> {
         let modes = &self.reduced.modes;
         let report = &self.reduced.report;
-        let whirl_frequencies_hz =
-            self.full.whirl_frequencies_hz(modes, speed_rad_s).map_err(|error| failed(&error))?;
+        let whirl_frequencies_hz = self.full.whirl_frequencies_hz(modes, speed_rad_s).map_err(failed)?;
         Ok(RotorResult {
             degrees_of_freedom: self.full.unknowns() as u32,
             coordinates: self.reduced.coordinates() as u32,

@@ -71,10 +71,10 @@ pub(super) struct ShaftContact {
     pub loaded: Arc<LoadedContactOnShafts>,
 }
 
-pub(super) fn shafts_failed(error: &ShaftError) -> SolveError {
+pub(super) fn shafts_failed(stage: Stage, error: ShaftError) -> SolveError {
     match error {
-        ShaftError::Canceled(canceled) => (*canceled).into(),
-        other => SolveError::failed(Stage::Mesh, "shafts-failed", other),
+        ShaftError::Canceled(canceled) => canceled.into(),
+        other => SolveError::failed(stage, "shafts-failed", &other),
     }
 }
 
@@ -92,7 +92,7 @@ fn contact_shafts(
         return Ok(shafts);
     }
     let shafts = ContactShafts::new(&mounted.train, mounted.frame(pair, coast), compliance);
-    let shafts = Arc::new(shafts.map_err(|error| shafts_failed(&error))?);
+    let shafts = Arc::new(shafts.map_err(|error| shafts_failed(Stage::Mesh, error))?);
     memo.shafts.put(key, shafts.clone());
     Ok(shafts)
 }
