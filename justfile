@@ -42,7 +42,7 @@ ci *steps:
 
 # write the OpenAPI document that the service serves
 openapi:
-    cargo run --locked --quiet -- openapi > openapi/openapi.json
+    "$(scripts/program)" openapi > openapi/openapi.json
 
 # run a program of tools/: `just tool contact_stress 500`
 tool name *arguments:

@@ -61,9 +61,21 @@ fn the_documented_settings_are_those_of_the_program() {
 #[test]
 fn the_deployment_files_use_variables_that_exist() {
     let command = Arguments::command();
-    let serve = command.find_subcommand("serve").expect("serve");
-    let known: Vec<_> = serve.get_arguments().filter_map(|argument| argument.get_env()?.to_str()).collect();
-    for file in ["deploy/herringbone.service", "deploy/compose.yaml", "docs/OPERATIONS.md"] {
+    let known_to = |names: &[&str]| -> Vec<&str> {
+        let found = names.iter().filter_map(|name| command.find_subcommand(name));
+        found.flat_map(|one| one.get_arguments()).filter_map(|argument| argument.get_env()?.to_str()).collect()
+    };
+    let files: [(&str, &[&str]); _] = [
+        ("deploy/herringbone.service", &["serve"]),
+        ("deploy/compose.yaml", &["serve"]),
+        ("docs/OPERATIONS.md", &["serve"]),
+        #[cfg(feature = "cluster")]
+        ("deploy/cluster/compose.yaml", &["serve", "worker"]),
+        #[cfg(feature = "cluster")]
+        ("deploy/cluster/herringbone-worker.service", &["worker"]),
+    ];
+    for (file, programs) in files {
+        let known = known_to(programs);
         let path = format!("{}/{file}", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(&path).expect("readable");
         let words = text.split(|character: char| !(character.is_ascii_uppercase() || character == '_'));

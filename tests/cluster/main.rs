@@ -27,4 +27,5 @@ mod queue;
 mod rates;
 mod rights;
 mod setting;
+mod tls;
 mod worker;

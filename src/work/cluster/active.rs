@@ -151,6 +151,8 @@ pub(super) struct State {
     pub members: Members,
     /// Largest place in the stream of work that was answered.
     pub last_sequence: u64,
+    /// Messages with results that were taken, stored or dropped.
+    pub results_taken: u64,
     /// Sweeps whose result is put together from their rows.
     pub finishing: usize,
 }

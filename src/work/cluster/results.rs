@@ -129,6 +129,7 @@ async fn take(shared: &Shared, messages: Vec<Message>) {
             return;
         }
     }
+    shared.state().results_taken += messages.len() as u64;
     shared.wake.notify_one();
     for failed in
         join_all(messages.iter().map(|message| message.double_ack())).await.into_iter().filter_map(Result::err)

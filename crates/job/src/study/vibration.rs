@@ -179,6 +179,7 @@ pub(super) fn analysis(
         channels,
         initial_state: state.and_then(|state| <[f64; 24]>::try_from(state).ok()),
         energy_balance: options.whole,
+        multipliers: options.whole,
         ..Analysis::default()
     })
 }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::error::DynamicsError;
@@ -203,6 +204,15 @@ impl FourierSeries<f64> {
     pub(crate) fn of_displacement(harmonics: &[Harmonic], shift: f64, period_tau: f64) -> Option<Self> {
         let moves = harmonics.iter().any(|h| h.amplitude != 0.0);
         moves.then(|| Self::new(0.0, 1.0, harmonics, shift, period_tau))
+    }
+
+    /// Complex amplitude of a mesh order: the series is the sum of amplitude · exp(2πi · order · phase) over positive and
+    /// negative orders.
+    pub(super) fn amplitude(&self, order: usize) -> Complex<f64> {
+        if order == 0 {
+            return Complex::new(self.constant, 0.0);
+        }
+        self.terms.get(order - 1).map_or(Complex::ZERO, |term| Complex::new(0.5 * term.cos, 0.5 * term.sin))
     }
 
     /// Value and derivative by the phase.

@@ -13,7 +13,7 @@ use super::parameters::{HalfParameters, Parameters};
 use super::segment::Segment;
 use super::taylor::evaluate_rows;
 use super::train_equations::TrainEquations;
-use super::train_variation::TrainModes;
+use super::train_modes::TrainModes;
 
 /// Contact of a half: positive on the driving flanks, 0 apart, negative on the back flanks. The magnitude is 1 for a
 /// mesh stiffness, and 1 + the level of the displacement for a tabulated contact force.
@@ -205,7 +205,7 @@ impl<const D: usize> DynamicModel<D> {
 
     /// Displacement excitation of a half and its rate in scaled time, m.
     #[inline(always)]
-    fn gap(&self, j: usize, phase: f64) -> Option<(f64, f64)> {
+    pub(super) fn gap(&self, j: usize, phase: f64) -> Option<(f64, f64)> {
         let series = self.excitations[j].gap.as_ref()?;
         let (value, rate) = series.value_and_rate(phase);
         Some((value, rate / self.period_tau))
@@ -258,6 +258,19 @@ impl<const D: usize> DynamicModel<D> {
         }
         let spring = e.stiffness.value(phase, interior) * (s - f64::from(contact_side) * self.b);
         damper(contact_side != 0) + if contact_side != 0 { spring } else { 0.0 }
+    }
+
+    /// Normal force of the mesh spring (N) and its derivative by s (N/m) at the displacement `s` less the displacement
+    /// excitation, m. Without a tabulated contact force the flanks that the load presses are taken to touch.
+    pub(super) fn spring_force_in_contact(&self, j: usize, s: f64, phase: f64) -> (f64, f64) {
+        let e = &self.excitations[j];
+        if let Some(contact) = &e.contact {
+            let phase = phase - contact.shift;
+            return contact.force.force(s, self.b, phase, phase);
+        }
+        let stiffness = e.stiffness.value(phase, phase);
+        let side = if self.halves[j].load < 0.0 { -1.0 } else { 1.0 };
+        (stiffness * (s - side * self.b), stiffness)
     }
 
     /// Accelerations in scaled time at a phase: right-hand side for Runge–Kutta methods.

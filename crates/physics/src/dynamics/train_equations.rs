@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use super::equations::{PER_HALF, is_rigid_rotation};
 use super::lanes::Real;
 use super::modal_train::{LinearOutput, MAX_RIGID_BODY_MODES, ModalTrain};
-use super::train_variation::TrainModes;
+use super::train_modes::TrainModes;
 
 /// Sizes of the coordinate vectors of trains.
 const TRAIN_SIZES: [usize; 3] = [52, 76, 100];
@@ -84,7 +84,7 @@ pub(crate) struct TrainEquations<const D: usize> {
     /// k_ref, N/m.
     pub reference_stiffness: [f64; 2],
     /// Acceleration per tangential force of a torsional impact.
-    torsion_acceleration: [Row<D>; 2],
+    pub(super) torsion_acceleration: [Row<D>; 2],
     load: Row<D>,
     /// Rows of the twelve displacements (m, rad), and of x of each half.
     pub displacements: [Row<D>; 12],
@@ -238,6 +238,16 @@ impl<const D: usize> TrainEquations<D> {
     /// Normal forces of both meshes under the load, closed with the reference stiffnesses, N.
     pub(crate) fn static_forces_n(&self) -> [f64; 2] {
         [0, 1].map(|j| self.reference_stiffness[j] * dot(&self.mesh[j], &self.statics.load))
+    }
+
+    /// Displacements s of both meshes under the load alone, closed with the reference stiffnesses, m.
+    pub(super) fn static_displacements_m(&self) -> [f64; 2] {
+        [0, 1].map(|j| dot(&self.mesh[j], &self.statics.load))
+    }
+
+    /// Coordinates under the load alone, closed with the reference stiffnesses.
+    pub(super) fn static_load_state(&self) -> &Row<D> {
+        &self.statics.load
     }
 
     /// Coordinates at rest under the load with a normal force of each mesh that is a function of its s: `law(j, s)` is

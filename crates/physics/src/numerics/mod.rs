@@ -1,9 +1,10 @@
 //! Numerical methods that several modules share: Gauss–Legendre rules, interpolation, periodic splines, monotone
-//! cubics, dense linear algebra on flat row-major slices and eigenvalues of matrices without symmetry.
+//! cubics, dense linear algebra on flat row-major slices, eigenvalues of matrices without symmetry and iterative solution.
 
 pub(crate) mod dense;
 pub(crate) mod eigen;
 pub(crate) mod gauss;
+pub(crate) mod gmres;
 pub(crate) mod interpolation;
 mod monotone;
 mod periodic_spline;

@@ -54,6 +54,9 @@ pub struct Analysis {
     pub max_steps: u64,
     /// Whether to check the recorded motion by its energy balance.
     pub energy_balance: bool,
+    /// Whether the Floquet multipliers are asked for. Without, they are computed only where nothing cheaper proves that
+    /// the motion is stable.
+    pub multipliers: bool,
 }
 
 impl Default for Analysis {
@@ -68,6 +71,7 @@ impl Default for Analysis {
             initial_modal_state: None,
             max_steps: 100_000_000,
             energy_balance: false,
+            multipliers: true,
         }
     }
 }

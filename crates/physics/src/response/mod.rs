@@ -13,6 +13,7 @@ mod channel;
 mod classification;
 mod confidence;
 mod energy;
+mod harmonic;
 mod lyapunov;
 mod orders;
 mod poincare;

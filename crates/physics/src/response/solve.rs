@@ -206,7 +206,7 @@ impl ResponseProblem<'_> {
         ReportInput { p: self.p, analysis: self.analysis, modes: self.modes }
     }
 
-    fn limits(&self, tolerance: f64) -> IntegrationLimits<'_> {
+    pub(super) fn limits(&self, tolerance: f64) -> IntegrationLimits<'_> {
         IntegrationLimits { tolerance, max_steps: self.analysis.max_steps, watch: self.watch }
     }
 
@@ -234,6 +234,13 @@ impl ResponseProblem<'_> {
                 perturbation.0[c] = OFF_SYMMETRY * state.x[c];
             }
             state = displaced(&model, state, &perturbation);
+        }
+        if DynamicModel::<D>::IS_TRAIN && !search.from_start {
+            search.check_static_deflection(&state)?;
+            let found = self.solve_by_harmonic_balance(&model, &state, search.limits.tolerance)?;
+            if found.is_some() {
+                return Ok(found);
+            }
         }
         let bounded = |error: DynamicsError| {
             let diverged =
@@ -549,14 +556,14 @@ fn integrate<const D: usize>(
 /// Relative change over its period below which an integrated motion counts as periodic.
 pub(super) const REPEATS: f64 = 1e-3;
 /// Factor on an error found by comparison with a result that has an error too.
-const SAFETY: f64 = 3.0;
+pub(super) const SAFETY: f64 = 3.0;
 /// Mesh periods before the record from which an integration is compared with a more accurate one.
 const COMPARISON_LEAD_MESH_PERIODS: u64 = 50;
 /// Lower limit of the relative error of RMS values in double precision.
-const ROUNDING: f64 = 1e-13;
+pub(super) const ROUNDING: f64 = 1e-13;
 
 /// Acceleration that counts as rounding: 1e-12 of the acceleration of the free mesh by the load, m/s².
-fn acceleration_floor<const D: usize>(model: &DynamicModel<D>) -> f64 {
+pub(super) fn acceleration_floor<const D: usize>(model: &DynamicModel<D>) -> f64 {
     let square = model.omega_ref * model.omega_ref;
     (0..DynamicModel::<D>::HALVES)
         .fold(0.0f64, |m, j| m.max(model.max_excitation_force_n(j) * model.halves[j].inv_me * square))

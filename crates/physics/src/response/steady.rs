@@ -95,7 +95,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
     }
 
     /// Fails where the static deflection exceeds the limit of any motion.
-    fn check_static_deflection(&self, start: &MotionState<D>) -> Result<(), DynamicsError> {
+    pub(super) fn check_static_deflection(&self, start: &MotionState<D>) -> Result<(), DynamicsError> {
         let furthest = largest_component(&(start.x, [0.0; D]));
         if furthest > DIVERGENCE_LIMIT_M {
             return Err(DynamicsError::InvalidParameter {
@@ -144,13 +144,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
 
     /// Fails when the mean load has a component along a rigid-body mode.
     fn check_load_balance(&self, shooting: &Shooting<'_, D>, defect: &Perturbation<D>) -> Result<(), DynamicsError> {
-        let unbalanced_n = shooting.unbalanced_force_n(defect, 1);
-        let load = (0..DynamicModel::<D>::HALVES).fold(0.0f64, |m, j| m.max(self.model.max_excitation_force_n(j)));
-        // Rounding and truncation errors are far below this threshold, an imbalance far above.
-        if load > 0.0 && unbalanced_n > 1e-6 * load {
-            return Err(DynamicsError::Unbalanced { force_n: unbalanced_n });
-        }
-        Ok(())
+        check_load_balance(self.model, shooting, defect)
     }
 
     /// Periodic motion of a pair whose transient decays within a mesh period, found by integration where the monodromy
@@ -571,6 +565,21 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
         within.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
         Ok((largest, within))
     }
+}
+
+/// Fails when the mean load has a component along a rigid-body mode; `defect`: end less start of a mesh period.
+pub(super) fn check_load_balance<const D: usize>(
+    model: &DynamicModel<D>,
+    shooting: &Shooting<'_, D>,
+    defect: &Perturbation<D>,
+) -> Result<(), DynamicsError> {
+    let unbalanced_n = shooting.unbalanced_force_n(defect, 1);
+    let load = (0..DynamicModel::<D>::HALVES).fold(0.0f64, |m, j| m.max(model.max_excitation_force_n(j)));
+    // Rounding and truncation errors are far below this threshold, an imbalance far above.
+    if load > 0.0 && unbalanced_n > 1e-6 * load {
+        return Err(DynamicsError::Unbalanced { force_n: unbalanced_n });
+    }
+    Ok(())
 }
 
 /// A state displaced by a perturbation, with its contact determined anew.

@@ -3,6 +3,7 @@
 mod allocations;
 mod contact_force;
 mod drift;
+mod harmonic_balance;
 mod lanes;
 mod order;
 mod oscillator;

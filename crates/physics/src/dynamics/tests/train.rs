@@ -13,7 +13,7 @@ use herringbone_oracle::Tolerance::{Absolute, Relative};
 use herringbone_oracle::{check, check_worst};
 
 #[path = "../../../benches/train_cases.rs"]
-mod train_cases;
+pub(super) mod train_cases;
 
 use train_cases::train_of;
 

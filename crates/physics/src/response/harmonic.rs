@@ -1,0 +1,145 @@
+//! Steady motion of a train in contact by harmonic balance, confirmed by its integration over a mesh period.
+
+use super::analysis::{AppliedMethod, Multiplier, Regime, Response};
+use super::channel::ChannelId;
+use super::poincare::largest_component;
+use super::recorder::ChannelRecorder;
+use super::recording::FinishedRun;
+use super::report::{MotionAssessment, assemble_response};
+use super::solve::{ROUNDING, ResponseProblem, SAFETY, acceleration_floor};
+use super::steady::{check_load_balance, displaced};
+use crate::dynamics::{
+    DynamicModel, DynamicsError, HarmonicBalance, HarmonicOrbit, MotionState, Shooting, StepCounts, state_difference,
+};
+
+/// Error of a start, relative to the velocities, at which a motion counts as periodic: this part of the accuracy.
+const CLOSED: f64 = 0.1;
+/// Corrections of a start from its series.
+const MOST_CORRECTIONS: usize = 4;
+/// Change beyond which the series is not that of a motion in contact.
+const FAR: f64 = 0.01;
+/// Largest difference of the RMS accelerations by the series from those by the record: the series ends at an order, the
+/// accelerations of a motion with bends in its forces do not.
+const SERIES: f64 = 1e-4;
+/// RMS error over tolerance of a motion by Taylor series, at most on the reference cases.
+const PER_TOLERANCE: f64 = 10.0;
+
+/// A motion over a mesh period that closes.
+struct ClosedRecord<'m, const D: usize> {
+    from: MotionState<D>,
+    /// Error of the start by the defect at the end, relative to the velocities.
+    start_error: f64,
+    finished: FinishedRun<'m, D>,
+}
+
+impl ResponseProblem<'_> {
+    /// The steady motion in contact near `start`; None where harmonic balance does not find a stable one to the accuracy
+    /// asked for.
+    pub(super) fn solve_by_harmonic_balance<const D: usize>(
+        &self,
+        model: &DynamicModel<D>,
+        start: &MotionState<D>,
+        tolerance: f64,
+    ) -> Result<Option<Response>, DynamicsError> {
+        let closed = CLOSED * self.analysis.accuracy;
+        let Some(balance) = HarmonicBalance::new(model) else { return Ok(None) };
+        let Some(orbit) = balance.solve(start, 0.2 * closed) else { return Ok(None) };
+        let mut counts = StepCounts::default();
+        let Some(record) = self.closed_record(model, &balance, &orbit, (tolerance, closed), &mut counts)? else {
+            return Ok(None);
+        };
+        let ClosedRecord { from, start_error, finished } = record;
+        if self.difference(model, &balance, &orbit, &finished.recorder) > SERIES {
+            return Ok(None);
+        }
+        let (floquet, multipliers) = if !self.analysis.multipliers && balance.is_surely_stable(&orbit) {
+            (None, None)
+        } else {
+            let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tolerance))?;
+            let period_map = shooting.period_map(model, from, 1)?;
+            counts += period_map.counts;
+            let found = shooting.multipliers(&period_map.monodromy);
+            let Some(modulus) = found.first().map(|m| m.norm()).filter(|modulus| *modulus < 1.0) else {
+                return Ok(None);
+            };
+            let polar = found.iter().map(|m| Multiplier { modulus: m.norm(), angle_rad: m.arg() }).collect();
+            (Some(modulus), Some(polar))
+        };
+        let error_estimate = SAFETY * start_error + PER_TOLERANCE * tolerance + ROUNDING;
+        let assessment = MotionAssessment {
+            regime: Regime::Period1,
+            period: Some(1),
+            floquet,
+            multipliers,
+            lyapunov: None,
+            method: AppliedMethod::Periodic,
+            error_estimate,
+            energy_residual: finished.energy.and_then(|energy| energy.residual()),
+            t0_s: 0.0,
+            counts,
+        };
+        Ok(Some(assemble_response(&self.report_input(), model, finished.recorder, finished.record, assessment)))
+    }
+
+    /// Record of a mesh period from the start of the orbit, corrected until it closes; None where it does not, or where
+    /// the motion loses contact.
+    fn closed_record<'m, const D: usize>(
+        &self,
+        model: &'m DynamicModel<D>,
+        balance: &HarmonicBalance<'m, D>,
+        orbit: &HarmonicOrbit<D>,
+        (tolerance, closed): (f64, f64),
+        counts: &mut StepCounts,
+    ) -> Result<Option<ClosedRecord<'m, D>>, DynamicsError> {
+        let mut from = orbit.start;
+        for _ in 0..=MOST_CORRECTIONS {
+            let finished = self.record(model, (from, tolerance), 1, self.recorder(model, 1), self.energy(model))?;
+            *counts += finished.record.counts;
+            let touches = |shares: [f64; 3]| shares.iter().any(|share| *share == 1.0);
+            if !finished.recorder.contact_shares().into_iter().all(touches) {
+                return Ok(None);
+            }
+            let defect = state_difference(&finished.record.last, &from);
+            let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tolerance))?;
+            check_load_balance(model, &shooting, &defect)?;
+            let size = largest_component(&([0.0; D], from.v)).max(1e-9 * largest_component(&(from.x, [0.0; D])));
+            let change = largest_component(&defect) / size;
+            if change.is_nan() || change > FAR {
+                return Ok(None);
+            }
+            let correction = balance.correction(&defect);
+            let start_error = largest_component(&correction) / size;
+            if start_error <= closed {
+                return Ok(Some(ClosedRecord { from, start_error, finished }));
+            }
+            from = displaced(model, from, &correction);
+        }
+        Ok(None)
+    }
+
+    /// Largest relative difference of the RMS accelerations by the record from those by the series.
+    fn difference<const D: usize>(
+        &self,
+        model: &DynamicModel<D>,
+        balance: &HarmonicBalance<'_, D>,
+        orbit: &HarmonicOrbit<D>,
+        recorder: &ChannelRecorder<D>,
+    ) -> f64 {
+        let floor = acceleration_floor(model);
+        let [mesh, axial] = balance.rms_accelerations_m_s2(orbit);
+        let mut worst = 0.0f64;
+        for half in 0..2u8 {
+            let j = usize::from(half);
+            let pairs =
+                [(ChannelId::mesh_acceleration(half), mesh[j]), (ChannelId::pinion_axial_acceleration(half), axial[j])];
+            for (id, by_series) in pairs {
+                let Some(recorded) = recorder.accumulator(id) else { continue };
+                let rms = recorded.mean_and_square().1.sqrt();
+                if rms > floor {
+                    worst = worst.max((rms - by_series).abs() / rms);
+                }
+            }
+        }
+        worst
+    }
+}
