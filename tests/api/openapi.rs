@@ -64,6 +64,8 @@ fn every_endpoint_is_described() {
         "get /api/v1/jobs/{id}/rexs",
         "get /api/v1/jobs/{id}/series",
         "get /api/v1/jobs/{id}/series/{channel}",
+        "get /api/v1/jobs/{id}/series/{channel}.wav",
+        "get /api/v1/jobs/{id}/tables",
         "get /api/v1/kinds",
         "get /api/v1/system",
         "get /healthz",

@@ -4,11 +4,14 @@
 //! the document that was taken from the file or assumed, and for what the file has and the document has not. The other
 //! way: [`export_rexs`].
 
+pub mod arrays;
 mod container;
 mod draft;
+pub mod lookup;
 mod refusal;
 mod report;
 mod rexs;
+pub mod sound;
 mod unit;
 
 pub use container::{MAX_FILES, MAX_UNPACKED_BYTES};

@@ -20,6 +20,7 @@ use utoipa_axum::router::OpenApiRouter;
             `X-Request-Id`, the client's own where it sent one that is short and plain.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
+    paths(routes::read_sound::read_sound),
     components(schemas(
         super::problem::Problem,
         super::csv::Decimal,
@@ -60,6 +61,7 @@ pub fn openapi_json() -> String {
             let Some(operations) = operations.as_object_mut() else { continue };
             for operation in operations.values_mut() {
                 documents::set_schemas(path, operation);
+                responses::set_binary(operation);
                 responses::add_common(path, operation);
                 links::add(operation);
             }
