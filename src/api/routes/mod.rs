@@ -5,6 +5,7 @@ mod delete_job;
 mod explain_problem;
 mod health;
 mod import_file;
+mod list_deliveries;
 mod list_jobs;
 mod list_kinds;
 mod list_points;
@@ -64,6 +65,7 @@ pub(super) fn versioned() -> OpenApiRouter<AppState> {
         .routes(routes!(read_point_columns::read_point_columns))
         .routes(routes!(read_point_input::read_point_input))
         .routes(routes!(list_kinds::list_kinds))
+        .routes(routes!(list_deliveries::list_deliveries))
         .routes(routes!(read_system::read_system))
         .route_layer(from_fn(json_only));
     let stream = OpenApiRouter::new()
