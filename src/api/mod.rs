@@ -36,7 +36,7 @@ pub use config::{HttpConfig, MAX_BODY_BYTES, MAX_IMPORT_BYTES, MAX_WAIT_S};
 pub use connections::ConnectionConfig;
 pub use csv::{CsvField, CsvWriter, Decimal};
 pub use guard::{Access, AccessConfig, AccessError, LoginNotice, LoginRenderer};
-pub use openapi::openapi_json;
+pub use openapi::{openapi_for_generators, openapi_json};
 pub use problem::{Problem, ProblemCode};
 pub use router::{Pages, router};
 pub use serve::serve;

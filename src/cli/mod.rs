@@ -46,7 +46,7 @@ enum Command {
     /// Make a job document of a gear model of another program (REXS).
     Import(import::ImportArguments),
     /// Print the description of the HTTP interface (OpenAPI, JSON).
-    Openapi,
+    Openapi(openapi::OpenapiArguments),
 }
 
 /// Runs the subcommand. Returns the exit code of the process.
@@ -60,6 +60,6 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Check(arguments) => check::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Import(arguments) => import::run(arguments),
-        Command::Openapi => openapi::run(),
+        Command::Openapi(arguments) => openapi::run(arguments),
     }
 }

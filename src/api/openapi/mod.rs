@@ -1,11 +1,13 @@
 //! The OpenAPI document, generated from the endpoints.
 
 mod documents;
+mod generators;
 mod links;
 mod responses;
 
 use super::routes;
 use super::state::AppState;
+use serde_json::Value;
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 
@@ -52,6 +54,17 @@ pub(super) fn import_routes() -> OpenApiRouter<AppState> {
 
 /// The OpenAPI document as JSON text.
 pub fn openapi_json() -> String {
+    to_text(description())
+}
+
+/// The OpenAPI document as JSON text, in the terms that generators of clients understand.
+pub fn openapi_for_generators() -> String {
+    let mut document = description();
+    generators::simplify(&mut document);
+    to_text(document)
+}
+
+fn description() -> Value {
     let (_, document) = document_routes().merge(import_routes()).split_for_parts();
     let mut document = serde_json::to_value(document).unwrap_or_default();
     documents::add_schemas(&mut document);
@@ -67,6 +80,10 @@ pub fn openapi_json() -> String {
             }
         }
     }
+    document
+}
+
+fn to_text(mut document: Value) -> String {
     // Whether maps keep the order of insertion depends on the features of the build; the text must not.
     document.sort_all_objects();
     let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();

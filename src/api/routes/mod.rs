@@ -98,9 +98,11 @@ pub(super) fn operational() -> OpenApiRouter<AppState> {
         .routes(routes!(explain_problem::explain_problem))
 }
 
-/// The route of the OpenAPI document, which does not describe itself.
+/// The routes of the OpenAPI document, which does not describe itself.
 pub(super) fn undocumented() -> Router<AppState> {
-    Router::new().route("/openapi.json", get(read_openapi::read_openapi))
+    Router::new()
+        .route("/openapi.json", get(read_openapi::read_openapi))
+        .route("/openapi-generators.json", get(read_openapi::read_openapi_for_generators))
 }
 
 /// Reads a job.
