@@ -38,7 +38,7 @@ pub(super) struct ImportArguments {
     report: Option<PathBuf>,
 }
 
-fn finite(text: &str) -> Result<f64, String> {
+pub(super) fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| "give a finite number".to_owned())
 }
 
