@@ -75,6 +75,7 @@ async fn files_that_are_none_and_bodies_that_are_too_large() {
     let app = app().await;
     let unreadable = app.send(Method::POST, PATH, &[XML], "<model>").await;
     unreadable.assert_problem(422, "invalid-design");
+    assert_eq!(unreadable.json["title"], "The file cannot be imported");
     let form = [("content-type", "application/x-www-form-urlencoded")];
     app.send(Method::POST, PATH, &form, "a=b").await.assert_problem(415, "unsupported-media-type");
     let packed = [XML, ("content-encoding", "gzip")];
