@@ -1,4 +1,5 @@
-//! Recorded channels as files of arrays, encoded a part at a time, so that the memory used does not grow with their length.
+//! Recorded channels as files of arrays, encoded a part at a time, so that the memory used does not grow with their
+//! length.
 
 use super::problem::ApiError;
 use super::text_body::TextBody;
@@ -64,7 +65,8 @@ struct Encoder {
 }
 
 impl SeriesFile {
-    /// The pieces of the file: `t0_s`, `dt_s`, the times `t_s`, each channel, and `channels` and `units` with their names and units.
+    /// The pieces of the file: `t0_s`, `dt_s`, the times `t_s`, each channel, and `channels` and `units` with their
+    /// names and units.
     ///
     /// # Errors
     /// The file cannot be begun, which does not happen in memory.

@@ -12,8 +12,8 @@ pub(super) const MEDIA_TYPE: &str = "application/vnd.openxmlformats-officedocume
 /// Most letters of a cell.
 const MAX_CELL_CHARS: usize = 32_767;
 
-/// A workbook of three sheets: the table, the document (a line for each field) and the units of the columns. Rows that are
-/// written go to temporary files, so that memory does not grow with them.
+/// A workbook of three sheets: the table, the document (a line for each field) and the units of the columns. Rows that
+/// are written go to temporary files, so that memory does not grow with them.
 ///
 /// # Errors
 /// There are more rows than a sheet has, or the temporary files cannot be written.

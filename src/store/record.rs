@@ -109,8 +109,9 @@ pub(super) fn column_error(column: &'static str, detail: impl std::fmt::Display)
     sqlx::Error::ColumnDecode { index: column.to_owned(), source: detail.to_string().into() }
 }
 
-/// Stores a transition in the history of the job, and of an end what webhooks are to tell. Its time is that of the clock, which may have been set back since the
-/// last transition; the times of the job itself never decrease (`MAX` in the statements).
+/// Stores a transition in the history of the job, and of an end what webhooks are to tell. Its time is that of the
+/// clock, which may have been set back since the last transition; the times of the job itself never decrease (`MAX` in
+/// the statements).
 pub(super) async fn record_event(
     transaction: &mut Transaction<'static, Sqlite>,
     job: &JobRecord,

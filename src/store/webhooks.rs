@@ -126,8 +126,8 @@ pub(super) async fn record_end(
 }
 
 impl Store {
-    /// Sets the addresses that are told of the ends of jobs. What waits for another address is given up; an address that
-    /// was disabled is told again.
+    /// Sets the addresses that are told of the ends of jobs. What waits for another address is given up; an address
+    /// that was disabled is told again.
     ///
     /// # Errors
     /// The database cannot be written.

@@ -8,8 +8,8 @@ use std::path::PathBuf;
 /// Addresses that are told of the ends of jobs.
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct WebhookConfig {
-    /// Address that is told of the end of every job (Standard Webhooks 1.0); may be given several times, in the variable separated by
-    /// commas.
+    /// Address that is told of the end of every job (Standard Webhooks 1.0); may be given several times, in the
+    /// variable separated by commas.
     #[arg(
         long,
         env = "HERRINGBONE_WEBHOOK_URL",
@@ -23,8 +23,8 @@ pub struct WebhookConfig {
     #[arg(long, env = "HERRINGBONE_WEBHOOK_SECRET_FILE", value_name = "FILE")]
     pub webhook_secret_file: Option<PathBuf>,
 
-    /// Network in which addresses may be, with any port, besides the public internet with the ports 80 and 443; may be given several
-    /// times, in the variable separated by commas.
+    /// Network in which addresses may be, with any port, besides the public internet with the ports 80 and 443; may be
+    /// given several times, in the variable separated by commas.
     #[arg(long, env = "HERRINGBONE_WEBHOOK_ALLOW", value_name = "NETWORK", value_delimiter = ',')]
     pub webhook_allow: Vec<Network>,
 }

@@ -1,4 +1,5 @@
-//! The addresses that may be asked: so that whoever sets an address cannot reach machines behind the service's firewall.
+//! The addresses that may be asked: so that whoever sets an address cannot reach machines behind the service's
+//! firewall.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 use std::str::FromStr;
@@ -83,8 +84,8 @@ const NOT_PUBLIC: [Network; 28] = [
 
 const WEB_PORTS: [u16; 2] = [80, 443];
 
-/// Whether an address may be asked: it is public and has a port of the web, or it is in a permitted network, with any port.
-/// IPv4 inside IPv6 counts as the IPv4 address that it is.
+/// Whether an address may be asked: it is public and has a port of the web, or it is in a permitted network, with any
+/// port. IPv4 inside IPv6 counts as the IPv4 address that it is.
 pub(super) fn is_permitted(address: IpAddr, port: u16, permitted: &[Network]) -> bool {
     let plain = address.to_canonical();
     if permitted.iter().any(|network| network.contains(address) || network.contains(plain)) {

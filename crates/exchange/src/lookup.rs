@@ -1,5 +1,5 @@
-//! Look-up tables of a mesh for programs that simulate drive trains: stiffness and transmission error over one mesh period,
-//! and the pulse of the impact.
+//! Look-up tables of a mesh for programs that simulate drive trains: stiffness and transmission error over one mesh
+//! period, and the pulse of the impact.
 
 use crate::arrays::{ArrayForm, ArrayWriter};
 use herringbone_job::document::JobDocument;

@@ -17,7 +17,8 @@ const PEAK: f64 = 0.8;
 /// A sound to be made of a record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sound<'a> {
-    /// One or more whole periods of the motion: they are repeated as often as needed. Values that are not finite are silent.
+    /// One or more whole periods of the motion: they are repeated as often as needed. Values that are not finite are
+    /// silent.
     pub values: &'a [f64],
     /// Time between values.
     pub dt_s: f64,
@@ -25,7 +26,8 @@ pub struct Sound<'a> {
     pub seconds: f64,
     /// Sampling rate of the sound.
     pub rate_hz: u32,
-    /// Value at full scale; larger ones are clipped. When it is not given, the largest value has four fifths of the scale.
+    /// Value at full scale; larger ones are clipped. When it is not given, the largest value has four fifths of the
+    /// scale.
     pub full_scale: Option<f64>,
     /// Unit of the values.
     pub unit: &'a str,

@@ -1,5 +1,5 @@
-//! The OpenAPI document for generators of clients, which cannot read all that JSON Schema can say: in what is sent to the
-//! service (but changes of a job, where null removes a text) nothing is null, and every list says what it holds.
+//! The OpenAPI document for generators of clients, which cannot read all that JSON Schema can say: in what is sent to
+//! the service (but changes of a job, where null removes a text) nothing is null, and every list says what it holds.
 
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;

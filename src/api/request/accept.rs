@@ -29,8 +29,8 @@ pub(crate) fn negotiate(headers: &HeaderMap, offers: &[&'static str]) -> Result<
         .ok_or_else(|| ApiError::new(ProblemCode::NotAcceptable, format!("This path has: {}.", offers.join(", "))))
 }
 
-/// Selects one of the forms in which a path answers: by the query parameter `format`, or by `Accept`; the first one without
-/// either. Each form is given with its name and media type.
+/// Selects one of the forms in which a path answers: by the query parameter `format`, or by `Accept`; the first one
+/// without either. Each form is given with its name and media type.
 ///
 /// # Errors
 /// 406 when `Accept` permits none of them, or not the one that the query selects.
@@ -71,7 +71,8 @@ pub(crate) enum TableForm {
     Arrays(ArrayForm),
 }
 
-/// Selects the representation of the rows of a sweep: by the query parameter `format`, by `decimal` (CSV), or by `Accept`.
+/// Selects the representation of the rows of a sweep: by the query parameter `format`, by `decimal` (CSV), or by
+/// `Accept`.
 ///
 /// # Errors
 /// 406 when `Accept` permits none of them, or not the one that the query selects.

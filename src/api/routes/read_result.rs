@@ -11,11 +11,14 @@ use crate::api::view::not_modified;
 use crate::api::workbook::{self, quantities_of, write_workbook};
 use axum::body::Body;
 use axum::extract::State;
-use axum::http::HeaderMap;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, VARY};
+use axum::http::{HeaderMap, HeaderValue};
 use axum::response::{IntoResponse, Response};
 use headers::{ETag, HeaderMapExt};
 use herringbone_job::result::JobResult;
+
+/// What the answer depends on.
+const VARIES: &str = "accept, accept-encoding";
 
 /// Read the result of a job: geometry, mesh, impact and response. It never changes.
 #[utoipa::path(
@@ -64,7 +67,9 @@ pub(super) async fn read_result(
     };
     let etag: ETag = format!("\"{}{suffix}\"", summary.etag).parse().map_err(ApiError::internal)?;
     if if_none_match.matches(&etag) {
-        return Ok(not_modified(etag));
+        let mut response = not_modified(etag);
+        response.headers_mut().insert(VARY, HeaderValue::from_static(VARIES));
+        return Ok(response);
     }
     let is_large = summary.bytes > LARGE_BODY_BYTES;
     let place = if is_large { Some(state.large_body_place().await?) } else { None };
@@ -86,7 +91,7 @@ pub(super) async fn read_result(
     };
     drop(permit);
     let body = Body::new(GuardedBody::new(body, place));
-    let headers = [(CONTENT_TYPE, "application/json"), (CACHE_CONTROL, "no-cache"), (VARY, "accept")];
+    let headers = [(CONTENT_TYPE, "application/json"), (CACHE_CONTROL, "no-cache"), (VARY, VARIES)];
     let mut response = (headers, body).into_response();
     response.headers_mut().typed_insert(etag);
     Ok(response)

@@ -24,15 +24,15 @@ impl InputFile {
     ///
     /// # Errors
     /// The file cannot be read, or is refused.
-    pub(super) fn read(&self, options: &ImportOptions) -> Result<JobDocument, Problem> {
+    pub(super) fn read(&self, options: &ImportOptions) -> Result<JobDocument, Box<Problem>> {
         let most = if self.is_model { MAX_IMPORT_BYTES } else { MAX_BODY_BYTES };
         let bytes = read_bytes(&self.path, most as u64)
             .map_err(|error| Problem::new(ProblemCode::InvalidDesign, format!("cannot be read: {error}")))?;
         if !self.is_model {
-            return herringbone_job::parse(&bytes).map_err(Problem::from);
+            return herringbone_job::parse(&bytes).map_err(|error| Box::new(error.into()));
         }
-        let imported = import(&bytes, options).map_err(Problem::from)?;
-        herringbone_job::parse_value(&imported.document).map_err(Problem::from)
+        let imported = import(&bytes, options).map_err(|refusal| Box::new(Problem::from(refusal)))?;
+        herringbone_job::parse_value(&imported.document).map_err(|error| Box::new(error.into()))
     }
 }
 

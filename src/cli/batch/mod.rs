@@ -27,8 +27,8 @@ pub(super) struct BatchArguments {
     /// Files that are solved at once; as many as processors when it is not given.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Files beside each result (JSON): csv and xlsx have the numbers of the result, of a sweep its rows; npz and mat the series, of a
-    /// sweep its rows.
+    /// Files beside each result (JSON): csv and xlsx have the numbers of the result, of a sweep its rows; npz and mat
+    /// the series, of a sweep its rows.
     #[arg(long, value_name = "FORMATS", value_delimiter = ',')]
     format: Vec<Format>,
     /// Decimal sign of CSV files, the summary among them.

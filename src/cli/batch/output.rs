@@ -1,4 +1,5 @@
-//! What a batch writes for a file: the result, tables and series in other forms, and a record by which it is known again.
+//! What a batch writes for a file: the result, tables and series in other forms, and a record by which it is known
+//! again.
 
 use super::Format;
 use herringbone::api::{
@@ -93,7 +94,7 @@ pub(super) fn known(out: &Path, file: &str, input_hash: &str, formats: &[Format]
     let is_there = beside(out, file, ".result.json").is_file()
         && formats.iter().all(|format| record.formats.contains(&format.name()));
     let usable = record.status != Status::Failed && is_same && is_there;
-    usable.then(|| Record { status: Status::Skipped, ..record })
+    usable.then_some(Record { status: Status::Skipped, ..record })
 }
 
 /// Keeps the record of a file; written last, so that what it tells of is there.

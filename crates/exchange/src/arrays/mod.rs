@@ -1,7 +1,7 @@
 //! Arrays as files of numerical programs: NumPy (`.npz`) and MATLAB (`.mat`, version 5).
 //!
-//! Written front to back, a piece at a time: the length of an array is said before its values. Arrays of words carry names
-//! and units, as neither form has a place for them.
+//! Written front to back, a piece at a time: the length of an array is said before its values. Arrays of words carry
+//! names and units, as neither form has a place for them.
 
 mod mat;
 mod names;
