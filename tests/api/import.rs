@@ -64,7 +64,16 @@ async fn the_choices_of_the_query() {
     assert_eq!(answer.json["document"]["operation"]["pinion_torque_nm"], 1500.0);
     assert_eq!(answer.json["document"]["design"]["gap_width_mm"], 12.5);
     assert_eq!(answer.json["operating_points"][3]["chosen"], true);
-    for query in ["pair=0", "mirror=yes", "torque_nm=x", "point=last", "gap_mm=-1", "format=z12", "what=1"] {
+    for query in [
+        "pair=0",
+        "mirror=yes",
+        "torque_nm=x",
+        "point=last",
+        "gap_mm=-1",
+        "format=step",
+        "face_width_is=both",
+        "what=1",
+    ] {
         let answer = app.send(Method::POST, &format!("{PATH}?{query}"), &[XML], industrial()).await;
         answer.assert_problem(400, "invalid-parameter");
     }
