@@ -5,7 +5,9 @@ use crate::refusal::{Refusal, short};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use quick_xml::Reader;
+use quick_xml::errors::{Error, IllFormedError};
 use quick_xml::events::{BytesStart, Event};
+use quick_xml::name::QName;
 
 /// Longest text of a value that is kept, bytes.
 const MAX_TEXT: usize = 4096;
@@ -21,8 +23,14 @@ pub(super) fn read(text: &str) -> Result<RawModel, Refusal> {
     loop {
         let event = reader.read_event().map_err(|error| not_well_formed(text, reader.error_position(), &error))?;
         match event {
-            Event::Start(start) => reading.start(&start)?,
-            Event::End(_) => reading.end(),
+            Event::Start(start) => {
+                reading.start(&start)?;
+                skip(&mut reader, &mut reading, text)?;
+            }
+            Event::End(_) => {
+                reading.end();
+                skip(&mut reader, &mut reading, text)?;
+            }
             Event::Text(content) => reading.text(&content),
             Event::CData(content) => reading.text(&content),
             Event::GeneralRef(entity) => {
@@ -40,14 +48,34 @@ pub(super) fn read(text: &str) -> Result<RawModel, Refusal> {
         }
     }
     if !reading.open.is_empty() {
-        // The reader remembers the names of the elements that are open; the last one says where.
-        let detail = format!("ends inside of <{}>: it is not complete", last_open(text));
-        return Err(Refusal::unreadable("not-readable", detail));
+        return Err(incomplete(text));
     }
     if !reading.has_root {
         return Err(Refusal::unreadable("not-readable", "has no XML element"));
     }
     Ok(reading.model)
+}
+
+/// Reads over the rest of an array of which nothing is kept: that is most of a large file.
+fn skip(reader: &mut Reader<&[u8]>, reading: &mut Reading, text: &str) -> Result<(), Refusal> {
+    let is_array = matches!(reading.open.last(), Some(Element::Array | Element::Matrix));
+    if !is_array || reading.attribute.as_ref().is_none_or(|attribute| attribute.array != Some(false)) {
+        return Ok(());
+    }
+    match reader.read_to_end(QName(&reading.array)) {
+        Ok(_) => {
+            reading.end();
+            Ok(())
+        }
+        Err(Error::IllFormed(IllFormedError::MissingEndTag(_))) => Err(incomplete(text)),
+        Err(error) => Err(not_well_formed(text, reader.error_position(), &error)),
+    }
+}
+
+/// Why a text is refused that ends before its elements do.
+fn incomplete(text: &str) -> Refusal {
+    let detail = format!("ends inside of <{}>: it is not complete", last_open(text));
+    Refusal::unreadable("not-readable", detail)
 }
 
 /// Name of the element that was opened last and is still open at the end of a text that is not complete.
@@ -155,6 +183,8 @@ struct Reading {
     relation: Option<RawRelation>,
     case: Option<RawCase>,
     attribute: Option<OpenAttribute>,
+    /// Name of the array that was opened last, as it is written.
+    array: String,
 }
 
 /// The attributes of an element.
@@ -226,7 +256,14 @@ impl Reading {
                 return Err(Refusal::unreadable("too-large", detail));
             }
         }
-        let given = if element.is_read() { Given::of(start)? } else { Given::default() };
+        if !element.is_read() {
+            if let Some(attribute) = self.attribute.as_mut().filter(|_| element == Element::Cell) {
+                attribute.text.clear();
+            }
+            self.open.push(element);
+            return Ok(());
+        }
+        let given = Given::of(start)?;
         match element {
             Element::Model if self.open.is_empty() => {
                 self.has_root = true;
@@ -263,21 +300,17 @@ impl Reading {
                 });
             }
             Element::Array | Element::Matrix => {
+                start.name().0.clone_into(&mut self.array);
                 if let Some(attribute) = &mut self.attribute {
                     attribute.array = Some(element == Element::Array && attribute.array.is_none());
                     attribute.code = given.code;
                     attribute.text.clear();
                 }
             }
-            Element::Cell => {
-                if let Some(attribute) = &mut self.attribute {
-                    attribute.text.clear();
-                }
-            }
             Element::LoadCase => {
                 self.case = Some(RawCase { id: given.number().unwrap_or(0), components: Vec::new() });
             }
-            Element::Model | Element::Accumulation | Element::Other => {}
+            Element::Model | Element::Cell | Element::Accumulation | Element::Other => {}
         }
         self.open.push(element);
         Ok(())

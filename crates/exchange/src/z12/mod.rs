@@ -1,5 +1,5 @@
-//! Calculation files of KISSsoft for cylindrical gear pairs (`.Z12`): what such files of version 20 hold. Lengths in mm, angles in
-//! rad, speeds in r/min, torques in N m, powers in kW, moduli in N/mm², densities in kg/m³.
+//! Calculation files of KISSsoft for cylindrical gear pairs (`.Z12`): what such files of version 20 hold. Lengths in
+//! mm, angles in rad, speeds in r/min, torques in N m, powers in kW, moduli in N/mm², densities in kg/m³.
 
 mod text;
 
