@@ -47,7 +47,7 @@ enum Command {
     Check(check::CheckArguments),
     /// Write a job document as a gear model for other programs (REXS).
     Export(export::ExportArguments),
-    /// Make a job document of a gear model of another program (REXS).
+    /// Make a job document of a gear model of another program (REXS, KISSsoft).
     Import(import::ImportArguments),
     /// Print the description of the HTTP interface (OpenAPI, JSON).
     Openapi(openapi::OpenapiArguments),

@@ -1,11 +1,13 @@
 //! Calculation files of KISSsoft for cylindrical gear pairs (`.Z12`): what such files of version 20 hold. Lengths in
 //! mm, angles in rad, speeds in r/min, torques in N m, powers in kW, moduli in N/mm², densities in kg/m³.
 
+mod operation;
 mod text;
+mod tooth;
 
 use crate::draft::{Draft, Reading};
 use crate::refusal::{Refusal, short};
-use crate::report::{Import, ImportSource, ImportedPair, OperatingPoint};
+use crate::report::{Import, ImportSource, ImportedPair};
 use crate::rexs::{Basic, DEFAULT_GAP_MM, SAME_DISTANCE_MM, checked, parsed};
 use crate::unit::clean;
 use crate::{FaceWidth, ImportOptions};
@@ -17,9 +19,6 @@ use text::{Key, Values};
 /// The module of the program for cylindrical gear pairs.
 const PAIR: &str = "Z012";
 const MEMBERS: [&str; 2] = ["pinion", "gear"];
-/// Tip alterations beyond this are placeholders.
-const MAX_TIP_ALTERATION: f64 = 0.5;
-const DEFAULT_SPEED_RPM: f64 = 1000.0;
 
 /// What the rules share.
 struct File<'t, 'o> {
@@ -320,186 +319,6 @@ impl<'t, 'o> File<'t, 'o> {
         if let Some(tip) = self.tip(draft, basic, 0) {
             let k = Reading { value: tip.1, ..tip.0 };
             draft.check("tip alteration coefficient of unchanged tip clearance, pinion", &k, expected, "");
-        }
-    }
-
-    /// The tip diameter and the tip alteration that follows from it.
-    fn tip(&self, draft: &mut Draft, basic: &Basic, member: usize) -> Option<(Reading, f64)> {
-        let pointer = format!("/design/{}/tip_alteration", MEMBERS[member]);
-        let diameter = self.read(draft, &pointer, &self.of_member(member, "da.nul", "mm"), 1.0)?;
-        let addendum = self.read(draft, &pointer, &self.of_member(member, "Tool.RefProfile.haP", ""), 1.0);
-        let addendum = addendum.map_or(1.0, |reading| reading.value);
-        let height = (diameter.value - basic.reference_mm(member)) / (2.0 * basic.module_mm);
-        let alteration = clean(height - basic.profile_shift[member] - addendum);
-        Some((diameter, alteration))
-    }
-
-    /// Tooth height, fillet and bore.
-    fn teeth(&self, draft: &mut Draft, basic: &Basic) {
-        for (member, name) in MEMBERS.into_iter().enumerate() {
-            let tool = self.read(draft, "/design", &self.of_member(member, "Tool.type", ""), 1.0);
-            if let Some(tool) = tool.filter(|tool| tool.value != 2.0) {
-                let detail = format!("{} is {}: the reference profile is read all the same", tool.from(), tool.value);
-                draft.warn("other-tool", &format!("/design/{name}"), detail);
-            }
-            for (attribute, field, default) in [
-                ("Tool.RefProfile.haP", "addendum", 1.0),
-                ("Tool.RefProfile.hfP", "dedendum", 1.25),
-                ("Tool.RefProfile.rhofP", "fillet_radius", 0.38),
-            ] {
-                let pointer = format!("/design/{name}/{field}");
-                match self.read(draft, &pointer, &self.of_member(member, attribute, ""), 1.0) {
-                    Some(reading) => draft.take(&pointer, reading.value, std::slice::from_ref(&reading), ""),
-                    None => draft.assume(&pointer, default, "no reference profile in the file"),
-                }
-            }
-            let pointer = format!("/design/{name}/tip_alteration");
-            match self.tip(draft, basic, member) {
-                Some((diameter, alteration)) if alteration.abs() <= MAX_TIP_ALTERATION => {
-                    draft.take(&pointer, alteration, &[diameter], "(d_a − d)/(2 m_n) − x − addendum");
-                }
-                Some((diameter, _)) => {
-                    let amount = format!("{} mm", diameter.value);
-                    draft.ignore(diameter.from(), "no tip circle of such a tooth: a placeholder", Some(amount));
-                    draft.assume(&pointer, 0.0, "the tip diameter of the file is none");
-                }
-                None => draft.assume(&pointer, 0.0, "no tip diameter in the file"),
-            }
-            let pointer = format!("/design/{name}/bore_diameter_mm");
-            match self.read(draft, &pointer, &self.of_member(member, "di", "mm"), 1.0).filter(|bore| bore.value > 0.0) {
-                Some(bore) => draft.take(&pointer, bore.value, std::slice::from_ref(&bore), ""),
-                None => draft.assume(&pointer, Value::Null, "no bore in the file: the service's default"),
-            }
-        }
-    }
-
-    fn material(&self, draft: &mut Draft) {
-        let fields = [
-            ("mat.E", "N/mm2", 1e-3, "youngs_modulus_gpa"),
-            ("mat.ny", "", 1.0, "poissons_ratio"),
-            ("mat.rho", "kg/m3", 1.0, "density_kg_m3"),
-        ];
-        for (attribute, unit, factor, field) in fields {
-            let shared = format!("/design/material/{field}");
-            let readings = [0, 1].map(|member| {
-                let reading = self.read(draft, &shared, &self.of_member(member, attribute, unit), factor);
-                reading.filter(|reading| reading.value > 0.0)
-            });
-            match readings {
-                [Some(pinion), Some(gear)] if pinion.value == gear.value => {
-                    draft.take(&shared, pinion.value, &[pinion.clone(), gear], "");
-                }
-                readings => {
-                    for (reading, name) in readings.into_iter().zip(MEMBERS) {
-                        if let Some(reading) = reading {
-                            draft.take(&format!("/design/{name}/material/{field}"), reading.value, &[reading], "");
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    fn operation(&self, draft: &mut Draft) -> Vec<OperatingPoint> {
-        let (speed_pointer, torque_pointer) = ("/operation/pinion_speed_rpm", "/operation/pinion_torque_nm");
-        // Of the pinion, or carried from the gear by the tooth ratio.
-        let ratio = |draft: &Draft| {
-            let teeth = |name: &str| draft.document["design"][name]["teeth"].as_f64().unwrap_or(1.0);
-            teeth("gear") / teeth("pinion")
-        };
-        let of_either = |draft: &mut Draft, pointer: &str, attribute, unit| {
-            let of = |draft: &mut Draft, member| {
-                let reading = self.read(draft, pointer, &self.of_member(member, attribute, unit), 1.0);
-                reading.filter(|reading| reading.value != 0.0)
-            };
-            of(draft, 0).map(|reading| (reading, false)).or_else(|| of(draft, 1).map(|reading| (reading, true)))
-        };
-        let carried = "carried to the pinion by the numbers of teeth";
-        let speed_rpm = match of_either(draft, speed_pointer, "nnominal", "r/min") {
-            Some((reading, of_gear)) => {
-                let value = reading.value.abs();
-                let value = if of_gear { clean(value * ratio(draft)) } else { value };
-                draft.take(speed_pointer, value, &[reading], if of_gear { carried } else { "size" });
-                value
-            }
-            None => {
-                draft.assume(speed_pointer, DEFAULT_SPEED_RPM, "no speed in the file");
-                draft.warn(
-                    "speed-assumed",
-                    speed_pointer,
-                    format!("is not in the file: {DEFAULT_SPEED_RPM} r/min assumed"),
-                );
-                DEFAULT_SPEED_RPM
-            }
-        };
-        let factor = if self.mirrored { 2.0 } else { 1.0 };
-        let mut why = if self.mirrored { "doubled: the stage is one half".to_owned() } else { String::new() };
-        let torque_nm = if let Some(torque_nm) = self.options.torque_nm {
-            draft.assume(torque_pointer, torque_nm, "chosen at import");
-            Some(torque_nm)
-        } else if let Some((reading, of_gear)) = of_either(draft, torque_pointer, "Tnominal", "N m") {
-            let value = reading.value.abs() * factor;
-            let value = if of_gear { clean(value / ratio(draft)) } else { value };
-            if of_gear {
-                why = format!("{carried} {why}").trim_end().to_owned();
-            }
-            draft.take(torque_pointer, value, &[reading], &why);
-            Some(value)
-        } else {
-            let power = self.read(draft, torque_pointer, &Key::of_pair("ZS", "Pnominal", "kW"), 1.0);
-            match power.filter(|power| power.value != 0.0) {
-                Some(power) => {
-                    let value = clean(power.value.abs() * 1e3 * factor / (speed_rpm * std::f64::consts::PI / 30.0));
-                    draft.take(torque_pointer, value, &[power], format!("P · 1000/ω {why}").trim_end());
-                    Some(value)
-                }
-                None => {
-                    let detail = "neither torque nor power is in the file (ZR[i].Tnominal, ZS.Pnominal): give the torque (torque_nm)";
-                    draft.refuse(torque_pointer, "missing", detail);
-                    None
-                }
-            }
-        };
-        let rotation = "/operation/rotation";
-        draft.assume(rotation, "apex_leading", "the sense of rotation is not read from this format");
-        draft.warn("rotation-assumed", rotation, "is apex_leading: it does not follow from the file");
-        vec![OperatingPoint {
-            number: 1,
-            load_case: None,
-            pinion_speed_rpm: Some(speed_rpm),
-            pinion_torque_nm: torque_nm,
-            share: None,
-            chosen: true,
-        }]
-    }
-
-    /// The backlash that follows from the allowances of the tooth thickness, as an offer.
-    fn backlash(&self, draft: &mut Draft, basic: &Basic) {
-        let pointer = "/design/backlash_um";
-        let mut sum_mm = 0.0;
-        let mut first = None;
-        for member in [0, 1] {
-            let limits = ["As.E", "As.i"].map(|key| self.read(draft, pointer, &self.of_member(member, key, "mm"), 1.0));
-            let [Some(upper), Some(lower)] = limits else { return };
-            sum_mm += 0.5 * (upper.value + lower.value);
-            first.get_or_insert(upper);
-        }
-        let backlash_um = -sum_mm * basic.pressure_angle_deg.to_radians().cos() * 1e3;
-        if let Some(reading) = first.filter(|_| backlash_um > 0.0) {
-            let why =
-                "mean allowances of the tooth thickness of both gears · cos α_n, without that of the centre distance";
-            draft.offer(pointer, &reading, backlash_um, why);
-        }
-    }
-
-    fn left_over(&self, draft: &mut Draft) {
-        draft.warn("modifications-not-read", "", "flank modifications are not read from this format");
-        for member in [0, 1] {
-            let crowning = self.values.number(&self.of_member(member, "crowning", "mm"), 1.0).ok().flatten();
-            if let Some(crowning) = crowning.filter(|crowning| crowning.value != 0.0) {
-                let amount = format!("{} mm", crowning.value);
-                draft.ignore(crowning.from(), "flank modifications are not read from this format", Some(amount));
-            }
         }
     }
 }
