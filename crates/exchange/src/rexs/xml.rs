@@ -5,9 +5,7 @@ use crate::refusal::{Refusal, short};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use quick_xml::Reader;
-use quick_xml::errors::{Error, IllFormedError};
 use quick_xml::events::{BytesStart, Event};
-use quick_xml::name::QName;
 
 /// Longest text of a value that is kept, bytes.
 const MAX_TEXT: usize = 4096;
@@ -21,15 +19,14 @@ pub(super) fn read(text: &str) -> Result<RawModel, Refusal> {
     reader.config_mut().expand_empty_elements = true;
     let mut reading = Reading::default();
     loop {
-        let event = reader.read_event().map_err(|error| not_well_formed(text, reader.error_position(), &error))?;
+        let event = reader
+            .read_event()
+            .map_err(|error| not_well_formed(text, reader.error_position() + reading.passed, &error))?;
         match event {
-            Event::Start(start) => {
-                reading.start(&start)?;
-                skip(&mut reader, &mut reading, text)?;
-            }
+            Event::Start(start) => reading.start(&start)?,
             Event::End(_) => {
                 reading.end();
-                skip(&mut reader, &mut reading, text)?;
+                skip(&mut reader, &mut reading, text);
             }
             Event::Text(content) => reading.text(&content),
             Event::CData(content) => reading.text(&content),
@@ -48,7 +45,9 @@ pub(super) fn read(text: &str) -> Result<RawModel, Refusal> {
         }
     }
     if !reading.open.is_empty() {
-        return Err(incomplete(text));
+        // The reader remembers the names of the elements that are open; the last one says where.
+        let detail = format!("ends inside of <{}>: it is not complete", last_open(text));
+        return Err(Refusal::unreadable("not-readable", detail));
     }
     if !reading.has_root {
         return Err(Refusal::unreadable("not-readable", "has no XML element"));
@@ -56,26 +55,23 @@ pub(super) fn read(text: &str) -> Result<RawModel, Refusal> {
     Ok(reading.model)
 }
 
-/// Reads over the rest of an array of which nothing is kept: that is most of a large file.
-fn skip(reader: &mut Reader<&[u8]>, reading: &mut Reading, text: &str) -> Result<(), Refusal> {
+/// Passes over the rest of an array of which nothing is kept, up to its end: that is most of a large file.
+fn skip<'t>(reader: &mut Reader<&'t [u8]>, reading: &mut Reading, text: &'t str) {
     let is_array = matches!(reading.open.last(), Some(Element::Array | Element::Matrix));
     if !is_array || reading.attribute.as_ref().is_none_or(|attribute| attribute.array != Some(false)) {
-        return Ok(());
+        return;
     }
-    match reader.read_to_end(QName(&reading.array)) {
-        Ok(_) => {
-            reading.end();
-            Ok(())
-        }
-        Err(Error::IllFormed(IllFormedError::MissingEndTag(_))) => Err(incomplete(text)),
-        Err(error) => Err(not_well_formed(text, reader.error_position(), &error)),
+    // Looked at once for each array, so that the time stays in proportion to the text.
+    let name = std::mem::take(&mut reading.array);
+    let rest = *reader.get_ref();
+    let Some(rest_text) = text.get(text.len() - rest.len()..).filter(|_| !name.is_empty()) else { return };
+    let Some(end) = rest_text.find(&format!("</{name}")) else { return };
+    // Comments, marked sections, and arrays in the array are read.
+    let passed = &rest_text[..end];
+    if ["<!", "<?"].iter().all(|mark| !passed.contains(mark)) && !passed.contains(&format!("<{name}")) {
+        *reader.get_mut() = &rest[end..];
+        reading.passed += end as u64;
     }
-}
-
-/// Why a text is refused that ends before its elements do.
-fn incomplete(text: &str) -> Refusal {
-    let detail = format!("ends inside of <{}>: it is not complete", last_open(text));
-    Refusal::unreadable("not-readable", detail)
 }
 
 /// Name of the element that was opened last and is still open at the end of a text that is not complete.
@@ -185,6 +181,8 @@ struct Reading {
     attribute: Option<OpenAttribute>,
     /// Name of the array that was opened last, as it is written.
     array: String,
+    /// Bytes that were passed over.
+    passed: u64,
 }
 
 /// The attributes of an element.
