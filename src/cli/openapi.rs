@@ -7,7 +7,8 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct OpenapiArguments {
-    /// In the terms that generators of clients understand: nothing that is sent is null, every list says what it holds.
+    /// In the terms that generators of clients understand: nothing that is sent is null, every list says what it holds,
+    /// each body has one media type.
     #[arg(long)]
     for_generators: bool,
 }
