@@ -240,6 +240,6 @@ fn long_arrays_are_passed_over_whatever_stands_in_them() {
     let told = said(broken.as_bytes());
     assert!(told.contains(&format!("(line {line})")), "{line}: {told}");
     let cut = with(&format!("<array>{cells}"));
-    let told = said(cut[..cut.rfind(&cells).expect("cells") + cells.len()].as_bytes());
+    let told = said(&cut.as_bytes()[..cut.rfind(&cells).expect("cells") + cells.len()]);
     assert!(told.contains("ends inside of <array>"), "{told}");
 }
