@@ -65,7 +65,7 @@ impl Table {
         Ok(rows.into_table())
     }
 
-    /// The rows of a sweep that was solved, as [`Table::of_points`].
+    /// The rows of a sweep that was solved, with the columns of its CSV.
     pub fn of_sweep(points: &[SweepPoint], axes: &[String]) -> Table {
         let mut rows = PointColumns::new(axes);
         for (position, point) in points.iter().enumerate() {
