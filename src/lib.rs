@@ -7,4 +7,5 @@
 pub mod api;
 pub mod store;
 pub mod web;
+pub mod webhook;
 pub mod work;

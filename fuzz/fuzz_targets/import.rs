@@ -14,6 +14,7 @@ fuzz_target!(|bytes: &[u8]| {
         gap_width_mm: None,
         torque_nm: (choice & 4 != 0).then_some(500.0),
         point: if choice & 8 != 0 { PointChoice::Heaviest } else { PointChoice::First },
+        ..ImportOptions::default()
     };
     match import(bytes, &options) {
         Ok(import) => {

@@ -5,7 +5,7 @@ use super::output;
 use super::problem;
 use clap::Args;
 use herringbone::api::{MAX_IMPORT_BYTES, Problem};
-use herringbone_exchange::{Import, ImportOptions, PointChoice, import};
+use herringbone_exchange::{FaceWidth, Import, ImportOptions, PointChoice, import};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -13,7 +13,8 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArguments {
-    /// Gear model: REXS 1.0 to 2.0.0 as XML, JSON or zip; `-` reads standard input.
+    /// Gear model: REXS 1.0 to 2.0.0 as XML, JSON or zip, or a KISSsoft calculation of a gear pair (`.Z12`); `-` reads
+    /// standard input.
     file: PathBuf,
     /// Pair to take: its number in the list that is shown where there are several, or the id of its stage.
     #[arg(long, value_name = "N")]
@@ -30,6 +31,10 @@ pub(super) struct ImportArguments {
     /// Load case to take: its number, counted from 1, or `heaviest`; the first when it is not given.
     #[arg(long, value_name = "N|heaviest", value_parser = point)]
     point: Option<PointChoice>,
+    /// What the face width of a double-helical pair is in a `.Z12` file: of both halves with the groove, or of one
+    /// half.
+    #[arg(long, value_name = "total|half", default_value = "total", value_parser = face_width)]
+    face_width_is: FaceWidth,
     /// Write the job document to this file instead of standard output.
     #[arg(short, long, value_name = "JOB.json")]
     output: Option<PathBuf>,
@@ -38,12 +43,20 @@ pub(super) struct ImportArguments {
     report: Option<PathBuf>,
 }
 
-fn finite(text: &str) -> Result<f64, String> {
+pub(super) fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(|| "give a finite number".to_owned())
 }
 
 fn positive(text: &str) -> Result<f64, String> {
     finite(text).and_then(|value| if value >= 0.0 { Ok(value) } else { Err("give 0 or more".to_owned()) })
+}
+
+fn face_width(text: &str) -> Result<FaceWidth, String> {
+    match text {
+        "total" => Ok(FaceWidth::Total),
+        "half" => Ok(FaceWidth::Half),
+        _ => Err("give total or half".to_owned()),
+    }
 }
 
 fn point(text: &str) -> Result<PointChoice, String> {
@@ -70,6 +83,7 @@ pub(super) fn run(arguments: ImportArguments) -> ExitCode {
         gap_width_mm: arguments.gap_mm,
         torque_nm: arguments.torque_nm,
         point: arguments.point.unwrap_or_default(),
+        face_width: arguments.face_width_is,
     };
     let imported = match import(&bytes, &options) {
         Ok(imported) => imported,
@@ -93,7 +107,9 @@ pub(super) fn run(arguments: ImportArguments) -> ExitCode {
 /// The report for people.
 fn summary(imported: &Import) -> String {
     let Import { source, pair, alternatives, operating_points, .. } = imported;
-    let mut text = format!("REXS {} by {}: pair {}, {}\n", source.version, source.application, pair.number, pair.label);
+    let format = source.format.to_uppercase();
+    let (version, application) = (&source.version, &source.application);
+    let mut text = format!("{format} {version} by {application}: pair {}, {}\n", pair.number, pair.label);
     let mut line = |arguments: std::fmt::Arguments| {
         // Writing to a text does not fail.
         let _ = writeln!(text, "{arguments}");

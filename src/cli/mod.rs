@@ -1,6 +1,7 @@
 //! The command line: the subcommands, one file each.
 
 mod backup;
+mod batch;
 mod cache;
 mod check;
 mod export;
@@ -10,6 +11,7 @@ mod openapi;
 mod output;
 mod problem;
 mod serve;
+mod shell;
 mod solve;
 mod table;
 #[cfg(test)]
@@ -39,14 +41,22 @@ enum Command {
     Backup(backup::BackupArguments),
     /// Solve one job document in place: the result as JSON on standard output.
     Solve(solve::SolveArguments),
+    /// Solve every document and gear model of a folder, and go on where it was stopped.
+    Batch(batch::BatchArguments),
     /// Check one job document: geometry and warnings, or every violation.
     Check(check::CheckArguments),
     /// Write a job document as a gear model for other programs (REXS).
     Export(export::ExportArguments),
-    /// Make a job document of a gear model of another program (REXS).
+    /// Make a job document of a gear model of another program (REXS, KISSsoft).
     Import(import::ImportArguments),
     /// Print the description of the HTTP interface (OpenAPI, JSON).
-    Openapi,
+    Openapi(openapi::OpenapiArguments),
+    /// Print the completion script of a shell.
+    #[command(hide = true)]
+    Completions(shell::CompletionArguments),
+    /// Write the manual pages.
+    #[command(hide = true)]
+    Man(shell::ManArguments),
 }
 
 /// Runs the subcommand. Returns the exit code of the process.
@@ -57,9 +67,12 @@ pub(crate) fn run(arguments: Arguments) -> ExitCode {
         Command::Worker(arguments) => worker::run(*arguments),
         Command::Backup(arguments) => backup::run(arguments),
         Command::Solve(arguments) => solve::run(arguments),
+        Command::Batch(arguments) => batch::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Import(arguments) => import::run(arguments),
-        Command::Openapi => openapi::run(),
+        Command::Openapi(arguments) => openapi::run(arguments),
+        Command::Completions(arguments) => shell::completions(arguments),
+        Command::Man(arguments) => shell::man(arguments),
     }
 }

@@ -5,6 +5,7 @@ use clap::Args;
 use herringbone::api::{self, Access, AppState, HttpConfig, LoginRenderer, Pages};
 use herringbone::store::{Store, StoreConfig};
 use herringbone::web;
+use herringbone::webhook::{Deliverer, Setting as WebhookSetting, WebhookConfig};
 #[cfg(feature = "cluster")]
 use herringbone::work::cluster::{ClusterConfig, NatsSetup, QueueTarget};
 use herringbone::work::{self, Jobs, StudySolver, WorkConfig};
@@ -29,6 +30,8 @@ pub(super) struct ServeArguments {
     #[cfg(feature = "cluster")]
     #[command(flatten)]
     cluster: ClusterConfig,
+    #[command(flatten)]
+    webhook: WebhookConfig,
     #[command(flatten)]
     log: LogConfig,
 }
@@ -83,7 +86,12 @@ async fn serve(arguments: &ServeArguments) -> anyhow::Result<()> {
     raise_file_limit(http.connections.max_connections);
     let listener = TcpListener::bind(http.listen).await.with_context(|| format!("cannot listen on {}", http.listen))?;
     let store = Store::open(&arguments.store).await?;
+    // Before the first job can end.
+    let deliverer = Deliverer::new(store.clone(), &arguments.webhook, WebhookSetting::real()).await?;
     let jobs = start_jobs(store, arguments).await?;
+    if let Some(deliverer) = deliverer {
+        tokio::spawn(deliverer.run(jobs.closing().clone()));
+    }
     tokio::spawn(work::run_retention(jobs.clone(), arguments.store.retention, Arc::new(Timestamp::now)));
     tokio::spawn(work::run_file_watch(jobs.clone()));
     let state = AppState::new(jobs.clone(), Timestamp::now());

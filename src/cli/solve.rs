@@ -45,7 +45,7 @@ fn series_target(text: &str) -> Result<(String, PathBuf), String> {
     }
 }
 
-fn decimal(text: &str) -> Result<Decimal, String> {
+pub(super) fn decimal(text: &str) -> Result<Decimal, String> {
     let decimal = Decimal::ALL.iter().find(|(name, _)| *name == text).map(|(_, decimal)| *decimal);
     decimal.ok_or_else(|| "give point or comma".to_owned())
 }

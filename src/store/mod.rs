@@ -33,6 +33,7 @@ mod series;
 mod stages;
 mod submit;
 mod usage;
+mod webhooks;
 mod write_probe;
 
 pub use backup::{BackupError, BackupSummary, backup};
@@ -58,6 +59,7 @@ pub use run::{Claim, Recovery, ReleaseReason, WorkClass};
 pub use series::{PackedSeries, SampleBatch, SeriesEntry};
 pub use submit::{NewJob, Submission};
 pub use usage::DatabaseUsage;
+pub use webhooks::{Delivery, DeliveryState, DeliveryTry};
 
 #[cfg(test)]
 mod tests;

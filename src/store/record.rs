@@ -4,6 +4,7 @@ use super::connect::StoreError;
 use super::failure::Failure;
 use super::headline::Headline;
 use super::lifecycle::{JobId, JobState};
+use super::webhooks::record_end;
 use jiff::Timestamp;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{FromRow, Row, Sqlite, Transaction};
@@ -96,20 +97,21 @@ where
     text.parse().map_err(|error| column_error(column, error))
 }
 
-fn optional_timestamp(row: &SqliteRow, column: &'static str) -> Result<Option<Timestamp>, sqlx::Error> {
+pub(super) fn optional_timestamp(row: &SqliteRow, column: &'static str) -> Result<Option<Timestamp>, sqlx::Error> {
     row.try_get::<Option<i64>, _>(column)?.map(|value| timestamp(column, value)).transpose()
 }
 
-fn timestamp(column: &'static str, microseconds: i64) -> Result<Timestamp, sqlx::Error> {
+pub(super) fn timestamp(column: &'static str, microseconds: i64) -> Result<Timestamp, sqlx::Error> {
     Timestamp::from_microsecond(microseconds).map_err(|error| column_error(column, error))
 }
 
-fn column_error(column: &'static str, detail: impl std::fmt::Display) -> sqlx::Error {
+pub(super) fn column_error(column: &'static str, detail: impl std::fmt::Display) -> sqlx::Error {
     sqlx::Error::ColumnDecode { index: column.to_owned(), source: detail.to_string().into() }
 }
 
-/// Stores a transition in the history of the job. Its time is that of the clock, which may have been set back since the
-/// last transition; the times of the job itself never decrease (`MAX` in the statements).
+/// Stores a transition in the history of the job, and of an end what webhooks are to tell. Its time is that of the
+/// clock, which may have been set back since the last transition; the times of the job itself never decrease (`MAX` in
+/// the statements).
 pub(super) async fn record_event(
     transaction: &mut Transaction<'static, Sqlite>,
     job: &JobRecord,
@@ -123,5 +125,5 @@ pub(super) async fn record_event(
         .bind(job.attempt)
         .execute(&mut **transaction)
         .await?;
-    Ok(())
+    record_end(transaction, job, now).await
 }

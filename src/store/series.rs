@@ -109,6 +109,23 @@ impl PackedSeries {
         (self.entry, self.parts)
     }
 
+    /// Number of parts of the samples.
+    pub fn n_parts(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// Decompresses a part of the samples; none where there is no such part.
+    ///
+    /// # Errors
+    /// As [`PackedSeries::unpack`].
+    pub fn unpack_part(&self, part: usize) -> Result<Vec<f64>, StoreError> {
+        let Some(part) = self.parts.get(part) else { return Ok(Vec::new()) };
+        let bytes = zstd::zstd_safe::get_frame_content_size(part).ok().flatten();
+        let most = usize::try_from(self.entry.n).unwrap_or(usize::MAX).saturating_mul(8);
+        let bytes = bytes.and_then(|bytes| usize::try_from(bytes).ok()).unwrap_or(most).min(most);
+        decode(&zstd::bulk::decompress(part, bytes).map_err(|error| corrupt(&error))?)
+    }
+
     /// Decompresses the samples. Takes milliseconds per million: not for async threads.
     ///
     /// # Errors
@@ -119,11 +136,7 @@ impl PackedSeries {
         for part in &self.parts {
             let left = n - values.len();
             let bytes = zstd::bulk::decompress(part, left * 8).map_err(|error| corrupt(&error))?;
-            let (chunks, rest) = bytes.as_chunks::<8>();
-            if !rest.is_empty() {
-                return Err(corrupt(&"a part ends within a sample"));
-            }
-            values.extend(chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)));
+            values.extend(decode(&bytes)?);
         }
         if values.len() != n {
             return Err(corrupt(&format!("{} samples instead of {n}", values.len())));
@@ -283,6 +296,14 @@ impl Store {
         let parts = rows.into_iter().map(|row| row.try_get("samples")).collect::<Result<_, _>>()?;
         Ok(Some(PackedSeries { entry, parts }))
     }
+}
+
+fn decode(bytes: &[u8]) -> Result<Vec<f64>, StoreError> {
+    let (chunks, rest) = bytes.as_chunks::<8>();
+    if !rest.is_empty() {
+        return Err(corrupt(&"a part ends within a sample"));
+    }
+    Ok(chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect())
 }
 
 fn corrupt(detail: &dyn std::fmt::Display) -> StoreError {

@@ -64,7 +64,16 @@ async fn the_choices_of_the_query() {
     assert_eq!(answer.json["document"]["operation"]["pinion_torque_nm"], 1500.0);
     assert_eq!(answer.json["document"]["design"]["gap_width_mm"], 12.5);
     assert_eq!(answer.json["operating_points"][3]["chosen"], true);
-    for query in ["pair=0", "mirror=yes", "torque_nm=x", "point=last", "gap_mm=-1", "format=z12", "what=1"] {
+    for query in [
+        "pair=0",
+        "mirror=yes",
+        "torque_nm=x",
+        "point=last",
+        "gap_mm=-1",
+        "format=step",
+        "face_width_is=both",
+        "what=1",
+    ] {
         let answer = app.send(Method::POST, &format!("{PATH}?{query}"), &[XML], industrial()).await;
         answer.assert_problem(400, "invalid-parameter");
     }
@@ -75,6 +84,7 @@ async fn files_that_are_none_and_bodies_that_are_too_large() {
     let app = app().await;
     let unreadable = app.send(Method::POST, PATH, &[XML], "<model>").await;
     unreadable.assert_problem(422, "invalid-design");
+    assert_eq!(unreadable.json["title"], "The file cannot be imported");
     let form = [("content-type", "application/x-www-form-urlencoded")];
     app.send(Method::POST, PATH, &form, "a=b").await.assert_problem(415, "unsupported-media-type");
     let packed = [XML, ("content-encoding", "gzip")];

@@ -298,7 +298,7 @@ async fn files_that_are_no_job_documents_are_named_for_what_they_are() {
                 "is a REXS model without components",
             ),
             ("pair.xml", b"<?xml version=\"1.0\"?>\n<model applicationId=\"REXS\">".to_vec(), "ends inside of <model>"),
-            ("gear.Z12", b"VERSION=20.0;\r\nKSOFTVERSION=1;".to_vec(), "KISSsoft can export REXS"),
+            ("gear.Z12", b"VERSION=20.0;\r\nKSOFTVERSION=1;".to_vec(), "a calculation of KISSsoft"),
             ("large.json", large.into_bytes(), "large.json has 3 MiB; a job document has 1 MiB at most"),
             ("table.xlsx", b"PK\x03\x04rest".to_vec(), "is a ZIP archive or a spreadsheet"),
             ("result.json", br#"{"geometry": {}, "numerics": {}}"#.to_vec(), "is the result of a job"),

@@ -130,6 +130,24 @@ async fn the_example_goes_from_the_form_to_its_result() {
             saved_by(browser, "#stiffness-plot + .plot-tools .plot-files button:nth-child(3)", "image/svg").await;
         assert!(drawing.starts_with("<svg") && drawing.contains("tangent"), "{drawing:.80}");
 
+        // Files for other programs, and the acceleration of the chosen channel to be heard.
+        for (id, ending) in [
+            ("series-npz", "/series?format=npz"),
+            ("series-mat", "/series?format=mat"),
+            ("download-workbook", "/result?format=xlsx"),
+        ] {
+            let script = format!(
+                "fetch(document.querySelector('#{id}').href).then(({{ok}}) => window.{ending_name} = ok)",
+                ending_name = id.replace('-', "_")
+            );
+            browser.value(&script).await;
+            browser.until(&format!("window.{} === true", id.replace('-', "_"))).await;
+            browser.until(&format!("document.querySelector('#{id}').href.endsWith('{ending}')")).await;
+        }
+        assert_eq!(browser.value("document.querySelector('#play').hidden").await, json!(false));
+        browser.choose("#channel", "v_x_left").await;
+        browser.until("document.querySelector('#play').title.includes('a_x_left')").await;
+
         // On a telephone nothing sticks out, the plots included.
         browser.driver.set_window_rect(0, 0, 390, 844).await.unwrap();
         browser.driver.refresh().await.unwrap();

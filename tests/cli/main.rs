@@ -1,6 +1,7 @@
 //! The command line as a user meets it: exit codes, what goes to which stream, every name of the result.
 
 mod backup;
+mod batch;
 mod cases;
 mod deploy;
 mod import;

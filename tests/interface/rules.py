@@ -52,8 +52,11 @@ def before_call(context, case, **kwargs):
     """Bends data that fits the schema to rules that no schema can say."""
     if case.meta is None or not case.meta.generation.mode.is_positive:
         return
-    if case.operation.label == "GET /api/v1/jobs/{id}/series/{channel}":
+    if case.operation.label.startswith("GET /api/v1/jobs/{id}/series"):
         window(case.query)
+    elif case.operation.label == "GET /api/v1/jobs/{id}/points" and "decimal" in case.query:
+        # The decimal sign is of CSV.
+        case.query.pop("format", None)
     elif case.operation.label in ("POST /api/v1/jobs", "POST /api/v1/jobs/validate") and isinstance(case.body, dict):
         gear(case)
 

@@ -84,10 +84,7 @@ fn single_byte(syntax: Syntax, bytes: &[u8]) -> Result<String, Refusal> {
 
 /// Why a file that is neither XML nor JSON nor an archive is refused.
 fn other_kind(bytes: &[u8]) -> Refusal {
-    let head: String = bytes.iter().take(400).filter(|byte| **byte != 0).map(|byte| char::from(*byte)).collect();
-    let detail = if head.contains("VERSION=") && (head.contains("KSOFTVERSION") || head.contains("MODULE=")) {
-        "is a KISSsoft calculation file, which is not read yet; KISSsoft can export REXS"
-    } else if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+    let detail = if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         "is text in UTF-16; needed: UTF-8"
     } else if bytes.starts_with(b"\x1f\x8b") {
         "is compressed with gzip; needed: the model itself, or a zip archive"

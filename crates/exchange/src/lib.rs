@@ -4,12 +4,16 @@
 //! the document that was taken from the file or assumed, and for what the file has and the document has not. The other
 //! way: [`export_rexs`].
 
+pub mod arrays;
 mod container;
 mod draft;
+pub mod lookup;
 mod refusal;
 mod report;
 mod rexs;
+pub mod sound;
 mod unit;
+mod z12;
 
 pub use container::{MAX_FILES, MAX_UNPACKED_BYTES};
 pub use refusal::{Refusal, RefusalKind};
@@ -34,6 +38,18 @@ pub struct ImportOptions {
     pub torque_nm: Option<f64>,
     /// Operating point of the document.
     pub point: PointChoice,
+    /// What the face width of a double-helical pair is in a file that does not say it (Z12).
+    pub face_width: FaceWidth,
+}
+
+/// What a face width is of.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum FaceWidth {
+    /// Both halves and the groove between them.
+    #[default]
+    Total,
+    /// One half.
+    Half,
 }
 
 /// An operating point of a load spectrum.
@@ -48,15 +64,22 @@ pub enum PointChoice {
     Heaviest,
 }
 
-/// Reads a gear model: REXS 1.0 to 2.0.0 as XML, JSON or zip, detected by the contents.
+/// Reads a gear model: REXS 1.0 to 2.0.0 as XML, JSON or zip, or a calculation file of KISSsoft for a gear pair (Z12),
+/// detected by the contents.
 ///
 /// # Errors
 /// [`Refusal`] with every reason found: the file cannot be read, is not complete, or has no pair that a document can
 /// describe.
 pub fn import(bytes: &[u8], options: &ImportOptions) -> Result<Import, Refusal> {
-    let file = container::open(bytes)?;
-    let mut import = rexs::import(&file, options)?;
+    let mut import = match z12::recognise(bytes) {
+        Some(text) => z12::import(&text, options)?,
+        None => {
+            let file = container::open(bytes)?;
+            let mut import = rexs::import(&file, options)?;
+            import.source.file = file.name;
+            import
+        }
+    };
     import.source.sha256 = hex::encode(Sha256::digest(bytes));
-    import.source.file = file.name;
     Ok(import)
 }

@@ -35,7 +35,7 @@ pub struct Import {
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(ToSchema))]
 pub struct ImportSource {
-    /// `rexs`.
+    /// `rexs` or `z12`.
     pub format: String,
     /// Version of the format.
     pub version: String,

@@ -1,11 +1,13 @@
 //! The OpenAPI document, generated from the endpoints.
 
 mod documents;
+mod generators;
 mod links;
 mod responses;
 
 use super::routes;
 use super::state::AppState;
+use serde_json::Value;
 use utoipa::OpenApi;
 use utoipa_axum::router::OpenApiRouter;
 
@@ -20,6 +22,7 @@ use utoipa_axum::router::OpenApiRouter;
             `X-Request-Id`, the client's own where it sent one that is short and plain.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
+    paths(routes::read_sound::read_sound),
     components(schemas(
         super::problem::Problem,
         super::csv::Decimal,
@@ -51,6 +54,17 @@ pub(super) fn import_routes() -> OpenApiRouter<AppState> {
 
 /// The OpenAPI document as JSON text.
 pub fn openapi_json() -> String {
+    to_text(description())
+}
+
+/// The OpenAPI document as JSON text, in the terms that generators of clients understand.
+pub fn openapi_for_generators() -> String {
+    let mut document = description();
+    generators::simplify(&mut document);
+    to_text(document)
+}
+
+fn description() -> Value {
     let (_, document) = document_routes().merge(import_routes()).split_for_parts();
     let mut document = serde_json::to_value(document).unwrap_or_default();
     documents::add_schemas(&mut document);
@@ -60,11 +74,16 @@ pub fn openapi_json() -> String {
             let Some(operations) = operations.as_object_mut() else { continue };
             for operation in operations.values_mut() {
                 documents::set_schemas(path, operation);
+                responses::set_binary(operation);
                 responses::add_common(path, operation);
                 links::add(operation);
             }
         }
     }
+    document
+}
+
+fn to_text(mut document: Value) -> String {
     // Whether maps keep the order of insertion depends on the features of the build; the text must not.
     document.sort_all_objects();
     let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();

@@ -150,3 +150,22 @@ fn simplify(schema: &mut Value) {
         schema.remove("format");
     }
 }
+
+/// Media types of files that are no text.
+const BINARY: [&str; 4] = [
+    "application/x-npz",
+    "application/x-matlab-data",
+    "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    "audio/wav",
+];
+
+/// Describes the bodies of responses that are files as such.
+pub(super) fn set_binary(operation: &mut Value) {
+    let Some(responses) = operation["responses"].as_object_mut() else { return };
+    for response in responses.values_mut() {
+        let Some(content) = response.get_mut("content").and_then(Value::as_object_mut) else { continue };
+        for (_, body) in content.iter_mut().filter(|(media_type, _)| BINARY.contains(&media_type.as_str())) {
+            body["schema"] = json!({"type": "string", "format": "binary"});
+        }
+    }
+}

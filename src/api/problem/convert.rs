@@ -28,7 +28,12 @@ impl From<Refusal> for Problem {
             RefusalKind::Invalid => ProblemCode::InvalidDesign,
             RefusalKind::Unsupported => ProblemCode::UnsupportedDesign,
         };
-        Problem::new(code, refusal.summary).with_errors(refusal.errors)
+        // It is not the document that is wrong: there is none yet.
+        let title = match refusal.kind {
+            RefusalKind::Invalid => "The file cannot be imported",
+            RefusalKind::Unsupported => "The file has no pair that can be taken",
+        };
+        Problem { title: title.to_owned(), ..Problem::new(code, refusal.summary).with_errors(refusal.errors) }
     }
 }
 

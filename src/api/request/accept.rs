@@ -3,11 +3,14 @@
 use super::query::QueryParameters;
 use crate::api::csv::Decimal;
 use crate::api::problem::{ApiError, ProblemCode};
+use crate::api::workbook::MEDIA_TYPE;
 use axum::extract::Request;
 use axum::http::HeaderMap;
 use axum::http::header::ACCEPT;
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
+use herringbone_exchange::arrays::ArrayForm;
+use herringbone_job::Violation;
 
 /// Selects the offered media type with the highest quality in `Accept`; the first offer without that header.
 ///
@@ -26,6 +29,24 @@ pub(crate) fn negotiate(headers: &HeaderMap, offers: &[&'static str]) -> Result<
         .ok_or_else(|| ApiError::new(ProblemCode::NotAcceptable, format!("This path has: {}.", offers.join(", "))))
 }
 
+/// Selects one of the forms in which a path answers: by the query parameter `format`, or by `Accept`; the first one
+/// without either. Each form is given with its name and media type.
+///
+/// # Errors
+/// 406 when `Accept` permits none of them, or not the one that the query selects.
+pub(crate) fn negotiate_form<T: Copy>(
+    headers: &HeaderMap,
+    query: &mut QueryParameters,
+    forms: &[(&'static str, &'static str, T)],
+) -> Result<T, ApiError> {
+    let names: Vec<_> = forms.iter().map(|form| (form.0, form)).collect();
+    let chosen = query.choice("format", &names);
+    let offers: Vec<_> = chosen.map_or_else(|| forms.iter().map(|form| form.1).collect(), |form| vec![form.1]);
+    let media_type = negotiate(headers, &offers)?;
+    let form = chosen.or_else(|| forms.iter().find(|form| form.1 == media_type));
+    form.map(|form| form.2).ok_or_else(|| ApiError::internal("a media type that was not offered"))
+}
+
 /// Selects the representation of a table: CSV with a decimal sign, or JSON (`None`). The query parameter `decimal`
 /// selects CSV and its dialect; `Accept: text/csv`, which may have the parameter `decimal`, selects CSV.
 ///
@@ -39,6 +60,41 @@ pub(crate) fn negotiate_table(headers: &HeaderMap, query: &mut QueryParameters) 
         "text/csv" => accepted_decimal(headers).map(Some),
         _ => Ok(None),
     }
+}
+
+/// The representation of the rows of a sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TableForm {
+    Json,
+    Csv(Decimal),
+    Workbook,
+    Arrays(ArrayForm),
+}
+
+/// Selects the representation of the rows of a sweep: by the query parameter `format`, by `decimal` (CSV), or by
+/// `Accept`.
+///
+/// # Errors
+/// 406 when `Accept` permits none of them, or not the one that the query selects.
+pub(crate) fn negotiate_table_form(headers: &HeaderMap, query: &mut QueryParameters) -> Result<TableForm, ApiError> {
+    const FORMS: [(&str, &str, TableForm); 5] = [
+        ("json", "application/json", TableForm::Json),
+        ("csv", "text/csv", TableForm::Csv(Decimal::Point)),
+        ("xlsx", MEDIA_TYPE, TableForm::Workbook),
+        ("npz", "application/x-npz", TableForm::Arrays(ArrayForm::Npz)),
+        ("mat", "application/x-matlab-data", TableForm::Arrays(ArrayForm::Mat)),
+    ];
+    let Some(decimal) = query.choice("decimal", &Decimal::ALL) else {
+        return match negotiate_form(headers, query, &FORMS)? {
+            TableForm::Csv(_) => accepted_decimal(headers).map(TableForm::Csv),
+            form => Ok(form),
+        };
+    };
+    let names = FORMS.map(|(name, _, form)| (name, form));
+    if query.choice("format", &names).is_some_and(|form| !matches!(form, TableForm::Csv(_))) {
+        query.add_violation(Violation::new("/decimal", "conflict", "is of CSV only, not of another format"));
+    }
+    negotiate(headers, &["text/csv"]).map(|_| TableForm::Csv(decimal))
 }
 
 /// Selects the dialect of a table that there is only as CSV: by the query parameter `decimal`, or by the parameter

@@ -7,6 +7,7 @@ use herringbone_job::Violation;
 use jiff::Timestamp;
 use jiff::civil::Date;
 use jiff::tz::TimeZone;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 /// The query parameters of a request: each known one is read by a method, then [`QueryParameters::finish`] is called.
@@ -86,6 +87,23 @@ impl QueryParameters {
             self.violations.push(Violation { unit: Some(unit.to_owned()), ..violation });
         }
         value
+    }
+
+    /// A finite number in a range; `unit` is named in the violation.
+    pub(crate) fn number_within(&mut self, name: &'static str, unit: &str, range: RangeInclusive<f64>) -> Option<f64> {
+        let value = self.number(name, unit)?;
+        if range.contains(&value) {
+            return Some(value);
+        }
+        let (minimum, maximum) = (*range.start(), *range.end());
+        let detail = format!("is {value}; permitted: {minimum} to {maximum}, in {unit}");
+        self.violations.push(Violation {
+            minimum: Some(minimum),
+            maximum: Some(maximum),
+            unit: Some(unit.to_owned()),
+            ..Violation::new(format!("/{name}"), "out-of-range", detail)
+        });
+        None
     }
 
     /// A time: RFC 3339, or a date, which stands for its start in UTC.

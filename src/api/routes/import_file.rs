@@ -5,7 +5,7 @@ use crate::api::request::{QueryParameters, read_file};
 use crate::api::state::AppState;
 use axum::Json;
 use axum::extract::{Request, State};
-use herringbone_exchange::{Import, ImportOptions, PointChoice, import};
+use herringbone_exchange::{FaceWidth, Import, ImportOptions, PointChoice, import};
 use herringbone_job::Violation;
 
 /// Largest number of a pair or a load case: ids of stages are numbers too.
@@ -14,7 +14,8 @@ const MAX_NUMBER: u64 = 9_007_199_254_740_991;
 /// Make a job document of a gear model of another program. Nothing is submitted.
 #[utoipa::path(
     post, path = "/import", tag = "jobs",
-    description = "The file is the body: a REXS model (1.0 to 2.0.0) as XML, JSON or zip, found by its contents. The answer has a \
+    description = "The file is the body: a REXS model (1.0 to 2.0.0) as XML, JSON or zip, or a KISSsoft calculation of a gear \
+        pair (`.Z12`), found by its contents. The answer has a \
         complete job document\nand a report: which fields were taken from where, which were assumed and why, what was ignored, \
         and how results in the file compare.",
     params(
@@ -26,7 +27,10 @@ const MAX_NUMBER: u64 = 9_007_199_254_740_991;
         ("torque_nm" = Option<f64>, Query, description = "Torque of the whole pinion, in place of the file's."),
         ("point" = Option<String>, Query, description = "The load case of the document: its number, counted from 1 (the default), \
             or `heaviest`.", pattern = "^([1-9][0-9]*|heaviest)$"),
-        ("format" = Option<String>, Query, description = "`auto` (the default) or `rexs`.", pattern = "^(auto|rexs)$"),
+        ("face_width_is" = Option<String>, Query, description = "What the face width of a double-helical pair is in a `.Z12` file: `total` \
+            (the default) or `half`.", pattern = "^(total|half)$"),
+        ("format" = Option<String>, Query, description = "`auto` (the default), `rexs` or `z12`: the file is \
+            recognised by its contents in any case.", pattern = "^(auto|rexs|z12)$"),
     ),
     request_body(
         description = "The file, at most 32 MiB; at most 64 MiB unpacked.",
@@ -53,7 +57,7 @@ pub(super) async fn import_file(
     request: Request,
 ) -> Result<Json<Import>, ApiError> {
     let options = options(&mut query);
-    query.choice("format", &[("auto", ()), ("rexs", ())]);
+    query.choice("format", &[("auto", ()), ("rexs", ()), ("z12", ())]);
     query.finish()?;
     let permit = state.import_permit().await?;
     let bytes = read_file(request, &state).await?;
@@ -95,5 +99,8 @@ fn options(query: &mut QueryParameters) -> ImportOptions {
         gap_width_mm,
         torque_nm: query.number("torque_nm", "N m"),
         point,
+        face_width: query
+            .choice("face_width_is", &[("total", FaceWidth::Total), ("half", FaceWidth::Half)])
+            .unwrap_or_default(),
     }
 }

@@ -2,10 +2,15 @@
 
 use crate::api::config::{DEFAULT_ROWS, MAX_ROWS, MAX_SWEEP_ROWS};
 use crate::api::csv::Decimal;
+use crate::api::guarded_body::GuardedBody;
 use crate::api::points::{self, RowRange};
-use crate::api::problem::ApiError;
-use crate::api::request::{JobPath, QueryParameters, negotiate_table};
+use crate::api::problem::{ApiError, ProblemCode};
+use crate::api::request::{JobPath, QueryParameters, TableForm, negotiate_table_form};
 use crate::api::state::AppState;
+use crate::api::table::Table;
+use crate::api::text_body::TextBody;
+use crate::api::workbook::{self, MAX_WORKBOOK_ROWS, write_workbook};
+use axum::body::Body;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::http::header::{CONTENT_TYPE, VARY};
@@ -34,18 +39,21 @@ pub(super) struct PointItem {
     pub point: SweepPoint,
 }
 
-/// Read the points of a sweep, a page at a time or as CSV.
+/// Read the points of a sweep, a page at a time or as a file: CSV, workbook, arrays.
 #[utoipa::path(
     get, path = "/jobs/{id}/points", tag = "results",
     description = "The points of a sweep that runs, failed or was canceled can be read as far as they are solved; \
-        there may then be gaps between\ntheir positions, which are filled later. CSV has all of them unless `limit` \
-        is given.",
+        there may then be gaps between\ntheir positions, which are filled later. Files have all of them unless `limit` \
+        is given: CSV; `xlsx`, a workbook with the rows,\nthe input and the units; `npz` (NumPy) and `mat` (MATLAB, version 5), \
+        an array for each column, with `columns` and `units`.",
     params(
         ("id" = String, Path, format = "uuid", description = "Id of the job"),
         ("from" = Option<u64>, Query, description = "First position; 0 when left out.", minimum = 0,
             maximum = 200_000),
         ("limit" = Option<u64>, Query, description = "Points per page, 1 to 10000; 1000 when left out (CSV: all).",
             minimum = 1, maximum = 10_000, example = 1000),
+        ("format" = Option<String>, Query, pattern = "^(json|csv|xlsx|npz|mat)$", description = "`json` (the default), `csv`, `xlsx`, `npz` \
+            or `mat`. The same as the media type in `Accept`."),
         ("decimal" = Option<Decimal>, Query, description = "Answer with CSV: `point` (fields between commas, the default of `text/csv`) or \
             `comma` (decimal commas, fields between semicolons, CR LF, byte order mark: for spreadsheets of such a locale). The \
             same as `Accept: text/csv; decimal=comma`."),
@@ -53,10 +61,14 @@ pub(super) struct PointItem {
     responses(
         (status = 200, description = "The points.", content(
             (PointList = "application/json"),
-            (String = "text/csv", example = "position,branch,/operation/pinion_speed_rpm\n0,,300.0\n"))),
+            (String = "text/csv", example = "position,branch,/operation/pinion_speed_rpm\n0,,300.0\n"),
+            (Vec<u8> = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"),
+            (Vec<u8> = "application/x-npz"),
+            (Vec<u8> = "application/x-matlab-data"))),
         (status = 400, description = "`invalid-parameter`."),
         (status = 404, description = "No such job, or it is not a sweep."),
-        (status = 406, description = "Neither JSON nor CSV is accepted."),
+        (status = 406, description = "None of these media types is accepted, or a sheet has no room for the rows."),
+        (status = 503, description = "`too-many-large-answers` or `storage-unavailable`; `Retry-After` says when to try again."),
     )
 )]
 pub(super) async fn list_points(
@@ -65,7 +77,7 @@ pub(super) async fn list_points(
     mut query: QueryParameters,
     headers: HeaderMap,
 ) -> Result<Response, ApiError> {
-    let csv_decimal = negotiate_table(&headers, &mut query)?;
+    let form = negotiate_table_form(&headers, &mut query)?;
     let from = query.integer("from", 0, MAX_SWEEP_ROWS, false).unwrap_or(0);
     let limit = query.integer("limit", 1, MAX_ROWS, false);
     query.finish()?;
@@ -73,12 +85,44 @@ pub(super) async fn list_points(
     let shape = SweepShape::of_stored(&input).map_err(ApiError::internal)?;
     let store = state.jobs().store();
     let vary = (VARY, "accept");
-    if let Some(decimal) = csv_decimal {
-        let range = RowRange { from, limit: limit.unwrap_or(u64::MAX), ..RowRange::ALL };
-        let body = points::csv_body(store, id, range, &shape.pointers(), decimal).await?;
-        return Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response());
+    let of_file = RowRange { from, limit: limit.unwrap_or(u64::MAX), ..RowRange::ALL };
+    match form {
+        TableForm::Json => {
+            let range = RowRange { limit: limit.unwrap_or(DEFAULT_ROWS), ..of_file };
+            let body = points::json_body(store.clone(), id, range, shape.rows() as u64).await?;
+            Ok(([(CONTENT_TYPE, "application/json"), vary], body).into_response())
+        }
+        TableForm::Csv(decimal) => {
+            let body = points::csv_body(store, id, of_file, &shape.pointers(), decimal).await?;
+            Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response())
+        }
+        TableForm::Workbook | TableForm::Arrays(_) => {
+            // The whole table is in memory until it was sent.
+            let place = state.large_body_place().await?;
+            let permit = state.large_read_permit().await?;
+            let pages = points::pages(store, id, of_file).await?;
+            let table = Table::of_points(pages, &shape.pointers()).await?;
+            let bytes = tokio::task::spawn_blocking(move || encode(&table, form, &input));
+            let bytes = bytes.await.map_err(ApiError::internal)??;
+            let (media_type, ending) = match form {
+                TableForm::Arrays(form) => (form.media_type(), form.ending()),
+                _ => (workbook::MEDIA_TYPE, "xlsx"),
+            };
+            let body = Body::new(GuardedBody::new(TextBody::new(bytes).into(), (place, permit)));
+            Ok(super::file_response(body, media_type, &format!("{id}-points.{ending}")))
+        }
     }
-    let range = RowRange { from, limit: limit.unwrap_or(DEFAULT_ROWS), ..RowRange::ALL };
-    let body = points::json_body(store.clone(), id, range, shape.rows() as u64).await?;
-    Ok(([(CONTENT_TYPE, "application/json"), vary], body).into_response())
+}
+
+fn encode(table: &Table, form: TableForm, input: &str) -> Result<Vec<u8>, ApiError> {
+    let TableForm::Arrays(form) = form else {
+        if table.n_rows() > MAX_WORKBOOK_ROWS {
+            let detail =
+                format!("A sheet has {MAX_WORKBOOK_ROWS} rows at most; take CSV, or pages with from and limit.");
+            return Err(ApiError::new(ProblemCode::NotAcceptable, detail));
+        }
+        let document = serde_json::from_str(input).map_err(ApiError::internal)?;
+        return write_workbook("points", table, &document).map_err(ApiError::internal);
+    };
+    table.to_arrays(form).map_err(ApiError::internal)
 }

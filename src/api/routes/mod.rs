@@ -5,6 +5,7 @@ mod delete_job;
 mod explain_problem;
 mod health;
 mod import_file;
+mod list_deliveries;
 mod list_jobs;
 mod list_kinds;
 mod list_points;
@@ -20,7 +21,9 @@ mod read_point_input;
 mod read_result;
 mod read_rexs;
 mod read_series;
+pub(super) mod read_sound;
 mod read_system;
+mod read_tables;
 mod submit_job;
 mod update_job;
 mod validate_job;
@@ -35,8 +38,9 @@ use super::request::{event_stream_only, json_only};
 use super::state::AppState;
 use crate::store::{JobId, JobRecord, JobState};
 use axum::Router;
+use axum::body::Body;
 use axum::http::HeaderName;
-use axum::http::header::CACHE_CONTROL;
+use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_TYPE, VARY};
 use axum::middleware::from_fn;
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
@@ -58,22 +62,25 @@ pub(super) fn versioned() -> OpenApiRouter<AppState> {
         .routes(routes!(cancel_job::cancel_job))
         .routes(routes!(read_input::read_input))
         .routes(routes!(read_gear_data::read_gear_data))
-        .routes(routes!(read_result::read_result))
         .routes(routes!(read_point_columns::read_point_columns))
         .routes(routes!(read_point_input::read_point_input))
-        .routes(routes!(list_series::list_series))
         .routes(routes!(list_kinds::list_kinds))
+        .routes(routes!(list_deliveries::list_deliveries))
         .routes(routes!(read_system::read_system))
         .route_layer(from_fn(json_only));
     let stream = OpenApiRouter::new()
         .routes(routes!(watch_jobs::watch_jobs))
         .routes(routes!(watch_job::watch_job))
         .route_layer(from_fn(event_stream_only));
-    let negotiated =
-        OpenApiRouter::new().routes(routes!(read_series::read_series)).routes(routes!(list_points::list_points));
+    let negotiated = OpenApiRouter::new()
+        .routes(routes!(list_series::list_series))
+        .routes(routes!(read_series::read_series))
+        .routes(routes!(list_points::list_points))
+        .routes(routes!(read_result::read_result));
     let files = OpenApiRouter::new()
         .routes(routes!(read_bearing_forces::read_bearing_forces))
-        .routes(routes!(read_rexs::read_rexs));
+        .routes(routes!(read_rexs::read_rexs))
+        .routes(routes!(read_tables::read_tables));
     json.merge(stream).merge(negotiated).merge(files)
 }
 
@@ -91,9 +98,11 @@ pub(super) fn operational() -> OpenApiRouter<AppState> {
         .routes(routes!(explain_problem::explain_problem))
 }
 
-/// The route of the OpenAPI document, which does not describe itself.
+/// The routes of the OpenAPI document, which does not describe itself.
 pub(super) fn undocumented() -> Router<AppState> {
-    Router::new().route("/openapi.json", get(read_openapi::read_openapi))
+    Router::new()
+        .route("/openapi.json", get(read_openapi::read_openapi))
+        .route("/openapi-generators.json", get(read_openapi::read_openapi_for_generators))
 }
 
 /// Reads a job.
@@ -121,6 +130,13 @@ async fn find_succeeded_job(state: &AppState, id: JobId) -> Result<JobRecord, Ap
     }
 }
 
+/// The answer that is a file.
+fn file_response(body: Body, media_type: &'static str, name: &str) -> Response {
+    let disposition = format!("attachment; filename=\"herringbone-{name}\"");
+    let headers = [(CONTENT_TYPE, media_type.to_owned()), (CONTENT_DISPOSITION, disposition)];
+    ([(VARY, "accept")], headers, body).into_response()
+}
+
 /// The response with events: kept alive by comments, neither cached nor, by proxies that heed the header (nginx),
 /// buffered.
 fn event_stream(events: impl Stream<Item = Result<Event, Infallible>> + Send + 'static) -> Response {
@@ -145,6 +161,6 @@ async fn sweep_input(state: &AppState, id: JobId) -> Result<String, ApiError> {
     state.jobs().store().input(id).await?.ok_or_else(job_not_found)
 }
 
-fn job_not_found() -> ApiError {
+pub(super) fn job_not_found() -> ApiError {
     ApiError::not_found("There is no such job.")
 }

@@ -1,6 +1,6 @@
-//! `GET /openapi.json`
+//! `GET /openapi.json` and `GET /openapi-generators.json`
 
-use crate::api::openapi::openapi_json;
+use crate::api::openapi::{openapi_for_generators, openapi_json};
 use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
 use std::sync::OnceLock;
@@ -9,4 +9,10 @@ use std::sync::OnceLock;
 pub(super) async fn read_openapi() -> impl IntoResponse {
     static DOCUMENT: OnceLock<String> = OnceLock::new();
     ([(CONTENT_TYPE, "application/json")], DOCUMENT.get_or_init(openapi_json).as_str())
+}
+
+/// Answers with the OpenAPI document for generators of clients.
+pub(super) async fn read_openapi_for_generators() -> impl IntoResponse {
+    static DOCUMENT: OnceLock<String> = OnceLock::new();
+    ([(CONTENT_TYPE, "application/json")], DOCUMENT.get_or_init(openapi_for_generators).as_str())
 }

@@ -5,7 +5,8 @@ use crate::api::csv::Decimal;
 use crate::api::downsample::DownsampleMethod;
 use crate::api::guarded_body::GuardedBody;
 use crate::api::problem::ApiError;
-use crate::api::request::{ChannelPath, QueryParameters, negotiate_table};
+use crate::api::request::{ChannelPath, QueryParameters, TimeWindow, negotiate_table};
+use crate::api::routes::read_sound;
 use crate::api::samples::Samples;
 use crate::api::state::AppState;
 use crate::api::text_body::TextBody;
@@ -76,6 +77,10 @@ pub(super) async fn read_series(
     mut query: QueryParameters,
     headers: HeaderMap,
 ) -> Result<Response, ApiError> {
+    if let Some(channel) = channel.strip_suffix(read_sound::ENDING) {
+        // The router has no patterns for parts of a segment.
+        return read_sound::read_sound(state, id, channel, query, &headers).await;
+    }
     let csv_decimal = negotiate_table(&headers, &mut query)?;
     let request = SeriesRequest::read(query)?;
     super::find_succeeded_job(&state, id).await?;
@@ -107,26 +112,21 @@ pub(super) async fn read_series(
 
 /// The time window and downsampling of a request.
 struct SeriesRequest {
-    from_s: f64,
-    to_s: f64,
+    window: TimeWindow,
     max_points: usize,
     method: DownsampleMethod,
 }
 
 impl SeriesRequest {
     fn read(mut query: QueryParameters) -> Result<Self, ApiError> {
-        let from_s = query.number("from", "s").unwrap_or(f64::NEG_INFINITY);
-        let to_s = query.number("to", "s").unwrap_or(f64::INFINITY);
+        let window = TimeWindow::read(&mut query);
         let max_points = query.integer("max_points", MIN_POINTS, MAX_POINTS, false);
         let method = query.choice("method", &DownsampleMethod::ALL).unwrap_or(DownsampleMethod::MinMax);
-        if from_s > to_s {
-            query.add_violation(Violation::new("/to", "conflict", "lies before from"));
-        }
         if method == DownsampleMethod::None && max_points.is_some() {
             query.add_violation(Violation::new("/max_points", "conflict", "cannot be given with method=none"));
         }
         query.finish()?;
-        Ok(Self { from_s, to_s, max_points: max_points.unwrap_or(DEFAULT_POINTS) as usize, method })
+        Ok(Self { window, max_points: max_points.unwrap_or(DEFAULT_POINTS) as usize, method })
     }
 
     /// The indices of the samples in the time window, and an upper bound on the number of those returned.
@@ -134,30 +134,14 @@ impl SeriesRequest {
     /// # Errors
     /// There are more of them than may be returned without downsampling.
     fn extent(&self, entry: &SeriesEntry) -> Result<(Range<usize>, usize), ApiError> {
-        let n = entry.n as usize;
-        let start = partition_point(n, |index| entry.time_s(index) < self.from_s);
-        let end = partition_point(n, |index| entry.time_s(index) <= self.to_s).max(start);
-        let n_source = end - start;
+        let window = self.window.indices(entry);
+        let n_source = window.len();
         match self.method {
             DownsampleMethod::None if n_source as u64 > MAX_RAW_POINTS => Err(too_many_samples(n_source)),
-            DownsampleMethod::None => Ok((start..end, n_source)),
-            DownsampleMethod::MinMax | DownsampleMethod::Lttb => Ok((start..end, n_source.min(self.max_points))),
+            DownsampleMethod::None => Ok((window, n_source)),
+            DownsampleMethod::MinMax | DownsampleMethod::Lttb => Ok((window, n_source.min(self.max_points))),
         }
     }
-}
-
-/// The first of the indices below `n` for which a predicate is false that is true for those before it.
-fn partition_point(n: usize, is_before: impl Fn(usize) -> bool) -> usize {
-    let (mut start, mut end) = (0, n);
-    while start < end {
-        let middle = start + (end - start) / 2;
-        if is_before(middle) {
-            start = middle + 1;
-        } else {
-            end = middle;
-        }
-    }
-    start
 }
 
 fn too_many_samples(n: usize) -> ApiError {

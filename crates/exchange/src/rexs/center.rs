@@ -9,7 +9,7 @@ use crate::unit::{Quantity, clean};
 use serde_json::Value;
 
 /// Centre distance that is that of play-free mesh, mm: profile shifts in files are rounded.
-const SAME_DISTANCE_MM: f64 = 0.5e-3;
+pub(crate) const SAME_DISTANCE_MM: f64 = 0.5e-3;
 
 /// Writes both; the profile shifts also for further rules.
 pub(super) fn write(pair: &Pair, draft: &mut Draft, basic: &mut Basic) {

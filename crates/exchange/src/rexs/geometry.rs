@@ -8,11 +8,11 @@ use crate::draft::{Draft, Reading};
 use crate::unit::{Quantity, clean};
 
 /// Gap where none is known, mm.
-pub(super) const DEFAULT_GAP_MM: f64 = 30.0;
+pub(crate) const DEFAULT_GAP_MM: f64 = 30.0;
 
 /// Basic data that further rules need.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Basic {
+pub(crate) struct Basic {
     pub module_mm: f64,
     pub pressure_angle_deg: f64,
     /// Size of the helix angle.
@@ -25,7 +25,7 @@ pub(super) struct Basic {
 }
 
 impl Basic {
-    pub(super) fn reference_mm(&self, member: usize) -> f64 {
+    pub(crate) fn reference_mm(&self, member: usize) -> f64 {
         self.teeth[member] * self.module_mm / self.helix_angle_deg.to_radians().cos()
     }
 
@@ -63,7 +63,7 @@ impl Basic {
     }
 
     /// Centre distance of play-free mesh.
-    pub(super) fn play_free_mm(&self, shifts: f64) -> Option<f64> {
+    pub(crate) fn play_free_mm(&self, shifts: f64) -> Option<f64> {
         let reference_mm = 0.5 * (self.reference_mm(0) + self.reference_mm(1));
         Some(reference_mm * self.transverse_pressure_angle_rad().cos() / self.working_angle_rad(shifts)?.cos())
     }

@@ -25,7 +25,9 @@ use crate::draft::{Draft, Reading};
 use crate::refusal::{Refusal, short};
 use crate::report::{Import, ImportSource, ImportedPair};
 use crate::unit::{Quantity, clean};
+pub(crate) use center::SAME_DISTANCE_MM;
 pub use export::{ExportForm, ExportOptions, export_rexs};
+pub(crate) use geometry::{Basic, DEFAULT_GAP_MM};
 use herringbone_job::document::JobDocument;
 use herringbone_job::study::{CheckReport, CheckedJob};
 use herringbone_job::{DocumentError, Violation};
@@ -224,7 +226,7 @@ fn drop_shafts(draft: &mut Draft, violations: &[Violation]) {
 ///
 /// # Errors
 /// [`Refusal`] with the fields out of range and where they stand in the file.
-fn parsed(draft: &mut Draft) -> Result<JobDocument, Refusal> {
+pub(crate) fn parsed(draft: &mut Draft) -> Result<JobDocument, Refusal> {
     loop {
         let violations = match herringbone_job::parse_value(&draft.document) {
             Ok(document) => return Ok(document),
@@ -251,7 +253,7 @@ fn parsed(draft: &mut Draft) -> Result<JobDocument, Refusal> {
 }
 
 /// What the service says of the document; `None` where it cannot be solved as it is, with the reasons as warnings.
-fn checked(document: &JobDocument, draft: &mut Draft) -> Option<CheckReport> {
+pub(crate) fn checked(document: &JobDocument, draft: &mut Draft) -> Option<CheckReport> {
     let violations = match CheckedJob::new(document.clone()) {
         Ok(job) => return Some(job.report()),
         Err(DocumentError::Invalid(violations) | DocumentError::Unsupported(violations)) => violations,

@@ -19,10 +19,15 @@ pub(super) fn read(text: &str) -> Result<RawModel, Refusal> {
     reader.config_mut().expand_empty_elements = true;
     let mut reading = Reading::default();
     loop {
-        let event = reader.read_event().map_err(|error| not_well_formed(text, reader.error_position(), &error))?;
+        let event = reader
+            .read_event()
+            .map_err(|error| not_well_formed(text, reader.error_position() + reading.passed, &error))?;
         match event {
             Event::Start(start) => reading.start(&start)?,
-            Event::End(_) => reading.end(),
+            Event::End(_) => {
+                reading.end();
+                skip(&mut reader, &mut reading, text);
+            }
             Event::Text(content) => reading.text(&content),
             Event::CData(content) => reading.text(&content),
             Event::GeneralRef(entity) => {
@@ -48,6 +53,25 @@ pub(super) fn read(text: &str) -> Result<RawModel, Refusal> {
         return Err(Refusal::unreadable("not-readable", "has no XML element"));
     }
     Ok(reading.model)
+}
+
+/// Passes over the rest of an array of which nothing is kept, up to its end: that is most of a large file.
+fn skip<'t>(reader: &mut Reader<&'t [u8]>, reading: &mut Reading, text: &'t str) {
+    let is_array = matches!(reading.open.last(), Some(Element::Array | Element::Matrix));
+    if !is_array || reading.attribute.as_ref().is_none_or(|attribute| attribute.array != Some(false)) {
+        return;
+    }
+    // Looked at once for each array, so that the time stays in proportion to the text.
+    let name = std::mem::take(&mut reading.array);
+    let rest = *reader.get_ref();
+    let Some(rest_text) = text.get(text.len() - rest.len()..).filter(|_| !name.is_empty()) else { return };
+    let Some(end) = rest_text.find(&format!("</{name}")) else { return };
+    // Comments, marked sections, and arrays in the array are read.
+    let passed = &rest_text[..end];
+    if ["<!", "<?"].iter().all(|mark| !passed.contains(mark)) && !passed.contains(&format!("<{name}")) {
+        *reader.get_mut() = &rest[end..];
+        reading.passed += end as u64;
+    }
 }
 
 /// Name of the element that was opened last and is still open at the end of a text that is not complete.
@@ -155,6 +179,10 @@ struct Reading {
     relation: Option<RawRelation>,
     case: Option<RawCase>,
     attribute: Option<OpenAttribute>,
+    /// Name of the array that was opened last, as it is written.
+    array: String,
+    /// Bytes that were passed over.
+    passed: u64,
 }
 
 /// The attributes of an element.
@@ -226,7 +254,14 @@ impl Reading {
                 return Err(Refusal::unreadable("too-large", detail));
             }
         }
-        let given = if element.is_read() { Given::of(start)? } else { Given::default() };
+        if !element.is_read() {
+            if let Some(attribute) = self.attribute.as_mut().filter(|_| element == Element::Cell) {
+                attribute.text.clear();
+            }
+            self.open.push(element);
+            return Ok(());
+        }
+        let given = Given::of(start)?;
         match element {
             Element::Model if self.open.is_empty() => {
                 self.has_root = true;
@@ -263,21 +298,17 @@ impl Reading {
                 });
             }
             Element::Array | Element::Matrix => {
+                start.name().0.clone_into(&mut self.array);
                 if let Some(attribute) = &mut self.attribute {
                     attribute.array = Some(element == Element::Array && attribute.array.is_none());
                     attribute.code = given.code;
                     attribute.text.clear();
                 }
             }
-            Element::Cell => {
-                if let Some(attribute) = &mut self.attribute {
-                    attribute.text.clear();
-                }
-            }
             Element::LoadCase => {
                 self.case = Some(RawCase { id: given.number().unwrap_or(0), components: Vec::new() });
             }
-            Element::Model | Element::Accumulation | Element::Other => {}
+            Element::Model | Element::Cell | Element::Accumulation | Element::Other => {}
         }
         self.open.push(element);
         Ok(())

@@ -10,6 +10,7 @@ mod mutations;
 mod operation;
 mod refusals;
 mod shafts;
+mod z12;
 
 use herringbone_exchange::{Import, ImportOptions, Refusal, import};
 use serde_json::Value;

@@ -211,3 +211,35 @@ fn several_pairs_are_listed_and_each_can_be_taken() {
         "out-of-range"
     );
 }
+
+#[test]
+fn long_arrays_are_passed_over_whatever_stands_in_them() {
+    let text = Gearbox::double_helical("1.4").xml();
+    let options = ImportOptions::default();
+    let plain = imported(text.as_bytes(), &options).document;
+    let place = text.find("</component>").expect("a component");
+    let cells = "<c>1.5</c>\n".repeat(20);
+    let with = |array: &str| {
+        let attribute = format!("<attribute id=\"custom_list\">{array}</attribute>");
+        [&text[..place], &attribute, &text[place..]].concat()
+    };
+    for array in [
+        format!("<array>{cells}</array>"),
+        format!("<array>{cells}<!-- </array> -->{cells}</array >"),
+        format!("<array>{cells}<c><![CDATA[</array>]]></c>{cells}</array>"),
+        format!("<array>{cells}<array>{cells}</array>{cells}</array>"),
+        format!("<matrix><r>{cells}</r><r>{cells}</r></matrix>"),
+        format!("<array/><array>{cells}</array>"),
+    ] {
+        let read = imported(with(&array).as_bytes(), &options).document;
+        assert_eq!(read, plain, "{array:.60}");
+    }
+    // Where something is wrong after such an array, its line is told all the same.
+    let broken = with(&format!("<array>{cells}</array></wrong>"));
+    let line = 1 + broken[..broken.find("</wrong>").expect("a place")].matches('\n').count();
+    let told = said(broken.as_bytes());
+    assert!(told.contains(&format!("(line {line})")), "{line}: {told}");
+    let cut = with(&format!("<array>{cells}"));
+    let told = said(&cut.as_bytes()[..cut.rfind(&cells).expect("cells") + cells.len()]);
+    assert!(told.contains("ends inside of <array>"), "{told}");
+}

@@ -153,6 +153,18 @@ export function newKey() {
 export const seriesCsvUrl = (id, channel, decimal) => `${seriesUrl(id, channel)}?method=none&decimal=${decimal}`;
 
 /**
+ * Address of the file of all channels; `format` is "npz" or "mat".
+ * @type {(id: string, format: string) => string}
+ */
+export const seriesFileUrl = (id, format) => `${BASE}${at(id)}/series?format=${format}`;
+
+/**
+ * Address of the sound of an acceleration.
+ * @type {(id: string, channel: string) => string}
+ */
+export const soundUrl = (id, channel) => `${seriesUrl(id, channel)}.wav`;
+
+/**
  * The CSV file of a whole channel.
  * @type {(id: string, channel: string, decimal: string) => Promise<Blob>}
  */

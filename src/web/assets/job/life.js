@@ -56,10 +56,11 @@ export class Life {
     show(byId("cancel"), !ended);
     byId("cancel").disabled = Boolean(job.cancel_requested_at);
     show(byId("delete"), ended);
-    for (const name of ["compare", "report", "download-result"]) show(byAnyId(name), job.state === "succeeded");
+    for (const name of ["compare", "report", "download-result", "download-workbook"]) show(byAnyId(name), job.state === "succeeded");
     byId("download-input").href = api.inputUrl(this.id);
     byId("download-rexs").href = api.rexsUrl(this.id);
     byId("download-result").href = api.resultUrl(this.id);
+    byId("download-workbook").href = `${api.resultUrl(this.id)}?format=xlsx`;
     this.showValues(job);
     if (job.state === "failed") showFailure(job).then(() => show(byId("life")));
     else show(byId("life"));

@@ -7,6 +7,7 @@ import { byId, download, el, notify, show } from "../common/dom.js";
 import { number, sentence } from "../common/format.js";
 import { draw, line, onZoom } from "../common/plots.js";
 import { remember, told } from "./address.js";
+import { Listening } from "./listen.js";
 import { halvesAlike } from "./motion_plots.js";
 import { channelScale, channelWords } from "./words.js";
 
@@ -52,6 +53,9 @@ class SeriesPanel {
     document.getElementById("csv-decimal")?.addEventListener("change", () => this.linkFile());
     byId("whole").addEventListener("click", () => this.zoom(null));
     byId("series-csv").addEventListener("click", (event) => this.save(event));
+    byId("series-npz").href = api.seriesFileUrl(id, "npz");
+    byId("series-mat").href = api.seriesFileUrl(id, "mat");
+    this.listening = new Listening(id, catalogue);
     const frequency = response?.mesh_frequency_hz ?? 0;
     this.meshPeriod = frequency > 0 ? 1 / frequency : null;
     const { n, dt, t0 } = catalogue[0];
@@ -85,6 +89,7 @@ class SeriesPanel {
   }
 
   linkFile() {
+    this.listening.choose(this.first.value);
     byId("series-csv").href = api.seriesCsvUrl(this.id, this.first.value, decimal());
   }
 
