@@ -75,7 +75,7 @@ pub(super) async fn list_points(
     let vary = (VARY, "accept");
     if let Some(decimal) = csv_decimal {
         let range = RowRange { from, limit: limit.unwrap_or(u64::MAX), ..RowRange::ALL };
-        let body = points::csv_body(store, id, range, &shape.pointers(), decimal).await?;
+        let body = points::csv_body(store, id, range, shape, decimal).await?;
         return Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response());
     }
     let range = RowRange { from, limit: limit.unwrap_or(DEFAULT_ROWS), ..RowRange::ALL };

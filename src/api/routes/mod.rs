@@ -133,14 +133,14 @@ fn too_many_followers() -> ApiError {
     ApiError::new(ProblemCode::TooManyStreams, detail).retry_after(RETRY_FOLLOW_S)
 }
 
-/// Reads the stored document of a sweep.
+/// Reads the stored document of a job with rows: a sweep, an optimisation or a tolerance study.
 ///
 /// # Errors
-/// 404 when the job does not exist or is not a sweep.
+/// 404 when the job does not exist or has no rows.
 async fn sweep_input(state: &AppState, id: JobId) -> Result<String, ApiError> {
     let job = find_job(state, id).await?;
-    if job.kind != JobKind::Sweep.as_str() {
-        return Err(ApiError::not_found("The job is not a sweep."));
+    if !super::view::has_rows(&job.kind) {
+        return Err(ApiError::not_found("The job is not a sweep, an optimisation or a tolerance study."));
     }
     state.jobs().store().input(id).await?.ok_or_else(job_not_found)
 }
