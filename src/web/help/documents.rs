@@ -51,7 +51,7 @@ pub(super) const SECTIONS: &[(&str, &[&str])] = &[
     ),
     (
         "Background",
-        &["design", "study", "study/shafts", "benchmarks", "glossary", "operations", "scaling", "reliability"],
+        &["optimisation", "design", "study", "study/shafts", "benchmarks", "glossary", "operations", "scaling", "reliability"],
     ),
 ];
 
