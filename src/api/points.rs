@@ -176,12 +176,7 @@ fn header(shape: &SweepShape, decimal: Decimal) -> io::Result<Vec<u8>> {
     writer.into_inner()
 }
 
-fn write_row(
-    writer: &mut CsvWriter<Vec<u8>>,
-    position: u64,
-    point: &SweepPoint,
-    shape: &SweepShape,
-) -> io::Result<()> {
+fn write_row(writer: &mut CsvWriter<Vec<u8>>, position: u64, point: &SweepPoint, shape: &SweepShape) -> io::Result<()> {
     let values = point.values.iter().map(|value| CsvField::Number(*value));
     let cells: Vec<_> = columns::default_columns().into_iter().map(|column| (column.cell)(point)).collect();
     let fields = cells.iter().map(|cell| match cell {

@@ -109,8 +109,7 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn has_queued(&self, class: WorkClass) -> Result<bool, StoreError> {
-        let row =
-            sqlx::query(concat!("SELECT 1 FROM jobs WHERE state = 'queued' AND ", has_rows!(), " = $1 LIMIT 1"))
+        let row = sqlx::query(concat!("SELECT 1 FROM jobs WHERE state = 'queued' AND ", has_rows!(), " = $1 LIMIT 1"))
             .bind(class == WorkClass::Sweep)
             .fetch_optional(&self.reader)
             .await?;

@@ -150,8 +150,20 @@ fn evaluations(document: &mut Value) {
     let kind = document["kind"].as_str().unwrap_or("response").to_owned();
     let Some(fields) = document.as_object_mut() else { return };
     let all = [
-        "operating_points", "variables", "objectives", "constraints", "robust", "budget", "method", "tolerances",
-        "measures", "limits", "samples", "sampling", "sensitivity", "seed",
+        "operating_points",
+        "variables",
+        "objectives",
+        "constraints",
+        "robust",
+        "budget",
+        "method",
+        "tolerances",
+        "measures",
+        "limits",
+        "samples",
+        "sampling",
+        "sensitivity",
+        "seed",
     ];
     let own: &[&str] = match kind.as_str() {
         "optimise" => &["operating_points", "budget", "method", "seed"],

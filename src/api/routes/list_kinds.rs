@@ -3,8 +3,8 @@
 use crate::api::config::MAX_BODY_BYTES;
 use axum::Json;
 use herringbone_job::document::JobKind;
-use herringbone_job::schema::job_document_schema_of;
 use herringbone_job::result::{Quantity, quantities};
+use herringbone_job::schema::job_document_schema_of;
 use herringbone_job::study::is_measure;
 use herringbone_job::{MAX_EVALUATIONS, MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS};
 use serde::Serialize;
@@ -96,7 +96,9 @@ fn description(kind: JobKind) -> &'static str {
         JobKind::Response => "Everything of a mesh job, and the vibration response at one operating point.",
         JobKind::Sweep => "A response over the values of one or two inputs.",
         JobKind::Optimise => "The values of up to twelve inputs for which quantities of the result are best.",
-        JobKind::Tolerance => "The scatter of quantities of the result by the tolerances of inputs, and what it comes from.",
+        JobKind::Tolerance => {
+            "The scatter of quantities of the result by the tolerances of inputs, and what it comes from."
+        }
     }
 }
 

@@ -51,7 +51,17 @@ pub(super) const SECTIONS: &[(&str, &[&str])] = &[
     ),
     (
         "Background",
-        &["optimisation", "design", "study", "study/shafts", "benchmarks", "glossary", "operations", "scaling", "reliability"],
+        &[
+            "optimisation",
+            "design",
+            "study",
+            "study/shafts",
+            "benchmarks",
+            "glossary",
+            "operations",
+            "scaling",
+            "reliability",
+        ],
     ),
 ];
 

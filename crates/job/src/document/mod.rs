@@ -178,6 +178,7 @@ pub struct JobDocument {
 fn document_rules(document: &mut JobDocument, place: &ObjectPlace) {
     sweep::of_sweeps_only(document, place);
     evaluation::of_some_kinds_only(document, place);
+    tolerance::fill_classes(document, place);
     tolerance::tolerance_rules(document, place);
     let MeshStiffness::Ltca(ltca) = &document.model.mesh_stiffness else { return };
     if document.design.shafts.is_some() && ltca.body == BodyInput::Bore && ltca.fidelity != Fidelity::Uniform {

@@ -52,6 +52,10 @@ pub struct ToleranceInput {
     #[input(unit = "unit of the input", min = 0.0, max = 1e9)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
+    /// normal, half_normal: instead of tolerance, the tolerance class of ISO 1328-1:2013 for a helix slope or a pitch error.
+    #[input(min = 1, max = 11)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub iso1328_class: Option<u32>,
     /// normal, half_normal: standard deviations in the tolerance.
     #[input(min = 0.1, max = 10.0, default = 3.0)]
     pub sigmas: f64,
@@ -161,6 +165,46 @@ pub(super) fn rules(document: &mut JobDocument, place: &ObjectPlace) {
     }
 }
 
+/// Tolerance of a gear of class 5 at the pointer of a helix slope or of a pitch error, µm (ISO 1328-1:2013, 5.3: f_HβT and
+/// f_pT without their rounding); `None` for another input. Diameter and face width are those of one half.
+fn class_5_um(document: &JobDocument, pointer: &str) -> Option<f64> {
+    let design = &document.design;
+    let gear = if pointer.starts_with("/design/gear/") { &design.gear } else { &design.pinion };
+    let module_mm = design.normal_module_mm;
+    let diameter_mm = f64::from(gear.teeth) * module_mm / design.helix_angle_deg.to_radians().cos();
+    let width_mm = gear.face_width_mm.unwrap_or(design.face_width_mm);
+    match pointer.rsplit('/').next()? {
+        "helix_slope_um" => Some(0.05 * diameter_mm.sqrt() + 0.35 * width_mm.sqrt() + 4.0),
+        "base_pitch_error_um" => Some(0.001 * diameter_mm + 0.4 * module_mm + 5.0),
+        _ => None,
+    }
+}
+
+/// Fills in the tolerances that are given by a class of ISO 1328-1.
+pub(super) fn fill_classes(document: &mut JobDocument, place: &ObjectPlace) {
+    for index in 0..document.tolerances.len() {
+        let Some(class) = document.tolerances[index].iso1328_class else { continue };
+        let found = class_5_um(document, &document.tolerances[index].pointer);
+        let at = |name: &str| format!("tolerances/{index}/{name}");
+        let tolerance = &mut document.tolerances[index];
+        let Some(class_5_um) = found else {
+            place.conflict(
+                &at("iso1328_class"),
+                "has a tolerance for helix_slope_um and base_pitch_error_um only; give tolerance",
+            );
+            continue;
+        };
+        // A factor of the root of 2 from class to class; two digits after the point, as a document states it.
+        let tolerance_um = (class_5_um * 2.0f64.powf(0.5 * (f64::from(class) - 5.0)) * 100.0).round() / 100.0;
+        match tolerance.tolerance {
+            // As it was filled in when the document was read first.
+            Some(given) if given == tolerance_um => {}
+            Some(_) => place.conflict(&at("tolerance"), "is given together with iso1328_class; give one or the other"),
+            None => tolerance.tolerance = Some(tolerance_um),
+        }
+    }
+}
+
 /// The rules of a list of tolerances.
 pub(super) fn tolerance_rules(document: &JobDocument, place: &ObjectPlace) {
     use DistributionInput::{FixedValues, HalfNormal, Normal, Triangular, Uniform};
@@ -175,7 +219,9 @@ pub(super) fn tolerance_rules(document: &JobDocument, place: &ObjectPlace) {
                 place.missing(&at(name), "is required with this distribution");
             }
         };
-        of("tolerance", tolerance.tolerance.is_some(), &[Normal, HalfNormal]);
+        if tolerance.iso1328_class.is_none() || tolerance.tolerance.is_some() {
+            of("tolerance", tolerance.tolerance.is_some(), &[Normal, HalfNormal]);
+        }
         of("plus", tolerance.plus.is_some(), &[Uniform, Triangular]);
         of("minus", tolerance.minus.is_some(), &[Uniform, Triangular]);
         of("values", tolerance.values.is_some(), &[FixedValues]);

@@ -1,7 +1,7 @@
 //! Optimisations and tolerance studies: against closed forms, against themselves, and what is refused.
 
-use super::{LineEnd, PointStore, SolveContext, SolveError, StoredPoints, document_at, solve};
 use super::{CheckedJob, Outcome};
+use super::{LineEnd, PointStore, SolveContext, SolveError, StoredPoints, document_at, solve};
 use crate::DocumentError;
 use crate::result::{OptimiseResult, SweepPoint, ToleranceResult};
 use herringbone_search::normal_quantile;
@@ -63,8 +63,10 @@ fn f93_face_width_and_helix_angle_for_an_overlap_ratio_of_one() {
     assert_eq!((result.verdict.as_str(), result.numerics.method.as_str()), ("improved", "nelder_mead"));
     // ε_β = b sin β / (π m_n), ISO 21771.
     let document = of_one_variable("/design/helix_angle_deg", [5.0, 40.0], whole);
-    let (width_mm, module_mm) =
-        (document["design"]["face_width_mm"].as_f64().unwrap(), document["design"]["normal_module_mm"].as_f64().unwrap());
+    let (width_mm, module_mm) = (
+        document["design"]["face_width_mm"].as_f64().unwrap(),
+        document["design"]["normal_module_mm"].as_f64().unwrap(),
+    );
     let exact_deg = (std::f64::consts::PI * module_mm / width_mm).asin().to_degrees();
     let result = optimised(&document);
     assert!((best(&result) - exact_deg).abs() < 1e-6 * exact_deg, "{} {exact_deg}", best(&result));
@@ -77,7 +79,7 @@ fn f93_largest_profile_shift_with_a_tip_thickness() {
         [0.0, 0.8],
         json!({"measure": "/geometry/pinion/tip_diameter_mm", "goal": "maximise"}),
     );
-    document["constraints"] = json!([{"margin": "tip-thickness", "at_least": 0.3}]);
+    document["constraints"] = json!([{"margin": "tip-thickness", "at_least": 0.5}]);
     let result = optimised(&document);
     // The root of the tip thickness by bisection.
     let thickness = |shift: f64| {
@@ -92,10 +94,10 @@ fn f93_largest_profile_shift_with_a_tip_thickness() {
         of_tip.map(|margin| margin.value).fold(f64::INFINITY, f64::min)
     };
     let (mut low, mut high) = (0.0, 0.8);
-    assert!(thickness(low) > 0.3 && thickness(high) < 0.3);
+    assert!(thickness(low) > 0.5 && thickness(high) < 0.5);
     for _ in 0..50 {
         let middle = 0.5 * (low + high);
-        if thickness(middle) > 0.3 { low = middle } else { high = middle }
+        if thickness(middle) > 0.5 { low = middle } else { high = middle }
     }
     println!("profile shift {}, exact {low}", best(&result));
     assert!((best(&result) - low).abs() < 1e-6, "{} {low}", best(&result));
@@ -119,7 +121,7 @@ fn search() -> Value {
         value["objectives"] =
             json!([{"measure": "/response/rms/mesh_circumferential_acceleration_m_s2", "over": "weighted"}]);
         value["constraints"] = json!([{"measure": "/geometry/total_contact_ratio", "at_least": 2.6}]);
-        value["budget"] = json!({"evaluations": 150});
+        value["budget"] = json!({"evaluations": 90});
     })
 }
 
@@ -163,13 +165,13 @@ fn f92_the_same_rows_for_any_threads_and_after_any_interruption() {
         let whole = Rows::default();
         let expected = solve_with(&value, &whole, 2).expect("solved");
         let all = whole.saved.into_inner().unwrap();
-        assert!(all.len() > 100);
+        assert!(all.len() > 80);
         for threads in [1, 7] {
             let rows = Rows::default();
             assert!(solve_with(&value, &rows, threads).expect("solved") == expected, "{threads} threads");
             assert!(rows.saved.into_inner().unwrap() == all);
         }
-        for most in [1, 7, 40, 101] {
+        for most in [7, 61] {
             let stopped = Rows { most, ..Rows::default() };
             assert!(solve_with(&value, &stopped, 2).is_none());
             let stored = stopped.saved.into_inner().unwrap();
@@ -189,7 +191,10 @@ fn a_search_says_what_it_found() {
     let result = optimised(&document);
     let objective = &result.objectives[0];
     assert_eq!(result.verdict, "improved");
-    assert!(objective.best.unwrap() < objective.input.unwrap() && objective.gain_percent.unwrap() > 10.0, "{objective:?}");
+    assert!(
+        objective.best.unwrap() < objective.input.unwrap() && objective.gain_percent.unwrap() > 10.0,
+        "{objective:?}"
+    );
     assert_eq!((objective.unit.as_str(), objective.over.as_str(), objective.per_point.len()), ("m/s2", "weighted", 2));
     assert_eq!([objective.per_point[0].pinion_torque_nm, objective.per_point[1].pinion_torque_nm], [400.0, 800.0]);
     // The weighted mean of the points is the objective.
@@ -197,9 +202,19 @@ fn a_search_says_what_it_found() {
     assert!(((points[0] + 2.0 * points[1]) / 3.0 / objective.best.unwrap() - 1.0).abs() < 1e-12);
     let best = result.best.as_ref().unwrap();
     let row = &result.points[best.position as usize];
-    assert_eq!(row.values, document["variables"].as_array().unwrap().iter().map(|v| best.values[v["pointer"].as_str().unwrap()]).collect::<Vec<_>>());
+    assert_eq!(
+        row.values,
+        document["variables"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|v| best.values[v["pointer"].as_str().unwrap()])
+            .collect::<Vec<_>>()
+    );
     assert!(row.values[0] % 10.0 == 0.0 && row.values[3].fract() == 0.0 && row.violation == Some(0.0), "{row:?}");
-    assert!(result.numerics.evaluations <= 151 && result.history.evaluations.len() == result.numerics.generations as usize);
+    assert!(
+        result.numerics.evaluations <= 91 && result.history.evaluations.len() == result.numerics.generations as usize
+    );
     assert!(result.history.best.iter().flatten().collect::<Vec<_>>().windows(2).all(|pair| pair[1] <= pair[0]));
     // The document of the row is that of its first operating point.
     let parsed = crate::parse_value(&document).unwrap();
@@ -226,7 +241,7 @@ fn two_objectives_have_a_front() {
     let mut document = search();
     document["objectives"] = json!([
         {"measure": "/geometry/total_contact_ratio", "goal": "maximise"},
-        {"measure": "/geometry/mesh_frequency_hz", "goal": "maximise"},
+        {"measure": "/geometry/mesh_frequency_hz"},
     ]);
     document["variables"] = json!([
         {"pointer": "/design/pinion/teeth", "from": 12, "to": 24},
@@ -238,7 +253,7 @@ fn two_objectives_have_a_front() {
     let front = &result.front;
     assert!(front.len() > 3 && front.iter().filter(|design| design.knee).count() == 1, "{front:?}");
     for pair in front.windows(2) {
-        assert!(pair[1].objectives[0] < pair[0].objectives[0] && pair[1].objectives[1] > pair[0].objectives[1]);
+        assert!(pair[1].objectives[0] < pair[0].objectives[0] && pair[1].objectives[1] < pair[0].objectives[1]);
     }
 }
 
@@ -274,7 +289,7 @@ fn f98_percentiles_of_a_linear_measure() {
             let found = &measure.percentiles[name];
             let [low, high] = [found.low, found.high].map(|end| end.expect("large enough"));
             println!("{sampling} {name}: {} in {low} to {high}, exact {exact}", found.value);
-            assert!(low <= exact && exact <= high && high - low < 0.2 * per_mm, "{name}");
+            assert!(low <= exact && exact <= high && high - low < 0.4 * per_mm, "{name}");
         }
         let [first, second] = [0, 1].map(|input| &result.sensitivity[input]);
         assert!(first.rank_correlation.unwrap() > 0.99 && first.first_order.unwrap() > 0.95, "{first:?}");
@@ -292,6 +307,23 @@ fn f98_percentiles_of_a_linear_measure() {
     assert!(screened.sensitivity[0].effect.unwrap() > 0.0 && screened.sensitivity[1].effect == Some(0.0));
 }
 
+/// z 17, m_n 6 mm, β 24.43°, half faces of 75 mm: d = 112.03 mm.
+#[test]
+fn a_class_of_iso_1328_stands_for_a_tolerance() {
+    let mut document = study("none");
+    document["tolerances"] = json!([
+        {"pointer": "/design/pinion/helix_slope_um", "iso1328_class": 5},
+        {"pointer": "/design/pinion/left/helix_slope_um", "iso1328_class": 7},
+    ]);
+    document["design"]["pinion"]["left"] = json!({"helix_slope_um": 1.0});
+    let read = crate::parse_value(&document).unwrap();
+    let tolerances: Vec<_> = read.tolerances.iter().map(|tolerance| tolerance.tolerance).collect();
+    assert_eq!(tolerances, [Some(7.56), Some(15.12)]);
+    assert_eq!(crate::parse_value(&serde_json::to_value(&read).unwrap()).unwrap(), read);
+    document["tolerances"][0]["pointer"] = json!("/design/face_width_mm");
+    assert!(refused(&document).iter().any(|(pointer, _)| pointer == "/tolerances/0/iso1328_class"));
+}
+
 #[test]
 fn f98_rows_are_those_of_the_documents_one_by_one() {
     let mut document = study("none");
@@ -299,7 +331,8 @@ fn f98_rows_are_those_of_the_documents_one_by_one() {
         {"pointer": "/operation/pinion_torque_nm", "tolerance": 50.0},
         {"pointer": "/design/supports/damping_ratio", "distribution": "triangular", "plus": 0.01, "minus": 0.02},
     ]);
-    document["measures"] = json!([{"measure": "/response/rms/mesh_circumferential_acceleration_m_s2", "halves": "left"}]);
+    document["measures"] =
+        json!([{"measure": "/response/rms/mesh_circumferential_acceleration_m_s2", "halves": "left"}]);
     document.as_object_mut().unwrap().remove("limits");
     document["samples"] = json!(16);
     let result = studied(&document);
@@ -378,7 +411,10 @@ fn what_is_wrong_with_a_search_is_said_at_once() {
     document["variables"][3]["to"] = json!(5000);
     document["variables"][1]["to"] = json!(50.0);
     let found = refused(&document);
-    assert!(found.iter().any(|(pointer, detail)| pointer == "/variables/1/to" && detail.contains("permitted")), "{found:?}");
+    assert!(
+        found.iter().any(|(pointer, detail)| pointer == "/variables/1/to" && detail.contains("permitted")),
+        "{found:?}"
+    );
     assert!(found.iter().any(|(pointer, _)| pointer == "/variables/3/to"), "{found:?}");
     let mut document = study("jansen");
     document["samples"] = json!(100);

@@ -262,6 +262,8 @@ mod unchecked {
 }
 
 #[cfg(test)]
+mod acceptance_tests;
+#[cfg(test)]
 mod contact_tests;
 #[cfg(test)]
 mod evaluation_tests;

@@ -102,6 +102,7 @@ mod tests {
             distribution,
             mean: 1.0,
             tolerance: Some(3.0),
+            iso1328_class: None,
             sigmas: 3.0,
             cut: true,
             plus: Some(2.0),
