@@ -11,6 +11,7 @@ fn base() -> Value {
         "mesh_stiffness": {"source": "given", "mean_n_per_um": 900.0, "harmonics": [{"amplitude": 0.1}]},
         "impact": {"source": "none"},
     });
+    document["analysis"] = json!({"accuracy": 1e-3});
     document
 }
 
@@ -70,6 +71,7 @@ fn rows_results_csv_and_documents_of_rows() {
     assert!(lines.iter().all(|line| line.split(',').count() == lines[0].split(',').count()));
     let columns = service.request("GET", &format!("{path}/points/columns?names=violation,objectives,phase"), "");
     assert_eq!(columns["columns"]["phase"][0], "input");
+    assert_eq!(columns["n_points"], points.len());
     // The document of the best row leads to its numbers.
     let position = &optimise["best"]["position"];
     let document = service.request("GET", &format!("{path}/points/{position}/input"), "");

@@ -76,6 +76,8 @@ pub struct Search {
     /// Every evaluated point.
     archive: Vec<(Vec<f64>, Score)>,
     best: Option<usize>,
+    /// Best score of all points, on the grid or not.
+    least: Score,
     step: Step,
     asked: Vec<Vec<f64>>,
     generation: u64,
@@ -124,6 +126,7 @@ impl Search {
             settings,
             archive: Vec::new(),
             best: None,
+            least: Score::infeasible(f64::INFINITY),
             step: Step::Start,
             asked: Vec::new(),
             generation: 0,
@@ -217,6 +220,9 @@ impl Search {
         }
         for (point, score) in asked.into_iter().zip(scores) {
             self.archive.push((point, *score));
+            if score.is_better_than(&self.least) {
+                self.least = *score;
+            }
             let index = self.archive.len() - 1;
             let is_candidate = self.is_on_grid(&self.archive[index].0);
             if is_candidate && self.best.is_none_or(|best| score.is_better_than(&self.archive[best].1)) {
@@ -245,20 +251,12 @@ impl Search {
         }
     }
 
-    /// Best score of all points, on the grid or not.
-    fn best_score(&self) -> Score {
-        let scores = self.archive.iter().map(|(_, score)| *score);
-        scores
-            .reduce(|best, score| if score.is_better_than(&best) { score } else { best })
-            .unwrap_or(Score::infeasible(1.0))
-    }
-
     fn ranked(&self) -> Vec<usize> {
         ranking(&self.archive.iter().map(|(_, score)| *score).collect::<Vec<_>>())
     }
 
     fn begin_run(&mut self) {
-        let (run, before) = (self.runs, self.best_score());
+        let (run, before) = (self.runs, self.least);
         self.runs += 1;
         let order = self.ranked();
         if self.uses_simplex() {
@@ -294,7 +292,7 @@ impl Search {
 
     /// True if a run has improved on what was known before by more than rounding.
     fn has_improved(&self, before: Score) -> bool {
-        let now = self.best_score();
+        let now = self.least;
         match (now.is_feasible(), before.is_feasible()) {
             (true, true) => now.objective < before.objective - self.settings.accuracy * self.range_of_objectives(),
             (true, false) => true,
@@ -309,13 +307,13 @@ impl Search {
         let feasible = first.iter().filter(|(_, score)| score.is_feasible()).map(|(_, score)| score.objective);
         let mut objectives: Vec<f64> = feasible.collect();
         objectives.sort_by(f64::total_cmp);
-        let best = self.best_score().objective;
+        let best = self.least.objective;
         objectives.get(objectives.len() / 2).map_or(0.0, |median| (median - best).abs().min(best.abs()))
     }
 
     fn end_run(&mut self, before: Score) {
         // A first run of the simplex is confirmed by a second from elsewhere.
-        let is_confirmed = self.runs > 1 && self.best_score().is_feasible() && !self.has_improved(before);
+        let is_confirmed = self.runs > 1 && self.least.is_feasible() && !self.has_improved(before);
         if is_confirmed {
             self.stopped_by = StoppedBy::Tolerance;
             self.begin_polish();

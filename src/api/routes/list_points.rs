@@ -21,7 +21,7 @@ pub(super) struct PointList {
     pub items: Vec<PointItem>,
     /// Position to go on from; null when nothing follows yet.
     pub next_position: Option<u64>,
-    /// Points that are solved, and points that the sweep has.
+    /// Points that are solved, and points that the sweep has; of an optimisation that has not ended, at most so many.
     pub n_solved: u64,
     pub n_points: u64,
 }
@@ -79,6 +79,7 @@ pub(super) async fn list_points(
         return Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response());
     }
     let range = RowRange { from, limit: limit.unwrap_or(DEFAULT_ROWS), ..RowRange::ALL };
-    let body = points::json_body(store.clone(), id, range, shape.rows() as u64).await?;
+    let n_points = super::row_count(&state, id, &shape).await?;
+    let body = points::json_body(store.clone(), id, range, n_points).await?;
     Ok(([(CONTENT_TYPE, "application/json"), vary], body).into_response())
 }

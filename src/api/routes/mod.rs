@@ -42,6 +42,7 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use futures_util::Stream;
+use herringbone_job::SweepShape;
 use std::convert::Infallible;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -142,6 +143,17 @@ async fn sweep_input(state: &AppState, id: JobId) -> Result<String, ApiError> {
         return Err(ApiError::not_found("The job is not a sweep, an optimisation or a tolerance study."));
     }
     state.jobs().store().input(id).await?.ok_or_else(job_not_found)
+}
+
+/// Rows that a job has or will have; of an optimisation that has not ended, at most so many.
+///
+/// # Errors
+/// The database cannot be read, or the job is gone.
+async fn row_count(state: &AppState, id: JobId, shape: &SweepShape) -> Result<u64, ApiError> {
+    if !shape.further().is_empty() && find_job(state, id).await?.state == JobState::Succeeded {
+        return Ok(state.jobs().store().point_count(id).await?);
+    }
+    Ok(shape.rows() as u64)
 }
 
 fn job_not_found() -> ApiError {

@@ -16,6 +16,7 @@ fn given(change: impl FnOnce(&mut Value)) -> Value {
         "mesh_stiffness": {"source": "given", "mean_n_per_um": 900.0, "harmonics": [{"amplitude": 0.1}]},
         "impact": {"source": "none"},
     });
+    value["analysis"] = json!({"accuracy": 1e-3});
     change(&mut value);
     value
 }
