@@ -43,7 +43,7 @@ function verdict({ verdict: word, objectives: [objective] }) {
   if (word !== "improved" || typeof objective?.gain_percent !== "number") return `${sentence(word)}.`;
   const gains = objective.per_point.filter(({ gain_percent: gain }) => typeof gain === "number");
   const least = gains.length > 1 ? gains.reduce((a, b) => (Number(a.gain_percent) <= Number(b.gain_percent) ? a : b)) : null;
-  const rest = least ? ` The least gain is ${number(least.gain_percent, 2)} %, at ${pointText(least)}.` : "";
+  const rest = least ? ` The least gain is ${number(least.gain_percent, 3)} %, at ${pointText(least)}.` : "";
   return `Better by ${number(objective.gain_percent, 3)} %: ${objective.label} ${number(objective.best, 4)} instead of ${number(objective.input, 4)} ${shownUnit(objective.unit)}.${rest}`;
 }
 
