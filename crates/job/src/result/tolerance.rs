@@ -98,6 +98,12 @@ pub struct InputSensitivity {
     /// Level that the rank correlation and the first-order share of an input without influence stay below in 95 of 100 samples.
     pub rank_noise: Option<f64>,
     pub first_order_noise: Option<f64>,
+    /// 90th percentile with the tolerance of this input halved, by weighting the sample, and the number of points of an unweighted sample
+    /// that say as much; null below 100 of them and for triangular distributions and fixed values.
+    #[serde(default)]
+    pub halved_p90: Option<f64>,
+    #[serde(default)]
+    pub halved_effective_samples: Option<f64>,
     /// Mean magnitude and standard deviation of the elementary effects, over the range of the deviation between its quantiles 0.05 and 0.95.
     pub effect: Option<f64>,
     pub effect_deviation: Option<f64>,

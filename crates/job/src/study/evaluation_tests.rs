@@ -296,6 +296,10 @@ fn f98_percentiles_of_a_linear_measure() {
         assert!(first.rank_correlation.unwrap() > 0.99 && first.first_order.unwrap() > 0.95, "{first:?}");
         assert!(second.rank_correlation.unwrap().abs() < 1.5 * second.rank_noise.unwrap(), "{second:?}");
         assert!(second.first_order.unwrap() < 2.0 * second.first_order_noise.unwrap() + 0.02, "{second:?}");
+        // Half the tolerance: the percentile of half the deviation.
+        let halved = geometry.overlap_ratio + 0.5 * per_mm * normal_quantile(0.9);
+        assert!((first.halved_p90.unwrap() - halved).abs() < 0.1 * per_mm, "{first:?}, {halved}");
+        assert!(first.halved_effective_samples.unwrap() > 500.0);
         let histogram = measure.histogram.as_ref().unwrap();
         assert_eq!(histogram.counts.iter().sum::<u32>(), 1024);
         let beyond = measure.beyond_limit.as_ref().unwrap();

@@ -37,7 +37,7 @@ async function showMeasure(measure, found) {
   fillRows(bodyOf(byId("tolerance-table")), Object.entries(percentiles).sort(([a], [b]) => Number(a.slice(1)) - Number(b.slice(1))).map(([name, { value, low, high }]) => [name.toUpperCase(), number(value), low === null ? "sample too small" : number(low), high === null ? "sample too small" : number(high)]));
   const of = found.sensitivity.filter((one) => one.measure === measure.measure);
   const share = (value) => (typeof value === "number" ? number(100 * value, 3) : "–");
-  fillRows(bodyOf(byId("tolerance-inputs")), of.map((one) => [inputLabel(one.input), number(one.rank_correlation, 3), share(one.first_order), share(one.total), number(one.effect, 3)]));
+  fillRows(bodyOf(byId("tolerance-inputs")), of.map((one) => [inputLabel(one.input), number(one.rank_correlation, 3), share(one.first_order), share(one.total), number(one.halved_p90, 4), number(one.effect, 3)]));
   const box = byId("tolerance-plot");
   showFigureOf(box, Boolean(histogram));
   if (histogram) {

@@ -84,6 +84,25 @@ impl Distribution<'_> {
     }
 }
 
+/// Density of a deviation with half its tolerance over that of the deviation itself, at the part `part` of its
+/// distribution; `None` of distributions for which it is not known.
+pub(super) fn halved_density(tolerance: &ToleranceInput, part: f64) -> Option<f64> {
+    let cut = if tolerance.cut { normal_distribution(-tolerance.sigmas) } else { 0.0 };
+    // Half the deviation at the same density of the tail: 2 exp(-(2 z)²/2 + z²/2).
+    let of_normal = |quantile: f64| 2.0 * (-1.5 * quantile * quantile).exp();
+    match tolerance.distribution {
+        DistributionInput::Normal => Some(of_normal(normal_quantile(cut + part * (1.0 - 2.0 * cut)))),
+        DistributionInput::HalfNormal => Some(of_normal(normal_quantile(0.5 + part * (0.5 - cut)))),
+        DistributionInput::Uniform => {
+            let plus = tolerance.plus.unwrap_or_default();
+            let minus = tolerance.minus.unwrap_or(plus);
+            let deviation = part * (plus + minus) - minus;
+            Some(if (-0.5 * minus..=0.5 * plus).contains(&deviation) { 2.0 } else { 0.0 })
+        }
+        DistributionInput::Triangular | DistributionInput::FixedValues => None,
+    }
+}
+
 /// Seeds of the scrambled sequences of a sample.
 pub(in crate::study) fn scrambles(seed: u64, sample: u64) -> [u32; SCRAMBLES as usize] {
     std::array::from_fn(|scramble| CounterRandom::new(seed, &[sample, scramble as u64]).bits() as u32)
@@ -108,6 +127,25 @@ mod tests {
             plus: Some(2.0),
             minus: Some(1.0),
             values: Some(vec![5.0, 7.0]),
+        }
+    }
+
+    /// Weighted by the density of the halved tolerance, deviations have half their standard deviation.
+    #[test]
+    fn weights_halve_the_scatter() {
+        for distribution in [Normal, HalfNormal, Uniform] {
+            let tolerance = ToleranceInput { cut: false, minus: Some(2.0), ..tolerance(distribution) };
+            let of = Distribution { tolerance: &tolerance, cut: 0.0 };
+            let (mut plain, mut halved, mut sum) = (0.0, 0.0, 0.0);
+            let count = 20_000;
+            for index in 0..count {
+                let part = (f64::from(index) + 0.5) / f64::from(count);
+                let weight = halved_density(&tolerance, part).expect("known");
+                let square = (of.deviation(part) - 1.0).powi(2);
+                (plain, halved, sum) = (plain + square, halved + weight * square, sum + weight);
+            }
+            assert!((sum / f64::from(count) - 1.0).abs() < 0.01, "{distribution:?}: {sum}");
+            assert!((halved / sum / (plain / f64::from(count)) - 0.25).abs() < 0.01, "{distribution:?}");
         }
     }
 

@@ -1,6 +1,7 @@
 //! Statistics of a sample.
 
 use super::run::Sampled;
+use super::scatter::halved_density;
 use crate::document::{DistributionInput, SCRAMBLES, SamplingInput, SensitivityInput};
 use crate::field::Words;
 use crate::result::{BeyondLimit, HalfSample, Histogram, InputSensitivity, MeasureScatter, PercentileValue};
@@ -25,6 +26,8 @@ const BARS: usize = 24;
 const BINS: usize = 16;
 /// Shuffled samples of which the noise of first-order shares is taken.
 const SHUFFLES: u64 = 40;
+/// Effective points from which on a weighted percentile is given.
+const LEAST_EFFECTIVE: f64 = 100.0;
 
 /// The scatter of a measure.
 pub(super) fn scatter_of(sampled: &Sampled, index: usize) -> MeasureScatter {
@@ -109,6 +112,26 @@ fn beyond_limit(sampled: &Sampled, index: usize, values: &[f64]) -> Option<Beyon
     Some(BeyondLimit { at_least: limit.at_least, at_most: limit.at_most, count: count as u32, share, low, high })
 }
 
+/// P90 of a measure with the tolerance of one input halved, by weighting the sample, and the number of points of an
+/// unweighted sample that say as much; `None` below [`LEAST_EFFECTIVE`].
+fn with_halved_tolerance(sampled: &Sampled, input: usize, solved: &[(&Vec<f64>, f64)]) -> Option<(f64, f64)> {
+    let tolerance = &sampled.document.tolerances[input];
+    let weight = |(point, value): &(&Vec<f64>, f64)| Some((*value, halved_density(tolerance, point[input])?));
+    let mut weighted: Vec<(f64, f64)> = solved.iter().map(weight).collect::<Option<_>>()?;
+    let (sum, squares) = weighted.iter().fold((0.0, 0.0), |(sum, squares), (_, w)| (sum + w, squares + w * w));
+    let effective = if squares > 0.0 { sum * sum / squares } else { 0.0 };
+    if effective < LEAST_EFFECTIVE {
+        return None;
+    }
+    weighted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut below = 0.0;
+    let reached = weighted.iter().find(|(_, weight)| {
+        below += weight;
+        below >= 0.9 * sum
+    });
+    reached.map(|(value, _)| (*value, effective))
+}
+
 /// The influence of each input on each measure.
 pub(super) fn sensitivity(sampled: &Sampled) -> Vec<InputSensitivity> {
     let document = sampled.document;
@@ -154,7 +177,10 @@ fn by_sample(sampled: &Sampled, index: usize) -> Vec<InputSensitivity> {
     let noise = sorted(&(0..SHUFFLES).map(shuffled).collect::<Vec<_>>());
     let of_input = |input: usize| {
         let column: Vec<f64> = solved.iter().map(|(point, _)| point[input]).collect();
+        let (halved_p90, halved_effective_samples) = with_halved_tolerance(sampled, input, &solved).unzip();
         InputSensitivity {
+            halved_p90,
+            halved_effective_samples,
             // In fixed values the order of the list has no meaning.
             rank_correlation: (sampled.document.tolerances[input].distribution != DistributionInput::FixedValues)
                 .then(|| rank_correlation(&column, &values)),
