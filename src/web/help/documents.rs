@@ -38,6 +38,7 @@ pub(super) const SECTIONS: &[(&str, &[&str])] = &[
             "validation/vibration",
             "validation/shafts",
             "validation/jobs",
+            "validation/optimisation",
             "validation/tables/summary",
             "validation/tables/geometry",
             "validation/tables/contact",
