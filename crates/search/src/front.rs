@@ -31,8 +31,9 @@ fn compare(a: &[f64], b: &[f64]) -> std::cmp::Ordering {
 fn crowding(points: &[Vec<f64>], front: &[usize]) -> Vec<f64> {
     let objectives = front.first().map_or(0, |first| points[*first].len());
     let mut distances = vec![0.0; front.len()];
-    for objective in 0..objectives {
-        let value = |place: usize| points[front[place]][objective];
+    let columns = (0..objectives).map(|objective| front.iter().map(|index| points[*index][objective]).collect());
+    for column in columns.collect::<Vec<Vec<f64>>>() {
+        let value = |place: usize| column[place];
         let mut order: Vec<usize> = (0..front.len()).collect();
         order.sort_by(|a, b| value(*a).total_cmp(&value(*b)));
         let (Some(&first), Some(&last)) = (order.first(), order.last()) else { continue };

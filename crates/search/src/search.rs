@@ -91,7 +91,7 @@ pub struct Search {
 enum Step {
     Start,
     Sample,
-    Evolution(Evolution),
+    Evolution(Box<Evolution>),
     Simplex(Simplex),
     Polish(Polish),
     End,
@@ -287,7 +287,7 @@ impl Search {
             ((0..self.n()).map(|_| random.uniform()).collect(), usual << run.min(6))
         };
         let cma_es = CmaEs::new(&start, SIGMA, candidates, self.settings.seed, 2 + run);
-        self.step = Step::Evolution(Evolution { cma_es, bests: Vec::new(), before });
+        self.step = Step::Evolution(Box::new(Evolution { cma_es, bests: Vec::new(), before }));
     }
 
     /// True if a run has improved on what was known before by more than rounding.
@@ -322,7 +322,7 @@ impl Search {
         }
     }
 
-    fn go_on_with_evolution(&mut self, mut run: Evolution, scores: &[Score]) {
+    fn go_on_with_evolution(&mut self, mut run: Box<Evolution>, scores: &[Score]) {
         run.cma_es.tell(scores);
         let best = scores.iter().filter(|score| score.is_feasible()).map(|score| score.objective).reduce(f64::min);
         run.bests.extend(best);

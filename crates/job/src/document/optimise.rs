@@ -239,7 +239,7 @@ fn constraint_rules(document: &JobDocument, place: &ObjectPlace) {
         }
         match (&constraint.measure, constraint.margin) {
             (Some(_), Some(_)) => {
-                place.conflict(&at("margin"), "is given together with measure; give one or the other")
+                place.conflict(&at("margin"), "is given together with measure; give one or the other");
             }
             (None, None) => place.missing(&at("measure"), "is required, unless margin is given"),
             _ => {}

@@ -86,6 +86,14 @@ pub struct Morris {
     pub deviation: f64,
 }
 
+/// An evaluated trajectory: its points, the input that changes before each but the first, the result at each.
+#[derive(Debug, Clone)]
+pub struct MorrisTrajectory {
+    pub points: Vec<Vec<f64>>,
+    pub order: Vec<usize>,
+    pub results: Vec<f64>,
+}
+
 /// Levels of the grid of [`morris_points`], and the step between two points of a trajectory.
 const LEVELS: usize = 4;
 const STEP: f64 = LEVELS as f64 / (2.0 * (LEVELS as f64 - 1.0));
@@ -110,9 +118,9 @@ pub fn morris_points(dimensions: usize, seed: u64, trajectory: u64) -> (Vec<Vec<
 }
 
 /// Elementary effects of each input, in result per unit of the cube, from the results along trajectories.
-pub fn morris_effects(dimensions: usize, trajectories: &[(Vec<Vec<f64>>, Vec<usize>, Vec<f64>)]) -> Vec<Morris> {
+pub fn morris_effects(dimensions: usize, trajectories: &[MorrisTrajectory]) -> Vec<Morris> {
     let mut effects = vec![Vec::new(); dimensions];
-    for (points, order, results) in trajectories {
+    for MorrisTrajectory { points, order, results } in trajectories {
         for (place, input) in order.iter().enumerate() {
             let step = points[place + 1][*input] - points[place][*input];
             effects[*input].push((results[place + 1] - results[place]) / step);

@@ -91,7 +91,7 @@ fn screening_finds_what_matters() {
         .map(|number| {
             let (points, order) = morris_points(3, 1, number);
             let results = points.iter().map(|x| function(x)).collect();
-            (points, order, results)
+            MorrisTrajectory { points, order, results }
         })
         .collect();
     let effects = morris_effects(3, &trajectories);

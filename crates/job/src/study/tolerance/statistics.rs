@@ -7,8 +7,8 @@ use crate::field::Words;
 use crate::result::{BeyondLimit, HalfSample, Histogram, InputSensitivity, MeasureScatter, PercentileValue};
 use herringbone_search::CounterRandom;
 use herringbone_search::statistics::{
-    first_order_by_bins, jansen, mean, morris_effects, order_statistic_interval, percentile, rank_correlation,
-    standard_deviation, student_t_interval, wilson_interval,
+    MorrisTrajectory, first_order_by_bins, jansen, mean, morris_effects, order_statistic_interval, percentile,
+    rank_correlation, standard_deviation, student_t_interval, wilson_interval,
 };
 
 const PERCENTILES: [(&str, f64); 8] = [
@@ -210,7 +210,7 @@ fn by_screening(sampled: &Sampled, index: usize) -> Vec<InputSensitivity> {
     let trajectories: Vec<_> = runs
         .filter_map(|((points, order), rows)| {
             let results: Option<Vec<f64>> = rows.iter().map(|row| row[index]).collect();
-            Some((points.clone(), order.clone(), results?))
+            Some(MorrisTrajectory { points: points.clone(), order: order.clone(), results: results? })
         })
         .collect();
     let effects = morris_effects(inputs, &trajectories);
