@@ -116,6 +116,7 @@ impl CmaEs {
         (4 + (3.0 * (dimensions as f64).ln()).floor() as usize).max(8)
     }
 
+    /// Number of candidates of a generation.
     pub fn candidates(&self) -> usize {
         self.constants.weights.len()
     }

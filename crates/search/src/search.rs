@@ -12,7 +12,9 @@ use crate::sobol::sobol_point;
 pub enum Method {
     /// Nelder and Mead up to three variables, else CMA-ES.
     Auto,
+    /// CMA-ES; Nelder and Mead for a single variable.
     CmaEs,
+    /// Nelder and Mead.
     NelderMead,
 }
 
@@ -23,11 +25,13 @@ pub struct SearchSettings {
     pub start: Vec<f64>,
     /// Distance of the points of the grid on which each variable has to end; 0: none.
     pub steps: Vec<f64>,
+    /// Seed of every random number.
     pub seed: u64,
     /// Most evaluations.
     pub evaluations: usize,
     /// Spread of a run, in the unit of the variables, at which it ends.
     pub accuracy: f64,
+    /// Method of the runs.
     pub method: Method,
 }
 
@@ -54,7 +58,9 @@ pub enum Phase {
 /// Points to be evaluated, in any order or side by side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Batch {
+    /// The points.
     pub points: Vec<Vec<f64>>,
+    /// What they are for.
     pub phase: Phase,
     /// Number of the batch.
     pub generation: u64,
@@ -121,6 +127,7 @@ const SMALL_SIMPLEX: f64 = 0.03;
 const POLISH_PART: usize = 4;
 
 impl Search {
+    /// A search that has evaluated nothing.
     pub fn new(settings: SearchSettings) -> Self {
         Self {
             settings,
@@ -150,10 +157,12 @@ impl Search {
         &self.archive
     }
 
+    /// Batches that were told.
     pub fn generation(&self) -> u64 {
         self.generation
     }
 
+    /// Why it ended; meaningful once [`Search::ask`] has answered `None`.
     pub fn stopped_by(&self) -> StoppedBy {
         self.stopped_by
     }
@@ -300,8 +309,8 @@ impl Search {
         }
     }
 
-    /// Scale of differences between objectives: distance of the best one from the median of the first sample, at most the
-    /// magnitude of the best one.
+    /// Scale of differences between objectives: distance of the best one from the median of the first sample, at most
+    /// the magnitude of the best one.
     fn range_of_objectives(&self) -> f64 {
         let first = &self.archive[..self.archive.len().min(4 * self.n() + 9)];
         let feasible = first.iter().filter(|(_, score)| score.is_feasible()).map(|(_, score)| score.objective);

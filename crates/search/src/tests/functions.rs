@@ -35,7 +35,8 @@ fn cb3(x: &[f64]) -> f64 {
     largest(&[a.powi(4) + b * b, (2.0 - a).powi(2) + (2.0 - b).powi(2), 2.0 * (b - a).exp()])
 }
 
-/// Rosen and Suzuki 1965 as a minimax problem (Charalambous 1977): the objective, and it with ten times each constraint.
+/// Rosen and Suzuki 1965 as a minimax problem (Charalambous 1977): the objective, and it with ten times each
+/// constraint.
 fn rosen_suzuki(x: &[f64]) -> f64 {
     let [a, b, c, d] = [x[0], x[1], x[2], x[3]];
     let f = a * a + b * b + 2.0 * c * c + d * d - 5.0 * a - 5.0 * b - 21.0 * c + 7.0 * d;

@@ -9,7 +9,8 @@ pub(in crate::study) struct Inputs<'a> {
     pub pointer: &'a str,
     /// Further inputs, each with its factor.
     also: Vec<(&'a str, f64)>,
-    /// Whether the others keep their distance from the document's values, times the factor, instead of taking the value.
+    /// Whether the others keep their distance from the document's values, times the factor, instead of taking the
+    /// value.
     deviates: bool,
 }
 
