@@ -9,6 +9,7 @@ use crate::store::{JobId, PointRow, Store, StoreError};
 use axum::body::{Body, Bytes};
 use futures_util::stream::{self, BoxStream, StreamExt};
 use herringbone_job::result::{BranchDirection, Cell, SweepPoint};
+use herringbone_job::{FurtherCell, SweepShape};
 use serde::Serialize;
 use std::io;
 
@@ -139,7 +140,7 @@ pub(super) async fn json_body(store: Store, id: JobId, range: RowRange, n_points
     Ok(Body::from_stream(head.chain(pieces)))
 }
 
-/// A response body with rows as CSV: a header with a column for each of `axes`, then a record for each row.
+/// A response body with rows as CSV: a header with a column for each input that varies, then a record for each row.
 ///
 /// # Errors
 /// The database cannot be read.
@@ -147,15 +148,15 @@ pub(super) async fn csv_body(
     store: &Store,
     id: JobId,
     range: RowRange,
-    axes: &[String],
+    shape: SweepShape,
     decimal: Decimal,
 ) -> Result<Body, RowsError> {
-    let header = header(axes, decimal).map_err(unreadable)?;
+    let header = header(&shape, decimal).map_err(unreadable)?;
     let records = pages(store, id, range).await?.map(move |page| {
         let mut writer = CsvWriter::new(Vec::new(), decimal);
         for row in page? {
             let point: SweepPoint = serde_json::from_str(&row.body).map_err(unreadable)?;
-            write_row(&mut writer, row.position, &point).map_err(unreadable)?;
+            write_row(&mut writer, row.position, &point, &shape).map_err(unreadable)?;
         }
         writer.into_inner().map(Bytes::from).map_err(unreadable)
     });
@@ -166,15 +167,16 @@ fn unreadable(error: impl std::fmt::Display) -> RowsError {
     StoreError::Corrupt { what: "point", detail: error.to_string() }.into()
 }
 
-fn header(axes: &[String], decimal: Decimal) -> io::Result<Vec<u8>> {
+fn header(shape: &SweepShape, decimal: Decimal) -> io::Result<Vec<u8>> {
     let names = columns::default_columns().into_iter().map(|column| column.name);
-    let columns = ["position", "branch"].into_iter().chain(axes.iter().map(String::as_str)).chain(names);
+    let (axes, further) = (shape.pointers().iter().map(String::as_str), shape.further().iter().map(String::as_str));
+    let columns = ["position", "branch"].into_iter().chain(axes).chain(names).chain(further);
     let mut writer = CsvWriter::with_mark(Vec::new(), decimal)?;
     writer.write_record(columns.map(CsvField::Text))?;
     writer.into_inner()
 }
 
-fn write_row(writer: &mut CsvWriter<Vec<u8>>, position: u64, point: &SweepPoint) -> io::Result<()> {
+fn write_row(writer: &mut CsvWriter<Vec<u8>>, position: u64, point: &SweepPoint, shape: &SweepShape) -> io::Result<()> {
     let values = point.values.iter().map(|value| CsvField::Number(*value));
     let cells: Vec<_> = columns::default_columns().into_iter().map(|column| (column.cell)(point)).collect();
     let fields = cells.iter().map(|cell| match cell {
@@ -183,5 +185,10 @@ fn write_row(writer: &mut CsvWriter<Vec<u8>>, position: u64, point: &SweepPoint)
         _ => CsvField::Empty,
     });
     let branch = CsvField::Text(point.branch.map_or("", BranchDirection::as_str));
-    writer.write_record([CsvField::Integer(position), branch].into_iter().chain(values).chain(fields))
+    let further = shape.cells(point).into_iter().map(|cell| match cell {
+        FurtherCell::Number(Some(number)) => CsvField::Number(number),
+        FurtherCell::Number(None) => CsvField::Empty,
+        FurtherCell::Word(word) => CsvField::Text(word),
+    });
+    writer.write_record([CsvField::Integer(position), branch].into_iter().chain(values).chain(fields).chain(further))
 }

@@ -1,4 +1,5 @@
-//! The result of a sweep as a response: the stored result with the stored rows as `sweep.points`.
+//! The result of a job with rows as a response: the stored result with the stored rows as `sweep.points`
+//! (`optimise.points`, `tolerance.points`).
 //!
 //! The rows are stored apart from the result and sent as they were written. Serde walks through the members of the
 //! result and so finds the place of the rows; every other member is copied unparsed ([`RawValue`]).
@@ -56,7 +57,7 @@ fn split_at_rows(result: &str) -> serde_json::Result<(Vec<u8>, Vec<u8>)> {
     ResultWithRows { result, parts: &parts }.serialize(&mut serde_json::Serializer::new(&parts))?;
     match parts.0.into_inner() {
         (head, Some(tail)) => Ok((head, tail)),
-        (_, None) => Err(serde_json::Error::custom("there is no sweep.points")),
+        (_, None) => Err(serde_json::Error::custom("there is no list of rows")),
     }
 }
 
@@ -102,7 +103,7 @@ impl Serialize for ResultWithRows<'_> {
         let mut map = serializer.serialize_map(None)?;
         for (name, value) in &self.result.0 {
             match name.as_str() {
-                "sweep" => {
+                "sweep" | "optimise" | "tolerance" => {
                     let sweep = serde_json::from_str(value.get()).map_err(S::Error::custom)?;
                     map.serialize_entry(name, &SweepWithRows { sweep, parts: self.parts })?;
                 }

@@ -8,6 +8,7 @@ use futures_util::StreamExt;
 use herringbone_exchange::arrays::{ArrayForm, ArrayWriter};
 use herringbone_job::result::{BranchDirection, Cell, CellKind, Column, SweepPoint, quantities};
 use herringbone_job::unit::Unit;
+use herringbone_job::{FurtherCell, SweepShape};
 use std::io;
 
 /// A table with a name, unit and meaning for each column.
@@ -50,19 +51,43 @@ impl Table {
         self.columns.iter().map(|column| column.cells.len()).max().unwrap_or(0)
     }
 
-    /// The rows of a sweep with the columns of its CSV. `axes` are the pointers of its inputs.
+    /// The rows of a sweep, an optimisation or a tolerance study with the columns of its CSV.
     ///
     /// # Errors
     /// The rows cannot be read.
-    pub(super) async fn of_points(mut pages: Pages, axes: &[String]) -> Result<Table, ApiError> {
-        let mut rows = PointColumns::new(axes);
+    pub(super) async fn of_points(mut pages: Pages, shape: &SweepShape) -> Result<Table, ApiError> {
+        let mut rows = PointColumns::new(&shape.pointers());
+        let mut further: Vec<Cells> = Vec::new();
         while let Some(page) = pages.next().await.transpose()? {
             for row in page {
                 let point: SweepPoint = serde_json::from_str(&row.body).map_err(ApiError::internal)?;
                 rows.push(row.position, &point);
+                for (place, cell) in shape.cells(&point).into_iter().enumerate() {
+                    if further.len() == place {
+                        further.push(match cell {
+                            FurtherCell::Number(_) => Cells::Numbers(Vec::new()),
+                            FurtherCell::Word(_) => Cells::Words(Vec::new()),
+                        });
+                    }
+                    match (&mut further[place], cell) {
+                        (Cells::Numbers(values), FurtherCell::Number(value)) => values.push(value.unwrap_or(f64::NAN)),
+                        (Cells::Words(words), FurtherCell::Word(word)) => words.push(word.to_owned()),
+                        (Cells::Numbers(values), FurtherCell::Word(_)) => values.push(f64::NAN),
+                        (Cells::Words(words), FurtherCell::Number(_)) => words.push(String::new()),
+                    }
+                }
             }
         }
-        Ok(rows.into_table())
+        let mut table = rows.into_table();
+        let names = shape.further().iter().cloned();
+        let columns = names.zip(further).map(|(name, cells)| TableColumn {
+            name,
+            unit: String::new(),
+            meaning: String::new(),
+            cells,
+        });
+        table.columns.extend(columns);
+        Ok(table)
     }
 
     /// The rows of a sweep that was solved, with the columns of its CSV.

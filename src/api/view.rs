@@ -105,7 +105,7 @@ impl From<&JobRecord> for Job {
                 input: format!("{path}/input"),
                 result: format!("{path}/result"),
                 series: format!("{path}/series"),
-                points: (job.kind == JobKind::Sweep.as_str()).then(|| format!("{path}/points")),
+                points: has_rows(&job.kind).then(|| format!("{path}/points")),
                 itself: path,
             },
         }
@@ -120,6 +120,11 @@ impl JobHeadline {
             transmission_error_pp_um: headline.transmission_error_pp_um,
         })
     }
+}
+
+/// Whether jobs of a kind have rows.
+pub(super) fn has_rows(kind: &str) -> bool {
+    [JobKind::Sweep, JobKind::Optimise, JobKind::Tolerance].iter().any(|with_rows| with_rows.as_str() == kind)
 }
 
 /// The path of a job.

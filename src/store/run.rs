@@ -26,15 +26,22 @@ pub struct Claim {
 pub enum WorkClass {
     /// One operating point (seconds).
     Single,
-    /// Many operating points (hours).
+    /// Many operating points (hours), each with a row: sweeps, optimisations, tolerance studies.
     Sweep,
 }
 
 impl WorkClass {
     /// The class of a kind of job.
     pub fn of_kind(kind: &str) -> Self {
-        if kind == "sweep" { WorkClass::Sweep } else { WorkClass::Single }
+        if matches!(kind, "sweep" | "optimise" | "tolerance") { WorkClass::Sweep } else { WorkClass::Single }
     }
+}
+
+/// Whether a job is of the class [`WorkClass::Sweep`], as its index has it. A literal for `concat!`.
+macro_rules! has_rows {
+    () => {
+        "(kind IN ('sweep', 'optimise', 'tolerance'))"
+    };
 }
 
 /// The reason for returning a running job to the queue.
@@ -76,9 +83,12 @@ impl Store {
         let row = sqlx::query(concat!(
             "UPDATE jobs SET state = 'running', attempt = attempt + 1, revision = revision + 1, \
              started_at_us = MAX($1, submitted_at_us), \
-             progress = CASE kind WHEN 'sweep' THEN progress ELSE 0 END, stage = NULL WHERE state = 'queued' AND id = \
-             (SELECT id FROM jobs WHERE state = 'queued' AND (kind = 'sweep') = $2 \
-             ORDER BY priority DESC, turns, id LIMIT 1) RETURNING input, computed_us, ",
+             progress = CASE WHEN ",
+            has_rows!(),
+            " THEN progress ELSE 0 END, stage = NULL WHERE state = 'queued' AND id = \
+             (SELECT id FROM jobs WHERE state = 'queued' AND ",
+            has_rows!(),
+            " = $2 ORDER BY priority DESC, turns, id LIMIT 1) RETURNING input, computed_us, ",
             job_columns!()
         ))
         .bind(now.as_microsecond())
@@ -99,7 +109,7 @@ impl Store {
     /// # Errors
     /// The database cannot be read.
     pub async fn has_queued(&self, class: WorkClass) -> Result<bool, StoreError> {
-        let row = sqlx::query("SELECT 1 FROM jobs WHERE state = 'queued' AND (kind = 'sweep') = $1 LIMIT 1")
+        let row = sqlx::query(concat!("SELECT 1 FROM jobs WHERE state = 'queued' AND ", has_rows!(), " = $1 LIMIT 1"))
             .bind(class == WorkClass::Sweep)
             .fetch_optional(&self.reader)
             .await?;
@@ -232,7 +242,9 @@ async fn release_in(
          ended_at_us = CASE WHEN cancel_requested_at_us IS NULL THEN NULL \
          ELSE MAX($3, COALESCE(started_at_us, submitted_at_us)) END, \
          started_at_us = CASE WHEN cancel_requested_at_us IS NULL THEN NULL ELSE started_at_us END, \
-         progress = CASE WHEN cancel_requested_at_us IS NULL AND kind <> 'sweep' THEN 0 ELSE progress END, \
+         progress = CASE WHEN cancel_requested_at_us IS NULL AND NOT ",
+        has_rows!(),
+        " THEN 0 ELSE progress END, \
          stage = CASE WHEN cancel_requested_at_us IS NULL THEN NULL ELSE stage END \
          WHERE id = $1 AND attempt = $2 AND state = 'running' RETURNING ",
         job_columns!()

@@ -95,6 +95,26 @@ pub(super) const GROUPS: &[PresetGroup] = &[
         ],
     },
     PresetGroup {
+        title: "Optimisation and tolerances",
+        presets: &[
+            preset!(
+                "optimise_relief",
+                "Quiet at three torques",
+                "Tip relief of both gears and crowning for the least vibration at the worst of 400, 800 and 1200 N·m."
+            ),
+            preset!(
+                "optimise_misalignment",
+                "Helix slopes against a misalignment",
+                "Slopes of both halves of the pinion for the least line load with axes 20 µm out of line."
+            ),
+            preset!(
+                "tolerance_relief",
+                "Scatter of relief and assembly",
+                "Transmission error and vibration of 128 pairs within their tolerances, and which tolerance matters."
+            ),
+        ],
+    },
+    PresetGroup {
         title: "Sweeps",
         presets: &[
             preset!("speed_sweep", "Over the speed", "The example pair at 56 speeds: resonances and their width."),

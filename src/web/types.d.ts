@@ -38,6 +38,10 @@ declare global {
   /** Values that are not finite are null. */
   type SeriesData = Omit<Schemas["SeriesData"], "y"> & { y: (number | null)[] };
   type SweepResult = Schemas["Sweep"];
+  type Optimisation = Schemas["Optimisation"];
+  type ToleranceStudy = Schemas["ToleranceStudy"];
+  type MeasureScatter = Schemas["MeasureScatter"];
+  type InputSensitivity = Schemas["InputSensitivity"];
   type Violation = Schemas["Violation"];
   type WarningEntry = Schemas["WarningEntry"];
 

@@ -28,10 +28,22 @@ pub(super) async fn estimate(
     solver_version: &str,
 ) -> Result<Estimate, StoreError> {
     let class = class_of(&serde_json::to_value(document).unwrap_or_default());
-    let points = if document.kind == JobKind::Sweep { document.sweep_points().max(1) } else { 1 };
+    let points = match document.kind {
+        JobKind::Mesh | JobKind::Response => 1,
+        JobKind::Sweep => document.sweep_points().max(1),
+        JobKind::Optimise | JobKind::Tolerance => {
+            let evaluations = usize::try_from(document.evaluations()).unwrap_or(usize::MAX);
+            evaluations.saturating_mul(document.operating_points.len().max(1))
+        }
+    };
     let mut kind = document.kind;
-    let mut measured = store.durations(kind.as_str(), &class, solver_version).await?;
-    if measured.is_empty() && kind == JobKind::Sweep {
+    // Rows of evaluations have several operating points, and an unknown number of them was solved.
+    let is_measured = matches!(kind, JobKind::Mesh | JobKind::Response | JobKind::Sweep);
+    let mut measured = match is_measured {
+        true => store.durations(kind.as_str(), &class, solver_version).await?,
+        false => Vec::new(),
+    };
+    if measured.is_empty() && !matches!(kind, JobKind::Mesh | JobKind::Response) {
         kind = JobKind::Response;
         measured = store.durations(kind.as_str(), &class, solver_version).await?;
     }

@@ -331,7 +331,7 @@ impl SolveTask<'_> {
             result.numerics.reused.retain(|reused| *reused != ReusedStage::Points);
         }
         measure::record_stages(&result.numerics);
-        let points = result.sweep.as_mut().map(|sweep| std::mem::take(&mut sweep.points));
+        let points = result.rows_mut().map(std::mem::take);
         result.note_not_finite();
         let body = serde_json::to_string::<JobResult>(&result).map_err(|error| error.to_string())?;
         let (unwritten, rows) = match points {

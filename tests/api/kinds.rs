@@ -7,13 +7,15 @@ async fn each_kind_with_schema_defaults_and_limits() {
     let answer = app.get("/api/v1/kinds").await.json;
     let items = answer["items"].as_array().unwrap();
     let kinds: Vec<_> = items.iter().map(|item| item["kind"].as_str().unwrap()).collect();
-    assert_eq!(kinds, ["mesh", "response", "sweep"]);
+    assert_eq!(kinds, ["mesh", "response", "sweep", "optimise", "tolerance"]);
     for item in items {
         assert!(jsonschema::meta::is_valid(&item["schema"]));
         assert_eq!(item["limits"]["max_body_bytes"], 1 << 20);
         assert_eq!(item["defaults"]["design"]["material"]["density_kg_m3"], 7850.0);
         assert_eq!(item["defaults"]["kind"], item["kind"]);
         assert_eq!(item["schema"]["properties"].get("axes").is_some(), item["kind"] == "sweep");
+        let has_measures = item["kind"] == "optimise" || item["kind"] == "tolerance";
+        assert_eq!(item["measures"].as_array().is_some_and(|measures| measures.len() > 50), has_measures);
     }
 }
 

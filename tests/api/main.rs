@@ -12,6 +12,7 @@ mod csv;
 mod delete_job;
 mod documents;
 mod errors;
+mod evaluations;
 mod files;
 mod header_fields;
 mod idempotency;

@@ -79,12 +79,39 @@ pub(crate) async fn all(browser: &Browser) -> Vec<Page> {
             document["analysis"]["initial_state"] = json!(vec![1e6; 24]);
         }))
         .await;
+    let quick = |change: &dyn Fn(&mut Value)| {
+        let mut document: Value = serde_json::from_str(include_str!("../../examples/given_stiffness.json")).unwrap();
+        document["analysis"] = json!({"accuracy": 1e-3});
+        change(&mut document);
+        document
+    };
+    let acceleration = "/response/rms/mesh_circumferential_acceleration_m_s2";
+    let optimisation = browser
+        .solved(&quick(&|document| {
+            document["kind"] = json!("optimise");
+            document["variables"] =
+                json!([{"pointer": "/operation/pinion_speed_rpm", "from": 1500, "to": 3000, "step": 10}]);
+            document["objectives"] = json!([{"measure": acceleration}]);
+            document["budget"] = json!({"evaluations": 30});
+        }))
+        .await;
+    let scatter = browser
+        .solved(&quick(&|document| {
+            document["kind"] = json!("tolerance");
+            document["tolerances"] = json!([{"pointer": "/operation/pinion_torque_nm", "tolerance": 5},
+                {"pointer": "/design/supports/damping_ratio", "distribution": "uniform", "plus": 0.01}]);
+            document["measures"] = json!([{"measure": acceleration}]);
+            document["samples"] = json!(64);
+        }))
+        .await;
     let shafts = browser.solved(&on_shafts()).await;
     vec![
         Page::new("design", "/", CHECKED),
         Page { spoilt: true, ..Page::new("design with errors", "/", CHECKED) },
-        Page::new("jobs", "/jobs", "document.querySelectorAll('tr[data-id]').length === 6"),
+        Page::new("jobs", "/jobs", "document.querySelectorAll('tr[data-id]').length === 8"),
         Page::new("response", format!("/jobs/{response}"), SHOWN).with_plot(),
+        Page::new("optimisation", format!("/jobs/{optimisation}"), SHOWN).with_plot(),
+        Page::new("tolerance study", format!("/jobs/{scatter}"), SHOWN).with_plot(),
         Page::new("report", format!("/jobs/{response}/report"), SHOWN).with_plot(),
         Page::new("response on shafts", format!("/jobs/{shafts}"), SHOWN).with_plot(),
         Page::new("report on shafts", format!("/jobs/{shafts}/report"), SHOWN).with_plot(),

@@ -79,6 +79,7 @@ fn of_object(schema: &Value) -> BoxedStrategy<Value> {
 fn reconcile(document: &mut Value) {
     let is_sweep = document["kind"] == "sweep";
     axes(document, is_sweep);
+    evaluations(document);
     // The excess of a gear's face width over that of the design has to fit into the gap.
     let of = |name: &str, default: f64| document["design"][name].as_f64().unwrap_or(default);
     let widest_mm = of("face_width_mm", 0.5) + of("gap_width_mm", 30.0);
@@ -142,6 +143,50 @@ fn axes(document: &mut Value, is_sweep: bool) {
             }
         }
     }
+}
+
+/// Jobs of many evaluations: lists of their own, as rules between fields want them.
+fn evaluations(document: &mut Value) {
+    let kind = document["kind"].as_str().unwrap_or("response").to_owned();
+    let Some(fields) = document.as_object_mut() else { return };
+    let all = [
+        "operating_points",
+        "variables",
+        "objectives",
+        "constraints",
+        "robust",
+        "budget",
+        "method",
+        "tolerances",
+        "measures",
+        "limits",
+        "samples",
+        "sampling",
+        "sensitivity",
+        "seed",
+    ];
+    let own: &[&str] = match kind.as_str() {
+        "optimise" => &["operating_points", "budget", "method", "seed"],
+        "tolerance" => &["operating_points", "seed"],
+        _ => &[],
+    };
+    all.iter().filter(|name| !own.contains(name)).for_each(|name| drop(fields.remove(*name)));
+    let measure = json!({"measure": "/mesh/transmission_error_pp_um"});
+    match kind.as_str() {
+        "optimise" => {
+            let pointer = "/design/pinion/lead_crowning_um";
+            fields.insert("variables".to_owned(), json!([{"pointer": pointer, "from": 0, "to": 20}]));
+            fields.insert("objectives".to_owned(), json!([measure]));
+            fields.insert("constraints".to_owned(), json!([{"margin": "tip-thickness", "at_least": 0.2}]));
+        }
+        "tolerance" => {
+            let pointer = "/design/pinion/helix_slope_um";
+            fields.insert("tolerances".to_owned(), json!([{"pointer": pointer, "tolerance": 5}]));
+            fields.insert("measures".to_owned(), json!([measure]));
+        }
+        _ => return,
+    }
+    fields.remove("sweep_point");
 }
 
 /// Shafts that carry their gears: the places follow from the faces, the other numbers stay as they are where they can.

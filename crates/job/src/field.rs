@@ -136,6 +136,28 @@ impl Slot<'_> {
         matches!(self, Slot::Whole(..) | Slot::OptionalWhole(..))
     }
 
+    /// The number that stands here; none of another value, or where there is none.
+    pub(crate) fn number(&self) -> Option<f64> {
+        match self {
+            Slot::Number(number, _) => Some(**number),
+            Slot::OptionalNumber(number, _) => **number,
+            Slot::Whole(number, _) => Some(f64::from(**number)),
+            Slot::OptionalWhole(number, _) => number.map(f64::from),
+            Slot::Other => None,
+        }
+    }
+
+    /// Permitted range of a number.
+    pub(crate) fn range(&self) -> Option<[f64; 2]> {
+        match self {
+            Slot::Number(_, declared)
+            | Slot::OptionalNumber(_, declared)
+            | Slot::Whole(_, declared)
+            | Slot::OptionalWhole(_, declared) => Some([declared.min, declared.max]),
+            Slot::Other => None,
+        }
+    }
+
     /// Assigns a number.
     ///
     /// # Errors

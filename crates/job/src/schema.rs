@@ -49,16 +49,26 @@ pub fn job_document_schema_of(kind: JobKind) -> Value {
             field = json!({"enum": [kind.as_str(), null], "default": kind.as_str(), "description": help});
         }
         properties.insert("kind".to_owned(), field);
-        if let Some(axes) = properties.get_mut("axes") {
+        for name in required(kind) {
             // Required members cannot be null.
-            axes["type"] = json!("array");
+            properties[*name]["type"] = json!("array");
         }
     }
-    let needs = |name: &str| (kind, name) == (JobKind::Sweep, "axes") || (kind != JobKind::Response && name == "kind");
-    for name in ["kind", "axes"].into_iter().filter(|name| needs(name)) {
+    let kind_is_needed = (kind != JobKind::Response).then_some("kind");
+    for name in kind_is_needed.into_iter().chain(required(kind).iter().copied()) {
         push_required(&mut schema, name);
     }
     schema
+}
+
+/// Lists that documents of a kind need.
+fn required(kind: JobKind) -> &'static [&'static str] {
+    match kind {
+        JobKind::Mesh | JobKind::Response => &[],
+        JobKind::Sweep => &["axes"],
+        JobKind::Optimise => &["variables", "objectives"],
+        JobKind::Tolerance => &["tolerances", "measures"],
+    }
 }
 
 fn insert(root: &mut Value, field: &FieldDescription) {

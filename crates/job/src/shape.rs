@@ -1,18 +1,40 @@
 //! Axes and rows of a sweep: read from a stored document without the rest of it, and the job document of a single row.
 
 use super::document::{JobDocument, JobKind};
+use super::field::Words;
+use super::result::SweepPoint;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
 impl JobDocument {
-    /// The document of a response with the inputs of this sweep, without axes.
+    /// The document of a response with the inputs of this job: without axes, variables and tolerances.
     pub fn without_sweep(&self) -> JobDocument {
         JobDocument {
+            name: self.name.clone(),
+            label: self.label.clone(),
+            model: self.model.clone(),
+            analysis: self.analysis.clone(),
             kind: JobKind::Response,
             axes: Vec::new(),
             continuation: None,
             record: Vec::new(),
-            ..self.clone()
+            operating_points: Vec::new(),
+            variables: Vec::new(),
+            objectives: Vec::new(),
+            constraints: Vec::new(),
+            robust: None,
+            budget: None,
+            method: None,
+            tolerances: Vec::new(),
+            measures: Vec::new(),
+            limits: Vec::new(),
+            samples: None,
+            sampling: None,
+            sensitivity: None,
+            seed: None,
+            sweep_point: self.sweep_point.clone(),
+            design: self.design.clone(),
+            operation: self.operation.clone(),
         }
     }
 
@@ -34,9 +56,18 @@ impl JobDocument {
     }
 }
 
+/// What a stored document says of the rows of its job.
+#[derive(Debug, Clone)]
+pub struct SweepShape {
+    rows: usize,
+    pointers: Vec<String>,
+    further: Vec<String>,
+}
+
 /// The members of a stored document that determine the rows of a sweep.
 #[derive(Debug, Clone, Deserialize)]
-pub struct SweepShape {
+struct StoredSweep {
+    kind: String,
     #[serde(default)]
     axes: Vec<StoredAxis>,
     #[serde(default)]
@@ -56,20 +87,87 @@ impl SweepShape {
     /// # Errors
     /// The error of the parser, if the text is not such a document.
     pub fn of_stored(text: &str) -> Result<Self, serde_json::Error> {
-        serde_json::from_str(text)
+        let stored: StoredSweep = serde_json::from_str(text)?;
+        if stored.kind != JobKind::Sweep.as_str() {
+            let document = super::parse(text.as_bytes()).map_err(serde::de::Error::custom)?;
+            return Ok(Self::of_evaluations(&document));
+        }
+        let ways = if stored.continuation.as_deref() == Some("both") { 2 } else { 1 };
+        let length = |axis: &StoredAxis| axis.values.as_ref().map(Vec::len).or(axis.points).unwrap_or(0);
+        Ok(Self {
+            rows: ways * stored.axes.iter().map(length).product::<usize>(),
+            pointers: stored.axes.into_iter().map(|axis| axis.pointer).collect(),
+            further: Vec::new(),
+        })
     }
 
-    /// Rows of the sweep: every point once for each direction of continuation.
+    fn of_evaluations(document: &JobDocument) -> Self {
+        let variables = document.variables.iter().map(|variable| &variable.pointer);
+        let of_optimisation = document.kind == JobKind::Optimise;
+        let pointers: Vec<String> = match of_optimisation {
+            true => variables.cloned().collect(),
+            false => document.tolerances.iter().map(|tolerance| tolerance.pointer.clone()).collect(),
+        };
+        let mut further = vec!["phase".to_owned()];
+        let mut measures: Vec<String> = document.measures.iter().map(|measure| measure.measure.clone()).collect();
+        if of_optimisation {
+            further.extend(["generation", "violation"].map(str::to_owned));
+            further.extend((1..=document.objectives.len()).map(|number| format!("objective_{number}")));
+            measures.extend(document.objectives.iter().map(|objective| objective.measure.clone()));
+            measures.extend(document.constraints.iter().map(|constraint| {
+                let margin = constraint.margin.map(|margin| margin.as_word().to_owned());
+                constraint.measure.clone().or(margin).unwrap_or_default()
+            }));
+        }
+        let points = document.operating_points.len().max(1);
+        for measure in measures {
+            further.extend((0..points).map(|point| format!("{measure} at {point}")));
+        }
+        Self { rows: usize::try_from(document.evaluations()).unwrap_or(usize::MAX), pointers, further }
+    }
+
+    /// Rows: every point of a sweep once for each direction of continuation, evaluations of other jobs (of an
+    /// optimisation at most so many).
     pub fn rows(&self) -> usize {
-        let ways = if self.continuation.as_deref() == Some("both") { 2 } else { 1 };
-        let length = |axis: &StoredAxis| axis.values.as_ref().map(Vec::len).or(axis.points).unwrap_or(0);
-        ways * self.axes.iter().map(length).product::<usize>()
+        self.rows
     }
 
     /// The inputs that vary.
-    pub fn pointers(&self) -> Vec<String> {
-        self.axes.iter().map(|axis| axis.pointer.clone()).collect()
+    pub fn pointers(&self) -> &[String] {
+        &self.pointers
     }
+
+    /// Names of the further cells of a row, as [`SweepShape::cells`] gives them; none of a sweep.
+    pub fn further(&self) -> &[String] {
+        &self.further
+    }
+
+    /// The cells of [`SweepShape::further`] of a row.
+    pub fn cells(&self, row: &SweepPoint) -> Vec<FurtherCell> {
+        if self.further.is_empty() {
+            return Vec::new();
+        }
+        let number = |value: Option<f64>| FurtherCell::Number(value);
+        let mut cells = vec![FurtherCell::Word(row.phase.map_or("", |phase| phase.as_str()))];
+        let is_optimisation = self.further.get(1).is_some_and(|name| name == "generation");
+        if is_optimisation {
+            cells.extend([number(row.generation.map(f64::from)), number(row.violation)]);
+            let count = self.further.iter().filter(|name| name.starts_with("objective_")).count();
+            let objectives = row.objectives.as_deref().unwrap_or_default();
+            cells.extend((0..count).map(|index| number(objectives.get(index).copied())));
+        }
+        let measures = row.measures.as_deref().unwrap_or_default();
+        let left = self.further.len() - cells.len();
+        cells.extend((0..left).map(|index| number(measures.get(index).copied())));
+        cells
+    }
+}
+
+/// A cell of a row beside its columns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FurtherCell {
+    Number(Option<f64>),
+    Word(&'static str),
 }
 
 #[cfg(test)]

@@ -14,6 +14,8 @@ fn schema_name(kind: JobKind) -> &'static str {
         JobKind::Mesh => "MeshDocument",
         JobKind::Response => "ResponseDocument",
         JobKind::Sweep => "SweepDocument",
+        JobKind::Optimise => "OptimiseDocument",
+        JobKind::Tolerance => "ToleranceDocument",
     }
 }
 
@@ -22,6 +24,8 @@ fn example(kind: JobKind) -> Value {
     let text = match kind {
         JobKind::Mesh | JobKind::Response => include_str!("../../../examples/table1.json"),
         JobKind::Sweep => include_str!("../../../examples/speed_sweep.json"),
+        JobKind::Optimise => include_str!("../../../examples/optimise_relief.json"),
+        JobKind::Tolerance => include_str!("../../../examples/tolerance_relief.json"),
     };
     let mut example: Value = serde_json::from_str(text).unwrap_or_default();
     example["kind"] = json!(kind.as_str());

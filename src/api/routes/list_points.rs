@@ -26,7 +26,7 @@ pub(super) struct PointList {
     pub items: Vec<PointItem>,
     /// Position to go on from; null when nothing follows yet.
     pub next_position: Option<u64>,
-    /// Points that are solved, and points that the sweep has.
+    /// Points that are solved, and points that the sweep has; of an optimisation that has not ended, at most so many.
     pub n_solved: u64,
     pub n_points: u64,
 }
@@ -89,11 +89,12 @@ pub(super) async fn list_points(
     match form {
         TableForm::Json => {
             let range = RowRange { limit: limit.unwrap_or(DEFAULT_ROWS), ..of_file };
-            let body = points::json_body(store.clone(), id, range, shape.rows() as u64).await?;
+            let n_points = super::row_count(&state, id, &shape).await?;
+            let body = points::json_body(store.clone(), id, range, n_points).await?;
             Ok(([(CONTENT_TYPE, "application/json"), vary], body).into_response())
         }
         TableForm::Csv(decimal) => {
-            let body = points::csv_body(store, id, of_file, &shape.pointers(), decimal).await?;
+            let body = points::csv_body(store, id, of_file, shape, decimal).await?;
             Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response())
         }
         TableForm::Workbook | TableForm::Arrays(_) => {
@@ -101,7 +102,7 @@ pub(super) async fn list_points(
             let place = state.large_body_place().await?;
             let permit = state.large_read_permit().await?;
             let pages = points::pages(store, id, of_file).await?;
-            let table = Table::of_points(pages, &shape.pointers()).await?;
+            let table = Table::of_points(pages, &shape).await?;
             let bytes = tokio::task::spawn_blocking(move || encode(&table, form, &input));
             let bytes = bytes.await.map_err(ApiError::internal)??;
             let (media_type, ending) = match form {

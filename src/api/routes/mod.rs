@@ -46,7 +46,7 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use futures_util::Stream;
-use herringbone_job::document::JobKind;
+use herringbone_job::SweepShape;
 use std::convert::Infallible;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -149,16 +149,27 @@ fn too_many_followers() -> ApiError {
     ApiError::new(ProblemCode::TooManyStreams, detail).retry_after(RETRY_FOLLOW_S)
 }
 
-/// Reads the stored document of a sweep.
+/// Reads the stored document of a job with rows: a sweep, an optimisation or a tolerance study.
 ///
 /// # Errors
-/// 404 when the job does not exist or is not a sweep.
+/// 404 when the job does not exist or has no rows.
 async fn sweep_input(state: &AppState, id: JobId) -> Result<String, ApiError> {
     let job = find_job(state, id).await?;
-    if job.kind != JobKind::Sweep.as_str() {
-        return Err(ApiError::not_found("The job is not a sweep."));
+    if !super::view::has_rows(&job.kind) {
+        return Err(ApiError::not_found("The job is not a sweep, an optimisation or a tolerance study."));
     }
     state.jobs().store().input(id).await?.ok_or_else(job_not_found)
+}
+
+/// Rows that a job has or will have; of an optimisation that has not ended, at most so many.
+///
+/// # Errors
+/// The database cannot be read, or the job is gone.
+async fn row_count(state: &AppState, id: JobId, shape: &SweepShape) -> Result<u64, ApiError> {
+    if !shape.further().is_empty() && find_job(state, id).await?.state == JobState::Succeeded {
+        return Ok(state.jobs().store().point_count(id).await?);
+    }
+    Ok(shape.rows() as u64)
 }
 
 pub(super) fn job_not_found() -> ApiError {

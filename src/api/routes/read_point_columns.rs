@@ -43,7 +43,7 @@ pub(super) struct PointColumns {
     pub columns: HashMap<String, Vec<Option<PointValue>>>,
     /// Position to go on from; null when nothing follows yet.
     pub next_position: Option<u64>,
-    /// Points that are solved, and points that the sweep has.
+    /// Points that are solved, and points that the sweep has; of an optimisation that has not ended, at most so many.
     pub n_solved: u64,
     pub n_points: u64,
 }
@@ -102,7 +102,8 @@ pub(super) async fn read_point_columns(
         }
     }
     let next = positions.last().map_or(from, |position| position + 1);
-    let end = points::list_end(store, id, (next, to), shape.rows() as u64).await?;
+    let n_points = super::row_count(&state, id, &shape).await?;
+    let end = points::list_end(store, id, (next, to), n_points).await?;
     let text = to_json(&positions, table, &end).map_err(ApiError::internal)?;
     let body = Body::new(GuardedBody::new(TextBody::new(text).into(), place));
     Ok(([(CONTENT_TYPE, "application/json")], body).into_response())

@@ -6,10 +6,10 @@ use crate::api::state::AppState;
 use crate::store::JobId;
 use axum::Json;
 use axum::extract::State;
-use herringbone_job::document::JobDocument;
+use herringbone_job::document::{JobDocument, JobKind};
 use herringbone_job::parse;
 use herringbone_job::result::{RegimeResult, SweepPoint};
-use herringbone_job::study::{PointStart, continued_from, point_document};
+use herringbone_job::study::{PointStart, continued_from, document_at, document_of_input, point_document};
 
 /// Read the document of one point of a sweep, to submit it as a job of its own.
 #[utoipa::path(
@@ -20,7 +20,8 @@ use herringbone_job::study::{PointStart, continued_from, point_document};
         point and\nits RMS values: a job that comes to another motion all the same has the warning \
         `differs-from-sweep-point`; where the\nstate is not stored (a sweep of an earlier version, a neighbour not yet \
         solved) and there is nothing to compare with,\n`may-differ-from-sweep-point`; where inputs are changed and the \
-        initial state is left in,\n`initial-state-of-other-inputs`.",
+        initial state is left in,\n`initial-state-of-other-inputs`. Of an optimisation or a tolerance study it is the \
+        document of the row at the first operating point.",
     params(
         ("id" = String, Path, format = "uuid", description = "Id of the job"),
         ("position" = u64, Path, description = "Place of the point in the result's `sweep.points`", minimum = 0, example = 0),
@@ -37,6 +38,13 @@ pub(super) async fn read_point_input(
     let input = super::sweep_input(&state, id).await?;
     let sweep = parse(input.as_bytes()).map_err(ApiError::internal)?;
     let row = point(&state, id, position).await?;
+    if sweep.kind != JobKind::Sweep {
+        // The first row is the document itself, whatever its inputs have in common.
+        let values = row.filter(|row| !row.values.is_empty()).map(|row| row.values);
+        let document = if position == 0 { document_of_input(&sweep) } else { None };
+        let document = document.or_else(|| document_at(&sweep, &values?));
+        return document.map(Json).ok_or_else(|| ApiError::not_found("There is no such row, or not yet."));
+    }
     let start = match continued_from(&sweep, position) {
         None => PointStart::OfDocument,
         Some(before) => start_after(&state, id, before).await?,

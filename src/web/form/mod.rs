@@ -112,7 +112,8 @@ pub(super) fn sweepable_pointers() -> &'static [String] {
 fn all_fields() -> Vec<FormField> {
     let example: Value = serde_json::from_str(EXAMPLE).unwrap_or_default();
     let mut fields = Vec::new();
-    for description in field_descriptions() {
+    // Jobs of many evaluations are given as JSON.
+    for description in field_descriptions().into_iter().filter(|description| description.group != "evaluations") {
         if let Some(name) = description.pointer.strip_prefix("/axes/*") {
             // No axis is needed, so none of its fields is.
             let of_axis = |axis| FieldDescription {

@@ -38,6 +38,7 @@ pub(super) const SECTIONS: &[(&str, &[&str])] = &[
             "validation/vibration",
             "validation/shafts",
             "validation/jobs",
+            "validation/optimisation",
             "validation/tables/summary",
             "validation/tables/geometry",
             "validation/tables/contact",
@@ -51,7 +52,17 @@ pub(super) const SECTIONS: &[(&str, &[&str])] = &[
     ),
     (
         "Background",
-        &["design", "study", "study/shafts", "benchmarks", "glossary", "operations", "scaling", "reliability"],
+        &[
+            "optimisation",
+            "design",
+            "study",
+            "study/shafts",
+            "benchmarks",
+            "glossary",
+            "operations",
+            "scaling",
+            "reliability",
+        ],
     ),
 ];
 

@@ -69,6 +69,11 @@ async fn take_up(shared: &Arc<Shared>, claim: Claim, class: WorkClass) {
             return;
         }
     };
+    if matches!(document.kind, JobKind::Optimise | JobKind::Tolerance) {
+        // Each batch of a search follows from the one before: such a job is computed in this process.
+        let place = Arc::clone(&shared.local_places).try_acquire_owned().ok();
+        return run_here(shared, claim, class, false, place);
+    }
     if is_for_here(shared, class, &document).await
         && let Ok(place) = Arc::clone(&shared.local_places).try_acquire_owned()
     {

@@ -7,12 +7,15 @@
 mod analysis;
 mod arrangement;
 mod design;
+mod evaluation;
 mod model;
+mod optimise;
 mod shafts;
 #[cfg(test)]
 mod shafts_tests;
 mod sweep;
 mod sweep_point;
+mod tolerance;
 
 pub use analysis::{AnalysisInput, IntegratorInput, MAX_SERIES_SAMPLES, MethodInput};
 pub use arrangement::{ArrangementInput, DerivedShaftValue, Mounting, ResolvedShafts, ShaftEnd};
@@ -20,10 +23,15 @@ pub use design::{
     AssemblyInput, CoastInput, DEFAULT_BACKLASH_UM, DesignInput, EndReliefInput, FlankInput, GearInput, Hand,
     MaterialInput, PressureAnglePlane, ReliefShapeInput, SupportsInput, TipReliefInput,
 };
+pub use evaluation::{HalvesInput, MAX_EVALUATIONS, MAX_OPERATING_POINTS, OperatingPointInput, OverInput};
 pub use model::{
     ActsOn, BodyInput, CornerImpactInput, Elements, ExcitationInput, Fidelity, GivenImpactInput, GivenStiffness,
     HarmonicInput, ImpactDuration, ImpactInput, ImpactSource, Ltca, MeshForce, MeshStiffness, MeshStiffnessSource,
     ModelInput, Plane, StiffnessLaw,
+};
+pub use optimise::{
+    BudgetInput, CONFIRMED, ConstraintInput, GoalInput, MAX_CONSTRAINTS, MAX_OBJECTIVES, MAX_VARIABLES, MarginInput,
+    ObjectiveInput, RobustInput, RobustMeasureInput, SearchMethodInput, VariableInput,
 };
 pub use shafts::{
     BearingAtSpeedInput, BearingInput, CouplingInput, RigidBodyInput, ShaftInertiaInput, ShaftInput, ShaftSegmentInput,
@@ -31,6 +39,10 @@ pub use shafts::{
 };
 pub use sweep::{Axis, AxisPoints, Continuation, MAX_SWEEP_POINTS, Recorded, Spacing};
 pub use sweep_point::SweepPointInput;
+pub use tolerance::{
+    DistributionInput, LimitInput, MAX_MEASURES, MAX_SAMPLES, MAX_TOLERANCES, MORRIS_TRAJECTORIES, MeasureInput,
+    SCRAMBLES, SamplingInput, SensitivityInput, ToleranceInput,
+};
 
 use super::field::{Input, Slot};
 use super::json;
@@ -57,13 +69,19 @@ pub enum JobKind {
     /// A response over the values of one or two inputs.
     #[words(label = "sweep (over inputs)")]
     Sweep,
+    /// The values of some inputs for which results are best.
+    #[words(label = "optimise (search for a design)")]
+    Optimise,
+    /// The scatter of results by that of inputs.
+    #[words(label = "tolerance (scatter)")]
+    Tolerance,
 }
 
 /// A job document with every default filled in and every value within its range.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 #[input(group = "job", rules = document_rules)]
 pub struct JobDocument {
-    /// What to compute: mesh, response or sweep.
+    /// What to compute: mesh, response, sweep, optimise or tolerance.
     #[input(default = JobKind::Response)]
     pub kind: JobKind,
     /// A name for people.
@@ -96,6 +114,62 @@ pub struct JobDocument {
     #[input(group = "sweep", when = "kind = sweep")]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub record: Vec<Recorded>,
+    /// optimise, tolerance: operating points of every evaluation; that of operation when left out.
+    #[input(min_items = 1, max_items = MAX_OPERATING_POINTS, group = "evaluations", when = "kind = optimise tolerance")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub operating_points: Vec<OperatingPointInput>,
+    /// optimise: inputs that vary.
+    #[input(min_items = 1, max_items = MAX_VARIABLES, group = "evaluations", when = "kind = optimise")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub variables: Vec<VariableInput>,
+    /// optimise: quantities to be improved; of several, the designs none of which is better in all of them are found.
+    #[input(min_items = 1, max_items = MAX_OBJECTIVES, group = "evaluations", when = "kind = optimise")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub objectives: Vec<ObjectiveInput>,
+    /// optimise: conditions that a design has to meet.
+    #[input(min_items = 1, max_items = MAX_CONSTRAINTS, group = "evaluations", when = "kind = optimise")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub constraints: Vec<ConstraintInput>,
+    /// optimise: the best designs of the search are compared by their values over the tolerances.
+    #[input(group = "evaluations", when = "kind = optimise")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub robust: Option<RobustInput>,
+    /// optimise: effort of the search.
+    #[input(group = "evaluations", when = "kind = optimise")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub budget: Option<BudgetInput>,
+    /// optimise: method of the search.
+    #[input(default = SearchMethodInput::Auto, group = "evaluations", when = "kind = optimise")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub method: Option<SearchMethodInput>,
+    /// tolerance, and optimise with robust: how inputs scatter.
+    #[input(min_items = 1, max_items = MAX_TOLERANCES, group = "evaluations", when = "kind = optimise tolerance")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tolerances: Vec<ToleranceInput>,
+    /// tolerance: quantities of which the scatter is wanted.
+    #[input(min_items = 1, max_items = MAX_MEASURES, group = "evaluations", when = "kind = tolerance")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub measures: Vec<MeasureInput>,
+    /// tolerance: limits of measures, of which the share beyond is counted.
+    #[input(min_items = 1, max_items = MAX_MEASURES, group = "evaluations", when = "kind = tolerance")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub limits: Vec<LimitInput>,
+    /// tolerance: points of the sample.
+    #[input(min = 16, max = MAX_SAMPLES, default = 1024, group = "evaluations", when = "kind = tolerance")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub samples: Option<u32>,
+    /// tolerance: scrambled Sobol points, or random ones.
+    #[input(default = SamplingInput::Sobol, group = "evaluations", when = "kind = tolerance")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sampling: Option<SamplingInput>,
+    /// tolerance: what is found out about the influence of single inputs.
+    #[input(default = SensitivityInput::FromSample, group = "evaluations", when = "kind = tolerance")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensitivity: Option<SensitivityInput>,
+    /// optimise, tolerance: seed of the random numbers.
+    #[input(min = 0, max = u32::MAX, default = 1, group = "evaluations", when = "kind = optimise tolerance")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u32>,
     /// response: the point of a sweep that this job repeats. The interface fills it in where it gives the document of a point.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sweep_point: Option<SweepPointInput>,
@@ -103,6 +177,9 @@ pub struct JobDocument {
 
 fn document_rules(document: &mut JobDocument, place: &ObjectPlace) {
     sweep::of_sweeps_only(document, place);
+    evaluation::of_some_kinds_only(document, place);
+    tolerance::fill_classes(document, place);
+    tolerance::tolerance_rules(document, place);
     let MeshStiffness::Ltca(ltca) = &document.model.mesh_stiffness else { return };
     if document.design.shafts.is_some() && ltca.body == BodyInput::Bore && ltca.fidelity != Fidelity::Uniform {
         place.conflict(

@@ -7,6 +7,7 @@ mod geometry;
 mod impact;
 mod mesh;
 mod numerics;
+mod optimise;
 mod quantity;
 mod response;
 mod rotor;
@@ -14,6 +15,7 @@ mod shafts;
 mod supports;
 mod sweep;
 mod sweep_column;
+mod tolerance;
 mod words;
 
 pub use accuracy::{Accuracy, ModelError};
@@ -21,6 +23,10 @@ pub use geometry::{GearGeometry, Geometry};
 pub use impact::ImpactResult;
 pub use mesh::{ApexSensitivity, ContactForceTable, Convergence, FlankLoad, Mesh, MeshCurve};
 pub use numerics::{NotFinite, NumericsResult, WallMs};
+pub use optimise::{
+    ActiveLimit, BestDesign, ConstraintResult, Flatness, FrontDesign, InputDesign, ObjectiveResult, OptimiseResult,
+    PointGain, RobustCandidate, RobustResult, RobustStatistics, SearchHistory, SearchNumerics,
+};
 pub use quantity::{Change, Quantity, QuantityKind, gear_data_quantities, quantities};
 pub use response::{
     FloquetMultiplier, IntervalPerHalf, IntervalResult, NaturalMode, Poincare, ResponseResult, RmsIntervalsResult,
@@ -37,8 +43,12 @@ pub use shafts::{
 pub use supports::{SpringValue, SupportsResult};
 pub use sweep::{Campbell, CampbellCrossing, Hysteresis, Jump, SweepAxis, SweepPoint, SweepResult};
 pub use sweep_column::{Cell, CellKind, Column};
+pub use tolerance::{
+    BeyondLimit, HalfSample, Histogram, InputSensitivity, MeasureScatter, PercentileValue, ToleranceResult,
+};
 pub use words::{
-    BranchDifference, BranchDirection, ContactStateResult, MethodResult, RegimeResult, ReusedStage, SpringOrigin,
+    BranchDifference, BranchDirection, ContactStateResult, EvaluationPhase, MethodResult, RegimeResult, ReusedStage,
+    SpringOrigin,
 };
 
 pub(crate) use herringbone_macros::{ResultFields, SweepColumns};
@@ -60,6 +70,12 @@ pub struct JobResult {
     pub response: Option<ResponseResult>,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub sweep: Option<SweepResult>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[scalar(skip)]
+    pub optimise: Option<OptimiseResult>,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[scalar(skip)]
+    pub tolerance: Option<ToleranceResult>,
     pub numerics: NumericsResult,
     /// Springs of the equations of motion; null for a job without a response.
     #[serde(default)]
@@ -87,4 +103,14 @@ pub struct WarningEntry {
 pub struct PerHalf {
     pub left: f64,
     pub right: f64,
+}
+
+impl JobResult {
+    /// The rows of a sweep, of an optimisation or of a tolerance study.
+    pub fn rows_mut(&mut self) -> Option<&mut Vec<SweepPoint>> {
+        let sweep = self.sweep.as_mut().map(|sweep| &mut sweep.points);
+        let optimise = self.optimise.as_mut().map(|optimise| &mut optimise.points);
+        let tolerance = self.tolerance.as_mut().map(|tolerance| &mut tolerance.points);
+        sweep.or(optimise).or(tolerance)
+    }
 }

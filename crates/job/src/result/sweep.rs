@@ -1,8 +1,8 @@
 //! A sweep: a row per point, and what its branches show.
 
 use super::{
-    BranchDifference, BranchDirection, ContactStateResult, NaturalMode, PerHalf, Poincare, RegimeResult, ResultFields,
-    SweepColumns,
+    BranchDifference, BranchDirection, ContactStateResult, EvaluationPhase, NaturalMode, PerHalf, Poincare,
+    RegimeResult, ResultFields, SweepColumns,
 };
 use serde::{Deserialize, Serialize};
 
@@ -181,4 +181,26 @@ pub struct SweepPoint {
     #[serde(skip_serializing_if = "Option::is_none", default)]
     #[column(on_request)]
     pub acceleration_spectrum_m_s2: Option<Vec<f64>>,
+    /// optimise, tolerance: what the evaluation is for. The numbers above are those of its first operating point.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[cfg_attr(feature = "schema", schema(value_type = Option<String>))]
+    #[column(on_request)]
+    pub phase: Option<EvaluationPhase>,
+    /// optimise: number of the batch of evaluations.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[column(on_request)]
+    pub generation: Option<u32>,
+    /// optimise: objectives in the order of the document; of goal target the distance from it.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[column(on_request)]
+    pub objectives: Option<Vec<f64>>,
+    /// optimise: sum of the normalised violations of the constraints; 0 of a feasible design.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[column(on_request)]
+    pub violation: Option<f64>,
+    /// optimise, tolerance: values of the measures of objectives and constraints, or of `measures`: one measure after the other, in each
+    /// the operating points. A constraint on a word has 1 where it is met.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    #[column(on_request)]
+    pub measures: Option<Vec<f64>>,
 }

@@ -49,6 +49,14 @@ impl ToCell for Option<f64> {
     }
 }
 
+impl ToCell for Option<u32> {
+    const KIND: CellKind = CellKind::Number;
+
+    fn to_cell(&self) -> Cell<'_> {
+        Cell::Number(self.map(f64::from))
+    }
+}
+
 impl ToCell for Option<String> {
     const KIND: CellKind = CellKind::Word;
 

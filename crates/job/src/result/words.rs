@@ -97,6 +97,27 @@ words! {
         /// Points of a sweep.
         Points = "points",
     }
+
+    /// What an evaluation of an optimisation or a tolerance study is for.
+    EvaluationPhase {
+        /// The document as it was given.
+        #[default]
+        Input = "input",
+        /// The first sample of a search, or the sample of a tolerance study.
+        Sample = "sample",
+        /// A run of the search's method.
+        Search = "search",
+        /// Neighbours of the best design on the grid.
+        Polish = "polish",
+        /// The best designs with the settings of the document.
+        Confirm = "confirm",
+        /// Candidates over the common sample of the tolerances.
+        Robust = "robust",
+        /// Input and winner over another sample.
+        RobustConfirm = "robust_confirm",
+        /// Samples of the sensitivity.
+        Sensitivity = "sensitivity",
+    }
 }
 
 /// How the motion repeats. In JSON a word: `period-1`, `period-2`, …, `quasi-periodic`, `chaotic`, `not-settled`,

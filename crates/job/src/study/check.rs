@@ -4,7 +4,7 @@ mod drawing;
 
 use super::axes::check_axes;
 use super::prepare::{Prepared, geometry, prepare};
-use super::{CheckReport, SolvedShafts, demand, derived, repeat, vibration};
+use super::{CheckReport, SolvedShafts, demand, derived, optimise, repeat, tolerance, vibration};
 use crate::DocumentError;
 use crate::document::{JobDocument, JobKind, ResolvedShafts};
 
@@ -25,8 +25,16 @@ impl CheckedJob {
     pub fn new(document: JobDocument) -> Result<Self, DocumentError> {
         let job = Self::of_point(document)?;
         vibration::channels(&job.document, None)?;
-        if job.document.kind == JobKind::Sweep {
-            check_axes(&job.document)?;
+        match job.document.kind {
+            JobKind::Mesh | JobKind::Response => {}
+            JobKind::Sweep => check_axes(&job.document)?,
+            JobKind::Optimise => {
+                optimise::Problem::new(&job.document)?;
+                tolerance::Quantities::new(&job.document)?;
+            }
+            JobKind::Tolerance => {
+                tolerance::Quantities::new(&job.document)?;
+            }
         }
         Ok(job)
     }

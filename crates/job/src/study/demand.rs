@@ -3,6 +3,7 @@
 //! Upper estimates from the sizes that grow with the input, without the constant part of every job (a few tens of MiB).
 //! `scripts/memory` compares them with the measured peak of runs.
 
+use super::evaluation::Inputs;
 use super::mesh;
 use crate::document::{Axis, Elements, Fidelity, FlankInput, JobDocument, JobKind, Ltca, MeshForce, MeshStiffness};
 use herringbone_physics::contact::{ComplianceModel, ContactSizes};
@@ -52,7 +53,6 @@ impl Demand {
 
 /// Peak memory of a checked document solved on `threads` threads.
 pub fn demand(document: &JobDocument, threads: usize) -> Demand {
-    let is_sweep = document.kind == JobKind::Sweep;
     let series_mib = match document.kind {
         JobKind::Response => {
             let channels = super::vibration::channels(document, None).map_or(0, |channels| channels.len())
@@ -61,18 +61,42 @@ pub fn demand(document: &JobDocument, threads: usize) -> Demand {
             let samples = f64::from(analysis.record_mesh_periods) * f64::from(analysis.samples_per_mesh_period);
             (PER_CHANNEL * channels as f64 + SPECTRUM_CHANNELS) * samples * SAMPLE_BYTES / MIB
         }
-        JobKind::Mesh | JobKind::Sweep => 0.0,
+        JobKind::Mesh | JobKind::Sweep | JobKind::Optimise | JobKind::Tolerance => 0.0,
     };
-    let over_design =
-        is_sweep && document.axes.iter().flat_map(Axis::pointers).any(|pointer| pointer.starts_with("/design"));
-    let gears_at_once = if over_design { threads.min(document.sweep_points()).max(1) } else { 1 };
+    let over_design = varied(document).any(|(pointer, _)| pointer.starts_with("/design"));
+    let gears_at_once = if over_design { threads.min(rows(document)).max(1) } else { 1 };
     let row_bytes = if document.record.is_empty() { ROW_BYTES } else { RECORDED_ROW_BYTES };
     Demand {
         series_mib,
         finite_elements_mib: gears_at_once as f64 * finite_elements_mib(document),
         contact_mib: contact_mib(document, threads),
-        rows_mib: document.sweep_points() as f64 * row_bytes / MIB,
+        rows_mib: rows(document) as f64 * row_bytes / MIB,
     }
+}
+
+/// Rows of a document with rows, else the sweep's number of points.
+fn rows(document: &JobDocument) -> usize {
+    match document.kind {
+        JobKind::Optimise | JobKind::Tolerance => usize::try_from(document.evaluations()).unwrap_or(usize::MAX),
+        JobKind::Mesh | JobKind::Response | JobKind::Sweep => document.sweep_points(),
+    }
+}
+
+/// Every input that varies over the rows, with its extreme values: those of axes and variables. Deviations are small.
+fn varied(document: &JobDocument) -> impl Iterator<Item = (&str, Vec<f64>)> {
+    let of_axis = |axis: &Axis| (0..axis.len()).map(|index| axis.value(index)).collect::<Vec<f64>>();
+    let axes = document.axes.iter().flat_map(move |axis| axis.pointers().map(move |pointer| (pointer, of_axis(axis))));
+    let variables = document.variables.iter().flat_map(|variable| {
+        let ends = [variable.from, variable.to];
+        Inputs::of_variable(variable)
+            .pointers()
+            .map(move |(pointer, factor)| (pointer, ends.map(|end| factor * end).to_vec()))
+            .collect::<Vec<_>>()
+    });
+    let tolerances = document.tolerances.iter().flat_map(|tolerance| {
+        Inputs::of_tolerance(tolerance).pointers().map(|(pointer, _)| (pointer, Vec::new())).collect::<Vec<_>>()
+    });
+    axes.chain(variables).chain(tolerances)
 }
 
 /// Peak of the elimination and of the teeth's coupling, MiB at a face 12.5 modules wide, and the width in modules from
@@ -97,11 +121,10 @@ fn finite_elements_mib(document: &JobDocument) -> f64 {
     measured_mib * below * above
 }
 
-/// Values of a field of the design or of the contact analysis over the points of a sweep, on top of its own.
+/// Values of a field of the design or of the contact analysis over the rows, on top of its own.
 fn values<'a>(document: &'a JobDocument, name: &'a str) -> impl Iterator<Item = f64> + 'a {
     let is_field = move |pointer: &str| pointer.rsplit('/').next() == Some(name);
-    let swept = document.axes.iter().filter(move |axis| axis.pointers().any(is_field));
-    swept.flat_map(|axis: &Axis| (0..axis.len()).map(|index| axis.value(index)))
+    varied(document).filter(move |(pointer, _)| is_field(pointer)).flat_map(|(_, values)| values)
 }
 
 /// Face width of the widest point, mm.
@@ -126,9 +149,9 @@ fn contact_mib(document: &JobDocument, threads: usize) -> f64 {
     // A force table is solved on all threads. A thread that waits for the others takes up another point of a sweep.
     let solvers = if tabulates { threads.max(1) as f64 } else { 1.0 };
     let states = memory.states + memory.path;
-    let swept = document.axes.iter().flat_map(Axis::pointers).any(depends_on);
+    let swept = varied(document).any(|(pointer, _)| depends_on(pointer));
     let bytes = if swept {
-        let points = document.sweep_points() as f64;
+        let points = rows(document) as f64;
         let at_once = (2.0 * threads as f64).min(points).max(1.0);
         at_once * (memory.compliance_peak + memory.position + states)
             + KEPT.0.min(points) * memory.compliance
@@ -189,7 +212,7 @@ const PAIR_STIFFNESS: f64 = 14e9 / 206e9;
 /// Gaps that the load may have to close (modifications, assembly errors) over the deflection of a pair of teeth under
 /// it; unbounded in a sweep over what either depends on.
 fn gaps_per_deflection(document: &JobDocument) -> f64 {
-    if document.axes.iter().flat_map(Axis::pointers).any(depends_on) {
+    if varied(document).any(|(pointer, _)| depends_on(pointer)) {
         return f64::INFINITY;
     }
     let design = &document.design;

@@ -11,11 +11,13 @@ mod compliance;
 mod demand;
 mod derived;
 mod equations;
+mod evaluation;
 mod gear_findings;
 mod hash;
 mod impact;
 mod mesh;
 mod mesh_force;
+mod optimise;
 mod part;
 mod point;
 mod points;
@@ -28,6 +30,7 @@ mod shaft_contact;
 mod shafts;
 mod supports;
 mod sweep;
+mod tolerance;
 mod vibration;
 
 use crate::DocumentError;
@@ -43,6 +46,7 @@ use serde::{Deserialize, Serialize};
 pub use check::CheckedJob;
 pub use demand::{Demand, demand};
 pub use derived::DerivedValue;
+pub use evaluation::{document_at, document_of_input, is_measure};
 pub use hash::input_hash;
 pub use part::{SweepOrder, SweepPart, solve_part};
 pub use points::{LineEnd, NoPointStore, PointStore, StoredPoints};
@@ -62,6 +66,7 @@ pub enum Stage {
     Impact,
     Response,
     Sweep,
+    Evaluations,
 }
 
 impl Stage {
@@ -72,6 +77,7 @@ impl Stage {
             Stage::Impact => "impact",
             Stage::Response => "response",
             Stage::Sweep => "sweep",
+            Stage::Evaluations => "evaluations",
         }
     }
 }
@@ -200,25 +206,40 @@ impl SolveError {
 pub fn solve(job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveError> {
     let document = job.document();
     let memo = MeshMemo::default();
-    if document.kind != JobKind::Sweep {
+    if matches!(document.kind, JobKind::Mesh | JobKind::Response) {
         let mut point = point::solve(job, context, &memo, &PointOptions::WHOLE)?;
         point.result.warnings.extend(repeat::warnings(document, &point.result));
         return Ok(Outcome { result: point.result, series: point.series });
     }
     let started_ms = (context.clock_ms)();
     let stored = context.points.load();
-    let reused = if stored.rows.is_empty() { Vec::new() } else { vec![ReusedStage::Points] };
-    let sweep = sweep::run(document, stored, context, &memo)?;
+    let mut has_reused = !stored.rows.is_empty();
     let report = job.report();
     let mut result = JobResult {
         geometry: Some(report.geometry),
         supports: report.supports,
-        accuracy: Some(accuracy::of_sweep(document, &sweep)),
-        sweep: Some(sweep),
         warnings: report.warnings,
         ..JobResult::default()
     };
-    result.numerics.reused = reused;
+    match document.kind {
+        JobKind::Optimise => {
+            let (optimised, reused) = optimise::run(document, stored, context, &memo)?;
+            has_reused = reused;
+            result.optimise = Some(optimised);
+        }
+        JobKind::Tolerance => {
+            let (studied, reused) = tolerance::run(document, stored, context, &memo)?;
+            has_reused = reused;
+            result.warnings.extend(tolerance::warnings(&studied));
+            result.tolerance = Some(studied);
+        }
+        JobKind::Mesh | JobKind::Response | JobKind::Sweep => {
+            let sweep = sweep::run(document, stored, context, &memo)?;
+            result.accuracy = Some(accuracy::of_sweep(document, &sweep));
+            result.sweep = Some(sweep);
+        }
+    }
+    result.numerics.reused = if has_reused { vec![ReusedStage::Points] } else { Vec::new() };
     result.numerics.solver_version = SOLVER_VERSION.to_owned();
     result.numerics.wall_ms.response = (context.clock_ms)() - started_ms;
     Ok(Outcome { result, series: Vec::new() })
@@ -241,7 +262,11 @@ mod unchecked {
 }
 
 #[cfg(test)]
+mod acceptance_tests;
+#[cfg(test)]
 mod contact_tests;
+#[cfg(test)]
+mod evaluation_tests;
 #[cfg(test)]
 mod limits_tests;
 #[cfg(test)]

@@ -215,7 +215,7 @@ fn of_whole(document: &JobDocument, stage: Stage, fraction: f64) -> f64 {
         Stage::Geometry => (0.0, 0.01),
         Stage::Mesh => (0.01, mesh_ends),
         Stage::Impact => (mesh_ends, mesh_ends + 0.02),
-        Stage::Response | Stage::Sweep => (mesh_ends + 0.02, 1.0),
+        Stage::Response | Stage::Sweep | Stage::Evaluations => (mesh_ends + 0.02, 1.0),
     };
     start + (end - start) * fraction.clamp(0.0, 1.0)
 }

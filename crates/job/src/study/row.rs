@@ -128,7 +128,8 @@ pub(super) fn failed(values: Vec<f64>, error: SolveError) -> Result<Solved, Solv
     }
 }
 
-fn reason(error: &SolveError) -> String {
+/// Why a point failed, in a sentence.
+pub(super) fn reason(error: &SolveError) -> String {
     match error {
         SolveError::Document(DocumentError::Invalid(violations) | DocumentError::Unsupported(violations)) => violations
             .iter()

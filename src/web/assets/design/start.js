@@ -6,6 +6,7 @@ import { byId, el } from "../common/dom.js";
 import { instant } from "../common/format.js";
 import { emptyDocument } from "./document.js";
 import { draft, dropDraft, dropOther, otherDrafts, rememberedStart, rememberStart, submitted, submittedFromHere } from "./draft.js";
+import { asKind } from "./evaluations.js";
 import { documentOf, initDrop, isModel } from "./files.js";
 import { refusalOf, summaryOf, torqueQuestion } from "./imported.js";
 
@@ -188,7 +189,8 @@ export function initStart({ fill, read }) {
    * this tab, else what was chosen last: an empty pair, or the example that the page came with.
    */
   async function start() {
-    const from = new URLSearchParams(window.location.search).get("from");
+    const address = new URLSearchParams(window.location.search);
+    const from = address.get("from");
     const kept = draft();
     const back = submittedFromHere();
     if (back && !(kept && kept.at > back.at)) {
@@ -200,7 +202,7 @@ export function initStart({ fill, read }) {
     }
     if (from && kept?.start?.id !== from) {
       try {
-        const given = await api.input(from);
+        const given = asKind(await api.input(from), address.get("as"));
         const start = { kind: "job", id: from, title: given.name ? `the job “${given.name}”` : "that job", document: given };
         fill(startOf(start));
         listDrafts();

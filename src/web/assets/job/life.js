@@ -57,6 +57,8 @@ export class Life {
     byId("cancel").disabled = Boolean(job.cancel_requested_at);
     show(byId("delete"), ended);
     for (const name of ["compare", "report", "download-result", "download-workbook"]) show(byAnyId(name), job.state === "succeeded");
+    show(byId("again-optimise"), job.kind === "response");
+    show(byId("again-tolerance"), job.kind === "response");
     byId("download-input").href = api.inputUrl(this.id);
     byId("download-rexs").href = api.rexsUrl(this.id);
     byId("download-result").href = api.resultUrl(this.id);
@@ -94,7 +96,7 @@ export class Life {
   showValues(job) {
     const solved = job.started_at && job.ended_at && !job.reused_from ? seconds(job.started_at, job.ended_at) : null;
     fillValues(byId("life-values"), [
-      ["Kind", { mesh: "Mesh", response: "Response", sweep: "Sweep" }[job.kind] ?? job.kind],
+      ["Kind", { mesh: "Mesh", response: "Response", sweep: "Sweep", optimise: "Optimisation", tolerance: "Tolerance study" }[job.kind] ?? job.kind],
       ["Label", job.label],
       ["Submitted", instant(job.submitted_at)],
       ["Ended", job.ended_at ? instant(job.ended_at) : null],

@@ -4,6 +4,8 @@ import * as api from "../common/api.js";
 import { byId, el, fillWarnings, notify, show } from "../common/dom.js";
 import { gearDataOf } from "../common/gear_data.js";
 import { watchJob } from "../common/watch.js";
+import { showOptimisation } from "../evaluations/optimise.js";
+import { showScatter } from "../evaluations/tolerance.js";
 import { showSweep } from "../sweep/panel.js";
 import { showBearings } from "./bearings.js";
 import { showHeadline } from "./headline.js";
@@ -35,6 +37,10 @@ function follow(job) {
   life.show(job);
   if (job.kind === "sweep") {
     showSweepOf(job).catch((error) => notify(notice, error));
+  } else if (job.kind === "optimise" || job.kind === "tolerance") {
+    if (job.state !== "succeeded" || shown) return;
+    shown = true;
+    showEvaluations(job).catch((error) => notify(notice, error));
   } else if (job.state === "succeeded" && !shown) {
     shown = true;
     showResult(job).catch((error) => notify(notice, error));
@@ -45,6 +51,14 @@ function follow(job) {
 async function showSweepOf(job) {
   await showSweep({ id, job });
   if (job.state === "succeeded") byId("job").dataset.ready = "true";
+}
+
+/** An optimisation or a tolerance study. @param {Job} job */
+async function showEvaluations(job) {
+  const [result, input] = await Promise.all([api.result(id), api.input(id)]);
+  fillWarnings(byId("warnings"), result.warnings);
+  await Promise.all([showOptimisation({ id, job, result, input }), showScatter({ id, job, result })]);
+  byId("job").dataset.ready = "true";
 }
 
 /** @param {Job} job */

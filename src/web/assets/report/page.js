@@ -38,7 +38,7 @@ function showHead(job) {
   document.title = `${name} · report`;
   byId("subtitle").textContent = "Contact, mesh-in impact and vibration of a double-helical gear pair";
   fillValues(byId("facts"), [
-    ["Kind", { mesh: "Mesh", response: "Response at one operating point", sweep: "Sweep" }[job.kind] ?? job.kind],
+    ["Kind", { mesh: "Mesh", response: "Response at one operating point", sweep: "Sweep", optimise: "Optimisation", tolerance: "Tolerance study" }[job.kind] ?? job.kind],
     ["Label", job.label],
     ["Computed", job.ended_at ? instant(job.ended_at) : null],
     ["Solver", `herringbone ${job.solver_version}`],

@@ -4,7 +4,7 @@ import { SWEEP_COLUMNS } from "../common/quantities.js";
 import { scalarAt } from "../common/scalars.js";
 
 /** @type {SweepQuantity[]} */
-export const QUANTITIES = [...new Set(SWEEP_COLUMNS.filter(({ kind }) => kind === "number").map(({ group }) => group))].map((group) => {
+export const QUANTITIES = [...new Set(SWEEP_COLUMNS.filter(({ kind, quantity }) => kind === "number" && quantity).map(({ group }) => group))].map((group) => {
   const columns = SWEEP_COLUMNS.filter((column) => column.group === group);
   const { label, unit, percent, change, theory, lower_is_better: least } = scalarAt(/** @type {string} */ (columns[0].quantity));
   // Rows have shares of 1.

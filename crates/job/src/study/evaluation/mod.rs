@@ -1,0 +1,20 @@
+//! Evaluations of a document with values put in: what an optimisation and a tolerance study are made of.
+//!
+//! A job is a list of rows in a fixed order, and each row follows from those before it. A job that was stopped goes
+//! through the same list again and takes the rows that are stored: so it continues to the last bit, without any other
+//! state.
+
+mod check;
+mod evaluator;
+mod inputs;
+mod measure;
+mod rows;
+
+pub(super) use check::{Found, check_measure, check_pointers};
+pub(super) use evaluator::{Evaluator, Outcome, SEARCH_POSITIONS};
+pub(super) use inputs::Inputs;
+pub(super) use measure::{Measure, reduce};
+pub(super) use rows::{Rows, Task};
+
+pub use inputs::{document_at, document_of_input};
+pub use measure::is_measure;

@@ -1,0 +1,9 @@
+//! Optimisation: searches over evaluations of a document, and what is said of the best design.
+
+mod outcome;
+mod problem;
+mod robust;
+mod run;
+
+pub(super) use problem::{Problem, check_shafts};
+pub(super) use run::run;

@@ -1,0 +1,109 @@
+// The outcome of an optimisation: verdict, input and best design side by side, gain by operating point, course of the
+// search, the best evaluations.
+
+import { bodyOf, byId, el, fillRows, fillValues, show, showFigureOf } from "../common/dom.js";
+import { number, sentence, shownUnit } from "../common/format.js";
+import { bars, draw, line, points } from "../common/plots.js";
+import { inputLabel, openRow, pointText } from "./rows.js";
+
+/** Rows of the table of evaluations. */
+const ROWS = 20;
+
+/** @param {{ id: string, job: Job, result: JobResult, input: JobInput }} context */
+export async function showOptimisation({ id, job, result, input }) {
+  const found = result.optimise;
+  if (!found) return;
+  show(byId("optimise"));
+  byId("optimise-verdict").textContent = verdict(found);
+  byId("optimise-limits").textContent = limits(found);
+  fillRows(bodyOf(byId("optimise-values")), input.variables.map((variable) => variableRow(variable, found)));
+  fillRows(bodyOf(byId("optimise-objectives")), found.objectives.map((objective) => [
+    `${sentence(objective.label)}${objective.per_point.length > 1 ? `, ${objective.over}` : ""}`, number(objective.input), number(objective.best), number(objective.gain_percent, 3), shownUnit(objective.unit),
+  ]));
+  showRobust(found);
+  showRows(found, input);
+  const { numerics } = found;
+  fillValues(byId("optimise-numerics"), [
+    ["Evaluations", number(numerics.evaluations)],
+    ["Infeasible", number(numerics.infeasible)],
+    ["Failed", number(numerics.failed)],
+    ["Method", numerics.method === "cma_es" ? "CMA-ES" : "Nelder–Mead"],
+    ["Ended by", numerics.stopped_by === "budget" ? "the budget: more evaluations may find more" : "tolerance: further runs found nothing better"],
+    ["Seed", number(numerics.seed)],
+  ]);
+  byId("optimise-csv").href = `/api/v1/jobs/${encodeURIComponent(id)}/points?decimal=point`;
+  const button = byId("optimise-open");
+  show(button, Boolean(found.best));
+  button.addEventListener("click", () => openRow(button, { id, name: job.name ?? "Optimisation", position: found.best?.position ?? 0, what: "best design" }));
+  await Promise.all([drawGain(found), drawHistory(found), drawFront(found, id)]);
+}
+
+/** The outcome in a sentence. @param {Optimisation} found */
+function verdict({ verdict: word, objectives: [objective] }) {
+  if (word !== "improved" || typeof objective?.gain_percent !== "number") return `${sentence(word)}.`;
+  const gains = objective.per_point.filter(({ gain_percent: gain }) => typeof gain === "number");
+  const least = gains.length > 1 ? gains.reduce((a, b) => (Number(a.gain_percent) <= Number(b.gain_percent) ? a : b)) : null;
+  const rest = least ? ` The least gain is ${number(least.gain_percent, 3)} %, at ${pointText(least)}.` : "";
+  return `Better by ${number(objective.gain_percent, 3)} %: ${objective.label} ${number(objective.best, 4)} instead of ${number(objective.input, 4)} ${shownUnit(objective.unit)}.${rest}`;
+}
+
+/** What limits the best design. @param {Optimisation} found */
+function limits({ active, best }) {
+  if (!best) return "";
+  if (active.length === 0) return "No bound or constraint limits the best design.";
+  return `Limited by ${active.map(({ pointer, at, constraint }) => (pointer ? `${inputLabel(pointer)} (${at})` : `${constraint}`)).join("; ")}.`;
+}
+
+/** @param {{ pointer: string, from: number, to: number }} variable @param {Optimisation} found */
+function variableRow({ pointer, from, to }, { input, best, flatness }) {
+  const flat = flatness.find((one) => one.pointer === pointer)?.range_within_2_percent;
+  return [inputLabel(pointer), number(input.values[pointer]), number(best?.values[pointer]), number(from), number(to), flat ? `${number(flat[0], 4)} to ${number(flat[1], 4)}` : "–"];
+}
+
+/** @param {Optimisation} found */
+function showRobust({ robust }) {
+  show(byId("optimise-robust"), Boolean(robust));
+  if (!robust) return;
+  const row = (name, statistics) => [name, ...["mean", "p50", "p90", "p95", "max"].map((word) => number(statistics?.[word]))];
+  fillRows(bodyOf(byId("optimise-robust-table")), [row("Input", robust.input), row("Best", robust.best)]);
+  byId("optimise-robust-note").textContent = `${number(robust.candidates.length)} candidates compared by ${robust.measure}; these numbers are from ${number(robust.sample)} other points.`;
+}
+
+/** The best evaluations. @param {Optimisation} found @param {JobInput} input */
+function showRows(found, input) {
+  const table = byId("optimise-rows");
+  const head = ["Evaluation", ...input.variables.map(({ pointer }) => inputLabel(pointer)), ...found.objectives.map(({ label, unit }) => `${label}, ${shownUnit(unit)}`)];
+  table.tHead?.replaceChildren(el("tr", {}, ...head.map((text) => el("th", { scope: "col" }, text))));
+  const sign = found.objectives[0]?.goal === "maximise" ? -1 : 1;
+  const feasible = found.points.map((row, position) => ({ row, position })).filter(({ row }) => row.violation === 0 && row.objectives);
+  feasible.sort((a, b) => sign * (Number(a.row.objectives?.[0]) - Number(b.row.objectives?.[0])));
+  fillRows(bodyOf(table), feasible.slice(0, ROWS).map(({ row, position }) => [`${position + 1} (${row.phase})`, ...row.values.map((value) => number(value)), ...(row.objectives ?? []).map((value) => number(value))]));
+}
+
+/** @param {Optimisation} found */
+async function drawGain({ objectives: [objective] }) {
+  const box = byId("optimise-gain-plot");
+  showFigureOf(box, Boolean(objective?.per_point.length));
+  if (!objective?.per_point.length) return;
+  const at = objective.per_point.map(pointText);
+  const y = { label: sentence(objective.label), unit: shownUnit(objective.unit) };
+  await draw(box, [bars(at, objective.per_point.map(({ input }) => input), "input"), bars(at, objective.per_point.map(({ best }) => best), "best")], { x: "Operating point", y, fromZero: true });
+}
+
+/** @param {Optimisation} found */
+async function drawHistory({ history, objectives: [objective] }) {
+  await draw(byId("optimise-history-plot"), [line(history.evaluations, history.best)], { x: "Evaluations", y: { label: sentence(objective.label), unit: shownUnit(objective.unit) } });
+}
+
+/** @param {Optimisation} found @param {string} id */
+async function drawFront({ front = [], objectives: [first, second] }, id) {
+  const box = byId("optimise-front-plot");
+  showFigureOf(box, front.length > 0 && Boolean(second));
+  if (front.length === 0 || !second) return;
+  const of = (objective) => ({ label: sentence(objective.label), unit: shownUnit(objective.unit) });
+  const click = async (event) => {
+    const design = front[event.points[0].pointIndex];
+    if (design) window.open(`/api/v1/jobs/${encodeURIComponent(id)}/points/${design.position}/input`);
+  };
+  await draw(box, [points(front.map(({ objectives }) => objectives[0]), front.map(({ objectives }) => objectives[1]))], { x: of(first), y: of(second), click });
+}
