@@ -56,7 +56,7 @@ impl Table {
     /// # Errors
     /// The rows cannot be read.
     pub(super) async fn of_points(mut pages: Pages, shape: &SweepShape) -> Result<Table, ApiError> {
-        let mut rows = PointColumns::new(&shape.pointers());
+        let mut rows = PointColumns::new(shape.pointers());
         let mut further: Vec<Cells> = Vec::new();
         while let Some(page) = pages.next().await.transpose()? {
             for row in page {

@@ -52,8 +52,8 @@ pub(crate) struct HarmonicBalance<'m, const D: usize> {
 pub(crate) struct HarmonicOrbit<const D: usize> {
     /// State at the start of the mesh period.
     pub start: MotionState<D>,
-    /// Complex amplitudes of the forces by mesh order from 0: what the meshes and impacts along them add to k_ref s, and
-    /// the torsional impacts, N.
+    /// Complex amplitudes of the forces by mesh order from 0: what the meshes and impacts along them add to k_ref s,
+    /// and the torsional impacts, N.
     normal: [Vec<C64>; 2],
     torsional: [Vec<C64>; 2],
     /// Largest deviation of the tangent stiffness of each mesh from its reference stiffness, N/m.
@@ -61,8 +61,8 @@ pub(crate) struct HarmonicOrbit<const D: usize> {
 }
 
 impl<'m, const D: usize> HarmonicBalance<'m, D> {
-    /// None for anything but a train, where its complex modes are nearly dependent or do not decay, and for mesh periods
-    /// that are too long.
+    /// None for anything but a train, where its complex modes are nearly dependent or do not decay, and for mesh
+    /// periods that are too long.
     pub(crate) fn new(model: &'m DynamicModel<D>) -> Option<Self> {
         let train = model.train.as_deref()?;
         if model.period_tau.is_nan() || model.period_tau > LONGEST_PERIOD {
@@ -185,8 +185,8 @@ impl<'m, const D: usize> HarmonicBalance<'m, D> {
     }
 
     /// Whether perturbations of the orbit decay by the small-gain theorem: what the deviations of the tangent
-    /// stiffnesses feed back through the train returns smaller at every frequency (C. A. Desoer, M. Vidyasagar: Feedback
-    /// Systems, Academic Press 1975, doi:10.1137/1.9780898719055, chapter III). Sufficient, not necessary.
+    /// stiffnesses feed back through the train returns smaller at every frequency (C. A. Desoer, M. Vidyasagar:
+    /// Feedback Systems, Academic Press 1975, doi:10.1137/1.9780898719055, chapter III). Sufficient, not necessary.
     pub(crate) fn is_surely_stable(&self, orbit: &HarmonicOrbit<D>) -> bool {
         let residues = Self::residues(&[&self.s[0], &self.s[1]], &[&self.normal[0], &self.normal[1]]);
         let weight = |r: usize, c: usize| (orbit.deviation[r] * orbit.deviation[c]).sqrt();

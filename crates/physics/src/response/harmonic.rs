@@ -33,8 +33,8 @@ struct ClosedRecord<'m, const D: usize> {
 }
 
 impl ResponseProblem<'_> {
-    /// The steady motion in contact near `start`; None where harmonic balance does not find a stable one to the accuracy
-    /// asked for.
+    /// The steady motion in contact near `start`; None where harmonic balance does not find a stable one to the
+    /// accuracy asked for.
     pub(super) fn solve_by_harmonic_balance<const D: usize>(
         &self,
         model: &DynamicModel<D>,
@@ -95,7 +95,7 @@ impl ResponseProblem<'_> {
         for _ in 0..=MOST_CORRECTIONS {
             let finished = self.record(model, (from, tolerance), 1, self.recorder(model, 1), self.energy(model))?;
             *counts += finished.record.counts;
-            let touches = |shares: [f64; 3]| shares.iter().any(|share| *share == 1.0);
+            let touches = |shares: [f64; 3]| shares.contains(&1.0);
             if !finished.recorder.contact_shares().into_iter().all(touches) {
                 return Ok(None);
             }
