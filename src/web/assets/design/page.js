@@ -69,10 +69,14 @@ function refresh() {
   }, CHECK_AFTER_MS);
 }
 
-/** Keeps what stands in the form, unless it is what it was started with. */
+/** Starts that are nowhere but in the form: the page does not get to see the file again. */
+const ONLY_HERE = ["file", "import"];
+
+/** Keeps what stands in the form, unless it is what it was started with and can be had again. */
 function keep() {
   const now = contents();
-  if (JSON.stringify(now.document) === JSON.stringify(started.document)) dropDraft();
+  const isStart = JSON.stringify(now.document) === JSON.stringify(started.document);
+  if (isStart && !ONLY_HERE.includes(started.kind)) dropDraft();
   else keepDraft(now);
 }
 
