@@ -197,6 +197,7 @@ async function submit(event) {
     }
     const job = await api.submit(document, api.newKey());
     keepSubmitted({ ...contents(), document }, job.id);
+    touched = false;
     window.location.assign(`/jobs/${encodeURIComponent(job.id)}`);
   } catch (error) {
     if (touched) keep();
@@ -313,6 +314,10 @@ byId("shafts-edit").addEventListener("click", editShafts);
 initSweep(form, { readDocument: () => readDocument(form), changed });
 const start = initStart({ fill, read: contents });
 start();
+// What was typed last is kept even where the page is left before its check.
+window.addEventListener("pagehide", () => {
+  if (touched) keep();
+});
 // Back from the job, where the browser has kept the page as it was.
 window.addEventListener("pageshow", (event) => {
   if (!event.persisted) return;
