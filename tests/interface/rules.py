@@ -19,8 +19,14 @@ OF_A_FIELD = {"missing", "unknown-field", "wrong-type", "out-of-range", "not-one
 DEPENDENT = re.compile(
     # needed where the axis has no values; the range of a swept value is that of the input it varies
     r"/axes/\d+(/from|/to)?"
+    # the range of a variable is that of the input it varies, and whole numbers have whole steps
+    r"|/variables/\d+(/(from|to|step))?"
+    # needed with their distribution
+    r"|/tolerances/\d+/(tolerance|plus|values)"
     # needed with source "given"
     r"|/model/mesh_stiffness/mean_n_per_um|/model/impact/(force_n|duration_mesh_periods)"
+    # needed by measures of the shafts
+    r"|/design/shafts"
     # needed without an arrangement; a spring and the machine on it need each other
     r"|/design/shafts/(pinion|gear)(/coupling/(inertia_kg_m2|torsional_nm_per_rad))?"
     # one of the names that GET /jobs/{id}/series lists
