@@ -21,8 +21,10 @@ DEPENDENT = re.compile(
     r"/axes/\d+(/from|/to)?"
     # the range of a variable is that of the input it varies, and whole numbers have whole steps
     r"|/variables/\d+(/(from|to|step))?"
-    # needed with their distribution
-    r"|/tolerances/\d+/(tolerance|plus|values)"
+    # needed for a robust search; needed with their distribution
+    r"|/tolerances(/\d+/(tolerance|plus|values))?"
+    # needed with the goal "target"; one of measure and margin is needed
+    r"|/objectives/\d+/target|/constraints/\d+/measure"
     # needed with source "given"
     r"|/model/mesh_stiffness/mean_n_per_um|/model/impact/(force_n|duration_mesh_periods)"
     # needed by measures of the shafts
