@@ -206,8 +206,8 @@ impl FourierSeries<f64> {
         moves.then(|| Self::new(0.0, 1.0, harmonics, shift, period_tau))
     }
 
-    /// Complex amplitude of a mesh order: the series is the sum of amplitude · exp(2πi · order · phase) over positive and
-    /// negative orders.
+    /// Complex amplitude of a mesh order: the series is the sum of amplitude · exp(2πi · order · phase) over positive
+    /// and negative orders.
     pub(super) fn amplitude(&self, order: usize) -> Complex<f64> {
         if order == 0 {
             return Complex::new(self.constant, 0.0);
