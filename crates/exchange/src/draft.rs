@@ -1,6 +1,10 @@
 //! The document and its report while they are made.
 
-use crate::report::{Assumed, Check, Ignored, ImportWarning, Offered, Taken};
+use crate::refusal::Refusal;
+use crate::report::{
+    Alternative, Assumed, Check, Ignored, Import, ImportSource, ImportWarning, ImportedPair, Offered, OperatingPoint,
+    Taken,
+};
 use crate::unit::clean;
 use herringbone_job::Violation;
 use herringbone_job::unit::Unit;
@@ -51,6 +55,35 @@ fn unit_of(pointer: &str) -> Option<String> {
 }
 
 impl Draft {
+    /// The import with `document`, the draft with every default filled in.
+    pub(crate) fn into_import(
+        self,
+        source: ImportSource,
+        (pair, alternatives): (ImportedPair, Vec<Alternative>),
+        (document, operating_points): (Value, Vec<OperatingPoint>),
+    ) -> Import {
+        let Self { taken, assumed, ignored, offered, checks, warnings, .. } = self;
+        Import {
+            source,
+            pair,
+            alternatives,
+            document,
+            operating_points,
+            taken,
+            assumed,
+            ignored,
+            offered,
+            checks,
+            warnings,
+        }
+    }
+
+    /// Refuses the file for the reasons found in a pair, such as `pair 1`.
+    pub(crate) fn refused(self, pair: &str) -> Refusal {
+        let summary = format!("The {pair} is not complete or contradicts itself: {} reason(s).", self.errors.len());
+        Refusal::invalid(summary, self.errors)
+    }
+
     /// Puts a value into the document.
     pub(crate) fn set(&mut self, pointer: &str, value: impl Into<Value>) {
         let mut place = &mut self.document;

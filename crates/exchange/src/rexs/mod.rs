@@ -92,35 +92,20 @@ pub(crate) fn import(file: &ModelFile, options: &ImportOptions) -> Result<Import
         shafts::write(&pair, &mut draft, basic, &teeth);
     }
     if !draft.errors.is_empty() {
-        let summary =
-            format!("The pair {label} is not complete or contradicts itself: {} reason(s).", draft.errors.len());
-        return Err(Refusal::invalid(summary, draft.errors));
+        return Err(draft.refused(&format!("pair {label}")));
     }
     let document = finish(&pair, &mut draft)?;
     leftover::report(&view, &mut draft);
-    Ok(Import {
-        source: ImportSource {
-            format: "rexs".to_owned(),
-            version: model.version.clone(),
-            application: model.application.clone(),
-            ..ImportSource::default()
-        },
-        pair: ImportedPair {
-            number: choice.number,
-            label,
-            stages: choice.candidate.ids(&model),
-            mirrored: choice.mirrored,
-        },
-        alternatives: choice::alternatives(&model, &found, choice.number),
-        document,
-        operating_points,
-        taken: draft.taken,
-        assumed: draft.assumed,
-        ignored: draft.ignored,
-        offered: draft.offered,
-        checks: draft.checks,
-        warnings: draft.warnings,
-    })
+    let source = ImportSource {
+        format: "rexs".to_owned(),
+        version: model.version.clone(),
+        application: model.application.clone(),
+        ..ImportSource::default()
+    };
+    let stages = choice.candidate.ids(&model);
+    let pair = ImportedPair { number: choice.number, label, stages, mirrored: choice.mirrored };
+    let alternatives = choice::alternatives(&model, &found, choice.number);
+    Ok(draft.into_import(source, (pair, alternatives), (document, operating_points)))
 }
 
 /// Warnings of the file as a whole.

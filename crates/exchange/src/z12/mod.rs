@@ -49,7 +49,7 @@ pub(crate) fn import(text: &str, options: &ImportOptions) -> Result<Import, Refu
         return Err(Refusal::invalid("There is no such pair in the file.", vec![error]));
     }
     let mut draft = Draft::default();
-    let Some((file, teeth)) = File::new(values, options, &mut draft)? else { return Err(refused(draft)) };
+    let Some((file, teeth)) = File::new(values, options, &mut draft)? else { return Err(draft.refused("pair")) };
     let label = format!("{} / {}", teeth[0], teeth[1]);
     draft.set("/name", format!("KISSsoft {label}"));
     let basic = file.basic(&mut draft, teeth);
@@ -62,36 +62,21 @@ pub(crate) fn import(text: &str, options: &ImportOptions) -> Result<Import, Refu
     }
     file.left_over(&mut draft);
     if !draft.errors.is_empty() {
-        return Err(refused(draft));
+        return Err(draft.refused("pair"));
     }
     let document = parsed(&mut draft)?;
     checked(&document, &mut draft);
     let document = serde_json::to_value(&document).map_err(|error| {
         Refusal::invalid("The document cannot be written.", vec![Violation::new("", "conflict", error.to_string())])
     })?;
-    Ok(Import {
-        source: ImportSource {
-            format: "z12".to_owned(),
-            version: short(file.values.text("VERSION").unwrap_or_default()),
-            application: format!("KISSsoft {}", short(file.values.text("KSOFTVERSION").unwrap_or_default())),
-            ..ImportSource::default()
-        },
-        pair: ImportedPair { number: 1, label, stages: vec![1], mirrored: file.mirrored },
-        alternatives: Vec::new(),
-        document,
-        operating_points,
-        taken: draft.taken,
-        assumed: draft.assumed,
-        ignored: draft.ignored,
-        offered: draft.offered,
-        checks: draft.checks,
-        warnings: draft.warnings,
-    })
-}
-
-fn refused(draft: Draft) -> Refusal {
-    let summary = format!("The pair is not complete or contradicts itself: {} reason(s).", draft.errors.len());
-    Refusal::invalid(summary, draft.errors)
+    let source = ImportSource {
+        format: "z12".to_owned(),
+        version: short(file.values.text("VERSION").unwrap_or_default()),
+        application: format!("KISSsoft {}", short(file.values.text("KSOFTVERSION").unwrap_or_default())),
+        ..ImportSource::default()
+    };
+    let pair = ImportedPair { number: 1, label, stages: vec![1], mirrored: file.mirrored };
+    Ok(draft.into_import(source, (pair, Vec::new()), (document, operating_points)))
 }
 
 impl<'t, 'o> File<'t, 'o> {
