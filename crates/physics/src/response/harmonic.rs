@@ -35,6 +35,9 @@ struct ClosedRecord<'m, const D: usize> {
 impl ResponseProblem<'_> {
     /// The steady motion in contact near `start`; None where harmonic balance does not find a stable one to the
     /// accuracy asked for.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] of an integration, and of a load that is not balanced.
     pub(super) fn solve_by_harmonic_balance<const D: usize>(
         &self,
         model: &DynamicModel<D>,
@@ -44,8 +47,11 @@ impl ResponseProblem<'_> {
         let closed = CLOSED * self.analysis.accuracy;
         let Some(balance) = HarmonicBalance::new(model) else { return Ok(None) };
         let Some(orbit) = balance.solve(start, 0.2 * closed) else { return Ok(None) };
+        let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tolerance))?;
         let mut counts = StepCounts::default();
-        let Some(record) = self.closed_record(model, &balance, &orbit, (tolerance, closed), &mut counts)? else {
+        let Some(record) =
+            self.closed_record((model, &shooting), &balance, &orbit, (tolerance, closed), &mut counts)?
+        else {
             return Ok(None);
         };
         let ClosedRecord { from, start_error, finished } = record;
@@ -55,7 +61,6 @@ impl ResponseProblem<'_> {
         let (floquet, multipliers) = if !self.analysis.multipliers && balance.is_surely_stable(&orbit) {
             (None, None)
         } else {
-            let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tolerance))?;
             let period_map = shooting.period_map(model, from, 1)?;
             counts += period_map.counts;
             let found = shooting.multipliers(&period_map.monodromy);
@@ -85,7 +90,7 @@ impl ResponseProblem<'_> {
     /// the motion loses contact.
     fn closed_record<'m, const D: usize>(
         &self,
-        model: &'m DynamicModel<D>,
+        (model, shooting): (&'m DynamicModel<D>, &Shooting<'_, D>),
         balance: &HarmonicBalance<'m, D>,
         orbit: &HarmonicOrbit<D>,
         (tolerance, closed): (f64, f64),
@@ -100,8 +105,7 @@ impl ResponseProblem<'_> {
                 return Ok(None);
             }
             let defect = state_difference(&finished.record.last, &from);
-            let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tolerance))?;
-            check_load_balance(model, &shooting, &defect)?;
+            check_load_balance(model, shooting, &defect)?;
             let size = largest_component(&([0.0; D], from.v)).max(1e-9 * largest_component(&(from.x, [0.0; D])));
             let change = largest_component(&defect) / size;
             if change.is_nan() || change > FAR {

@@ -237,9 +237,11 @@ impl ResponseProblem<'_> {
         }
         if DynamicModel::<D>::IS_TRAIN && !search.from_start {
             search.check_static_deflection(&state)?;
-            let found = self.solve_by_harmonic_balance(&model, &state, search.limits.tolerance)?;
-            if found.is_some() {
-                return Ok(found);
+            match self.solve_by_harmonic_balance(&model, &state, search.limits.tolerance) {
+                Ok(Some(response)) => return Ok(Some(response)),
+                Err(error @ DynamicsError::Canceled(_)) => return Err(error),
+                // The search ends with the same error, or finds the motion that there is instead.
+                Ok(None) | Err(_) => {}
             }
         }
         let bounded = |error: DynamicsError| {
