@@ -8,8 +8,8 @@ use super::text_body::PIECE_BYTES;
 use crate::store::{JobId, PointRow, Store, StoreError};
 use axum::body::{Body, Bytes};
 use futures_util::stream::{self, BoxStream, StreamExt};
+use herringbone_job::SweepShape;
 use herringbone_job::result::{BranchDirection, Cell, SweepPoint};
-use herringbone_job::{FurtherCell, SweepShape};
 use serde::Serialize;
 use std::io;
 
@@ -178,17 +178,13 @@ fn header(shape: &SweepShape, decimal: Decimal) -> io::Result<Vec<u8>> {
 
 fn write_row(writer: &mut CsvWriter<Vec<u8>>, position: u64, point: &SweepPoint, shape: &SweepShape) -> io::Result<()> {
     let values = point.values.iter().map(|value| CsvField::Number(*value));
-    let cells: Vec<_> = columns::default_columns().into_iter().map(|column| (column.cell)(point)).collect();
+    let cells = columns::default_columns().into_iter().map(|column| (column.cell)(point));
+    let cells: Vec<_> = cells.chain(shape.cells(point)).collect();
     let fields = cells.iter().map(|cell| match cell {
         Cell::Number(Some(number)) => CsvField::Number(*number),
         Cell::Word(Some(word)) => CsvField::Text(word),
         _ => CsvField::Empty,
     });
     let branch = CsvField::Text(point.branch.map_or("", BranchDirection::as_str));
-    let further = shape.cells(point).into_iter().map(|cell| match cell {
-        FurtherCell::Number(Some(number)) => CsvField::Number(number),
-        FurtherCell::Number(None) => CsvField::Empty,
-        FurtherCell::Word(word) => CsvField::Text(word),
-    });
-    writer.write_record([CsvField::Integer(position), branch].into_iter().chain(values).chain(fields).chain(further))
+    writer.write_record([CsvField::Integer(position), branch].into_iter().chain(values).chain(fields))
 }

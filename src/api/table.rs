@@ -6,9 +6,9 @@ use super::points::Pages;
 use super::problem::ApiError;
 use futures_util::StreamExt;
 use herringbone_exchange::arrays::{ArrayForm, ArrayWriter};
-use herringbone_job::result::{BranchDirection, Cell, CellKind, Column, SweepPoint, quantities};
+use herringbone_job::SweepShape;
+use herringbone_job::result::{BranchDirection, Cell, Column, SweepPoint, quantities};
 use herringbone_job::unit::Unit;
-use herringbone_job::{FurtherCell, SweepShape};
 use std::io;
 
 /// A table with a name, unit and meaning for each column.
@@ -37,6 +37,24 @@ pub enum Cells {
 }
 
 impl Cells {
+    /// Without values, for cells like this one.
+    fn like(cell: &Cell<'_>) -> Self {
+        match cell {
+            Cell::Number(_) => Cells::Numbers(Vec::new()),
+            Cell::Word(_) | Cell::Numbers(_) => Cells::Words(Vec::new()),
+        }
+    }
+
+    /// Adds the value of a row; one of another kind counts as none.
+    fn push(&mut self, cell: Cell<'_>) {
+        match (self, cell) {
+            (Cells::Numbers(values), Cell::Number(value)) => values.push(value.unwrap_or(f64::NAN)),
+            (Cells::Numbers(values), _) => values.push(f64::NAN),
+            (Cells::Words(words), Cell::Word(word)) => words.push(word.unwrap_or_default().into_owned()),
+            (Cells::Words(words), _) => words.push(String::new()),
+        }
+    }
+
     fn len(&self) -> usize {
         match self {
             Cells::Numbers(values) => values.len(),
@@ -56,45 +74,23 @@ impl Table {
     /// # Errors
     /// The rows cannot be read.
     pub(super) async fn of_points(mut pages: Pages, shape: &SweepShape) -> Result<Table, ApiError> {
-        let mut rows = PointColumns::new(shape.pointers());
-        let mut further: Vec<Cells> = Vec::new();
+        let names = shape.further().iter().cloned();
+        let further = names.zip(shape.cells(&SweepPoint::default())).collect();
+        let mut rows = PointColumns::new(shape.pointers(), further);
         while let Some(page) = pages.next().await.transpose()? {
             for row in page {
                 let point: SweepPoint = serde_json::from_str(&row.body).map_err(ApiError::internal)?;
-                rows.push(row.position, &point);
-                for (place, cell) in shape.cells(&point).into_iter().enumerate() {
-                    if further.len() == place {
-                        further.push(match cell {
-                            FurtherCell::Number(_) => Cells::Numbers(Vec::new()),
-                            FurtherCell::Word(_) => Cells::Words(Vec::new()),
-                        });
-                    }
-                    match (&mut further[place], cell) {
-                        (Cells::Numbers(values), FurtherCell::Number(value)) => values.push(value.unwrap_or(f64::NAN)),
-                        (Cells::Words(words), FurtherCell::Word(word)) => words.push(word.to_owned()),
-                        (Cells::Numbers(values), FurtherCell::Word(_)) => values.push(f64::NAN),
-                        (Cells::Words(words), FurtherCell::Number(_)) => words.push(String::new()),
-                    }
-                }
+                rows.push(row.position, &point, shape.cells(&point));
             }
         }
-        let mut table = rows.into_table();
-        let names = shape.further().iter().cloned();
-        let columns = names.zip(further).map(|(name, cells)| TableColumn {
-            name,
-            unit: String::new(),
-            meaning: String::new(),
-            cells,
-        });
-        table.columns.extend(columns);
-        Ok(table)
+        Ok(rows.into_table())
     }
 
     /// The rows of a sweep that was solved, with the columns of its CSV.
     pub fn of_sweep(points: &[SweepPoint], axes: &[String]) -> Table {
-        let mut rows = PointColumns::new(axes);
+        let mut rows = PointColumns::new(axes, Vec::new());
         for (position, point) in points.iter().enumerate() {
-            rows.push(position as u64, point);
+            rows.push(position as u64, point, Vec::new());
         }
         rows.into_table()
     }
@@ -146,35 +142,34 @@ struct PointColumns {
     branches: Vec<String>,
     axes: Vec<(String, Vec<f64>)>,
     others: Vec<(&'static Column, Cells)>,
+    further: Vec<(String, Cells)>,
 }
 
 impl PointColumns {
-    fn new(axes: &[String]) -> Self {
-        let empty = |kind| match kind {
-            CellKind::Number => Cells::Numbers(Vec::new()),
-            CellKind::Word | CellKind::Numbers => Cells::Words(Vec::new()),
-        };
+    /// `further`: names of the cells beside the columns of every row, and cells of their kinds.
+    fn new(axes: &[String], further: Vec<(String, Cell<'_>)>) -> Self {
+        let none = SweepPoint::default();
+        let others = columns::default_columns().into_iter();
         Self {
             positions: Vec::new(),
             branches: Vec::new(),
             axes: axes.iter().map(|pointer| (pointer.clone(), Vec::new())).collect(),
-            others: columns::default_columns().into_iter().map(|column| (column, empty(column.kind))).collect(),
+            others: others.map(|column| (column, Cells::like(&(column.cell)(&none)))).collect(),
+            further: further.into_iter().map(|(name, cell)| (name, Cells::like(&cell))).collect(),
         }
     }
 
-    fn push(&mut self, position: u64, point: &SweepPoint) {
+    fn push(&mut self, position: u64, point: &SweepPoint, further: Vec<Cell<'_>>) {
         self.positions.push(position as f64);
         self.branches.push(point.branch.map_or("", BranchDirection::as_str).to_owned());
         for (at, (_, values)) in self.axes.iter_mut().enumerate() {
             values.push(point.values.get(at).copied().unwrap_or(f64::NAN));
         }
         for (column, cells) in &mut self.others {
-            match (cells, (column.cell)(point)) {
-                (Cells::Numbers(values), Cell::Number(value)) => values.push(value.unwrap_or(f64::NAN)),
-                (Cells::Numbers(values), _) => values.push(f64::NAN),
-                (Cells::Words(words), Cell::Word(word)) => words.push(word.unwrap_or_default().into_owned()),
-                (Cells::Words(words), _) => words.push(String::new()),
-            }
+            cells.push((column.cell)(point));
+        }
+        for ((_, cells), cell) in self.further.iter_mut().zip(further) {
+            cells.push(cell);
         }
     }
 
@@ -203,6 +198,7 @@ impl PointColumns {
                 cells,
             }
         }));
+        columns.extend(self.further.into_iter().map(|(name, cells)| plain(&name, "", cells)));
         Table { columns }
     }
 }

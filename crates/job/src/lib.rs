@@ -26,6 +26,6 @@ mod warning;
 pub use document::{MAX_EVALUATIONS, MAX_SERIES_SAMPLES, MAX_SWEEP_POINTS, parse, parse_json, parse_value};
 pub use encoding::{EncodingError, utf8_text, without_mark};
 pub use finite::not_finite;
-pub use shape::{FurtherCell, SweepShape};
+pub use shape::SweepShape;
 pub use violation::{DocumentError, Violation};
 pub use warning::Warning;

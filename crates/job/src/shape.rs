@@ -2,7 +2,7 @@
 
 use super::document::{JobDocument, JobKind};
 use super::field::Words;
-use super::result::SweepPoint;
+use super::result::{Cell, SweepPoint};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
@@ -62,6 +62,8 @@ pub struct SweepShape {
     rows: usize,
     pointers: Vec<String>,
     further: Vec<String>,
+    /// Number of objectives; `None` of anything but an optimisation.
+    objectives: Option<usize>,
 }
 
 /// The members of a stored document that determine the rows of a sweep.
@@ -98,6 +100,7 @@ impl SweepShape {
             rows: ways * stored.axes.iter().map(length).product::<usize>(),
             pointers: stored.axes.into_iter().map(|axis| axis.pointer).collect(),
             further: Vec::new(),
+            objectives: None,
         })
     }
 
@@ -123,7 +126,8 @@ impl SweepShape {
         for measure in measures {
             further.extend((0..points).map(|point| format!("{measure} at {point}")));
         }
-        Self { rows: usize::try_from(document.evaluations()).unwrap_or(usize::MAX), pointers, further }
+        let rows = usize::try_from(document.evaluations()).unwrap_or(usize::MAX);
+        Self { rows, pointers, further, objectives: of_optimisation.then_some(document.objectives.len()) }
     }
 
     /// Rows: every point of a sweep once for each direction of continuation, evaluations of other jobs (of an
@@ -143,31 +147,21 @@ impl SweepShape {
     }
 
     /// The cells of [`SweepShape::further`] of a row.
-    pub fn cells(&self, row: &SweepPoint) -> Vec<FurtherCell> {
+    pub fn cells(&self, row: &SweepPoint) -> Vec<Cell<'static>> {
         if self.further.is_empty() {
             return Vec::new();
         }
-        let number = |value: Option<f64>| FurtherCell::Number(value);
-        let mut cells = vec![FurtherCell::Word(row.phase.map_or("", |phase| phase.as_str()))];
-        let is_optimisation = self.further.get(1).is_some_and(|name| name == "generation");
-        if is_optimisation {
-            cells.extend([number(row.generation.map(f64::from)), number(row.violation)]);
-            let count = self.further.iter().filter(|name| name.starts_with("objective_")).count();
+        let mut cells = vec![Cell::Word(row.phase.map(|phase| phase.as_str().into()))];
+        if let Some(count) = self.objectives {
+            cells.extend([Cell::Number(row.generation.map(f64::from)), Cell::Number(row.violation)]);
             let objectives = row.objectives.as_deref().unwrap_or_default();
-            cells.extend((0..count).map(|index| number(objectives.get(index).copied())));
+            cells.extend((0..count).map(|index| Cell::Number(objectives.get(index).copied())));
         }
         let measures = row.measures.as_deref().unwrap_or_default();
         let left = self.further.len() - cells.len();
-        cells.extend((0..left).map(|index| number(measures.get(index).copied())));
+        cells.extend((0..left).map(|index| Cell::Number(measures.get(index).copied())));
         cells
     }
-}
-
-/// A cell of a row beside its columns.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum FurtherCell {
-    Number(Option<f64>),
-    Word(&'static str),
 }
 
 #[cfg(test)]
