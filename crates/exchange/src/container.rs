@@ -89,7 +89,7 @@ fn other_kind(bytes: &[u8]) -> Refusal {
     } else if bytes.starts_with(b"\x1f\x8b") {
         "is compressed with gzip; needed: the model itself, or a zip archive"
     } else {
-        "is neither a REXS model (XML or JSON) nor a zip archive with one"
+        "is neither a REXS model (XML or JSON), nor a zip archive with one, nor a calculation of KISSsoft (.Z12)"
     };
     Refusal::unreadable("not-rexs", detail)
 }

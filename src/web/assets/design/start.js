@@ -172,7 +172,7 @@ export function initStart({ fill, read }) {
       return;
     }
     fill(example);
-    if (remembered) return say("The example pair. A job document or a gear model (REXS) can be dropped anywhere on the page.", drafts);
+    if (remembered) return say("The example pair. A job document or a gear model (REXS, KISSsoft) can be dropped anywhere on the page.", drafts);
     say("The form shows the example pair.", {
       [EMPTY_CHOICE]: () => {
         rememberStart("empty");
