@@ -34,7 +34,7 @@ pub(super) fn run(
         let mut values = vec![speed.value(0)];
         // In the order of the axes.
         other_axis_value.into_iter().for_each(|value| values.insert(1 - at, value));
-        let modes = row::job(base, sweep, &values).and_then(|job| {
+        let modes = row::job(base, sweep, &values, memo).and_then(|job| {
             let staged = point::stage(&job, &quiet, memo)?;
             let modes = staged.natural_modes().map_err(super::vibration::failed)?;
             Ok((modes, job.document().design.pinion.teeth))

@@ -3,7 +3,7 @@
 mod drawing;
 
 use super::axes::check_axes;
-use super::prepare::{Prepared, geometry, prepare};
+use super::prepare::{Pairs, Prepared, geometry, prepare, prepare_with};
 use super::{CheckReport, SolvedShafts, demand, derived, optimise, repeat, tolerance, vibration};
 use crate::DocumentError;
 use crate::document::{JobDocument, JobKind, ResolvedShafts};
@@ -23,7 +23,8 @@ impl CheckedJob {
     /// [`DocumentError::Invalid`] with every infeasibility and contradiction; [`DocumentError::Unsupported`] for a
     /// calculation that this version does not support.
     pub fn new(document: JobDocument) -> Result<Self, DocumentError> {
-        let job = Self::of_point(document)?;
+        let prepared = prepare(&document)?;
+        let job = Self { document, prepared };
         vibration::channels(&job.document, None)?;
         match job.document.kind {
             JobKind::Mesh | JobKind::Response => {}
@@ -39,12 +40,12 @@ impl CheckedJob {
         Ok(job)
     }
 
-    /// Checks a point of a checked sweep: only the feasibility of the pair.
+    /// Checks a point of a checked sweep: only the feasibility of the pair. `pairs`: those of the other points.
     ///
     /// # Errors
     /// [`DocumentError::Invalid`] with every infeasibility of the pair.
-    pub(super) fn of_point(document: JobDocument) -> Result<Self, DocumentError> {
-        let prepared = prepare(&document)?;
+    pub(super) fn of_point(document: JobDocument, pairs: &Pairs) -> Result<Self, DocumentError> {
+        let prepared = prepare_with(&document, pairs)?;
         Ok(Self { document, prepared })
     }
 

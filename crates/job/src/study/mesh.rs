@@ -4,7 +4,8 @@ use super::compliance::{self, ComplianceMemo};
 use super::equations::{MotionPlane, given_stiffness};
 use super::hash::mesh_hash;
 use super::mesh_force::{self, MeshForces};
-use super::prepare::Prepared;
+use super::prepare::{Pairs, Prepared};
+use super::recent::Recent;
 use super::rotor::Rotor;
 use super::shaft_contact::{self, MountedTrain, ShaftContact};
 use super::{SolveContext, SolveError, Stage};
@@ -129,6 +130,8 @@ impl<'a> ContactCase<'a> {
 /// Contact analyses of one job and the compliances under them, so that the points of a sweep share them.
 #[derive(Default)]
 pub(super) struct MeshMemo {
+    pub(super) pairs: Pairs,
+    stages: Recent<MeshInputs, MeshStage>,
     contacts: Memo<LoadedContact>,
     pub(super) shaft_contacts: Memo<LoadedContactOnShafts>,
     pub(super) shafts: Memo<ContactShafts>,
@@ -164,11 +167,62 @@ impl<T> Memo<T> {
     }
 }
 
-/// Runs the mesh stage. Also returns the parts that were read from the store.
+/// All inputs of the mesh stage of a pair without shafts; not the speed, supports, inertias, backlash or analysis.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct MeshInputs {
+    spec: PairSpec,
+    contact_torque_nm: f64,
+    half_force_n: f64,
+    half_stagger: f64,
+    plane: MotionPlane,
+    mesh_stiffness: MeshStiffness,
+    mesh_force: MeshForce,
+    /// Whether equations of motion follow.
+    vibrates: bool,
+}
+
+impl MeshInputs {
+    /// `None` on shafts, which yield by their bearings, and those by the speed.
+    fn new(document: &JobDocument, prepared: &Prepared, plane: &MotionPlane) -> Option<Self> {
+        document.design.shafts.is_none().then(|| Self {
+            spec: prepared.pair.spec,
+            contact_torque_nm: prepared.contact_torque_nm,
+            half_force_n: prepared.half_force_n,
+            half_stagger: document.design.half_stagger,
+            plane: *plane,
+            mesh_stiffness: document.model.mesh_stiffness.clone(),
+            mesh_force: document.model.mesh_force,
+            vibrates: document.kind != JobKind::Mesh,
+        })
+    }
+}
+
+/// Runs the mesh stage, or takes it from a point with the same inputs. Also returns the parts that were not calculated
+/// anew.
 ///
 /// # Errors
 /// [`SolveError`].
 pub(super) fn run(
+    document: &JobDocument,
+    prepared: &Prepared,
+    plane: &MotionPlane,
+    context: &SolveContext,
+    memo: &MeshMemo,
+) -> Result<(Arc<MeshStage>, Vec<ReusedStage>), SolveError> {
+    let inputs = MeshInputs::new(document, prepared, plane);
+    if let Some(stage) = inputs.as_ref().and_then(|inputs| memo.stages.get(inputs)) {
+        let of_contact = stage.summary.source == MeshStiffnessSource::Ltca;
+        return Ok((stage, if of_contact { vec![ReusedStage::Mesh] } else { Vec::new() }));
+    }
+    let (stage, reused) = calculate(document, prepared, plane, context, memo)?;
+    let stage = Arc::new(stage);
+    if let Some(inputs) = inputs {
+        memo.stages.put(inputs, stage.clone());
+    }
+    Ok((stage, reused))
+}
+
+fn calculate(
     document: &JobDocument,
     prepared: &Prepared,
     plane: &MotionPlane,
@@ -202,7 +256,8 @@ pub(super) fn run(
         MeshStiffness::Iso6336 => Ok((iso6336(prepared, plane)?, Vec::new())),
         MeshStiffness::Given(given) => {
             let stiffness = given_stiffness(given);
-            let curve = |phase: f64| stiffness.at(phase) / plane.stiffness_factor;
+            let samples = stiffness.curve();
+            let curve = |phase: f64| samples.at_n_per_m(phase) / plane.stiffness_factor;
             let mut stage = closed_form(MeshStiffnessSource::Given, prepared, curve);
             stage.stiffness = [stiffness.clone(), stiffness];
             Ok((stage, Vec::new()))

@@ -22,6 +22,7 @@ mod part;
 mod point;
 mod points;
 pub(crate) mod prepare;
+mod recent;
 mod repeat;
 mod response_result;
 mod rotor;
@@ -55,7 +56,7 @@ pub use sweep::continued_from;
 pub use vibration::is_channel;
 
 /// Version of the calculation: results and stages stored under another version are not reused.
-pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-9");
+pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-10");
 
 /// Stages in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

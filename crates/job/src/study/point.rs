@@ -132,7 +132,7 @@ pub(super) fn stage<'a>(
     let rotor = mounted.map(|mounted| rotor::find(document, prepared, &mounted, &mesh, (context, memo))).transpose()?;
     let parameters = (document.kind != JobKind::Mesh).then(|| {
         let lead = if mesh.stagger_included { 0.0 } else { document.design.half_stagger };
-        let parameters = equations::parameters(document, prepared, &plane, mesh.stiffness, impact.pulses, lead);
+        let parameters = equations::parameters(document, prepared, &plane, mesh.stiffness.clone(), impact.pulses, lead);
         let parameters = match &mesh.forces {
             None => parameters,
             Some(contact) => equations::with_contact_forces(document, parameters, &contact.forces),
@@ -145,7 +145,7 @@ pub(super) fn stage<'a>(
     let result = JobResult {
         geometry: Some(geometry(prepared)),
         shafts: mesh.on_shafts.as_ref().map(|contact| shaft_contact::result(document, &prepared.pair, contact)),
-        mesh: Some(mesh.summary),
+        mesh: Some(mesh.summary.clone()),
         impact: impact.summary,
         supports: (document.kind != JobKind::Mesh && document.design.shafts.is_none())
             .then(|| prepared.supports.clone()),
@@ -153,7 +153,7 @@ pub(super) fn stage<'a>(
         numerics,
         ..JobResult::default()
     };
-    Ok(Staged { result, on_shafts: mesh.on_shafts, rotor, parameters, stopwatch })
+    Ok(Staged { result, on_shafts: mesh.on_shafts.clone(), rotor, parameters, stopwatch })
 }
 
 /// The response of a staged point, where it has equations.

@@ -1,5 +1,6 @@
 //! Conversion of a document to physics in SI: the pair, its inertias and its operating point, with their feasibility.
 
+use super::recent::Recent;
 use super::{bounds, gear_findings, shafts, supports};
 use crate::DocumentError;
 use crate::document::{self as doc, JobDocument, PressureAnglePlane};
@@ -7,6 +8,7 @@ use crate::result::{GearGeometry, Geometry, SupportsResult};
 use crate::warning::Warning;
 use herringbone_physics::gear::{self, Pair, PairSpec};
 use herringbone_physics::{compliance, contact};
+use std::sync::Arc;
 
 /// Default bore as a fraction of the reference diameter, where none is given.
 pub(super) const DEFAULT_BORE_FRACTION: f64 = 0.4;
@@ -38,10 +40,30 @@ const LIGHT_LINE_LOAD_N_PER_M: f64 = 1e3;
 /// # Errors
 /// [`DocumentError::Invalid`] with every infeasibility of the pair, or of its shafts.
 pub(crate) fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError> {
+    prepare_with(document, &Pairs::default())
+}
+
+/// Pairs by their specification, with their warnings.
+pub(super) type Pairs = Recent<PairSpec, (Pair, Vec<gear::Warning>)>;
+
+/// As [`prepare`], with the pairs that other points of the job have.
+///
+/// # Errors
+/// As [`prepare`].
+pub(super) fn prepare_with(document: &JobDocument, pairs: &Pairs) -> Result<Prepared, DocumentError> {
     let mut warnings = Vec::new();
     let spec = pair_spec(document, &mut warnings);
-    let (pair, pair_warnings) = Pair::new(&spec)
-        .map_err(|reasons| DocumentError::Invalid(reasons.iter().map(gear_findings::violation).collect()))?;
+    let found = match pairs.get(&spec) {
+        Some(found) => found,
+        None => {
+            let found = Pair::new(&spec)
+                .map_err(|reasons| DocumentError::Invalid(reasons.iter().map(gear_findings::violation).collect()))?;
+            let found = Arc::new(found);
+            pairs.put(spec, found.clone());
+            found
+        }
+    };
+    let (pair, pair_warnings) = (found.0.clone(), &found.1);
     warnings.extend(pair_warnings.iter().map(gear_findings::warning));
     warnings.extend(held_elsewhere(document, &pair));
     warnings.extend(short_face(document, &pair));

@@ -24,9 +24,14 @@ pub(super) struct Solved {
 ///
 /// # Errors
 /// [`SolveError::Document`] if the values contradict each other, or the pair is infeasible.
-pub(super) fn job(base: &JobDocument, sweep: &JobDocument, values: &[f64]) -> Result<CheckedJob, SolveError> {
+pub(super) fn job(
+    base: &JobDocument,
+    sweep: &JobDocument,
+    values: &[f64],
+    memo: &MeshMemo,
+) -> Result<CheckedJob, SolveError> {
     let document = axes::at(base.clone(), sweep.axes.iter().zip(values.iter().copied()))?;
-    Ok(CheckedJob::of_point(document)?)
+    Ok(CheckedJob::of_point(document, &memo.pairs)?)
 }
 
 /// Solves one point. `start`: a neighbour's end state. The row of a point that fails contains the error.
@@ -43,7 +48,7 @@ pub(super) fn solve(
 ) -> Result<Solved, SolveError> {
     let quiet = SolveContext { progress: &|_, _| {}, ..*context };
     let options = PointOptions { start, whole: false, record: &sweep.record };
-    let solved = job(base, sweep, &values).and_then(|job| point::solve(&job, &quiet, memo, &options));
+    let solved = job(base, sweep, &values, memo).and_then(|job| point::solve(&job, &quiet, memo, &options));
     match solved {
         Ok(point) => Ok(of_point(values, point)),
         Err(error) => failed(values, error),
@@ -67,7 +72,7 @@ pub(super) fn solve_together(
     let staged: Vec<_> = group
         .iter()
         .map(|values| {
-            let job = job(base, sweep, values)?;
+            let job = job(base, sweep, values, memo)?;
             let staged = point::stage(&job, &quiet, memo)?;
             let train = staged.parameters().and_then(|parameters| parameters.train.as_deref());
             let analysis = vibration::analysis(job.document(), train, &options)?;

@@ -44,7 +44,7 @@ pub(crate) const fn is_rigid_rotation(d: usize, coordinate: usize) -> bool {
 }
 
 /// Spring and damper in scaled time, divided by the mass they act on.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct ScaledSpring<R> {
     k: R,
     c: R,
@@ -64,7 +64,7 @@ impl<R: Real> ScaledSpring<R> {
 }
 
 /// Coefficients of one half.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct HalfEquations<R> {
     pub sin: R,
     /// Force to acceleration in scaled time: 1/(m ω²).
@@ -171,6 +171,11 @@ impl<const D: usize> Equations<D, f64> {
     /// The equations of antisymmetric perturbations (D = 6): the other half moves as the opposite of the mirror image.
     pub(crate) fn antisymmetric(&self) -> Self {
         Self { parity: -1.0, ..self.clone() }
+    }
+
+    /// 1, and −1 of antisymmetric perturbations.
+    pub(super) fn parity(&self) -> f64 {
+        self.parity
     }
 
     /// Whether a torsional spring couples the halves of a gear.

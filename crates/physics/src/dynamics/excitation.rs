@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::DynamicsError;
 use super::lanes::Real;
+use crate::numerics::fourier::Fourier;
 use crate::numerics::monotone_cubics;
 
 /// One harmonic of a Fourier series: `amplitude · cos(2π i φ + phase_rad)` for entry i, counted from 1.
@@ -57,11 +58,14 @@ impl Stiffness {
         }
     }
 
-    /// Value at any phase, N/m.
+    /// Value at any phase, N/m; of many phases by [`Stiffness::curve`].
     pub fn at(&self, phase: f64) -> f64 {
-        let waveform = StiffnessWaveform::new(self, 0.0, 1.0);
-        let phase = phase.rem_euclid(1.0);
-        waveform.value(phase, phase)
+        self.curve().at_n_per_m(phase)
+    }
+
+    /// The stiffness for its evaluation at many phases.
+    pub fn curve(&self) -> StiffnessCurve {
+        StiffnessCurve(StiffnessWaveform::new(self, 0.0, 1.0))
     }
 
     pub(super) fn validate(&self) -> Result<(), DynamicsError> {
@@ -85,6 +89,18 @@ impl Stiffness {
             return invalid(mean, "the mean must be positive and finite");
         }
         Ok(())
+    }
+}
+
+/// A mesh stiffness in the form in which it is evaluated.
+#[derive(Debug, Clone)]
+pub struct StiffnessCurve(StiffnessWaveform);
+
+impl StiffnessCurve {
+    /// Value at any phase, N/m.
+    pub fn at_n_per_m(&self, phase: f64) -> f64 {
+        let phase = phase.rem_euclid(1.0);
+        self.0.value(phase, phase)
     }
 }
 
@@ -215,6 +231,11 @@ impl FourierSeries<f64> {
         self.terms.get(order - 1).map_or(Complex::ZERO, |term| Complex::new(0.5 * term.cos, 0.5 * term.sin))
     }
 
+    /// Highest order.
+    pub(super) fn orders(&self) -> usize {
+        self.terms.len()
+    }
+
     /// Value and derivative by the phase.
     pub(crate) fn value_and_rate(&self, phase: f64) -> (f64, f64) {
         self.terms.iter().enumerate().fold((self.constant, 0.0), |(value, rate), (i, term)| {
@@ -318,6 +339,22 @@ impl StiffnessWaveform {
             Stiffness::Samples { values_n_per_m } => StiffnessKind::Pieces(monotone_cubics(values_n_per_m)),
         };
         Self { kind, shift, period_tau }
+    }
+
+    /// Values at equally spaced phases from 0, N/m; `fourier`: of as many samples.
+    pub(super) fn sample(&self, fourier: &mut Fourier, out: &mut [f64]) {
+        match &self.kind {
+            StiffnessKind::Fourier(series) if 2 * series.orders() < out.len() => {
+                fourier.samples((0..=series.orders()).map(|order| series.amplitude(order)), out);
+            }
+            _ => {
+                let count = out.len() as f64;
+                for (i, value) in out.iter_mut().enumerate() {
+                    let phase = i as f64 / count;
+                    *value = self.value(phase, phase);
+                }
+            }
+        }
     }
 
     /// Appends the phases at which the waveform is not smooth.

@@ -41,13 +41,16 @@
 #![allow(clippy::needless_range_loop)]
 
 mod broyden;
+mod complex_modes;
 mod contact_force;
 mod crossing;
+mod elastic_system;
 mod equations;
 mod error;
 mod excitation;
 mod expansion;
 mod harmonic_balance;
+mod harmonic_grid;
 mod integrate;
 mod lane_batch;
 mod lanes;
@@ -69,7 +72,7 @@ mod variation;
 
 pub use contact_force::{ContactForce, FlankForce};
 pub use error::DynamicsError;
-pub use excitation::{Harmonic, ImpactExcitation, Stiffness};
+pub use excitation::{Harmonic, ImpactExcitation, Stiffness, StiffnessCurve};
 pub use integrate::{Integrator, StepCounts};
 pub use modal::{Mode, NaturalModes, SpringGroup};
 pub use modal_train::{

@@ -3,6 +3,9 @@
 mod mode;
 mod springs;
 
+use std::cell::RefCell;
+use std::collections::VecDeque;
+
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +39,22 @@ pub(super) const RIGID_BODY_EIGENVALUE: f64 = 1e-12;
 /// One value per displacement.
 type DisplacementVector = [f64; 12];
 
+/// All that the natural modes of a pair depend on.
+#[derive(PartialEq)]
+struct PairInputs {
+    stiffness: DMatrix<f64>,
+    masses: [f64; 12],
+    radii_m: [f64; 2],
+}
+
+/// Modes kept by each thread.
+const KEPT: usize = 8;
+
+thread_local! {
+    /// The modes of the last pairs, so that the points of a sweep over the speed share theirs.
+    static RECENT: RefCell<VecDeque<(PairInputs, NaturalModes)>> = const { RefCell::new(VecDeque::new()) };
+}
+
 impl NaturalModes {
     /// Solves K φ = ω² M φ by the eigenvalues of M^-½ K M^-½.
     ///
@@ -46,8 +65,26 @@ impl NaturalModes {
         if let Some(train) = &p.train {
             return Ok(Self::of_train(train));
         }
-        let k = stiffness_matrix(p);
-        let root = masses(p).map(|m| 1.0 / m.sqrt());
+        let inputs = PairInputs {
+            stiffness: stiffness_matrix(p),
+            masses: masses(p),
+            radii_m: [p.pinion_radius_m, p.gear_radius_m],
+        };
+        RECENT.with(|recent| {
+            if let Some((_, modes)) = recent.borrow().iter().find(|(known, _)| *known == inputs) {
+                return Ok(modes.clone());
+            }
+            let modes = Self::of_pair(p, &inputs)?;
+            let mut recent = recent.borrow_mut();
+            recent.truncate(KEPT - 1);
+            recent.push_front((inputs, modes.clone()));
+            Ok(modes)
+        })
+    }
+
+    fn of_pair(p: &Parameters, inputs: &PairInputs) -> Result<Self, DynamicsError> {
+        let k = &inputs.stiffness;
+        let root = inputs.masses.map(|m| 1.0 / m.sqrt());
         let scaled = DMatrix::from_fn(12, 12, |r, c| k[(r, c)] * root[r] * root[c]);
         let eigen = SymmetricEigen::try_new(scaled, f64::EPSILON, 10_000).ok_or(DynamicsError::InvalidParameter {
             name: "stiffness matrix",
@@ -236,8 +273,12 @@ fn masses(p: &Parameters) -> [f64; 12] {
 fn stiffness_matrix(p: &Parameters) -> DMatrix<f64> {
     let mut k = DMatrix::zeros(12, 12);
     for element in spring_elements(p) {
-        let row = DVector::from_row_slice(&element.row);
-        k += &row * row.transpose() * element.spring.stiffness;
+        let row = &element.row;
+        for c in (0..12).filter(|c| row[*c] != 0.0) {
+            for r in 0..12 {
+                k[(r, c)] += row[r] * row[c] * element.spring.stiffness;
+            }
+        }
     }
     k
 }

@@ -269,8 +269,12 @@ impl<const D: usize> DynamicModel<D> {
             return contact.force.force(s, self.b, phase, phase);
         }
         let stiffness = e.stiffness.value(phase, phase);
-        let side = if self.halves[j].load < 0.0 { -1.0 } else { 1.0 };
-        (stiffness * (s - side * self.b), stiffness)
+        (stiffness * (s - self.loaded_side(j) * self.b), stiffness)
+    }
+
+    /// 1 where the load presses the driving flanks of a half, −1 where it presses the back flanks.
+    pub(super) fn loaded_side(&self, j: usize) -> f64 {
+        if self.halves[j].load < 0.0 { -1.0 } else { 1.0 }
     }
 
     /// Accelerations in scaled time at a phase: right-hand side for Runge–Kutta methods.

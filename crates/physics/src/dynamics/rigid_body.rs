@@ -41,6 +41,11 @@ impl<const D: usize> RigidBodyModes<D> {
         Self { shapes: Vec::new(), masses: [0.0; D] }
     }
 
+    /// Number of modes.
+    pub(super) fn count(&self) -> usize {
+        self.shapes.len()
+    }
+
     /// Projection of a displacement or velocity onto the complement of the rigid-body modes.
     pub(crate) fn project_out_of(&self, mut q: [f64; D]) -> [f64; D] {
         for n in &self.shapes {

@@ -240,11 +240,6 @@ impl<const D: usize> TrainEquations<D> {
         [0, 1].map(|j| self.reference_stiffness[j] * dot(&self.mesh[j], &self.statics.load))
     }
 
-    /// Displacements s of both meshes under the load alone, closed with the reference stiffnesses, m.
-    pub(super) fn static_displacements_m(&self) -> [f64; 2] {
-        [0, 1].map(|j| dot(&self.mesh[j], &self.statics.load))
-    }
-
     /// Coordinates under the load alone, closed with the reference stiffnesses.
     pub(super) fn static_load_state(&self) -> &Row<D> {
         &self.statics.load

@@ -99,7 +99,7 @@ pub(super) struct TrainPropagator {
 impl TrainPropagator {
     /// `columns`: perturbations without rigid-body modes.
     pub(super) fn new<const D: usize>(modes: &TrainModes, columns: &[Perturbation<D>], tolerance: f64) -> Self {
-        let n = modes.elastic();
+        let n = modes.coordinates();
         let states =
             DMatrix::from_fn(2 * n, columns.len(), |r, c| if r < n { columns[c].0[r] } else { columns[c].1[r - n] });
         // Rounding is far below this.

@@ -1,9 +1,10 @@
-//! Numerical methods that several modules share: Gauss–Legendre rules, interpolation, periodic splines, monotone
+//! Numerical methods that several modules share: Gauss–Legendre rules, Fourier series, interpolation, periodic splines, monotone
 //! cubics, dense linear algebra on flat row-major slices, eigenvalues of matrices without symmetry, systems of which
 //! only products are known.
 
 pub(crate) mod dense;
 pub(crate) mod eigen;
+pub(crate) mod fourier;
 pub(crate) mod gauss;
 pub(crate) mod gmres;
 pub(crate) mod interpolation;

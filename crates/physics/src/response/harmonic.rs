@@ -1,15 +1,18 @@
-//! Steady motion of a train in contact by harmonic balance, confirmed by its integration over a mesh period.
+//! Steady motion in contact by harmonic balance, confirmed by its integration over a mesh period.
+
+use nalgebra::Complex;
 
 use super::analysis::{AppliedMethod, Multiplier, Regime, Response};
 use super::channel::ChannelId;
 use super::poincare::largest_component;
 use super::recorder::ChannelRecorder;
 use super::recording::FinishedRun;
-use super::report::{MotionAssessment, assemble_response};
+use super::report::{MotionAssessment, assemble_response, solved_halves};
 use super::solve::{ROUNDING, ResponseProblem, SAFETY, acceleration_floor};
 use super::steady::{check_load_balance, displaced};
 use crate::dynamics::{
-    DynamicModel, DynamicsError, HarmonicBalance, HarmonicOrbit, MotionState, Shooting, StepCounts, state_difference,
+    DynamicModel, DynamicsError, HarmonicBalance, HarmonicOrbit, MotionState, PER_HALF, Shooting, StepCounts,
+    state_difference,
 };
 
 /// Error of a start, relative to the velocities, at which a motion counts as periodic: this part of the accuracy.
@@ -45,30 +48,29 @@ impl ResponseProblem<'_> {
         tolerance: f64,
     ) -> Result<Option<Response>, DynamicsError> {
         let closed = CLOSED * self.analysis.accuracy;
-        let Some(balance) = HarmonicBalance::new(model) else { return Ok(None) };
-        let Some(orbit) = balance.solve(start, 0.2 * closed) else { return Ok(None) };
-        let shooting = Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tolerance))?;
+        let Some(balance) = HarmonicBalance::new(model, self.mean_stiffness_n_per_m()) else { return Ok(None) };
+        let Some(orbit) = balance.solve(start, closed) else { return Ok(None) };
+        let shooting = || Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tolerance));
+        let rigid_body = balance.has_rigid_body_modes().then(shooting).transpose()?;
         let mut counts = StepCounts::default();
         let Some(record) =
-            self.closed_record((model, &shooting), &balance, &orbit, (tolerance, closed), &mut counts)?
+            self.closed_record((model, rigid_body.as_ref()), &balance, &orbit, (tolerance, closed), &mut counts)?
         else {
             return Ok(None);
         };
         let ClosedRecord { from, start_error, finished } = record;
-        if self.difference(model, &balance, &orbit, &finished.recorder) > SERIES {
+        if DynamicModel::<D>::IS_TRAIN && self.difference(model, &balance, &orbit, &finished.recorder) > SERIES {
             return Ok(None);
         }
         let (floquet, multipliers) = if !self.analysis.multipliers && balance.is_surely_stable(&orbit) {
             (None, None)
         } else {
-            let period_map = shooting.period_map(model, from, 1)?;
-            counts += period_map.counts;
-            let found = shooting.multipliers(&period_map.monodromy);
-            let Some(modulus) = found.first().map(|m| m.norm()).filter(|modulus| *modulus < 1.0) else {
+            let Some(found) = self.stable_multipliers((model, &shooting()?), from, tolerance, &mut counts)? else {
                 return Ok(None);
             };
+            let modulus = found.first().map(|m| m.norm());
             let polar = found.iter().map(|m| Multiplier { modulus: m.norm(), angle_rad: m.arg() }).collect();
-            (Some(modulus), Some(polar))
+            (modulus, Some(polar))
         };
         let error_estimate = SAFETY * start_error + PER_TOLERANCE * tolerance + ROUNDING;
         let assessment = MotionAssessment {
@@ -86,11 +88,34 @@ impl ResponseProblem<'_> {
         Ok(Some(assemble_response(&self.report_input(), model, finished.recorder, finished.record, assessment)))
     }
 
+    /// Floquet multipliers of the orbit from `from`, largest first, those of antisymmetric perturbations included; None
+    /// where it is not stable.
+    fn stable_multipliers<const D: usize>(
+        &self,
+        (model, shooting): (&DynamicModel<D>, &Shooting<'_, D>),
+        from: MotionState<D>,
+        tolerance: f64,
+        counts: &mut StepCounts,
+    ) -> Result<Option<Vec<Complex<f64>>>, DynamicsError> {
+        let period_map = shooting.period_map(model, from, 1)?;
+        *counts += period_map.counts;
+        let mut found = shooting.multipliers(&period_map.monodromy);
+        if D == PER_HALF {
+            let antisymmetric = model.antisymmetric();
+            let shooting = Shooting::new(&antisymmetric, self.mean_stiffness_n_per_m(), self.limits(tolerance))?;
+            let period_map = shooting.period_map(model, from, 1)?;
+            *counts += period_map.counts;
+            found.extend(shooting.multipliers(&period_map.monodromy));
+            found.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+        }
+        Ok(found.first().is_some_and(|largest| largest.norm() < 1.0).then_some(found))
+    }
+
     /// Record of a mesh period from the start of the orbit, corrected until it closes; None where it does not, or where
     /// the motion loses contact.
     fn closed_record<'m, const D: usize>(
         &self,
-        (model, shooting): (&'m DynamicModel<D>, &Shooting<'_, D>),
+        (model, rigid_body): (&'m DynamicModel<D>, Option<&Shooting<'_, D>>),
         balance: &HarmonicBalance<'m, D>,
         orbit: &HarmonicOrbit<D>,
         (tolerance, closed): (f64, f64),
@@ -105,7 +130,9 @@ impl ResponseProblem<'_> {
                 return Ok(None);
             }
             let defect = state_difference(&finished.record.last, &from);
-            check_load_balance(model, shooting, &defect)?;
+            if let Some(shooting) = rigid_body {
+                check_load_balance(model, shooting, &defect)?;
+            }
             let size = largest_component(&([0.0; D], from.v)).max(1e-9 * largest_component(&(from.x, [0.0; D])));
             let change = largest_component(&defect) / size;
             if change.is_nan() || change > FAR {
@@ -132,7 +159,7 @@ impl ResponseProblem<'_> {
         let floor = acceleration_floor(model);
         let [mesh, axial] = balance.rms_accelerations_m_s2(orbit);
         let mut worst = 0.0f64;
-        for half in 0..2u8 {
+        for half in solved_halves::<D>() {
             let j = usize::from(half);
             let pairs =
                 [(ChannelId::mesh_acceleration(half), mesh[j]), (ChannelId::pinion_axial_acceleration(half), axial[j])];

@@ -235,7 +235,7 @@ impl ResponseProblem<'_> {
             }
             state = displaced(&model, state, &perturbation);
         }
-        if DynamicModel::<D>::IS_TRAIN && !search.from_start {
+        if !search.from_start && !off_symmetry {
             search.check_static_deflection(&state)?;
             match self.solve_by_harmonic_balance(&model, &state, search.limits.tolerance) {
                 Ok(Some(response)) => return Ok(Some(response)),

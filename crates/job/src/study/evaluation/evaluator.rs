@@ -149,7 +149,7 @@ impl<'a> Evaluator<'a> {
         let at_point = |point: &OperatingPointInput| {
             let mut document = document.clone();
             put_point(&mut document, point);
-            CheckedJob::of_point(document)
+            CheckedJob::of_point(document, &self.memo.pairs)
         };
         self.points.iter().map(at_point).collect()
     }
