@@ -94,6 +94,20 @@ impl NatsServer {
         }
     }
 
+    pub(crate) fn id(&self) -> u32 {
+        self.process.as_ref().map_or(0, Child::id)
+    }
+
+    /// Name of the server that leads a stream.
+    pub(crate) fn leader(&self, stream: &str) -> Option<String> {
+        let address = SocketAddr::from(([127, 0, 0, 1], self.monitor));
+        let answer = client::send(address, "GET", "/jsz?accounts=true&streams=true", &[], "").ok()?.json();
+        let streams =
+            answer["account_details"].as_array()?.iter().filter_map(|account| account["stream_detail"].as_array());
+        let found = streams.flatten().find(|one| one["name"] == stream)?;
+        found["cluster"]["leader"].as_str().map(str::to_owned)
+    }
+
     /// kill −9.
     pub(crate) fn kill(&mut self) {
         if let Some(mut process) = self.process.take() {
