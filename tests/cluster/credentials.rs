@@ -44,7 +44,8 @@ fn user(account: &KeyPair, folder: &Path, name: &str, publish: &[&str], subscrib
 #[test]
 fn credentials_files_open_nats_and_nothing_else_does() {
     let folder = tempfile::tempdir().expect("a folder");
-    let (operator, account, stranger) = (KeyPair::new_operator(), KeyPair::new_account(), KeyPair::new_account());
+    let operator = KeyPair::new_operator();
+    let [account, system, stranger] = [(); 3].map(|()| KeyPair::new_account());
     let of_operator = token(&operator, &operator, "operator", json!({"type": "operator", "version": 2}));
     let limits = json!({
         "subs": -1, "data": -1, "payload": -1, "imports": -1, "exports": -1, "wildcards": true, "conn": -1,
@@ -52,9 +53,12 @@ fn credentials_files_open_nats_and_nothing_else_does() {
     });
     let claims = json!({"type": "account", "version": 2, "limits": limits});
     let of_account = token(&operator, &account, "gears", claims);
+    let of_system = token(&operator, &system, "system", json!({"type": "account", "version": 2}));
     let config = format!(
-        "operator: {of_operator}\nresolver: MEMORY\nresolver_preload: {{ {}: {of_account} }}\n",
-        account.public_key()
+        "operator: {of_operator}\nsystem_account: {1}\nresolver: MEMORY\n\
+         resolver_preload: {{ {0}: {of_account}, {1}: {of_system} }}\n",
+        account.public_key(),
+        system.public_key()
     );
     let path = folder.path().join("nats.conf");
     std::fs::write(&path, config).expect("written");

@@ -70,6 +70,11 @@ impl NatsServer {
         format!("nats://127.0.0.1:{}", self.port)
     }
 
+    /// Its log, beside its folder.
+    fn log(&self) -> PathBuf {
+        self.folder.with_extension("log")
+    }
+
     /// Starts it and waits until it is healthy.
     pub(crate) fn start_again(&mut self) {
         self.spawn();
@@ -81,7 +86,9 @@ impl NatsServer {
         let (port, monitor) = (self.port.to_string(), self.monitor.to_string());
         let mut command = Command::new(&self.program);
         command.args(["--addr", "127.0.0.1", "--port", &port, "--http_port", &monitor, "--jetstream", "--store_dir"]);
-        command.arg(&self.folder).args(&self.options).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        command.arg(&self.folder).args(&self.options).stdin(Stdio::null()).stdout(Stdio::null());
+        let log = std::fs::OpenOptions::new().create(true).append(true).open(self.log()).expect("a log");
+        command.stderr(log);
         self.process = Some(command.spawn().expect("nats-server starts"));
     }
 
@@ -89,7 +96,8 @@ impl NatsServer {
     fn wait(&self) {
         let (address, deadline) = (SocketAddr::from(([127, 0, 0, 1], self.monitor)), Instant::now() + PATIENCE);
         while client::send(address, "GET", "/healthz", &[], "").map_or(true, |answer| answer.status != 200) {
-            assert!(Instant::now() < deadline, "nats-server does not become healthy");
+            let log = || std::fs::read_to_string(self.log()).unwrap_or_default();
+            assert!(Instant::now() < deadline, "nats-server does not become healthy: {}", log());
             std::thread::sleep(Duration::from_millis(20));
         }
     }

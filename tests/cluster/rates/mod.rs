@@ -108,7 +108,7 @@ fn now_s() -> f64 {
 /// A sweep of 2000 points of some ten milliseconds; each one differs, so that no result is reused.
 fn sweep(number: u32) -> Value {
     let mut document = slow_sweep(2000);
-    document["analysis"]["mesh_periods"] = json!(crate::chance::setting("RATES_PERIODS", 6000));
+    document["analysis"]["mesh_periods"] = json!(crate::chance::setting("RATES_PERIODS", 2700));
     document["operation"]["pinion_torque_nm"] = json!(800.0 + f64::from(number));
     document
 }
@@ -228,8 +228,8 @@ fn reactions() -> Option<()> {
     let service = bench.program.start();
     let [mut canceled, mut stopped, mut taken] = [const { Vec::new() }; 3];
     let worker = bench.worker();
-    for periods in 0..5 {
-        let path = service.submit(&documents::integration(50_000_000 + periods));
+    for _ in 0..5 {
+        let path = service.submit(&documents::integration(10_000_000));
         let lines = || worker.log().matches("chunk left").count();
         let before = lines();
         service.until(&path, |job| job.json()["progress"].as_f64() > Some(0.0));
@@ -247,7 +247,7 @@ fn reactions() -> Option<()> {
     );
     drop(worker);
     for _ in 0..TURNS {
-        let path = service.submit(&documents::integration(60_000_000 + taken.len() as u32));
+        let path = service.submit(&documents::integration(10_000_000));
         let first = bench.worker();
         wait_until("it is taken", || first.log().contains("chunk taken"));
         let second = bench.worker();
