@@ -73,7 +73,7 @@ pub(super) fn of_a_hundred_thousand_chunks() -> Option<()> {
     let chunks = || number(bench.program.database(), "SELECT COUNT(*) FROM chunks WHERE state <> 'stored'");
     wait_until("the scout is out", || chunks() == 1);
     let before_mb = resident_mb(service.id());
-    runtime.block_on(scout(&async_nats::jetstream::new(client), &job));
+    runtime.block_on(async { scout(&async_nats::jetstream::new(client), &job).await });
     wait_until("all chunks are known", || chunks() >= CHUNKS);
     let with_mb = resident_mb(service.id());
     std::thread::sleep(Duration::from_secs(5));

@@ -12,7 +12,7 @@ use crate::setting::{number, slow_sweep, wait_until};
 use crate::worker::Worker;
 use jiff::Timestamp;
 use serde_json::{Value, json};
-use sizing::Sizing;
+use sizing::{Chunks, Sizing};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
@@ -126,11 +126,10 @@ fn speeds(sizing: &mut Sizing) -> Option<()> {
         one_s.push(seconds(&service, &sweep(3 * turn + 1)));
         let second = bench.worker();
         service.until("/api/v1/system", |answer| answer.json()["workers"]["total"] == 2);
-        let (began_s, nats_s) = (now_s(), bench.nats_cpu_s());
+        let began_s = now_s();
         two_s.push(seconds(&service, &sweep(3 * turn + 2)));
         let of_two = [&first, &second].map(|worker| gaps_s(worker, began_s));
         let chunks: usize = of_two.iter().map(|gaps| gaps.len() + 1).sum();
-        sizing.nats_chunk_s.push((bench.nats_cpu_s() - nats_s) / chunks as f64);
         gaps.extend(of_two.into_iter().flatten());
         // From the end of the first worker to be done to that of the other.
         let ends =
@@ -263,6 +262,7 @@ fn reactions() -> Option<()> {
         "kill -9 of a worker: its chunk is with another one after {:.1} s, with --ack-wait-s 3",
         median(&mut taken)
     );
+    let _worker = bench.worker();
     series(&bench, &service, "one server");
     Some(())
 }
@@ -274,9 +274,11 @@ fn saturation(sizing: &mut Sizing) -> Option<()> {
     let service = bench.program.start();
     let mut many = documents::sweep(100_000);
     many["operation"]["pinion_torque_nm"] = json!(904.0);
-    let path = service.submit(&many);
+    service.submit(&many);
     let worker = bench.worker_with("8");
-    wait_until("chunks are out", || worker.log().matches("chunk taken").count() >= 3);
+    // The scout is back, and as many chunks are out as there are places for, and as many again.
+    let out = || number(bench.program.database(), "SELECT COUNT(*) FROM chunks WHERE state = 'issued'");
+    wait_until("chunks are out", || out() >= 12);
     service.kill();
     let is_idle = || {
         let count = |words: &str| worker.log().matches(words).count();
@@ -290,25 +292,26 @@ fn saturation(sizing: &mut Sizing) -> Option<()> {
     });
     drop(worker);
     let before = bench.rows();
-    let service = {
-        drop(path);
-        bench.program.start()
-    };
-    let mut samples = vec![(Instant::now(), before)];
-    let cpu = cpu_s(service.id());
-    while samples.last().is_some_and(|(at, _)| at.elapsed() < Duration::from_secs(3)) {
-        std::thread::sleep(Duration::from_millis(20));
+    let program = bench.program.clone();
+    let starting = std::thread::spawn(move || program.start());
+    // From the moment at which it takes results to the last row.
+    let mut last = (now_s(), before);
+    while now_s() < last.0 + 3.0 {
+        std::thread::sleep(Duration::from_millis(2));
         let rows = bench.rows();
-        if samples.last().is_some_and(|(_, last)| *last != rows) {
-            samples.push((Instant::now(), rows));
+        if rows != last.1 {
+            last = (now_s(), rows);
         }
     }
-    let used_s = cpu_s(service.id()) - cpu;
-    let (first, last) = (samples.get(1).copied()?, samples.last().copied()?);
-    let (rows, took_s) = ((last.1 - first.1) as f64, (last.0 - first.0).as_secs_f64());
+    let service = starting.join().expect("it starts");
+    let used_s = cpu_s(service.id());
+    let log = bench.program.log();
+    let resumed = log.lines().rfind(|line| line.contains("job of an earlier run goes on"))?;
+    let from: Timestamp = resumed.split_whitespace().next()?.parse().ok()?;
+    let (rows, took_s) = ((last.1 - before) as f64, last.0 - from.as_microsecond() as f64 * 1e-6);
     let bytes = number(bench.program.database(), "SELECT SUM(LENGTH(body)) / COUNT(*) FROM sweep_points") as f64;
     sizing.rows_per_s = rows / took_s;
-    sizing.row_s = used_s / (last.1 - before) as f64;
+    sizing.row_s = used_s / rows;
     println!(
         "saturation (load {}): {rows:.0} rows of {bytes:.0} bytes in {took_s:.2} s: {:.0} rows/s, {:.1} MB/s; {:.0} µs of \
          processor time of the service for each",
@@ -324,25 +327,29 @@ fn saturation(sizing: &mut Sizing) -> Option<()> {
 fn chunk_costs(sizing: &mut Sizing, servers: usize) -> Option<()> {
     let bench = Bench::new(servers)?;
     let service = bench.program.start();
-    let workers = [bench.worker_with("8"), bench.worker_with("8")];
-    service.until("/api/v1/system", |answer| answer.json()["workers"]["total"] == 16);
-    let (nats_s, service_s) = (bench.nats_cpu_s(), cpu_s(service.id()));
-    let started = Instant::now();
     const JOBS: usize = 1000;
     for _ in 0..JOBS {
         service.submit(&documents::response());
     }
+    let (nats_s, service_s) = (bench.nats_cpu_s(), cpu_s(service.id()));
+    let started = Instant::now();
+    let workers = [bench.worker_with("8"), bench.worker_with("8")];
     service.until("/api/v1/jobs?state=queued,running&limit=1", |answer| answer.json()["items"] == json!([]));
     let took_s = started.elapsed().as_secs_f64();
     let cost = |used_s: f64| 1e3 * used_s / JOBS as f64;
     println!(
         "{servers} server(s): {JOBS} jobs of one operating point in {took_s:.1} s, {:.0}/s; processor time for each: NATS \
-         {:.2} ms, service {:.2} ms with its submission",
+         {:.2} ms, service {:.2} ms",
         JOBS as f64 / took_s,
         cost(bench.nats_cpu_s() - nats_s),
         cost(cpu_s(service.id()) - service_s)
     );
-    sizing.chunks_per_s.push((servers, JOBS as f64 / took_s, 1e-3 * cost(bench.nats_cpu_s() - nats_s)));
+    sizing.chunks.push(Chunks {
+        servers,
+        per_s: JOBS as f64 / took_s,
+        nats_s: (bench.nats_cpu_s() - nats_s) / JOBS as f64,
+        service_s: (cpu_s(service.id()) - service_s) / JOBS as f64,
+    });
     drop(workers);
     Some(())
 }
