@@ -346,7 +346,6 @@ fn chunk_costs(sizing: &mut Sizing, servers: usize) -> Option<()> {
     );
     sizing.chunks.push(Chunks {
         servers,
-        per_s: JOBS as f64 / took_s,
         nats_s: (bench.nats_cpu_s() - nats_s) / JOBS as f64,
         service_s: (cpu_s(service.id()) - service_s) / JOBS as f64,
     });

@@ -18,7 +18,6 @@ pub(super) struct Sizing {
 #[derive(Debug)]
 pub(super) struct Chunks {
     pub servers: usize,
-    pub per_s: f64,
     pub nats_s: f64,
     pub service_s: f64,
 }
