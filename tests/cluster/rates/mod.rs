@@ -267,58 +267,30 @@ fn reactions() -> Option<()> {
     Some(())
 }
 
-/// Rows per second of a service to which results come faster than it stores them: they have waited in NATS while it was
-/// down, and the workers have nothing else to do.
-fn saturation(sizing: &mut Sizing) -> Option<()> {
+/// What rows cost the service: a sweep of many cheap points. Nobody asks for it meanwhile, as answers cost too.
+fn rows(sizing: &mut Sizing) -> Option<()> {
+    const ROWS: u32 = 40_000;
     let bench = Bench::new(1)?;
     let service = bench.program.start();
-    let mut many = documents::sweep(100_000);
+    let _worker = bench.worker_with("2");
+    service.until("/api/v1/system", |answer| answer.json()["workers"]["total"] == 2);
+    let mut many = documents::sweep(ROWS);
     many["operation"]["pinion_torque_nm"] = json!(904.0);
-    service.submit(&many);
-    let worker = bench.worker_with("8");
-    // The scout is back, and as many chunks are out as there are places for, and as many again.
-    let out = || number(bench.program.database(), "SELECT COUNT(*) FROM chunks WHERE state = 'issued'");
-    wait_until("chunks are out", || out() >= 12);
-    service.kill();
-    let is_idle = || {
-        let count = |words: &str| worker.log().matches(words).count();
-        count("chunk taken") == count("chunk computed") + count("chunk dropped") + count("chunk left")
-    };
-    let quiet = std::cell::Cell::new(0);
-    wait_until("everything that is out is computed", || {
-        std::thread::sleep(Duration::from_millis(100));
-        quiet.set(if is_idle() { quiet.get() + 1 } else { 0 });
-        quiet.get() > 40
-    });
-    drop(worker);
-    let before = bench.rows();
-    let program = bench.program.clone();
-    let starting = std::thread::spawn(move || program.start());
-    // From the moment at which it takes results to the last row.
-    let mut last = (now_s(), before);
-    while now_s() < last.0 + 3.0 {
-        std::thread::sleep(Duration::from_millis(2));
-        let rows = bench.rows();
-        if rows != last.1 {
-            last = (now_s(), rows);
-        }
+    let (service_s, nats_s, started) = (cpu_s(service.id()), bench.nats_cpu_s(), Instant::now());
+    let path = service.submit(&many);
+    while !crate::program::is_ended(&service.get(&path)) {
+        std::thread::sleep(Duration::from_secs(1));
     }
-    let service = starting.join().expect("it starts");
-    let used_s = cpu_s(service.id());
-    let log = bench.program.log();
-    let resumed = log.lines().rfind(|line| line.contains("job of an earlier run goes on"))?;
-    let from: Timestamp = resumed.split_whitespace().next()?.parse().ok()?;
-    let (rows, took_s) = ((last.1 - before) as f64, last.0 - from.as_microsecond() as f64 * 1e-6);
-    let bytes = number(bench.program.database(), "SELECT SUM(LENGTH(body)) / COUNT(*) FROM sweep_points") as f64;
-    sizing.rows_per_s = rows / took_s;
-    sizing.row_s = used_s / rows;
+    let took_s = started.elapsed().as_secs_f64();
+    sizing.row_s = (cpu_s(service.id()) - service_s) / f64::from(ROWS);
+    let bytes = number(bench.program.database(), "SELECT SUM(LENGTH(body)) / COUNT(*) FROM sweep_points");
     println!(
-        "saturation (load {}): {rows:.0} rows of {bytes:.0} bytes in {took_s:.2} s: {:.0} rows/s, {:.1} MB/s; {:.0} µs of \
-         processor time of the service for each",
+        "{ROWS} rows of {bytes} bytes in {took_s:.0} s (load {}): processor time of the service {:.0} µs for each, so {:.0} \
+         rows/s of one processor; of NATS {:.0} µs",
         load(),
-        sizing.rows_per_s,
-        sizing.rows_per_s * bytes * 1e-6,
-        1e6 * sizing.row_s
+        1e6 * sizing.row_s,
+        1.0 / sizing.row_s,
+        1e6 * (bench.nats_cpu_s() - nats_s) / f64::from(ROWS)
     );
     Some(())
 }
@@ -362,7 +334,7 @@ fn rates() {
         ("speeds", &speeds),
         ("three", &|_| three_servers()),
         ("reactions", &|_| reactions()),
-        ("saturation", &saturation),
+        ("rows", &rows),
         ("chunks", &|sizing| chunk_costs(sizing, 1)),
         ("chunks", &|sizing| chunk_costs(sizing, 3)),
         ("memory", &|_| memory::of_a_hundred_thousand_chunks()),

@@ -7,8 +7,7 @@ pub(super) struct Sizing {
     pub point_s: f64,
     /// Between two chunks of a worker.
     pub gap_s: f64,
-    /// Rows that the service stores in a second, and its processor time for one.
-    pub rows_per_s: f64,
+    /// Processor time of the service for a row of a sweep.
     pub row_s: f64,
     /// Of one and of three NATS servers: whole jobs in a second; processor time for one of all NATS servers, and of the
     /// service.
