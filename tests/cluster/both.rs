@@ -145,14 +145,14 @@ fn sweeps_take_turns(#[values(Queue::Local, Queue::Nats)] queue: Queue) {
     let service = bench.program.start();
     let _worker = bench.worker();
     // Over NATS there is room for two while the first one's scout is out.
-    let long = [service.submit(&slow_sweep(120)), service.submit(&slow_sweep(121))];
+    let long = [service.submit(&slow_sweep(300)), service.submit(&slow_sweep(301))];
     let short = service.submit(&slow_sweep(20));
     assert_eq!(service.ended(&short)["state"], "succeeded");
     assert!(long.iter().any(|path| service.get(path)["state"] != "succeeded"), "the short one was let in between");
     let jobs = long.each_ref().map(|path| service.ended(path));
     assert!(jobs.iter().all(|job| job["state"] == "succeeded"), "{jobs:?}");
     assert!(jobs.iter().any(|job| job["attempt"].as_i64() > Some(1)), "{jobs:?}");
-    assert_eq!(audit_of(&bench.program, service, &[&long[0], &long[1], &short]).points, 261);
+    assert_eq!(audit_of(&bench.program, service, &[&long[0], &long[1], &short]).points, 621);
 }
 
 #[rstest]
