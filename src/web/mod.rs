@@ -29,7 +29,8 @@ pub const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; img-src 'self' da
                                            base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
 /// The pages `/`, `/jobs`, `/jobs/{id}`, `/jobs/{id}/report`, `/compare`, `/compare/report`, `/system`, `/docs`,
-/// `/help` and below, and the files under `/assets/`. `has_login`: the service has a token, so that the pages offer to log out.
+/// `/help` and below, and the files under `/assets/`. `has_login`: the service has a token, so that the pages offer to
+/// log out.
 pub fn routes(has_login: bool) -> Router {
     Router::new()
         .route("/", get(pages::design))

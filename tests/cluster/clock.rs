@@ -1,5 +1,5 @@
-//! Workers whose clocks are wrong: no time of a worker decides anything. Needs libfaketime; without it the test says that
-//! it is skipped.
+//! Workers whose clocks are wrong: no time of a worker decides anything. Needs libfaketime; without it the test says
+//! that it is skipped.
 
 use crate::documents;
 use crate::program::Program;

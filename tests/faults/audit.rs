@@ -190,7 +190,8 @@ impl Audit<'_> {
         }
     }
 
-    /// The rows of a finished sweep or tolerance study are all its points, without gaps, and those that its result was made of.
+    /// The rows of a finished sweep or tolerance study are all its points, without gaps, and those that its result was
+    /// made of.
     async fn sweeps_are_whole(&mut self, jobs: &HashMap<String, Job>) {
         let sql = "SELECT points_n, points_digest, json_extract(body, '$.numerics.reused') AS reused FROM results WHERE job_id = $1";
         let sweeps: Vec<_> =

@@ -61,7 +61,7 @@ impl Bench {
 /// Processor time of a process so far.
 fn cpu_s(id: u32) -> f64 {
     let text = std::fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
-    // After the name, which is in brackets: user and system time are the 12th and 13th field, in hundredths of a second.
+    // After the name, which is in brackets: user and system time are the 12th and 13th field, in 1/100 s.
     let rest = text.rsplit_once(')').map_or("", |(_, rest)| rest);
     let ticks = |place: usize| rest.split_whitespace().nth(place).and_then(|word| word.parse::<f64>().ok());
     (ticks(11).unwrap_or_default() + ticks(12).unwrap_or_default()) / 100.0

@@ -24,7 +24,7 @@ pub struct SweepOrder {
 }
 
 impl SweepOrder {
-    /// The order of a document of kind `sweep`; of one of kind `tolerance`, that of its evaluations, which are one line.
+    /// The order of a document of kind `sweep`; of one of kind `tolerance`, that of its evaluations: one line.
     pub fn of(document: &JobDocument) -> Self {
         if document.kind == JobKind::Tolerance {
             let length = usize::try_from(document.evaluations()).unwrap_or(usize::MAX);

@@ -118,8 +118,8 @@ pub(in crate::study) fn run(
     Ok((ToleranceResult { points: rows.rows, ..result }, has_reused))
 }
 
-/// Solves evaluations of a document of kind `tolerance` apart from the rest, by the positions of their rows, which go to
-/// the point store of the context.
+/// Solves evaluations of a document of kind `tolerance` apart from the rest, by the positions of their rows, which go
+/// to the point store of the context.
 ///
 /// # Errors
 /// [`SolveError::Canceled`]; [`SolveError::Document`] if the study is none.
