@@ -103,6 +103,8 @@ impl Table {
         writer.write_record(self.columns.iter().map(|column| CsvField::Text(&column.name)))?;
         for row in 0..self.n_rows() {
             writer.write_record(self.columns.iter().map(|column| match &column.cells {
+                // As the rows of a service have it.
+                Cells::Numbers(_) if column.name == POSITION => CsvField::Integer(row_position(column, row)),
                 Cells::Numbers(values) => values.get(row).map_or(CsvField::Empty, |value| CsvField::Number(*value)),
                 Cells::Words(words) => words.get(row).map_or(CsvField::Empty, |word| CsvField::Text(word)),
             }))?;
@@ -133,6 +135,16 @@ impl Table {
         writer.words(&list, &of_columns.iter().map(String::as_str).collect::<Vec<_>>())?;
         writer.words(&units, &self.columns.iter().map(|column| column.unit.as_str()).collect::<Vec<_>>())?;
         writer.finish()
+    }
+}
+
+/// The column with the places of rows, which are whole numbers.
+const POSITION: &str = "position";
+
+fn row_position(column: &TableColumn, row: usize) -> u64 {
+    match &column.cells {
+        Cells::Numbers(values) => values.get(row).map_or(0, |value| *value as u64),
+        Cells::Words(_) => 0,
     }
 }
 
@@ -181,7 +193,7 @@ impl PointColumns {
             cells,
         };
         let mut columns = vec![
-            plain("position", "place in the result's sweep.points, from 0", Cells::Numbers(self.positions)),
+            plain(POSITION, "place in the result's sweep.points, from 0", Cells::Numbers(self.positions)),
             plain("branch", "with continuation: direction that found the point", Cells::Words(self.branches)),
         ];
         columns.extend(self.axes.into_iter().map(|(name, values)| {

@@ -38,6 +38,8 @@ pub struct JobRecord {
     pub reused_from: Option<JobId>,
     /// Id of the request that submitted it.
     pub request_id: Option<String>,
+    /// Trace of that request (W3C Trace Context).
+    pub traceparent: Option<String>,
     /// Numbers of the result, if it has one.
     pub headline: Headline,
 }
@@ -47,7 +49,7 @@ macro_rules! job_columns {
     () => {
         "id, kind, name, label, notes, state, revision, attempt, progress, stage, input_hash, solver_version, \
          submitted_at_us, started_at_us, ended_at_us, cancel_requested_at_us, error, reused_from, request_id, \
-         mesh_acceleration_rms_m_s2, dynamic_factor, transmission_error_pp_um"
+         traceparent, mesh_acceleration_rms_m_s2, dynamic_factor, transmission_error_pp_um"
     };
 }
 pub(super) use job_columns;
@@ -81,6 +83,7 @@ impl<'r> FromRow<'r, SqliteRow> for JobRecord {
                 .map(|text| parse_column("reused_from", text))
                 .transpose()?,
             request_id: row.try_get("request_id")?,
+            traceparent: row.try_get("traceparent")?,
             headline: Headline {
                 mesh_acceleration_rms_m_s2: row.try_get("mesh_acceleration_rms_m_s2")?,
                 dynamic_factor: row.try_get("dynamic_factor")?,

@@ -20,6 +20,8 @@ pub struct NewJob {
     pub input_hash: String,
     pub solver_version: &'static str,
     pub request_id: Option<String>,
+    /// Trace of that request (W3C Trace Context).
+    pub traceparent: Option<String>,
     /// The client's idempotency key, and a hash of the document sent with it.
     pub idempotency: Option<(String, String)>,
 }
@@ -112,8 +114,8 @@ async fn insert(
     let (key, hash) = job.idempotency.clone().unzip();
     let record: JobRecord = sqlx::query_as(concat!(
         "INSERT INTO jobs (id, kind, name, label, state, revision, attempt, input, input_hash, solver_version, \
-         submitted_at_us, request_id, idempotency_key, idempotency_hash) \
-         VALUES ($1, $2, $3, $4, 'queued', 1, 0, $5, $6, $7, $8, $9, $10, $11) RETURNING ",
+         submitted_at_us, request_id, idempotency_key, idempotency_hash, traceparent) \
+         VALUES ($1, $2, $3, $4, 'queued', 1, 0, $5, $6, $7, $8, $9, $10, $11, $12) RETURNING ",
         job_columns!()
     ))
     .bind(job.id.to_string())
@@ -127,6 +129,7 @@ async fn insert(
     .bind(&job.request_id)
     .bind(key)
     .bind(hash)
+    .bind(&job.traceparent)
     .fetch_one(&mut **transaction)
     .await?;
     record_event(transaction, &record, now).await?;

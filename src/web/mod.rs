@@ -28,8 +28,9 @@ use axum::{Extension, Router};
 pub const CONTENT_SECURITY_POLICY: &str = "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; \
                                            base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
-/// The pages `/`, `/jobs`, `/jobs/{id}`, `/jobs/{id}/report`, `/compare`, `/compare/report`, `/docs`, `/help` and
-/// below, and the files under `/assets/`. `has_login`: the service has a token, so that the pages offer to log out.
+/// The pages `/`, `/jobs`, `/jobs/{id}`, `/jobs/{id}/report`, `/compare`, `/compare/report`, `/system`, `/docs`,
+/// `/help` and below, and the files under `/assets/`. `has_login`: the service has a token, so that the pages offer to
+/// log out.
 pub fn routes(has_login: bool) -> Router {
     Router::new()
         .route("/", get(pages::design))
@@ -38,6 +39,7 @@ pub fn routes(has_login: bool) -> Router {
         .route("/jobs/{id}/report", get(pages::report))
         .route("/compare", get(pages::compare))
         .route("/compare/report", get(pages::compare_report))
+        .route("/system", get(pages::system))
         .route("/docs", get(swagger::page))
         .route("/docs/", get(swagger::page))
         .route("/docs/{*file}", get(swagger::file))

@@ -72,7 +72,9 @@ import plot from "elsewhere";"#;
 
     #[test]
     fn every_module_that_is_needed_exists() {
-        for page in ["design/page.js", "jobs/page.js", "job/page.js", "compare/page.js", "report/page.js"] {
+        for page in
+            ["design/page.js", "jobs/page.js", "job/page.js", "compare/page.js", "report/page.js", "system/page.js"]
+        {
             let needed = needed_by(page);
             assert!(needed.len() > 4 && needed.contains(&"/assets/common/dom.js".to_owned()), "{needed:?}");
             for address in needed {

@@ -55,6 +55,12 @@ struct CompareReportPage {
 }
 
 #[derive(Template)]
+#[template(path = "system.html")]
+struct SystemPage {
+    has_login: bool,
+}
+
+#[derive(Template)]
 #[template(path = "not_found.html")]
 struct NotFoundPage {
     has_login: bool,
@@ -102,6 +108,11 @@ pub(super) async fn compare_report(Extension(HasLogin(has_login)): Site) -> Resp
 /// `/jobs/{id}/report`: one job on paper.
 pub(super) async fn report(Extension(HasLogin(has_login)): Site, Path(id): Path<String>) -> Response {
     page(StatusCode::OK, &ReportPage { has_login, id, plotly_script: plotly::script_url() })
+}
+
+/// `/system`: the service, its workers and what waits.
+pub(super) async fn system(Extension(HasLogin(has_login)): Site) -> Response {
+    page(StatusCode::OK, &SystemPage { has_login })
 }
 
 /// The page for unknown addresses (status 404); for the router's fallback.

@@ -4,13 +4,14 @@ use super::*;
 use axum::http::StatusCode;
 use axum_test::TestServer;
 
-const PAGES: [&str; 11] = [
+const PAGES: [&str; 12] = [
     "/",
     "/jobs",
     "/jobs/0190",
     "/jobs/0190/report",
     "/compare",
     "/compare/report",
+    "/system",
     "/help",
     "/help/results",
     "/help/inputs",

@@ -38,6 +38,10 @@ declare global {
   /** Values that are not finite are null. */
   type SeriesData = Omit<Schemas["SeriesData"], "y"> & { y: (number | null)[] };
   type SweepResult = Schemas["Sweep"];
+  type SystemState = Schemas["System"];
+  type Machine = Schemas["Machine"];
+  type Chunk = Schemas["Chunk"];
+  type WaitingWork = Schemas["WaitingWork"];
   type Optimisation = Schemas["Optimisation"];
   type ToleranceStudy = Schemas["ToleranceStudy"];
   type MeasureScatter = Schemas["MeasureScatter"];

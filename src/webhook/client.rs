@@ -75,6 +75,23 @@ pub(super) struct Message {
     pub body: String,
 }
 
+/// Encrypted connections to whoever has a certificate that the system trusts.
+///
+/// # Errors
+/// TLS cannot be set up.
+pub fn tls_of_system() -> Result<TlsConnector, String> {
+    let mut roots = RootCertStore::empty();
+    let found = rustls_native_certs::load_native_certs();
+    roots.add_parsable_certificates(found.certs);
+    let provider = Arc::new(tokio_rustls::rustls::crypto::ring::default_provider());
+    let config = ClientConfig::builder_with_provider(provider)
+        .with_safe_default_protocol_versions()
+        .map_err(|error| error.to_string())?
+        .with_root_certificates(roots)
+        .with_no_client_auth();
+    Ok(TlsConnector::from(Arc::new(config)))
+}
+
 /// Posts messages.
 #[derive(Clone)]
 pub(super) struct Client {
@@ -89,16 +106,7 @@ impl Client {
     /// # Errors
     /// TLS cannot be set up.
     pub(super) fn new(resolve: Resolve, permitted: Vec<Network>) -> Result<Self, String> {
-        let mut roots = RootCertStore::empty();
-        let found = rustls_native_certs::load_native_certs();
-        roots.add_parsable_certificates(found.certs);
-        let provider = Arc::new(tokio_rustls::rustls::crypto::ring::default_provider());
-        let config = ClientConfig::builder_with_provider(provider)
-            .with_safe_default_protocol_versions()
-            .map_err(|error| error.to_string())?
-            .with_root_certificates(roots)
-            .with_no_client_auth();
-        Ok(Self { resolve, permitted, tls: TlsConnector::from(Arc::new(config)) })
+        Ok(Self { resolve, permitted, tls: tls_of_system()? })
     }
 
     /// Posts a message and returns the status of the answer. Redirects are answers, they are not followed.

@@ -12,7 +12,7 @@ mod signature;
 #[cfg(test)]
 mod tests;
 
-pub use client::Resolve;
+pub use client::{Resolve, tls_of_system};
 pub(crate) use config::origin;
 pub use config::{WebhookConfig, WebhookError};
 pub use deliver::{Deliverer, Setting};

@@ -145,6 +145,7 @@ impl Fixture {
             input_hash: "hash".to_owned(),
             solver_version: "test-1",
             request_id: None,
+            traceparent: None,
             idempotency: None,
         };
         let id = job.id;

@@ -176,6 +176,7 @@ mod tests {
             error: None,
             reused_from: None,
             request_id: None,
+            traceparent: None,
             headline: Headline::default(),
         }
     }

@@ -8,7 +8,7 @@ use super::hub::{JobEventListener, JobSubscription};
 use super::local_queue::LocalQueue;
 use super::measure;
 use super::memory::MemoryLimit;
-use super::queue::{Member, Queue, WaitingWork, Workers};
+use super::queue::{Member, Queue, Transport, WaitingWork, Workers};
 use super::recorder::{Clock, JobRecorder};
 use super::reuse::stored_completion;
 use super::solver::Solver;
@@ -37,6 +37,8 @@ pub struct SubmitRequest {
     /// The client's idempotency key: submitting again with it returns the first job.
     pub idempotency_key: Option<String>,
     pub request_id: Option<String>,
+    /// Trace of the request (W3C Trace Context).
+    pub traceparent: Option<String>,
 }
 
 /// Failure to submit a job.
@@ -137,6 +139,10 @@ impl Jobs {
         self.0.queue.workers()
     }
 
+    pub fn transport(&self) -> Transport {
+        self.0.queue.transport()
+    }
+
     /// The workers on other machines.
     pub fn members(&self) -> Vec<Member> {
         self.0.queue.members()
@@ -208,7 +214,7 @@ impl Jobs {
             return Err(SubmitError::Closing);
         }
         self.store().admit().await?;
-        let SubmitRequest { document, idempotency_key, request_id } = request;
+        let SubmitRequest { document, idempotency_key, request_id, traceparent } = request;
         let document = self.check(document).await?.into_document();
         let input = serde_json::to_string(&document)?;
         let input_hash = self.0.solver.input_hash(&document);
@@ -224,6 +230,7 @@ impl Jobs {
             input_hash,
             solver_version,
             request_id,
+            traceparent,
             idempotency,
         };
         match self.store().submit(job, reuse, self.0.capacity, self.0.recorder.now()).await? {

@@ -8,7 +8,8 @@ use tracing::Span;
 pub(super) fn span(job: &JobRecord) -> Span {
     let (kind, attempt) = (job.kind.as_str(), job.attempt);
     let request_id = job.request_id.as_deref().unwrap_or_default();
-    tracing::error_span!("job", job = %job.id, kind, attempt, request_id)
+    let traceparent = job.traceparent.as_deref();
+    tracing::error_span!("job", job = %job.id, kind, attempt, request_id, traceparent)
 }
 
 /// Records the queue wait of a job that was claimed for the first time.

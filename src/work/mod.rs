@@ -24,6 +24,7 @@ mod runner;
 mod running_points;
 mod solver;
 mod stop_signal;
+mod trace;
 
 pub use config::WorkConfig;
 pub use estimate::Estimate;
@@ -31,7 +32,8 @@ pub use file_watch::run_file_watch;
 pub use hub::{JobEvent, JobEventListener, JobSubscription};
 pub use jobs::{Jobs, SubmitError, SubmitRequest, Submitted};
 pub use local_queue::LocalQueue;
-pub use queue::{BoxFuture, Member, MemberChunk, Queue, WaitingWork, Workers};
+pub use queue::{BoxFuture, Member, MemberChunk, Queue, Transport, WaitingWork, Workers};
 pub use recorder::{Clock, JobRecorder};
 pub use retention::{RetentionPass, run_retention, run_retention_pass};
 pub use solver::{Solver, StudySolver};
+pub use trace::is_traceparent;

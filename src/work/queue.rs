@@ -31,6 +31,10 @@ pub struct Member {
     /// Chunks that it computes at once.
     pub slots: u32,
     pub last_beat_at: Timestamp,
+    /// Time since then.
+    pub silence: Duration,
+    /// Silent for so long that its work is for others.
+    pub is_lost: bool,
     pub running: Vec<MemberChunk>,
 }
 
@@ -55,6 +59,15 @@ pub struct WaitingWork {
     pub slots: usize,
 }
 
+/// What carries work to the workers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Transport {
+    /// Nothing: jobs run in this process.
+    Local,
+    /// NATS. `ack_wait`: silence of a worker after which its work is given to another.
+    Nats { is_connected: bool, ack_wait: Duration },
+}
+
 /// Runs queued jobs and reports their outcome to the [`super::JobRecorder`]. A queue has no state of its own that must
 /// survive a restart: queued jobs are in the database.
 pub trait Queue: Send + Sync + 'static {
@@ -65,6 +78,10 @@ pub trait Queue: Send + Sync + 'static {
     fn stop(&self, job: JobId);
 
     fn workers(&self) -> Workers;
+
+    fn transport(&self) -> Transport {
+        Transport::Local
+    }
 
     /// The workers on other machines.
     fn members(&self) -> Vec<Member> {

@@ -1,7 +1,7 @@
 //! Series, points and results as files for other programs: the numbers are those of the JSON, to the bit.
 
 use crate::support::*;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
 
@@ -155,4 +155,36 @@ async fn a_job_without_a_curve_has_no_tables() {
     let (path, _) = app.run(&scripted("numbers")).await;
     app.get(&format!("{path}/tables?format=modelica")).await.assert_problem(404, "not-found");
     app.get(&format!("{path}/tables?format=ascii")).await.violation("/format");
+}
+
+/// A sweep keeps no curves: its tables are calculated, those of each torque as a job of its own has them.
+#[tokio::test]
+async fn a_sweep_over_the_torque_has_tables_over_angle_and_torque() {
+    let app = app().await;
+    let mut over_torque = document();
+    over_torque["kind"] = json!("sweep");
+    over_torque["model"] = json!({"mesh_stiffness": {"source": "ltca", "positions": 32}, "impact": {"source": "none"}});
+    over_torque["axes"] = json!([{"pointer": "/operation/pinion_torque_nm", "values": [900.0, 300.0, 600.0]}]);
+    let (path, _) = app.run(&over_torque).await;
+    let json = app.get(&format!("{path}/tables")).await;
+    assert_eq!(json.status, 200, "{json:?}");
+    assert_eq!(json.json["pinion_torque_nm"], json!([300.0, 600.0, 900.0]));
+    let stiffness = &json.json["grids"][0];
+    let (rows, angles) = (stiffness["values"].as_array().unwrap(), stiffness["pinion_angle_rad"].as_array().unwrap());
+    assert_eq!((stiffness["name"].as_str(), rows.len(), rows[0].as_array().unwrap().len()), (Some("stiffness"), 33, 3));
+    assert!((angles[32].as_f64().unwrap() - std::f64::consts::TAU / 17.0).abs() < 1e-12);
+    let value = |row: usize, torque: usize| rows[row][torque].as_f64().unwrap();
+    assert!(value(0, 0) < value(0, 2), "a loaded mesh is stiffer where more teeth touch");
+    assert_eq!(rows[0], rows[32]);
+    let modelica = app.get(&format!("{path}/tables?format=modelica")).await;
+    assert!(modelica.text().contains("\ndouble stiffness(34,4)\n0.0 300.0 600.0 900.0\n"), "{}", modelica.text());
+    let amesim = app.get(&format!("{path}/tables?format=amesim&quantity=transmission_error")).await;
+    assert!(amesim.text().contains("transmission_error [m]\n33 3\n"), "{}", amesim.text());
+    for none in ["format=simpack", "format=amesim&quantity=impact_force"] {
+        app.get(&format!("{path}/tables?{none}")).await.assert_problem(404, "not-found");
+    }
+    let (path, _) = app.run(&sweep("numbers", 3)).await;
+    let refused = app.get(&format!("{path}/tables")).await;
+    refused.assert_problem(404, "not-found");
+    assert!(refused.text().contains("/operation/pinion_torque_nm"), "{refused:?}");
 }

@@ -73,6 +73,7 @@ async fn filled(database: &Path, jobs: i64, until: Timestamp) -> Vec<JobId> {
             input_hash: format!("{number}"),
             solver_version: "test",
             request_id: None,
+            traceparent: None,
             idempotency: None,
         };
         store.submit(job, None, 10, at).await.expect("submits");

@@ -2,6 +2,7 @@
 
 use crate::browser::{Browser, flow};
 use crate::form::{GOOD, document};
+use crate::job::{assert_complete, submit, succeeded};
 use serde_json::json;
 use std::path::Path;
 
@@ -114,4 +115,37 @@ async fn a_torque_that_is_not_in_the_file_is_asked_for() {
         assert_eq!(document(browser).await["operation"]["pinion_torque_nm"], json!(650.5));
     })
     .await;
+}
+
+/// Somebody with a file and nothing else: dropped, submitted as it stands, read on paper. With
+/// `HERRINGBONE_WALK=FOLDER` each step is a picture there.
+#[tokio::test]
+async fn a_model_goes_to_a_report_without_a_word_typed() {
+    flow(async |browser| {
+        browser.open("/").await;
+        browser.until(GOOD).await;
+        opened(browser, "herringbone_pair_1_7.rexs").await;
+        browser.until("document.querySelector('#start-note').textContent.includes('From the model')").await;
+        browser.until(GOOD).await;
+        picture(browser, "1-form").await;
+        submit(browser).await;
+        succeeded(browser).await;
+        picture(browser, "2-job").await;
+        browser.element("#report").await.click().await.unwrap();
+        browser.until("document.querySelector('article')?.dataset.ready").await;
+        assert_complete(browser).await;
+        picture(browser, "3-report").await;
+        let report = browser.text("main").await;
+        for words in ["55", "N/µm", "transmission error"] {
+            assert!(report.to_lowercase().contains(&words.to_lowercase()), "{words}: {report}");
+        }
+    })
+    .await;
+}
+
+async fn picture(browser: &Browser, name: &str) {
+    if let Some(folder) = std::env::var_os("HERRINGBONE_WALK") {
+        let path = Path::new(&folder).join(format!("{name}.png"));
+        browser.driver.screenshot(&path).await.unwrap();
+    }
 }

@@ -30,4 +30,5 @@ mod shafts;
 mod speed;
 mod start;
 mod sweep;
+mod system;
 mod typed;

@@ -108,6 +108,7 @@ pub(crate) async fn all(browser: &Browser) -> Vec<Page> {
     vec![
         Page::new("design", "/", CHECKED),
         Page { spoilt: true, ..Page::new("design with errors", "/", CHECKED) },
+        Page::new("system", "/system", "document.querySelectorAll('#service dt').length === 6"),
         Page::new("jobs", "/jobs", "document.querySelectorAll('tr[data-id]').length === 8"),
         Page::new("response", format!("/jobs/{response}"), SHOWN).with_plot(),
         Page::new("optimisation", format!("/jobs/{optimisation}"), SHOWN).with_plot(),

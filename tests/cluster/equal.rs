@@ -25,7 +25,36 @@ fn all_documents() -> Vec<Value> {
     recorded["analysis"]["samples_per_mesh_period"] = json!(512);
     let mut contact = documents::mesh();
     contact["model"]["mesh_stiffness"] = json!({"source": "ltca"});
-    vec![plane, followed, short, documents::sweep(300), impossible, recorded, documents::mesh(), contact]
+    vec![
+        plane,
+        followed,
+        short,
+        documents::sweep(300),
+        impossible,
+        recorded,
+        documents::mesh(),
+        contact,
+        study("jansen"),
+        study("morris"),
+    ]
+}
+
+/// A tolerance study at two operating points.
+fn study(sensitivity: &str) -> Value {
+    let mut document = documents::response();
+    document["kind"] = json!("tolerance");
+    document["operating_points"] = json!([{"pinion_torque_nm": 400.0}, {"pinion_torque_nm": 800.0}]);
+    document["tolerances"] = json!([
+        {"pointer": "/operation/pinion_speed_rpm", "distribution": "normal", "tolerance": 100.0},
+        {"pointer": "/model/mesh_damping_ratio", "distribution": "uniform", "plus": 0.05},
+    ]);
+    document["measures"] = json!([{"measure": "/response/rms/mesh_circumferential_acceleration_m_s2"}]);
+    document["sensitivity"] = json!(sensitivity);
+    if sensitivity != "morris" {
+        document["samples"] = json!(64);
+    }
+    document["analysis"] = json!({"method": "integrate", "mesh_periods": 200, "record_mesh_periods": 20});
+    document
 }
 
 #[test]

@@ -156,53 +156,6 @@ fn a_job_that_workers_of_another_version_had_begins_again() {
     assert_eq!(setting.audit(service, &[&path]).points, 200);
 }
 
-#[test]
-fn sweeps_take_turns() {
-    let Some(setting) = Setting::new(&["--sweep-workers", "1", "--sweep-turn-s", "1"]) else { return };
-    let service = setting.program.start();
-    let _worker = setting.worker();
-    // There is room for two while the first one's scout is out.
-    let long = [service.submit(&slow_sweep(300)), service.submit(&slow_sweep(301))];
-    let short = service.submit(&slow_sweep(20));
-    assert_eq!(service.ended(&short)["state"], "succeeded");
-    assert!(long.iter().any(|path| service.get(path)["state"] != "succeeded"), "the short one was let in between");
-    let jobs = long.each_ref().map(|path| service.ended(path));
-    assert!(jobs.iter().all(|job| job["state"] == "succeeded"), "{jobs:?}");
-    assert!(jobs.iter().any(|job| job["attempt"].as_i64() > Some(1)), "{jobs:?}");
-    let findings = setting.audit(service, &[&long[0], &long[1], &short]);
-    assert_eq!(findings.points, 621);
-}
-
-#[test]
-fn a_job_fails_at_its_time_limit() {
-    let Some(setting) = Setting::new(&["--job-time-limit-s", "2"]) else { return };
-    let service = setting.program.start();
-    let _worker = setting.worker();
-    let path = service.submit(&documents::integration(10_000_000));
-    let job = service.ended(&path);
-    assert_eq!(job["error"]["code"], "time-limit", "{job}");
-    setting.audit(service, &[&path]);
-}
-
-#[test]
-fn progress_is_shown_while_workers_compute() {
-    let Some(setting) = Setting::new(&[]) else { return };
-    let service = setting.program.start();
-    let _worker = setting.worker();
-    let path = service.submit(&slow_sweep(300));
-    let half = service.until(&path, |answer| {
-        let progress = answer.json()["progress"].as_f64().unwrap_or_default();
-        progress > 0.1 && progress < 0.9
-    });
-    assert_eq!(half.json()["state"], "running");
-    assert_eq!(service.ended(&path)["progress"], 1.0);
-    let single = service.submit(&documents::integration(10_000_000));
-    service.until(&single, |answer| answer.json()["progress"].as_f64() > Some(0.0));
-    assert_eq!(service.send("POST", &format!("{single}/cancel"), "").status, 202);
-    service.ended(&single);
-    setting.audit(service, &[&path, &single]);
-}
-
 /// A worker that is asked to end gives its chunk back at once, and what it has solved is kept.
 #[test]
 fn a_worker_that_ends_gives_its_work_back() {

@@ -17,7 +17,10 @@ mod documents;
 #[path = "../faults/program.rs"]
 mod program;
 
+mod both;
 mod chaos;
+mod clock;
+mod credentials;
 mod equal;
 mod faults;
 mod lives;

@@ -70,6 +70,11 @@ impl NatsServer {
         format!("nats://127.0.0.1:{}", self.port)
     }
 
+    /// Its log, beside its folder.
+    fn log(&self) -> PathBuf {
+        self.folder.with_extension("log")
+    }
+
     /// Starts it and waits until it is healthy.
     pub(crate) fn start_again(&mut self) {
         self.spawn();
@@ -81,7 +86,9 @@ impl NatsServer {
         let (port, monitor) = (self.port.to_string(), self.monitor.to_string());
         let mut command = Command::new(&self.program);
         command.args(["--addr", "127.0.0.1", "--port", &port, "--http_port", &monitor, "--jetstream", "--store_dir"]);
-        command.arg(&self.folder).args(&self.options).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        command.arg(&self.folder).args(&self.options).stdin(Stdio::null()).stdout(Stdio::null());
+        let log = std::fs::OpenOptions::new().create(true).append(true).open(self.log()).expect("a log");
+        command.stderr(log);
         self.process = Some(command.spawn().expect("nats-server starts"));
     }
 
@@ -89,9 +96,24 @@ impl NatsServer {
     fn wait(&self) {
         let (address, deadline) = (SocketAddr::from(([127, 0, 0, 1], self.monitor)), Instant::now() + PATIENCE);
         while client::send(address, "GET", "/healthz", &[], "").map_or(true, |answer| answer.status != 200) {
-            assert!(Instant::now() < deadline, "nats-server does not become healthy");
+            let log = || std::fs::read_to_string(self.log()).unwrap_or_default();
+            assert!(Instant::now() < deadline, "nats-server does not become healthy: {}", log());
             std::thread::sleep(Duration::from_millis(20));
         }
+    }
+
+    pub(crate) fn id(&self) -> u32 {
+        self.process.as_ref().map_or(0, Child::id)
+    }
+
+    /// Name of the server that leads a stream.
+    pub(crate) fn leader(&self, stream: &str) -> Option<String> {
+        let address = SocketAddr::from(([127, 0, 0, 1], self.monitor));
+        let answer = client::send(address, "GET", "/jsz?accounts=true&streams=true", &[], "").ok()?.json();
+        let streams =
+            answer["account_details"].as_array()?.iter().filter_map(|account| account["stream_detail"].as_array());
+        let found = streams.flatten().find(|one| one["name"] == stream)?;
+        found["cluster"]["leader"].as_str().map(str::to_owned)
     }
 
     /// kill −9.

@@ -89,6 +89,39 @@ fn a_service_that_waits_for_nats_says_so() {
     setting.audit(service, &[]);
 }
 
+/// The trace of whoever submits a job is in the log lines of the service and of the worker about it.
+#[test]
+fn traces_are_passed_on() {
+    let Some(setting) = Setting::new(&[]) else { return };
+    let service = setting.program.start();
+    let worker = setting.worker();
+    let trace = "00-4bf92f3577b34da6a3ce929d0e0e4736-00f067aa0ba902b7-01";
+    let wrong = "00-4bf92f3577b34da6a3ce929d0e0e4736-0000000000000000-01";
+    let submit = |trace: &str| {
+        let (document, headers) = (documents::response().to_string(), [("traceparent", trace)]);
+        let answer =
+            crate::client::send(service.address, "POST", "/api/v1/jobs", &headers, &document).expect("answered");
+        answer.header("location").expect("a location").to_owned()
+    };
+    let jobs = [submit(trace), submit(wrong), service.submit(&documents::response())];
+    for path in &jobs {
+        assert_eq!(service.ended(path)["state"], "succeeded");
+    }
+    let lines_of = |log: &str, path: &str| -> Vec<String> {
+        let id = path.rsplit('/').next().expect("an id");
+        log.lines().filter(|line| line.contains(id)).map(str::to_owned).collect()
+    };
+    for log in [worker.log(), setting.program.log()] {
+        let lines = lines_of(&log, &jobs[0]);
+        assert!(lines.iter().any(|line| line.contains("traceparent") && line.contains(trace)), "{lines:?}");
+        for path in &jobs[1..] {
+            let lines = lines_of(&log, path);
+            assert!(!lines.is_empty() && !lines.iter().any(|line| line.contains("traceparent")), "{lines:?}");
+        }
+    }
+    setting.audit(service, &[&jobs[0], &jobs[1], &jobs[2]]);
+}
+
 /// What is not worth sending is computed by the service where it may.
 #[test]
 fn jobs_run_here_where_no_worker_is() {

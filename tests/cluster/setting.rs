@@ -49,14 +49,19 @@ impl Setting {
 
     /// Ends the service and audits its database.
     pub(crate) fn audit(&self, service: Service, jobs: &[&str]) -> Findings {
-        assert!(service.end().0.success());
-        let ids = jobs.iter().map(|path| path.rsplit('/').next().unwrap_or_default().to_owned()).collect();
-        let findings = audit(self.program.database(), &Accepted { ids, keys: Vec::new() });
-        assert_eq!(findings.broken, [""; 0], "{}", self.program.log());
-        assert!(!self.program.log().contains("panicked"), "{}", self.program.log());
-        assert_eq!(number(self.program.database(), "SELECT COUNT(*) FROM chunks"), 0, "chunks of ended jobs are left");
-        findings
+        audit_of(&self.program, service, jobs)
     }
+}
+
+/// Ends a service, of which all jobs have ended, and audits its database.
+pub(crate) fn audit_of(program: &Program, service: Service, jobs: &[&str]) -> Findings {
+    assert!(service.end().0.success());
+    let ids = jobs.iter().map(|path| path.rsplit('/').next().unwrap_or_default().to_owned()).collect();
+    let findings = audit(program.database(), &Accepted { ids, keys: Vec::new() });
+    assert_eq!(findings.broken, [""; 0], "{}", program.log());
+    assert!(!program.log().contains("panicked"), "{}", program.log());
+    assert_eq!(number(program.database(), "SELECT COUNT(*) FROM chunks"), 0, "chunks of ended jobs are left");
+    findings
 }
 
 /// One number from a database, which a service may have open.
@@ -73,10 +78,15 @@ pub(crate) fn number(database: &Path, sql: &'static str) -> i64 {
 
 /// Changes a database that no service has open.
 pub(crate) fn change(database: &Path, sql: &'static str) {
+    change_all(database, sql);
+}
+
+/// As [`change`], by a statement that is put together.
+pub(crate) fn change_all(database: &Path, sql: &str) {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
     runtime.block_on(async {
         let mut connection = SqliteConnectOptions::new().filename(database).connect().await.expect("it opens");
-        let done = sqlx::query(sql).execute(&mut connection).await.expect("executed");
+        let done = sqlx::query(sqlx::AssertSqlSafe(sql)).execute(&mut connection).await.expect("executed");
         assert!(done.rows_affected() > 0);
         connection.close().await.expect("closed");
     });

@@ -1,5 +1,6 @@
 //! Workers as processes of their own.
 
+use crate::program::executable;
 use std::fs::OpenOptions;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -13,10 +14,16 @@ pub(crate) struct Worker {
 
 impl Worker {
     pub(crate) fn start(folder: &Path, url: &str, options: &[&str]) -> Self {
+        Self::start_with(folder, url, options, &[])
+    }
+
+    /// With variables of the environment besides.
+    pub(crate) fn start_with(folder: &Path, url: &str, options: &[&str], variables: &[(&str, &str)]) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let log = folder.join(format!("worker-{}.log", COUNT.fetch_add(1, Ordering::Relaxed)));
         let output = OpenOptions::new().create(true).append(true).open(&log).expect("a log");
-        let mut command = Command::new(env!("CARGO_BIN_EXE_herringbone"));
+        let mut command = Command::new(executable());
+        command.envs(variables.iter().copied());
         command.args(["worker", "--nats", url, "--log", "herringbone=debug,info"]).args(options);
         if !options.contains(&"--threads") {
             command.args(["--threads", "1"]);

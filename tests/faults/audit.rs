@@ -26,7 +26,7 @@ pub(crate) struct Findings {
     pub restarted: usize,
     /// Sweeps that went on from points of an earlier attempt.
     pub resumed_sweeps: usize,
-    /// Points of sweeps.
+    /// Points of sweeps and tolerance studies.
     pub points: usize,
 }
 
@@ -190,10 +190,12 @@ impl Audit<'_> {
         }
     }
 
-    /// The rows of a finished sweep are all its points, without gaps, and those that its result was made of.
+    /// The rows of a finished sweep or tolerance study are all its points, without gaps, and those that its result was
+    /// made of.
     async fn sweeps_are_whole(&mut self, jobs: &HashMap<String, Job>) {
         let sql = "SELECT points_n, points_digest, json_extract(body, '$.numerics.reused') AS reused FROM results WHERE job_id = $1";
-        let sweeps: Vec<_> = jobs.iter().filter(|(_, job)| job.kind == "sweep").collect();
+        let sweeps: Vec<_> =
+            jobs.iter().filter(|(_, job)| ["sweep", "tolerance"].contains(&job.kind.as_str())).collect();
         for (id, job) in sweeps {
             let rows = sqlx::query(
                 "SELECT position, body FROM sweep_points \
@@ -205,7 +207,7 @@ impl Audit<'_> {
             .expect("rows");
             self.findings.points += rows.len();
             let document = herringbone_job::parse(job.input.as_bytes()).expect("the stored document is valid");
-            let wanted = document.sweep_points();
+            let wanted = document.sweep_points().max(document.evaluations() as usize);
             if job.state != "succeeded" {
                 if rows.len() > wanted {
                     self.breaks(format!("{id} has {} of {wanted} points", rows.len()));

@@ -23,7 +23,7 @@ async fn jobs_run_in_their_order_when_the_clock_goes_backwards() {
     let mut ids: Vec<JobId> = Vec::new();
     for _ in 0..8 {
         let document = herringbone_job::parse(documents::response().to_string().as_bytes()).expect("a document");
-        let request = SubmitRequest { document, idempotency_key: None, request_id: None };
+        let request = SubmitRequest { document, idempotency_key: None, request_id: None, traceparent: None };
         ids.push(jobs.submit(request).await.expect("accepted").job.id);
     }
     let mut ended: Vec<JobRecord> = Vec::new();

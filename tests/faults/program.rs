@@ -12,6 +12,11 @@ use std::time::{Duration, Instant};
 /// Longest wait for anything that has to happen.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(120);
 
+/// The program: that of this build, or the one of `HERRINGBONE_PROGRAM`, as one that is optimised for measurements.
+pub(crate) fn executable() -> String {
+    std::env::var("HERRINGBONE_PROGRAM").unwrap_or_else(|_| env!("CARGO_BIN_EXE_herringbone").to_owned())
+}
+
 /// The command line of the program, which is started repeatedly on the same database.
 #[derive(Clone)]
 pub(crate) struct Program {
@@ -50,8 +55,7 @@ impl Program {
     }
 
     fn command(&self) -> Command {
-        let program = env!("CARGO_BIN_EXE_herringbone").to_owned();
-        let mut words = self.wrapper.iter().cloned().chain([program]);
+        let mut words = self.wrapper.iter().cloned().chain([executable()]);
         let mut command = Command::new(words.next().unwrap_or_default());
         command.args(words).args(["serve", "--listen", "127.0.0.1:0", "--log", "info", "--database"]);
         command.arg(&self.database).args(&self.options);

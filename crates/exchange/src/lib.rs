@@ -8,6 +8,7 @@ pub mod arrays;
 mod container;
 mod draft;
 pub mod lookup;
+pub mod lookup_grid;
 mod refusal;
 mod report;
 mod rexs;

@@ -226,7 +226,7 @@ fn pulse_table(force_n: f64, start: f64, length: f64, teeth: u32) -> LookupTable
     }
 }
 
-fn angles(phase: &[f64], teeth: u32) -> Vec<f64> {
+pub(crate) fn angles(phase: &[f64], teeth: u32) -> Vec<f64> {
     phase.iter().map(|phase| phase * TAU / f64::from(teeth)).collect()
 }
 

@@ -9,11 +9,11 @@ pub use codes::ProblemCode;
 pub(super) use codes::{CODES, CodeEntry};
 
 use herringbone_job::Violation;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// A problem as it is answered (`application/problem+json`), and as the `error` of a failed job.
-#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Problem {
     /// `/problems/{code}`: a page that explains the code.
     #[serde(rename = "type")]
@@ -33,13 +33,13 @@ pub struct Problem {
     /// Every violation found: pointers lead into the job document, or are the name of a query parameter after a slash.
     pub errors: Vec<Violation>,
     /// Stage that failed, of a failed job.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none", default)]
     pub stage: Option<String>,
     /// Simulated time at which a job failed.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none", default)]
     pub sim_time_s: Option<f64>,
     /// Time step at which a job failed.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none", default)]
     pub step: Option<u64>,
 }
 

@@ -2,6 +2,7 @@
 
 use crate::api::config::{MAX_KEY_CHARS, MAX_WAIT_S};
 use crate::api::problem::{ApiError, Problem, ProblemCode};
+use crate::work::is_traceparent;
 use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, HeaderName};
@@ -13,6 +14,10 @@ use std::time::Duration;
 /// The id of a request in responses and logs; set by the request middleware.
 #[derive(Debug, Clone)]
 pub(crate) struct RequestId(pub String);
+
+/// `traceparent` (W3C Trace Context, 3.2): the caller's trace, if the header is one.
+#[derive(Debug, Clone)]
+pub(crate) struct TraceParent(pub Option<String>);
 
 /// `Idempotency-Key`: the client's identifier of a submission.
 #[derive(Debug, Clone)]
@@ -45,6 +50,18 @@ impl<S: Send + Sync> FromRequestParts<S> for RequestId {
 
     async fn from_request_parts(parts: &mut Parts, _state: &S) -> Result<Self, Infallible> {
         Ok(parts.extensions.get().cloned().unwrap_or(Self(String::new())))
+    }
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for TraceParent {
+    type Rejection = Infallible;
+
+    async fn from_request_parts(parts: &mut Parts, _state: &S) -> Result<Self, Infallible> {
+        let mut values = parts.headers.get_all("traceparent").into_iter();
+        // Several count as none.
+        let only = values.next().filter(|_| values.next().is_none());
+        let given = only.and_then(|value| value.to_str().ok());
+        Ok(Self(given.filter(|text| is_traceparent(text)).map(str::to_owned)))
     }
 }
 

@@ -15,7 +15,7 @@ pub(super) use accept::{
 };
 pub(super) use body::{DocumentBody, read_file};
 pub(super) use cursor::Cursor;
-pub(super) use headers::{IdempotencyKey, IfNoneMatch, Prefer, RequestId};
+pub(super) use headers::{IdempotencyKey, IfNoneMatch, Prefer, RequestId, TraceParent};
 pub(super) use patch::{JobPatch, PatchBody};
 pub(super) use path::{ChannelPath, JobPath, PointPath};
 pub(super) use query::QueryParameters;

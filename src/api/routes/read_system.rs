@@ -5,9 +5,10 @@ use crate::api::config::{
 };
 use crate::api::problem::ApiError;
 use crate::api::state::AppState;
-use crate::work::{Member, MemberChunk, WaitingWork};
+use crate::work::{Member, MemberChunk, Transport, WaitingWork};
 use axum::Json;
 use axum::extract::State;
+use jiff::Timestamp;
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -20,6 +21,8 @@ pub(super) struct SystemView {
     /// Results stored under another version are not reused.
     pub solver_version: &'static str,
     pub started_at: String,
+    /// Time of this answer, by the clock of the service.
+    pub now: String,
     pub shutting_down: bool,
     pub queue: QueueView,
     pub workers: WorkersView,
@@ -36,6 +39,12 @@ pub(super) struct QueueView {
     pub depth: u64,
     /// Jobs that may wait; further ones are answered with 503.
     pub capacity: u32,
+    /// `local`: jobs run in this process; `nats`: workers on other machines compute them.
+    pub transport: &'static str,
+    /// Whether there is a connection to NATS; null without NATS.
+    pub connected: Option<bool>,
+    /// Silence of a worker after which its work is given to another, in seconds; null without NATS.
+    pub ack_wait_s: Option<u64>,
 }
 
 #[derive(Debug, Serialize, ToSchema)]
@@ -62,6 +71,10 @@ pub(super) struct MachineView {
     /// Chunks that it computes at once.
     pub slots: u32,
     pub last_beat_at: String,
+    /// Time since its last beat.
+    pub silent_s: f64,
+    /// Silent for so long that its work is for others.
+    pub lost: bool,
     pub running: Vec<ChunkView>,
 }
 
@@ -112,6 +125,8 @@ impl MachineView {
             solver_version: member.solver_version,
             slots: member.slots,
             last_beat_at: member.last_beat_at.to_string(),
+            silent_s: member.silence.as_secs_f64(),
+            lost: member.is_lost,
             running: member.running.into_iter().map(chunk).collect(),
         }
     }
@@ -125,13 +140,24 @@ impl MachineView {
 pub(super) async fn read_system(State(state): State<AppState>) -> Result<Json<SystemView>, ApiError> {
     let jobs = state.jobs();
     let workers = jobs.workers();
+    let (transport, connected, ack_wait_s) = match jobs.transport() {
+        Transport::Local => ("local", None, None),
+        Transport::Nats { is_connected, ack_wait } => ("nats", Some(is_connected), Some(ack_wait.as_secs())),
+    };
     Ok(Json(SystemView {
         name: env!("CARGO_PKG_NAME"),
         version: env!("CARGO_PKG_VERSION"),
         solver_version: jobs.solver_version(),
         started_at: state.started_at().to_string(),
         shutting_down: jobs.is_closing(),
-        queue: QueueView { depth: jobs.store().queued_count(), capacity: jobs.capacity() },
+        now: Timestamp::now().to_string(),
+        queue: QueueView {
+            depth: jobs.store().queued_count(),
+            capacity: jobs.capacity(),
+            transport,
+            connected,
+            ack_wait_s,
+        },
         workers: WorkersView {
             total: workers.total,
             busy: workers.busy,

@@ -1,7 +1,7 @@
 //! `POST /api/v1/jobs`
 
 use crate::api::problem::ApiError;
-use crate::api::request::{DocumentBody, IdempotencyKey, Prefer, RequestId};
+use crate::api::request::{DocumentBody, IdempotencyKey, Prefer, RequestId, TraceParent};
 use crate::api::state::AppState;
 use crate::api::view::{Job, job_path, job_response};
 use crate::work::SubmitRequest;
@@ -41,11 +41,12 @@ use axum::response::{IntoResponse, Response};
 pub(super) async fn submit_job(
     State(state): State<AppState>,
     RequestId(request_id): RequestId,
+    TraceParent(traceparent): TraceParent,
     IdempotencyKey(idempotency_key): IdempotencyKey,
     prefer: Prefer,
     DocumentBody(document): DocumentBody,
 ) -> Result<Response, ApiError> {
-    let request = SubmitRequest { document, idempotency_key, request_id: Some(request_id) };
+    let request = SubmitRequest { document, idempotency_key, request_id: Some(request_id), traceparent };
     let submitted = state.jobs().submit(request).await?;
     let mut job = submitted.job;
     let mut headers = HeaderMap::new();

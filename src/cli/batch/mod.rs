@@ -1,7 +1,9 @@
-//! `herringbone batch`: solves every file of a folder in this process, and goes on where it was stopped.
+//! `herringbone batch`: solves every file of a folder, in this process or by a service, and goes on where it was
+//! stopped.
 
 mod files;
 mod output;
+mod service;
 mod summary;
 
 use super::cache::DirectoryStages;
@@ -9,13 +11,18 @@ use clap::{Args, ValueEnum};
 use files::InputFile;
 use herringbone::api::{Decimal, Problem};
 use herringbone_exchange::ImportOptions;
+use herringbone_job::document::JobDocument;
 use herringbone_job::study::{self, CheckedJob, NoStageStore, SolveContext, StageStore};
 use output::{Record, Status};
+use service::Service;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
+
+/// Jobs that a service has at once: enough to keep its workers busy.
+const AT_ONCE_AT_A_SERVICE: usize = 20;
 
 #[derive(Debug, Args)]
 pub(super) struct BatchArguments {
@@ -24,7 +31,7 @@ pub(super) struct BatchArguments {
     /// Folder of the results; `results` in the folder when it is not given.
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Files that are solved at once; as many as processors when it is not given.
+    /// Files that are solved at once; as many as processors when it is not given, 20 with `--server`.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Files beside each result (JSON): csv and xlsx have the numbers of the result, of a sweep its rows; npz and mat
@@ -40,6 +47,12 @@ pub(super) struct BatchArguments {
     /// Take only every Nth file, from the Ith on: for job arrays of a cluster.
     #[arg(long, value_name = "I/N", value_parser = part)]
     part: Option<(usize, usize)>,
+    /// Have a service solve the files, at this address; what was submitted goes on there when the batch is stopped.
+    #[arg(long, value_name = "URL", conflicts_with = "cache")]
+    server: Option<String>,
+    /// File with the token of that service.
+    #[arg(long, env = "HERRINGBONE_TOKEN_FILE", value_name = "FILE", requires = "server")]
+    token_file: Option<PathBuf>,
     /// Keep finished stages (finite elements of a gear, contact analyses) in this directory and reuse them.
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
@@ -84,6 +97,7 @@ struct Batch<'a> {
     out: PathBuf,
     files: Vec<InputFile>,
     stages: Box<dyn StageStore + Sync>,
+    service: Option<Service>,
     options: ImportOptions,
 }
 
@@ -103,7 +117,9 @@ impl<'a> Batch<'a> {
         };
         let options =
             ImportOptions { mirror: arguments.mirror, torque_nm: arguments.torque_nm, ..ImportOptions::default() };
-        Ok(Self { arguments, out, files, stages, options })
+        let token_file = arguments.token_file.as_deref();
+        let service = arguments.server.as_deref().map(|url| Service::new(url, token_file)).transpose()?;
+        Ok(Self { arguments, out, files, stages, service, options })
     }
 
     /// Solves the files; returns whether all of them have a result.
@@ -111,7 +127,8 @@ impl<'a> Batch<'a> {
         let processors = std::thread::available_parallelism().map_or(1, usize::from);
         let pool =
             rayon::ThreadPoolBuilder::new().num_threads(processors).build().map_err(|error| error.to_string())?;
-        let at_once = self.arguments.jobs.map_or(processors, usize::from).min(self.files.len().max(1));
+        let most = if self.service.is_some() { AT_ONCE_AT_A_SERVICE } else { processors };
+        let at_once = self.arguments.jobs.map_or(most, usize::from).min(self.files.len().max(1));
         let (next, done, records) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::new(Vec::new()));
         std::thread::scope(|scope| {
             for _ in 0..at_once {
@@ -158,6 +175,16 @@ impl<'a> Batch<'a> {
         {
             return record;
         }
+        if let Some(service) = &self.service {
+            return match self.solve_by(service, file, hash.clone(), &document) {
+                Ok(mut record) => {
+                    record.wall_s = started.elapsed().as_secs_f64();
+                    output::remember(&self.out, &record);
+                    record
+                }
+                Err(problem) => failed(Some(hash), &problem),
+            };
+        }
         let job = match CheckedJob::new(document) {
             Ok(job) => job,
             Err(error) => return failed(Some(hash), &Problem::from(error)),
@@ -176,10 +203,33 @@ impl<'a> Batch<'a> {
                 output::remember(&self.out, &record);
                 record
             }
-            Err(error) => {
-                let detail = format!("the result could not be written: {error}");
-                failed(Some(hash), &Problem::new(herringbone::api::ProblemCode::Internal, detail))
-            }
+            Err(error) => failed(Some(hash), &unwritten(&error)),
         }
     }
+
+    /// Has a service solve a document, and writes what it answers.
+    fn solve_by(
+        &self,
+        service: &Service,
+        file: &InputFile,
+        hash: String,
+        document: &JobDocument,
+    ) -> Result<Record, Box<Problem>> {
+        let path = service.solve(document)?;
+        let result = service.result(&path)?;
+        let mut files = Vec::new();
+        for format in &self.arguments.format {
+            // The numbers of a result without rows are in the result.
+            if service::has_rows(document.kind) || matches!(format, Format::Npz | Format::Mat) {
+                files.push((*format, service.file(&path, document.kind, *format, self.arguments.decimal)?));
+            }
+        }
+        let formats = (&*self.arguments.format, self.arguments.decimal);
+        output::write_answered(&self.out, &file.name, hash, document, &result, files, formats)
+            .map_err(|error| Box::new(unwritten(&error)))
+    }
+}
+
+fn unwritten(error: &std::io::Error) -> Problem {
+    Problem::new(herringbone::api::ProblemCode::Internal, format!("the result could not be written: {error}"))
 }

@@ -10,6 +10,7 @@ use herringbone_job::document::JobDocument;
 use herringbone_job::result::quantities;
 use herringbone_job::study::{Outcome, RecordedChannel, SOLVER_VERSION};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Error};
@@ -158,10 +159,46 @@ pub(super) fn write(
         };
         replace(&beside(out, file, &format!(".{}", format.name())), &bytes)?;
     }
+    Ok(record_of(file, input_hash, document, &value, formats))
+}
+
+/// As [`write`], of a result that a service has answered; `files`: forms that it has answered too.
+///
+/// # Errors
+/// The result is none, or a file cannot be written.
+pub(super) fn write_answered(
+    out: &Path,
+    file: &str,
+    input_hash: String,
+    document: &JobDocument,
+    result: &[u8],
+    files: Vec<(Format, Vec<u8>)>,
+    (formats, decimal): (&[Format], Decimal),
+) -> io::Result<Record> {
+    let value: Value = serde_json::from_slice(result)?;
+    let mut text = serde_json::to_vec_pretty(&value)?;
+    text.push(b'\n');
+    replace(&beside(out, file, ".result.json"), &text)?;
+    for format in formats {
+        let answered = files.iter().find(|(other, _)| other == format);
+        let bytes = match (answered, format) {
+            (Some((_, bytes)), _) => bytes.clone(),
+            (None, Format::Csv) => quantities_of(&value).to_csv(CsvWriter::with_mark(Vec::new(), decimal)?)?,
+            (None, _) => {
+                write_workbook("result", &quantities_of(&value), &document_value(document)).map_err(Error::other)?
+            }
+        };
+        replace(&beside(out, file, &format!(".{}", format.name())), &bytes)?;
+    }
+    Ok(record_of(file, input_hash, document, &value, formats))
+}
+
+/// The record of a file that was solved.
+fn record_of(file: &str, input_hash: String, document: &JobDocument, value: &Value, formats: &[Format]) -> Record {
     let headlines = quantities().iter().filter(|quantity| quantity.headline.is_some());
     let places = headlines.flat_map(|quantity| quantity.places());
     let numbers = places.filter_map(|(pointer, _)| Some((pointer.clone(), value.pointer(&pointer)?.as_f64()?)));
-    Ok(Record {
+    Record {
         file: file.to_owned(),
         status: Status::Solved,
         kind: document.kind.as_str().to_owned(),
@@ -172,11 +209,11 @@ pub(super) fn write(
         error: None,
         formats: formats.iter().map(|format| format.name()).collect(),
         numbers: numbers.collect(),
-    })
+    }
 }
 
 impl Format {
-    fn name(self) -> String {
+    pub(super) fn name(self) -> String {
         use clap::ValueEnum;
         self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
     }

@@ -37,6 +37,7 @@ pub(super) fn new_job(hash: &str) -> NewJob {
         input_hash: hash.into(),
         solver_version: "test-1",
         request_id: Some("request".into()),
+        traceparent: None,
         idempotency: None,
     }
 }

@@ -134,6 +134,7 @@ impl ActiveJob {
     /// Stage that is shown.
     pub(super) fn stage(&self) -> String {
         match &self.plan {
+            Some(_) if self.job.kind == "tolerance" => "evaluations".to_owned(),
             Some(_) => "sweep".to_owned(),
             None => {
                 self.open.values().map(|chunk| chunk.stage.clone()).find(|stage| !stage.is_empty()).unwrap_or_default()

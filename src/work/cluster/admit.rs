@@ -69,7 +69,7 @@ async fn take_up(shared: &Arc<Shared>, claim: Claim, class: WorkClass) {
             return;
         }
     };
-    if matches!(document.kind, JobKind::Optimise | JobKind::Tolerance) {
+    if document.kind == JobKind::Optimise {
         // Each batch of a search follows from the one before: such a job is computed in this process.
         let place = Arc::clone(&shared.local_places).try_acquire_owned().ok();
         return run_here(shared, claim, class, false, place);
@@ -140,7 +140,10 @@ async fn is_for_here(shared: &Shared, class: WorkClass, document: &JobDocument) 
     let wall_s = estimate.as_ref().and_then(|estimate| estimate.wall_s).map(|[median, ..]| median);
     let places = f64::from(shared.config.local_workers.max(1));
     let wait_s = shared.store().queued_count() as f64 * wall_s.unwrap_or(1.0) / places;
-    let point_s = wall_s.zip(estimate).map(|(wall_s, estimate)| wall_s / estimate.points.max(1) as f64);
+    // An evaluation has several operating points.
+    let rows =
+        |points: usize| if document.kind == JobKind::Tolerance { document.evaluations() as usize } else { points };
+    let point_s = wall_s.zip(estimate).map(|(wall_s, estimate)| wall_s / rows(estimate.points).max(1) as f64);
     !is_worth_sending(class, document, point_s, wait_s)
 }
 

@@ -3,7 +3,8 @@
 use super::active::ActiveJob;
 use super::admit::{LAST_CHUNKS, LEAST_WINDOW, admit, run_here, until_stored};
 use super::message::{
-    ChunkMessage, ID_HEADER, MESSAGE_BYTES, SCHEMA, SCHEMA_HEADER, SOLVER_HEADER, State as MotionState, pack,
+    ChunkMessage, ID_HEADER, MESSAGE_BYTES, SCHEMA, SCHEMA_HEADER, SOLVER_HEADER, State as MotionState, TRACE_HEADER,
+    pack,
 };
 use super::shared::Shared;
 use crate::store::{
@@ -32,6 +33,7 @@ struct Publication {
     subject: String,
     consumer: (String, crate::store::ChunkClass),
     message: ChunkMessage,
+    traceparent: Option<String>,
 }
 
 pub(super) async fn run_dispatcher(shared: Arc<Shared>) {
@@ -252,7 +254,7 @@ impl Dispatcher {
 
     /// The place in the stream; `None` for a job that is too large to be sent.
     async fn publish_one(&self, publication: &Publication) -> Result<Option<u64>, async_nats::Error> {
-        let Publication { key, issue, subject, consumer, message } = publication;
+        let Publication { key, issue, subject, consumer, message, traceparent } = publication;
         let payload = pack(message, &[])?;
         if payload.len() > MESSAGE_BYTES {
             return Ok(None);
@@ -261,11 +263,14 @@ impl Dispatcher {
             self.shared.streams.work_consumer(&consumer.0, consumer.1).await?;
             self.shared.consumers().insert(consumer.clone());
         }
-        let message = PublishMessage::build()
+        let mut message = PublishMessage::build()
             .header(ID_HEADER, format!("{key}.{issue}"))
             .header(SCHEMA_HEADER, SCHEMA.to_string())
             .header(SOLVER_HEADER, self.shared.solver.version())
             .payload(payload.into());
+        if let Some(traceparent) = traceparent {
+            message = message.header(TRACE_HEADER, traceparent.as_str());
+        }
         let started = Instant::now();
         let acknowledged = self.shared.nats.jetstream.send_publish(subject.clone(), message).await?.await?;
         metrics::histogram!("herringbone_nats_publish_seconds").record(started.elapsed().as_secs_f64());
@@ -358,5 +363,6 @@ fn publication(shared: &Shared, job: &ActiveJob, number: u32, chunk: &super::act
             time_limit_s: shared.work.time_limit(job.class).as_secs(),
             request_id: job.job.request_id.clone(),
         },
+        traceparent: job.job.traceparent.clone(),
     }
 }

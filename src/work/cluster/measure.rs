@@ -82,7 +82,8 @@ pub(super) async fn run_measures(shared: Arc<Shared>) {
             metrics::gauge!("herringbone_chunks", "state" => "waiting").set(waiting as f64);
             metrics::gauge!("herringbone_chunks", "state" => "issued").set(issued as f64);
         }
-        let members = shared.state().members.list(Instant::now());
+        let mut members = shared.state().members.list(Instant::now());
+        members.retain(|member| !member.is_lost);
         versions.extend(members.iter().map(|member| member.solver_version.clone()));
         for version in &versions {
             let count = members.iter().filter(|member| member.solver_version == *version).count();

@@ -8,6 +8,8 @@ use std::time::{Duration, Instant};
 
 /// Silence after which a worker counts as gone.
 const GONE_AFTER: Duration = Duration::from_secs(15);
+/// Silence after which a lost worker is forgotten: so long an operator may look for it.
+const FORGOTTEN_AFTER: Duration = Duration::from_secs(600);
 /// Workers that are listed; further ones are not taken up, as their names come from outside.
 const MOST_MEMBERS: usize = 10_000;
 
@@ -23,13 +25,18 @@ struct Known {
 }
 
 impl Members {
-    /// Takes up a beat. Whether the worker is new.
+    /// Takes up a beat; one without slots is the last of a worker that ends. Whether the worker is new.
     pub(super) fn beat(&mut self, beat: Beat, now: Instant, at: Timestamp) -> bool {
-        self.0.retain(|_, known| now.saturating_duration_since(known.seen) < GONE_AFTER);
+        self.0.retain(|_, known| now.saturating_duration_since(known.seen) < FORGOTTEN_AFTER);
+        if beat.slots == 0 {
+            self.0.remove(&beat.worker);
+            return false;
+        }
         if self.0.len() >= MOST_MEMBERS && !self.0.contains_key(&beat.worker) {
             return false;
         }
-        self.0.insert(beat.worker.clone(), Known { beat, seen: now, at }).is_none()
+        let before = self.0.insert(beat.worker.clone(), Known { beat, seen: now, at });
+        before.is_none_or(|before| now.saturating_duration_since(before.seen) >= GONE_AFTER)
     }
 
     /// Chunks that all workers of a kind compute at once.
@@ -61,7 +68,9 @@ impl Members {
         })
     }
 
+    /// The workers, also lost ones.
     pub(super) fn list(&self, now: Instant) -> Vec<Member> {
+        let silence = |known: &Known| now.saturating_duration_since(known.seen);
         let member = |known: &Known| Member {
             id: known.beat.worker.clone(),
             host: known.beat.host.clone(),
@@ -69,6 +78,8 @@ impl Members {
             solver_version: known.beat.solver_version.clone(),
             slots: known.beat.slots,
             last_beat_at: known.at,
+            silence: silence(known),
+            is_lost: silence(known) >= GONE_AFTER,
             running: known
                 .beat
                 .running
@@ -81,7 +92,7 @@ impl Members {
                 })
                 .collect(),
         };
-        self.live(now).map(member).collect()
+        self.0.values().filter(|known| silence(known) < FORGOTTEN_AFTER).map(member).collect()
     }
 
     fn live(&self, now: Instant) -> impl Iterator<Item = &Known> {
@@ -118,6 +129,13 @@ mod tests {
         assert_eq!(members.largest_class("1", start).as_deref(), Some("1-v4"));
         assert_eq!(members.totals(start), (13, 0));
         let later = start + GONE_AFTER;
-        assert_eq!((members.slots("1", later), members.list(later).len()), (0, 0));
+        assert_eq!((members.slots("1", later), members.totals(later)), (0, (0, 0)));
+        assert!(members.list(later).iter().all(|member| member.is_lost && member.silence == GONE_AFTER));
+        assert!(members.beat(beat("a", &["1"], 2), later, at), "it is back");
+        assert_eq!(members.list(later).iter().filter(|member| !member.is_lost).count(), 1);
+        // One that ends says so.
+        assert!(!members.beat(beat("a", &["1"], 0), later, at));
+        assert_eq!(members.list(later).len(), 2);
+        assert_eq!(members.list(start + FORGOTTEN_AFTER).len(), 0);
     }
 }

@@ -11,6 +11,8 @@ pub(super) const SCHEMA: u32 = 1;
 pub(super) const SCHEMA_HEADER: &str = "Hb-Schema";
 /// Header with the version of the calculation.
 pub(super) const SOLVER_HEADER: &str = "Hb-Solver";
+/// Header with the trace of the request that submitted the job, for the logs.
+pub(super) const TRACE_HEADER: &str = "Hb-Trace";
 /// Header by which a stream recognises a message that was sent again.
 pub(super) const ID_HEADER: &str = "Nats-Msg-Id";
 /// Largest part of a message: half of what a NATS server takes by default.

@@ -13,7 +13,7 @@ use super::shared::Shared;
 use super::streams::Streams;
 use crate::store::{ChunkState, JobId, Store, WorkClass};
 use crate::work::config::WorkConfig;
-use crate::work::queue::{BoxFuture, Member, Queue, WaitingWork, Workers};
+use crate::work::queue::{BoxFuture, Member, Queue, Transport, WaitingWork, Workers};
 use crate::work::recorder::JobRecorder;
 use crate::work::runner::pool;
 use crate::work::solver::Solver;
@@ -163,6 +163,10 @@ impl Queue for NatsQueue {
             sweeps_total: (self.shared.work.sweep_workers as usize).max(sweeps + sweeps_here),
             sweeps_busy: sweeps + sweeps_here,
         }
+    }
+
+    fn transport(&self) -> Transport {
+        Transport::Nats { is_connected: self.shared.nats.is_up(), ack_wait: self.shared.config.ack_wait() }
     }
 
     fn members(&self) -> Vec<Member> {

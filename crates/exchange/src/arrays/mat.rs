@@ -43,6 +43,15 @@ impl<W: Write> MatWriter<W> {
         self.begin(name, DOUBLE_CLASS, (n, 1), (DOUBLE, n * 8))
     }
 
+    /// Begins a matrix of doubles, whose values come column by column.
+    pub(super) fn begin_matrix(&mut self, name: &str, rows: u64, columns: u64) -> Result<()> {
+        let n = rows.saturating_mul(columns);
+        if n > MAX_VALUES {
+            return Err(invalid("a MAT-file of version 5 has no room for so many values"));
+        }
+        self.begin(name, DOUBLE_CLASS, (rows, columns), (DOUBLE, n * 8))
+    }
+
     pub(super) fn write(&mut self, bytes: &[u8]) -> Result<()> {
         self.out.write_all(bytes)
     }

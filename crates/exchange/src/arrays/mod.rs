@@ -133,6 +133,31 @@ impl<W: Write> ArrayWriter<W> {
         self.numbers(name, &[value])
     }
 
+    /// Adds a matrix, given by its rows.
+    ///
+    /// # Errors
+    /// As [`ArrayWriter::begin`]; the rows differ in length.
+    pub fn matrix(&mut self, name: &str, rows: &[Vec<f64>]) -> Result<()> {
+        self.check_complete()?;
+        let columns = rows.first().map_or(0, Vec::len);
+        if rows.iter().any(|row| row.len() != columns) {
+            return Err(invalid("the rows of a matrix differ in length"));
+        }
+        let (n_rows, n_columns) = (rows.len() as u64, columns as u64);
+        let values: Vec<f64> = match &mut self.file {
+            File::Npz(file) => {
+                file.begin_matrix(name, n_rows, n_columns)?;
+                rows.concat()
+            }
+            File::Mat(file) => {
+                file.begin_matrix(name, n_rows, n_columns)?;
+                (0..columns).flat_map(|column| rows.iter().map(move |row| row[column])).collect()
+            }
+        };
+        self.left = n_rows * n_columns;
+        self.push(&values)
+    }
+
     /// Adds an array of words.
     ///
     /// # Errors

@@ -23,6 +23,11 @@ impl<W: Write> NpzWriter<W> {
         self.begin(name, "<f8", &shape, n.unwrap_or(1).saturating_mul(8))
     }
 
+    /// Begins a matrix of doubles, whose values come row by row.
+    pub(super) fn begin_matrix(&mut self, name: &str, rows: u64, columns: u64) -> Result<()> {
+        self.begin(name, "<f8", &format!("({rows}, {columns})"), rows.saturating_mul(columns).saturating_mul(8))
+    }
+
     pub(super) fn write(&mut self, bytes: &[u8]) -> Result<()> {
         self.zip.write_all(bytes)
     }

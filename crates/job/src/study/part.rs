@@ -1,9 +1,9 @@
-//! A part of a sweep that is solved apart from the rest, as on another machine: some of its points, or a stretch of a
-//! line that is followed by continuation.
+//! A part of a sweep or of a tolerance study that is solved apart from the rest, as on another machine: some of its
+//! points, or a stretch of a line that is followed by continuation.
 
 use super::mesh::MeshMemo;
 use super::sweep::{Points, together, ways};
-use super::{CheckedJob, LineEnd, SolveContext, SolveError, branches};
+use super::{CheckedJob, LineEnd, SolveContext, SolveError, branches, tolerance};
 use crate::document::{Axis, JobDocument, JobKind};
 use crate::result::BranchDirection;
 use rayon::prelude::*;
@@ -24,8 +24,12 @@ pub struct SweepOrder {
 }
 
 impl SweepOrder {
-    /// The order of a sweep's document.
+    /// The order of a document of kind `sweep`; of one of kind `tolerance`, that of its evaluations: one line.
     pub fn of(document: &JobDocument) -> Self {
+        if document.kind == JobKind::Tolerance {
+            let length = usize::try_from(document.evaluations()).unwrap_or(usize::MAX);
+            return Self { lines: 1, length, ways: &[], upwards: Vec::new(), together: 1 };
+        }
         let ways = ways(document);
         let values = document.axes.get(1).map_or(1, Axis::len);
         let first = document.axes.first();
@@ -89,6 +93,12 @@ pub fn solve_part(job: &CheckedJob, part: &SweepPart, context: &SolveContext) ->
     let order = SweepOrder::of(document);
     let is_sweep = document.kind == JobKind::Sweep;
     match part {
+        SweepPart::Points(positions) if document.kind == JobKind::Tolerance => {
+            if positions.iter().any(|position| *position >= order.points()) {
+                return Err(no_such_part());
+            }
+            tolerance::run_part(document, positions, context, &memo).map(|()| None)
+        }
         SweepPart::Points(positions) => {
             if !is_sweep || order.is_continued() || positions.iter().any(|position| *position >= order.points()) {
                 return Err(no_such_part());
@@ -240,6 +250,38 @@ mod tests {
             }
         }
         rows.assert_are_those_of(&job);
+    }
+
+    #[test]
+    fn evaluations_apart_are_those_of_the_study() {
+        for sensitivity in ["jansen", "morris", "from_sample"] {
+            let job = sweep(|value| {
+                value["kind"] = json!("tolerance");
+                value.as_object_mut().unwrap().remove("axes");
+                value["operating_points"] = json!([{"pinion_torque_nm": 400.0}, {"pinion_torque_nm": 800.0}]);
+                value["tolerances"] = json!([
+                    {"pointer": "/operation/pinion_speed_rpm", "distribution": "normal", "tolerance": 100.0},
+                    {"pointer": "/model/mesh_damping_ratio", "distribution": "uniform", "plus": 0.05},
+                ]);
+                let measures = json!([{"measure": "/response/rms/mesh_circumferential_acceleration_m_s2"}]);
+                (value["measures"], value["sensitivity"]) = (measures, json!(sensitivity));
+                if sensitivity != "morris" {
+                    value["samples"] = json!(16);
+                }
+            });
+            let order = SweepOrder::of(job.document());
+            let rows = Rows::default();
+            let (odd, even): (Vec<usize>, Vec<usize>) = (0..order.points()).partition(|position| position % 2 == 1);
+            for part in [odd, even] {
+                assert_eq!(rows.solve(&job, &SweepPart::Points(part)), None);
+            }
+            let whole = solve(&job, &SolveContext::none()).unwrap().result.tolerance.unwrap().points;
+            assert_eq!(whole.len(), order.points());
+            let text = |rows: Vec<SweepPoint>| serde_json::to_string(&rows).unwrap();
+            assert_eq!(text(rows.0.into_inner().unwrap().into_values().collect()), text(whole), "{sensitivity}");
+            let beyond = SweepPart::Points(vec![order.points()]);
+            assert!(solve_part(&job, &beyond, &SolveContext::none()).is_err());
+        }
     }
 
     #[test]

@@ -87,6 +87,8 @@ export const submit = (document, key) =>
   request("POST", "/jobs", { body: document, headers: { "Idempotency-Key": key } });
 /** @type {(parameters: Record<string, any>, signal?: AbortSignal) => Promise<JobList>} */
 export const jobs = (parameters, signal) => request("GET", `/jobs${query(parameters)}`, { signal });
+/** @type {() => Promise<SystemState>} */
+export const system = () => request("GET", "/system");
 /** @type {() => Promise<KindList>} */
 export const kinds = () => request("GET", "/kinds");
 /** @type {(id: string) => Promise<Job>} */

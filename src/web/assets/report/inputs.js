@@ -57,8 +57,14 @@ function walk(value, schema, pointer, found) {
 function shown(value) {
   if (Array.isArray(value)) {
     if (value.length > 8) return `${value.length} values`;
-    return value.map((one) => (typeof one === "object" ? Object.values(one).map(shown).join(" at ") : shown(one))).join("; ");
+    return value.map((one) => (typeof one === "object" && one !== null ? members(one) : shown(one))).join("; ");
   }
   if (typeof value === "boolean") return value ? "yes" : "no";
   return typeof value === "number" ? number(value, 8) : String(value).replaceAll("_", " ");
+}
+
+/** What an entry of a list has, with names and units; null members are derived and left out. @param {object} entry */
+function members(entry) {
+  const given = Object.entries(entry).filter(([, value]) => value !== null);
+  return given.map(([name, value]) => `${wordsOf(name)} ${shown(value)} ${unitOf(name)}`.trim()).join(", ");
 }

@@ -70,7 +70,7 @@ pub(super) async fn run_beats(worker: Arc<Worker>) {
     let mut cancels = worker.nats.client.subscribe(worker.space.subject("cancel")).await.ok();
     loop {
         let running = worker.registry.list();
-        beat(&worker, &host, &running).await;
+        beat(&worker, &host, worker.threads, &running).await;
         let pause = tokio::time::sleep(if running.is_empty() { IDLE_PAUSE } else { PAUSE });
         let mut pause = std::pin::pin!(pause);
         loop {
@@ -96,8 +96,13 @@ pub(super) async fn run_beats(worker: Arc<Worker>) {
     }
 }
 
+/// Tells the service that the worker ends.
+pub(super) async fn say_goodbye(worker: &Worker) {
+    beat(worker, "", 0, &[]).await;
+}
+
 /// Sends a beat, and stops what its answer names. Without an answer the work goes on.
-async fn beat(worker: &Worker, host: &str, running: &[(ChunkKey, Running)]) {
+async fn beat(worker: &Worker, host: &str, slots: usize, running: &[(ChunkKey, Running)]) {
     let chunk = |(key, running): &(ChunkKey, Running)| {
         let (stage, fraction) = *running.progress.borrow();
         BeatChunk {
@@ -115,7 +120,7 @@ async fn beat(worker: &Worker, host: &str, running: &[(ChunkKey, Running)]) {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         solver_version: worker.solver.version().to_owned(),
         solvers: worker.solvers.clone(),
-        slots: u32::try_from(worker.threads).unwrap_or(u32::MAX),
+        slots: u32::try_from(slots).unwrap_or(u32::MAX),
         running: running.iter().map(chunk).collect(),
     };
     let Ok(json) = serde_json::to_vec(&beat) else { return };

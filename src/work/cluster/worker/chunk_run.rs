@@ -6,13 +6,15 @@ use super::beats::Running;
 use super::send::{Sender, Unsent};
 use super::stages::WorkerStages;
 use crate::store::{ChunkPart, Failure, PackedSeries, PointBatch};
+use crate::work::cluster::answers::header;
 use crate::work::cluster::message::{
     ChunkMessage, EndMessage, LineEndMessage, PART_BYTES, ResultContent, SCHEMA, StartAnswer, StartRequest, State,
-    Summary, compress, unpack,
+    Summary, TRACE_HEADER, compress, unpack,
 };
 use crate::work::failure::{document_failure, internal_failure, panic_failure, solve_failure};
 use crate::work::running_points::RunningPoints;
 use crate::work::stop_signal::{StopReason, StopSignal};
+use crate::work::trace::is_traceparent;
 use async_nats::jetstream::{AckKind, Message};
 use herringbone_job::document::JobDocument;
 use herringbone_job::study::{LineEnd, Outcome, SolveContext, SolveError, Stage, SweepPart, solve_part};
@@ -66,13 +68,15 @@ impl ChunkRun {
         match unpack::<ChunkMessage>(&self.message.payload) {
             Ok((chunk, _)) if chunk.schema == SCHEMA => {
                 let id = chunk.request_id.clone().unwrap_or_default();
+                let trace = header(&self.message, TRACE_HEADER).filter(|text| is_traceparent(text));
                 let span = tracing::error_span!(
                     "chunk",
                     job = chunk.job,
                     attempt = chunk.attempt,
                     chunk = chunk.chunk,
                     issue = chunk.issue,
-                    request_id = id
+                    request_id = id,
+                    traceparent = trace
                 );
                 self.run_chunk(chunk).instrument(span).await;
             }

@@ -12,7 +12,7 @@ use super::connect::{ClusterError, Nats, waited};
 use super::names::{SPACES, Space, processor_class, solver_of, solver_of_class};
 use crate::work::runner::pool;
 use crate::work::solver::Solver;
-use beats::{Registry, run_beats};
+use beats::{Registry, run_beats, say_goodbye};
 use futures_util::StreamExt;
 use herringbone_job::study::StageStore;
 use pull::run_pull;
@@ -122,6 +122,7 @@ pub async fn run_worker(
     }
     worker.ended.cancel();
     beats.abort();
+    say_goodbye(&worker).await;
     let _ = tokio::time::timeout(Duration::from_secs(1), worker.nats.client.flush()).await;
     Ok(())
 }

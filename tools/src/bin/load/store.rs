@@ -79,6 +79,7 @@ fn new_job() -> NewJob {
         input_hash: format!("{n:064x}"),
         solver_version: "load",
         request_id: Some(JobId::new().to_string()),
+        traceparent: None,
         idempotency: None,
     }
 }

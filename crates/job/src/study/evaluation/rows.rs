@@ -5,7 +5,7 @@ use crate::result::{EvaluationPhase, SweepPoint};
 use crate::study::points::StoredPoints;
 use crate::study::{SolveContext, SolveError, Stage};
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -30,6 +30,10 @@ pub(in crate::study) struct Rows<'a> {
     /// Rows of the same values and settings, which need not be solved again.
     known: HashMap<(u8, Vec<u64>), usize>,
     pub has_reused: bool,
+    /// Positions that are to be evaluated; all when there are none. The rows of the others are empty.
+    wanted: Option<HashSet<usize>>,
+    /// Evaluations that were counted as done.
+    done: usize,
 }
 
 /// Turns an outcome into the numbers of the row.
@@ -45,7 +49,15 @@ impl<'a> Rows<'a> {
             expected: expected.max(1) as usize,
             known: HashMap::new(),
             has_reused,
+            wanted: None,
+            done: 0,
         }
+    }
+
+    /// Rows of which only these are evaluated, and stored; each as if it were alone.
+    pub(in crate::study) fn of_positions(positions: &[usize], context: &'a SolveContext<'a>) -> Self {
+        let rows = Self::new(StoredPoints::default(), positions.len() as u64, context);
+        Self { wanted: Some(positions.iter().copied().collect()), ..rows }
     }
 
     /// Rows so far.
@@ -70,14 +82,17 @@ impl<'a> Rows<'a> {
             let values = task.values.iter().chain(&task.further).map(|value| value.to_bits());
             (settings, values.collect::<Vec<_>>())
         };
-        let progress = AtomicUsize::new(first);
-        let (stored, rows, known) = (&self.stored, &self.rows, &self.known);
+        let progress = AtomicUsize::new(self.done);
+        let (stored, rows, known, wanted) = (&self.stored, &self.rows, &self.known, &self.wanted);
         let count = || {
             let done = progress.fetch_add(1, Ordering::Relaxed) + 1;
             (self.context.progress)(Stage::Evaluations, (done as f64 / self.expected as f64).min(1.0));
         };
         let solve = |(at, task): (usize, &Task)| -> Result<SweepPoint, SolveError> {
             let position = first + at;
+            if wanted.as_ref().is_some_and(|wanted| !wanted.contains(&position)) {
+                return Ok(SweepPoint::default());
+            }
             let is_same = |row: &&SweepPoint| {
                 row.phase == Some(task.phase)
                     && row.values.len() == task.values.len()
@@ -87,7 +102,8 @@ impl<'a> Rows<'a> {
                 count();
                 return Ok(row.clone());
             }
-            let mut row = match known.get(&key(task)) {
+            // Among positions apart, the row of the same values may be an empty one.
+            let mut row = match known.get(&key(task)).filter(|_| wanted.is_none()) {
                 Some(known) => rows[*known].clone(),
                 None => {
                     let outcome = evaluate(task)?;
@@ -106,6 +122,7 @@ impl<'a> Rows<'a> {
             Ok(row)
         };
         let solved: Vec<SweepPoint> = tasks.par_iter().enumerate().map(solve).collect::<Result<_, SolveError>>()?;
+        self.done = progress.into_inner();
         for (at, (task, row)) in tasks.iter().zip(solved).enumerate() {
             self.known.entry(key(task)).or_insert(first + at);
             self.rows.push(row);

@@ -4,7 +4,7 @@ mod run;
 mod scatter;
 mod statistics;
 
-pub(super) use run::{Quantities, run};
+pub(super) use run::{Quantities, run, run_part};
 pub(super) use scatter::{Scatter, scrambles};
 
 use crate::result::ToleranceResult;

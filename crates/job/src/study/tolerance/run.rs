@@ -15,6 +15,7 @@ use crate::study::points::StoredPoints;
 use crate::study::{SolveContext, SolveError, axes};
 use herringbone_search::statistics::morris_points;
 use herringbone_search::{CounterRandom, sobol_point};
+use std::ops::Range;
 
 /// The quantities and inputs of a tolerance study, or of the tolerances of an optimisation.
 pub(in crate::study) struct Quantities {
@@ -83,8 +84,72 @@ pub(in crate::study) fn run(
 ) -> Result<(ToleranceResult, bool), SolveError> {
     let quantities = Quantities::new(document)?;
     let evaluator = Evaluator::new(document, &quantities.measures, context, memo);
-    let scatter = Scatter::new(document, &evaluator.base);
     let mut rows = Rows::new(stored, document.evaluations(), context);
+    let Evaluated { points, sample, further, trajectories, clipped } = evaluate_all(document, &evaluator, &mut rows)?;
+    let shares = evaluator.shares();
+    let of_row = |row: &SweepPoint| -> Vec<Option<f64>> {
+        let value = |(index, measure): (usize, &MeasureInput)| {
+            let measures = row.measures.as_ref()?;
+            Some(reduce(&measures[index * shares.len()..(index + 1) * shares.len()], measure.over, &shares))
+        };
+        document.measures.iter().enumerate().map(value).collect()
+    };
+    let sampled = Sampled {
+        document,
+        measures: &quantities.measures,
+        points,
+        nominal: of_row(&rows.rows[0]),
+        sample: rows.rows[sample.clone()].iter().map(of_row).collect(),
+        further: rows.rows[further..].iter().map(of_row).collect(),
+        trajectories,
+    };
+    let failed = rows.rows.iter().filter(|row| row.error.is_some()).count() as u32;
+    let result = ToleranceResult {
+        measures: (0..document.measures.len()).map(|index| statistics::scatter_of(&sampled, index)).collect(),
+        sensitivity: statistics::sensitivity(&sampled),
+        failed,
+        clipped,
+        samples: sample.len() as u32,
+        sampling: document.sampling.unwrap_or(SamplingInput::Sobol).as_word().to_owned(),
+        seed: document.seed.unwrap_or(1),
+        points: Vec::new(),
+    };
+    let has_reused = rows.has_reused;
+    Ok((ToleranceResult { points: rows.rows, ..result }, has_reused))
+}
+
+/// Solves evaluations of a document of kind `tolerance` apart from the rest, by the positions of their rows, which go
+/// to the point store of the context.
+///
+/// # Errors
+/// [`SolveError::Canceled`]; [`SolveError::Document`] if the study is none.
+pub(in crate::study) fn run_part(
+    document: &JobDocument,
+    positions: &[usize],
+    context: &SolveContext,
+    memo: &MeshMemo,
+) -> Result<(), SolveError> {
+    let quantities = Quantities::new(document)?;
+    let evaluator = Evaluator::new(document, &quantities.measures, context, memo);
+    let mut rows = Rows::of_positions(positions, context);
+    evaluate_all(document, &evaluator, &mut rows).map(drop)
+}
+
+/// What the rows of a study are for.
+struct Evaluated {
+    /// Points of the unit cube of the sample.
+    points: Vec<Vec<f64>>,
+    /// Rows of the sample, and the first one of those for the sensitivity.
+    sample: Range<usize>,
+    further: usize,
+    trajectories: Vec<(Vec<Vec<f64>>, Vec<usize>)>,
+    /// Values that stand at the end of the range of their field.
+    clipped: u32,
+}
+
+/// Makes the evaluations of a study: the document, the sample, and those for the sensitivity.
+fn evaluate_all(document: &JobDocument, evaluator: &Evaluator, rows: &mut Rows) -> Result<Evaluated, SolveError> {
+    let scatter = Scatter::new(document, &evaluator.base);
     let mut clipped = 0;
     let mut evaluate = |points: &[Vec<f64>], phase: EvaluationPhase, rows: &mut Rows| {
         let task = |point: &Vec<f64>| {
@@ -113,20 +178,20 @@ pub(in crate::study) fn run(
     let mut trajectories = Vec::new();
     let sample = match sensitivity {
         SensitivityInput::Morris => 0..0,
-        _ => evaluate(&first, EvaluationPhase::Sample, &mut rows)?,
+        _ => evaluate(&first, EvaluationPhase::Sample, rows)?,
     };
-    let from = rows.len();
+    let further = rows.len();
     match sensitivity {
         SensitivityInput::Jansen => {
             let second: Vec<Vec<f64>> = both.iter().map(|point| point[inputs..].to_vec()).collect();
-            evaluate(&second, EvaluationPhase::Sensitivity, &mut rows)?;
+            evaluate(&second, EvaluationPhase::Sensitivity, rows)?;
             for input in 0..inputs {
                 let mixed = first.iter().zip(&second).map(|(a, b)| {
                     let mut point = a.clone();
                     point[input] = b[input];
                     point
                 });
-                evaluate(&mixed.collect::<Vec<_>>(), EvaluationPhase::Sensitivity, &mut rows)?;
+                evaluate(&mixed.collect::<Vec<_>>(), EvaluationPhase::Sensitivity, rows)?;
             }
         }
         SensitivityInput::Morris => {
@@ -136,42 +201,13 @@ pub(in crate::study) fn run(
                 // Between the quantiles 0.05 and 0.95: the ends of a distribution may be far away.
                 let inner: Vec<Vec<f64>> =
                     points.iter().map(|point| point.iter().map(|part| 0.05 + 0.9 * part).collect()).collect();
-                evaluate(&inner, EvaluationPhase::Sensitivity, &mut rows)?;
+                evaluate(&inner, EvaluationPhase::Sensitivity, rows)?;
                 trajectories.push((points, order));
             }
         }
         SensitivityInput::FromSample | SensitivityInput::None => {}
     }
-    let shares = evaluator.shares();
-    let of_row = |row: &SweepPoint| -> Vec<Option<f64>> {
-        let value = |(index, measure): (usize, &MeasureInput)| {
-            let measures = row.measures.as_ref()?;
-            Some(reduce(&measures[index * shares.len()..(index + 1) * shares.len()], measure.over, &shares))
-        };
-        document.measures.iter().enumerate().map(value).collect()
-    };
-    let sampled = Sampled {
-        document,
-        measures: &quantities.measures,
-        points: first,
-        nominal: of_row(&rows.rows[0]),
-        sample: rows.rows[sample.clone()].iter().map(of_row).collect(),
-        further: rows.rows[from..].iter().map(of_row).collect(),
-        trajectories,
-    };
-    let failed = rows.rows.iter().filter(|row| row.error.is_some()).count() as u32;
-    let result = ToleranceResult {
-        measures: (0..document.measures.len()).map(|index| statistics::scatter_of(&sampled, index)).collect(),
-        sensitivity: statistics::sensitivity(&sampled),
-        failed,
-        clipped,
-        samples: sample.len() as u32,
-        sampling: document.sampling.unwrap_or(SamplingInput::Sobol).as_word().to_owned(),
-        seed: document.seed.unwrap_or(1),
-        points: Vec::new(),
-    };
-    let has_reused = rows.has_reused;
-    Ok((ToleranceResult { points: rows.rows, ..result }, has_reused))
+    Ok(Evaluated { points: first, sample, further, trajectories, clipped })
 }
 
 fn complete(_outcome: &Outcome, _row: &mut SweepPoint) {}
