@@ -113,8 +113,14 @@ words! {
         Confirm = "confirm",
         /// Candidates over the common sample of the tolerances.
         Robust = "robust",
+        /// Designs of the search on the statistic over the tolerances, and their samples.
+        RobustSearch = "robust_search",
         /// Input and winner over another sample.
         RobustConfirm = "robust_confirm",
+        /// The best design with one variable at the end of its range of equally good values.
+        Flatness = "flatness",
+        /// The best design at neighbouring speeds.
+        Speed = "speed",
         /// Samples of the sensitivity.
         Sensitivity = "sensitivity",
     }

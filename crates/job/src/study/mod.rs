@@ -55,7 +55,7 @@ pub use sweep::continued_from;
 pub use vibration::is_channel;
 
 /// Version of the calculation: results and stages stored under another version are not reused.
-pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-9");
+pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-10");
 
 /// Stages in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -225,6 +225,7 @@ pub fn solve(job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveE
         JobKind::Optimise => {
             let (optimised, reused) = optimise::run(document, stored, context, &memo)?;
             has_reused = reused;
+            result.warnings.extend(optimise::warnings(&optimised));
             result.optimise = Some(optimised);
         }
         JobKind::Tolerance => {
@@ -267,6 +268,8 @@ mod acceptance_tests;
 mod contact_tests;
 #[cfg(test)]
 mod evaluation_tests;
+#[cfg(test)]
+mod further_evaluation_tests;
 #[cfg(test)]
 mod limits_tests;
 #[cfg(test)]

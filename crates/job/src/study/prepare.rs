@@ -86,6 +86,11 @@ pub(crate) fn prepare(document: &JobDocument) -> Result<Prepared, DocumentError>
     Ok(Prepared { warnings: prepared.warnings.iter().cloned().chain(bounds).collect(), ..prepared })
 }
 
+/// Why the pair of a document cannot exist; nothing of one that does.
+pub(super) fn infeasibilities(document: &JobDocument) -> Vec<gear::Infeasibility> {
+    Pair::new(&pair_spec(document, &mut Vec::new())).err().unwrap_or_default()
+}
+
 fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
     let design = &document.design;
     let helix_angle_rad = design.helix_angle_deg.to_radians();

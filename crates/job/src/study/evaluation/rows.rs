@@ -29,6 +29,8 @@ pub(in crate::study) struct Rows<'a> {
     expected: usize,
     /// Rows of the same values and settings, which need not be solved again.
     known: HashMap<(u8, Vec<u64>), usize>,
+    /// Rows of an earlier job with the settings 0, by their values.
+    earlier: HashMap<Vec<u64>, SweepPoint>,
     pub has_reused: bool,
 }
 
@@ -44,8 +46,21 @@ impl<'a> Rows<'a> {
             rows: Vec::new(),
             expected: expected.max(1) as usize,
             known: HashMap::new(),
+            earlier: HashMap::new(),
             has_reused,
         }
+    }
+
+    /// Gives rows of an earlier job with the settings 0 and of nothing but values.
+    pub(in crate::study) fn know(&mut self, rows: Vec<SweepPoint>) {
+        self.earlier = rows.into_iter().map(|row| (bits(&row.values), row)).collect();
+    }
+
+    /// Position of the first stored row of one of these phases: where an earlier attempt had ended what comes before
+    /// them.
+    pub(in crate::study) fn first_stored(&self, phases: &[EvaluationPhase]) -> Option<usize> {
+        let is_of = |row: &SweepPoint| row.phase.is_some_and(|phase| phases.contains(&phase));
+        self.stored.iter().filter(|(_, row)| is_of(row)).map(|(position, _)| *position).min()
     }
 
     /// Rows so far.
@@ -87,8 +102,12 @@ impl<'a> Rows<'a> {
                 count();
                 return Ok(row.clone());
             }
-            let mut row = match known.get(&key(task)) {
-                Some(known) => rows[*known].clone(),
+            let of_earlier = || {
+                let is_plain = settings == 0 && task.further.is_empty();
+                if is_plain { self.earlier.get(&bits(&task.values)) } else { None }
+            };
+            let mut row = match known.get(&key(task)).map(|known| &rows[*known]).or_else(of_earlier) {
+                Some(known) => known.clone(),
                 None => {
                     let outcome = evaluate(task)?;
                     let mut row = outcome.row.clone();
@@ -112,4 +131,8 @@ impl<'a> Rows<'a> {
         }
         Ok(first..self.rows.len())
     }
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
 }

@@ -1,5 +1,6 @@
 //! The run of a tolerance study.
 
+use super::earlier::Earlier;
 use super::scatter::{Scatter, scrambles};
 use super::statistics;
 use crate::DocumentError;
@@ -85,6 +86,8 @@ pub(in crate::study) fn run(
     let evaluator = Evaluator::new(document, &quantities.measures, context, memo);
     let scatter = Scatter::new(document, &evaluator.base);
     let mut rows = Rows::new(stored, document.evaluations(), context);
+    let earlier = Earlier::load(document, context);
+    rows.know(earlier.rows.clone());
     let mut clipped = 0;
     let mut evaluate = |points: &[Vec<f64>], phase: EvaluationPhase, rows: &mut Rows| {
         let task = |point: &Vec<f64>| {
@@ -109,7 +112,7 @@ pub(in crate::study) fn run(
     let sensitivity = document.sensitivity.unwrap_or(SensitivityInput::FromSample);
     let inputs = scatter.len();
     let both = sample_points(document, if sensitivity == SensitivityInput::Jansen { 2 * inputs } else { inputs });
-    let first: Vec<Vec<f64>> = both.iter().map(|point| point[..inputs].to_vec()).collect();
+    let first: Vec<Vec<f64>> = both.iter().map(|point| scatter.in_company(point[..inputs].to_vec())).collect();
     let mut trajectories = Vec::new();
     let sample = match sensitivity {
         SensitivityInput::Morris => 0..0,
@@ -165,12 +168,14 @@ pub(in crate::study) fn run(
         sensitivity: statistics::sensitivity(&sampled),
         failed,
         clipped,
+        points_reused: earlier.reused(&rows.rows[1..]),
         samples: sample.len() as u32,
         sampling: document.sampling.unwrap_or(SamplingInput::Sobol).as_word().to_owned(),
         seed: document.seed.unwrap_or(1),
         points: Vec::new(),
     };
-    let has_reused = rows.has_reused;
+    earlier.save(&rows.rows[1..], context);
+    let has_reused = rows.has_reused || result.points_reused > 0;
     Ok((ToleranceResult { points: rows.rows, ..result }, has_reused))
 }
 
