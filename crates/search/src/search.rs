@@ -205,6 +205,9 @@ impl Search {
 
     /// Ends the search before its time: what is left is the grid point next to the best point.
     pub fn stop(&mut self) {
+        if matches!(self.step, Step::End) {
+            return;
+        }
         self.stopped_by = StoppedBy::Caller;
         self.spread = None;
         self.step = match self.ranked().first() {

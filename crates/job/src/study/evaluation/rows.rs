@@ -68,6 +68,11 @@ impl<'a> Rows<'a> {
         self.rows.len()
     }
 
+    /// Number of the batch that follows.
+    pub(in crate::study) fn next_generation(&self) -> u32 {
+        self.rows.last().and_then(|row| row.generation).unwrap_or(0) + 1
+    }
+
     /// Evaluates tasks side by side, in any order; their rows follow those of before in the order of the tasks.
     /// `settings`: a number for the settings that `evaluate` uses.
     ///

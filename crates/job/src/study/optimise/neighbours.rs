@@ -41,7 +41,7 @@ pub(super) fn confirm_flatness(
     if designs.is_empty() {
         return Ok(());
     }
-    let generation = next_generation(rows);
+    let generation = rows.next_generation();
     let found =
         solver.evaluate(rows, designs, (EvaluationPhase::Flatness, generation), (&solver.evaluator.base, OWN))?;
     let of_best = solver.score(&own, 0).objective;
@@ -52,10 +52,6 @@ pub(super) fn confirm_flatness(
             Some(rise).filter(|rise| score.is_feasible() && rise.is_finite());
     }
     Ok(())
-}
-
-fn next_generation(rows: &Rows) -> u32 {
-    rows.rows.last().and_then(|row| row.generation).unwrap_or(0) + 1
 }
 
 /// Evaluates the best design at neighbouring speeds; nothing where the objective is none of the motion, or the speed is
@@ -80,7 +76,7 @@ pub(super) fn at_speeds(solver: &Solver, rows: &mut Rows, best: usize) -> Result
             values: own.values.clone(),
             further: Vec::new(),
             phase: EvaluationPhase::Speed,
-            generation: Some(next_generation(rows)),
+            generation: Some(rows.next_generation()),
         };
         let gate = |_: &[Option<f64>]| 0.0;
         let evaluate = |task: &Task| evaluator.evaluate(&evaluator.base, &problem.inputs, &task.values, &gate);

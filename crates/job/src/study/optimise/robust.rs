@@ -133,7 +133,7 @@ impl Robust<'_> {
         let mut designs: Vec<Vec<f64>> = Vec::new();
         while let Some(batch) = search.ask() {
             let values: Vec<Vec<f64>> = batch.points.iter().map(|point| problem.values(point)).collect();
-            let generation = next_generation(rows);
+            let generation = rows.next_generation();
             let nominal = solver.evaluate(rows, values.clone(), (phase, generation), self.base)?;
             // Designs that violate a constraint have no sample.
             let violations: Vec<Option<f64>> = rows.rows[nominal].iter().map(|row| row.violation).collect();
@@ -162,7 +162,7 @@ impl Robust<'_> {
             stopped_by: stopped_by(search.stopped_by()).to_owned(),
         };
         let Some((values, _)) = best else { return Ok((found, start)) };
-        let generation = next_generation(rows);
+        let generation = rows.next_generation();
         let own = (&solver.evaluator.base, OWN);
         let at = solver.evaluate(rows, vec![values.clone()], (EvaluationPhase::RobustConfirm, generation), own)?.start;
         let is_answer = solver.score(&rows.rows[at], 0).is_feasible() && solver.is_permitted(&rows.rows[at]);
@@ -187,7 +187,7 @@ impl Robust<'_> {
             }
             design
         };
-        let generation = next_generation(rows);
+        let generation = rows.next_generation();
         let mut tasks = Vec::new();
         for values in designs {
             let mut design = design_of(values);
@@ -208,10 +208,6 @@ impl Robust<'_> {
             rows.rows[range].iter().map(|row| solver.oriented(row).first().copied()).collect();
         Ok(values.chunks(points.len().max(1)).map(<[Option<f64>]>::to_vec).collect())
     }
-}
-
-fn next_generation(rows: &Rows) -> u32 {
-    rows.rows.last().and_then(|row| row.generation).unwrap_or(0) + 1
 }
 
 /// Rows of the best designs that are apart from each other.

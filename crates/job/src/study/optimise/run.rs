@@ -315,7 +315,7 @@ impl Solver<'_> {
             }
         }
         chosen.truncate(CONFIRMED);
-        let generation = rows.rows.last().and_then(|row| row.generation).unwrap_or(0) + 1;
+        let generation = rows.next_generation();
         self.evaluate(rows, chosen, (EvaluationPhase::Confirm, generation), (&self.evaluator.base, OWN))?;
         Ok(())
     }
