@@ -132,7 +132,7 @@ struct Simplex {
 const SIGMA: f64 = 0.25;
 const SIMPLEX: f64 = 0.12;
 /// Size at which the first simplex ends, before others look elsewhere.
-const FIRST_END: f64 = 1e-3;
+const FIRST_END: f64 = 1e-4;
 /// Sizes of the simplices that look elsewhere, from points of the first sample that are apart from each other, at the
 /// start and at the end.
 const ELSEWHERE: f64 = 0.08;

@@ -110,24 +110,25 @@ fn f91_the_edge_of_a_disc() {
     }
 }
 
-/// Several valleys with walls: the best one is narrow. Kinks as of a worst case over operating points.
+/// Several valleys with kinks, as of a worst case over operating points: the best one is the narrowest.
 #[test]
 fn the_best_of_several_valleys_is_found() {
     let valleys = |x: &[f64]| {
         let valley = |at: [f64; 2], floor: f64, slope: f64| {
-            floor + slope * (x[0] - at[0] + 0.6 * (x[1] - at[1])).abs() + 2.0 * (x[1] - at[1]).abs()
+            let along = x[0] - at[0] + 0.5 * (x[1] - at[1]);
+            floor + slope * along.abs().max(0.4 * (x[1] - at[1]).abs())
         };
-        let wide = valley([0.37, 0.8], 1.5, 12.0);
-        wide.min(valley([0.62, 0.2], 1.7, 9.0)).min(valley([0.25, 0.9], 1.2, 25.0))
+        let wide = valley([0.4, 0.7], 1.5, 8.0).min(valley([0.7, 0.2], 1.7, 6.0));
+        wide.min(valley([0.25, 0.9], 1.2, 12.0))
     };
     let found: Vec<(f64, usize)> = (0..20)
         .map(|seed| {
-            let search = whole(2, seed, vec![0.0; 2], 200, |x| Score::feasible(valleys(x)));
+            let search = whole(2, seed, vec![0.0; 2], 450, |x| Score::feasible(valleys(x)));
             (search.archive()[search.best().unwrap()].1.objective, search.archive().len())
         })
         .collect();
     println!("valleys: {found:?}");
-    assert!(found.iter().filter(|(least, _)| *least < 1.01 * 1.2).count() >= 15, "{found:?}");
+    assert!(found.iter().filter(|(least, _)| *least < 1.01 * 1.2).count() >= 13, "{found:?}");
 }
 
 #[test]
