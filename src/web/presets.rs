@@ -120,7 +120,7 @@ pub(super) const GROUPS: &[PresetGroup] = &[
             preset!(
                 "tolerance_optimised",
                 "Tolerances of a relief that was found",
-                "256 pairs about the relief of the first example: halves on their own, amounts in company."
+                "128 pairs about the relief that the first example finds: halves on their own, amounts in company."
             ),
         ],
     },

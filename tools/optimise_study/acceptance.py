@@ -56,7 +56,7 @@ def promise_document():
               ("/design/pinion/lead_crowning_um", 0, 15), ("/design/half_stagger", 0, 0.5)]
     document["variables"] = [{"pointer": pointer, "from": low, "to": high} for pointer, low, high in bounds]
     del document["constraints"]
-    document["budget"] = {"evaluations": 600}
+    document["budget"] = {"evaluations": 400}
     return document
 
 
@@ -70,7 +70,7 @@ def promise():
     """The source's pair with contact in the equations: 30 % at the worst of three torques, and a robust gain."""
     document = promise_document()
     document["tolerances"] = TOLERANCES
-    document["robust"] = {"samples": 16, "candidates": 4, "confirm_samples": 128}
+    document["robust"] = {"samples": 16, "candidates": 3, "confirm_samples": 64}
     result = solve(document)
     say_cost(result)
     say_gain(result)
@@ -92,10 +92,10 @@ def promise_shafts():
                              {"pointer": f"{halves[0]}/helix_slope_um", "from": -15, "to": 15},
                              {"pointer": f"{halves[1]}/helix_slope_um", "from": -15, "to": 15}]
     document["objectives"] = [{"measure": ACCELERATION, "relative_to": "input"}]
-    document["budget"] = {"evaluations": 160}
+    document["budget"] = {"evaluations": 120}
     document["tolerances"] = [{"pointer": f"{half}/tip_relief/amount_um", "tolerance": 5} for half in halves]
     document["tolerances"] += [{"pointer": f"{half}/helix_slope_um", "distribution": "uniform", "plus": 6} for half in halves]
-    document["robust"] = {"samples": 8, "candidates": 2, "confirm_samples": 64}
+    document["robust"] = {"samples": 8, "candidates": 2, "confirm_samples": 32}
     result = solve(document)
     say_cost(result)
     say_gain(result)

@@ -109,6 +109,8 @@ words! {
         Search = "search",
         /// Neighbours of the best design on the grid.
         Polish = "polish",
+        /// The grid point nearest to the best design, where the time was up.
+        Nearest = "nearest",
         /// The best designs with the settings of the document.
         Confirm = "confirm",
         /// Candidates over the common sample of the tolerances.

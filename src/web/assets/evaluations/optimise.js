@@ -9,7 +9,7 @@ import { compareOverTorque, studyTolerances } from "./further.js";
 import { inputLabel, openRow, pointText } from "./rows.js";
 
 /** Phases whose rows are designs by themselves, not a design with deviations or at another speed. */
-const OF_DESIGNS = ["input", "sample", "search", "polish", "confirm", "flatness"];
+const OF_DESIGNS = ["input", "sample", "search", "polish", "nearest", "confirm", "flatness"];
 /** Rows of the table of evaluations. */
 const ROWS = 20;
 

@@ -134,7 +134,9 @@ impl Robust<'_> {
         while let Some(batch) = search.ask() {
             let values: Vec<Vec<f64>> = batch.points.iter().map(|point| problem.values(point)).collect();
             let generation = rows.next_generation();
-            let nominal = solver.evaluate(rows, values.clone(), (phase, generation), self.base)?;
+            let is_up = search.stopped_by() == StoppedBy::Caller;
+            let of_nominal = if is_up { EvaluationPhase::Nearest } else { phase };
+            let nominal = solver.evaluate(rows, values.clone(), (of_nominal, generation), self.base)?;
             // Designs that violate a constraint have no sample.
             let violations: Vec<Option<f64>> = rows.rows[nominal].iter().map(|row| row.violation).collect();
             let is_feasible = |at: &usize| violations[*at] == Some(0.0);

@@ -91,7 +91,8 @@ struct Clock<'a> {
 }
 
 /// Phases after that of the search, and after that of the search on a robust measure.
-const AFTER_SEARCH: [EvaluationPhase; 6] = [
+const AFTER_SEARCH: [EvaluationPhase; 7] = [
+    EvaluationPhase::Nearest,
     EvaluationPhase::Confirm,
     EvaluationPhase::Robust,
     EvaluationPhase::RobustSearch,
@@ -99,8 +100,8 @@ const AFTER_SEARCH: [EvaluationPhase; 6] = [
     EvaluationPhase::Flatness,
     EvaluationPhase::Speed,
 ];
-pub(super) const AFTER_ROBUST_SEARCH: [EvaluationPhase; 3] =
-    [EvaluationPhase::RobustConfirm, EvaluationPhase::Flatness, EvaluationPhase::Speed];
+pub(super) const AFTER_ROBUST_SEARCH: [EvaluationPhase; 4] =
+    [EvaluationPhase::Nearest, EvaluationPhase::RobustConfirm, EvaluationPhase::Flatness, EvaluationPhase::Speed];
 
 impl Solver<'_> {
     /// Writes objectives and violation into a row.
@@ -246,6 +247,7 @@ impl Solver<'_> {
             let phase = match batch.phase {
                 Phase::Start | Phase::Sample => EvaluationPhase::Sample,
                 Phase::Run => EvaluationPhase::Search,
+                Phase::Polish if search.stopped_by() == StoppedBy::Caller => EvaluationPhase::Nearest,
                 Phase::Polish => EvaluationPhase::Polish,
             };
             let points = batch.points.iter().map(|point| self.problem.values(point)).collect();
