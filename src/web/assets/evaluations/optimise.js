@@ -41,10 +41,12 @@ export async function showOptimisation({ id, job, result, input }) {
   show(button, Boolean(found.best));
   button.addEventListener("click", () => openRow(button, { id, name: job.name ?? "Optimisation", position: found.best?.position ?? 0, what: "best design" }));
   const name = job.name ?? "Optimisation";
-  for (const [further, act] of [[byId("optimise-torque"), compareOverTorque], [byId("optimise-tolerances"), studyTolerances]]) {
-    show(further, Boolean(found.best));
-    further.addEventListener("click", () => act(further, { id, name, input, position: found.best?.position ?? 0 }));
-  }
+  const best = { id, name, input, position: found.best?.position ?? 0 };
+  const [torque, tolerances] = [byId("optimise-torque"), byId("optimise-tolerances")];
+  show(torque, Boolean(found.best));
+  show(tolerances, Boolean(found.best));
+  torque.addEventListener("click", () => compareOverTorque(torque, best));
+  tolerances.addEventListener("click", () => studyTolerances(tolerances, best));
   await Promise.all([drawGain(found), drawHistory(found), drawFront(found, id), drawCoordinates(found, input)]);
 }
 
@@ -100,7 +102,7 @@ function showRobust({ robust }) {
 /** The best evaluations. @param {Optimisation} found @param {JobInput} input */
 function showRows(found, input) {
   const table = byId("optimise-rows");
-  const head = ["Evaluation", ...input.variables.map(({ pointer }) => inputLabel(pointer)), ...found.objectives.map(({ label, ...rest }) => `${label}, ${unitOf({ unit: "", ...rest })}`)];
+  const head = ["Evaluation", ...input.variables.map(({ pointer }) => inputLabel(pointer)), ...found.objectives.map((objective) => `${objective.label}, ${unitOf(objective)}`)];
   table.tHead?.replaceChildren(el("tr", {}, ...head.map((text) => el("th", { scope: "col" }, text))));
   const sign = found.objectives[0]?.goal === "maximise" ? -1 : 1;
   const feasible = found.points.map((row, position) => ({ row, position })).filter(({ row }) => row.violation === 0 && row.objectives && OF_DESIGNS.includes(String(row.phase)));

@@ -40,7 +40,7 @@ pub(in crate::study) struct Evaluator<'a> {
 /// Positions of the contact analysis during a search, instead of as many as an accuracy asks for: those make small
 /// steps.
 pub(in crate::study) const SEARCH_POSITIONS: u32 = 32;
-/// Accuracy of the contact during a search: the tables of the mesh force take a third of the time of those of the usual
+/// Accuracy of the contact during a search: the tables of the mesh force take less than half of the time of the usual
 /// accuracy and move accelerations by about one per cent.
 pub(in crate::study) const SEARCH_ACCURACY: f64 = 0.01;
 
