@@ -29,6 +29,36 @@ async fn the_check_shows_contact_ratios_while_typing() {
 }
 
 #[tokio::test]
+async fn an_input_is_varied_from_its_field() {
+    flow(async |browser| {
+        browser.open("/").await;
+        browser.until(GOOD).await;
+        browser.choose("[data-pointer='/kind'] select", "optimise").await;
+        browser.until("!document.querySelector('#vary').hidden").await;
+        browser.click("[data-pointer='/design/helix_angle_deg'] .vary").await;
+        browser.until("document.querySelectorAll('#vary-rows tr').length === 1").await;
+        let found = document(browser).await;
+        let angle = found["design"]["helix_angle_deg"].as_f64().unwrap();
+        let variable = &found["variables"][0];
+        assert_eq!(variable["pointer"], "/design/helix_angle_deg");
+        assert_eq!([&variable["from"], &variable["to"]], [&json!(0.5 * angle), &json!(1.5 * angle)]);
+        // A bound that is typed, and the list emptied again.
+        let type_bound = "(() => { const input = document.querySelector('#vary-rows input'); input.value = '20'; \
+            input.dispatchEvent(new Event('change', { bubbles: true })); return true; })()";
+        browser.value(type_bound).await;
+        browser
+            .until("JSON.parse(document.querySelector('#document-text').textContent).variables[0].from === 20")
+            .await;
+        browser.click("#vary-rows button").await;
+        browser.until("document.querySelectorAll('#vary-rows tr').length === 0").await;
+        assert!(document(browser).await.get("variables").is_none());
+        browser.choose("[data-pointer='/kind'] select", "response").await;
+        browser.until("document.querySelector('#vary').hidden && !document.querySelector('.vary')").await;
+    })
+    .await;
+}
+
+#[tokio::test]
 async fn an_invalid_field_is_marked_with_the_servers_message() {
     flow(async |browser| {
         browser.open("/").await;

@@ -158,6 +158,7 @@ fn evaluations(document: &mut Value) {
         "budget",
         "method",
         "tolerances",
+        "correlations",
         "measures",
         "limits",
         "samples",

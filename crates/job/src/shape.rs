@@ -27,6 +27,7 @@ impl JobDocument {
             method: None,
             tolerances: Vec::new(),
             measures: Vec::new(),
+            correlations: Vec::new(),
             limits: Vec::new(),
             samples: None,
             sampling: None,

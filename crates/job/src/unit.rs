@@ -51,7 +51,7 @@ const fn other(suffix: &'static str, text: &'static str, size: f64, quantity: Un
 }
 
 /// Every unit; a longer ending stands before one that ends it.
-pub static UNITS: [Unit; 58] = [
+pub static UNITS: [Unit; 59] = [
     declared("_n_per_mm_um", "N/(mm um)", "N/(mm·µm)", 1e9, LineStiffness),
     declared("_nms_per_rad", "N m s/rad", "N·m·s/rad", 1.0, TorsionalDamping),
     declared("_nm_per_rad", "N m/rad", "N·m/rad", 1.0, TorsionalStiffness),
@@ -107,6 +107,8 @@ pub static UNITS: [Unit; 58] = [
     other("_cm", "cm", 1e-2, Length),
     other("_m", "m", 1.0, Length),
     declared("_n", "N", "N", 1.0, Force),
+    // A name that is the unit: times of the service, none of the gears.
+    declared("seconds", "s", "s", 1.0, Number),
     declared("", "1", "", 1.0, Number),
     declared("", "SI", "SI units", 1.0, Number),
     declared("", "unit of the input", "in its unit", 1.0, Number),

@@ -70,3 +70,27 @@ pub fn knee(front: &[Vec<f64>]) -> Option<usize> {
     };
     (0..front.len()).min_by(|a, b| distance(&front[*a]).total_cmp(&distance(&front[*b])))
 }
+
+/// Volume of the points of the unit cube that are dominated by gains: the union of the boxes from no gain to each of
+/// them, cut at 0 and 1. Of two or three objectives; of one the largest gain. By slices along the last objective.
+pub fn hypervolume(gains: &[Vec<f64>]) -> f64 {
+    let cut: Vec<Vec<f64>> = gains.iter().map(|gain| gain.iter().map(|part| part.clamp(0.0, 1.0)).collect()).collect();
+    volume(cut)
+}
+
+fn volume(mut boxes: Vec<Vec<f64>>) -> f64 {
+    let Some(last) = boxes.first().map(|first| first.len().saturating_sub(1)) else { return 0.0 };
+    boxes.sort_by(|a, b| b[last].total_cmp(&a[last]));
+    if last == 0 {
+        return boxes[0][0];
+    }
+    let mut sum = 0.0;
+    for (index, gain) in boxes.iter().enumerate() {
+        let below = boxes.get(index + 1).map_or(0.0, |next| next[last]);
+        if gain[last] > below {
+            let slice = boxes[..=index].iter().map(|gain| gain[..last].to_vec()).collect();
+            sum += (gain[last] - below) * volume(slice);
+        }
+    }
+    sum
+}

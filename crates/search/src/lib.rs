@@ -19,9 +19,9 @@ pub mod statistics;
 mod tests;
 
 pub use cma_es::CmaEs;
-pub use front::{crowded_front, knee};
+pub use front::{crowded_front, hypervolume, knee};
 pub use nelder_mead::NelderMead;
-pub use normal::{normal_distribution, normal_quantile};
+pub use normal::{correlated, normal_distribution, normal_quantile};
 pub use random::CounterRandom;
 pub use score::Score;
 pub use search::{Batch, Method, Phase, Search, SearchSettings, StoppedBy};

@@ -115,3 +115,19 @@ pub fn normal_distribution(x: f64) -> f64 {
     }
     0.5 * (low + high)
 }
+
+/// Numbers of (0, 1), independent and uniform, made dependent: their normal scores have the correlation `correlation`
+/// each with each other one, and each number is uniform still. By the symmetric root of the matrix of correlations,
+/// √(1 − ρ) (1 − J/k) + √(1 + (k − 1) ρ) J/k with the matrix J of ones. `correlation` from −1/(k − 1) to 1.
+pub fn correlated(numbers: &[f64], correlation: f64) -> Vec<f64> {
+    let count = numbers.len().max(1) as f64;
+    let apart = (1.0 - correlation).max(0.0).sqrt();
+    let together = (1.0 + (count - 1.0) * correlation).max(0.0).sqrt();
+    let scores: Vec<f64> = numbers.iter().map(|number| normal_quantile(*number)).collect();
+    let mean = scores.iter().sum::<f64>() / count;
+    let least = f64::EPSILON;
+    scores
+        .iter()
+        .map(|score| normal_distribution(apart * (score - mean) + together * mean).clamp(least, 1.0 - least))
+        .collect()
+}

@@ -25,6 +25,11 @@ impl Polish {
         Self { steps: steps.to_vec(), best: (point, None), rounds: 0 }
     }
 
+    /// The grid point nearest to `start` alone.
+    pub(crate) fn nearest(start: &[f64], steps: &[f64]) -> Self {
+        Self { rounds: ROUNDS, ..Self::new(start, steps) }
+    }
+
     /// The points to be evaluated next; none when it has ended.
     pub(crate) fn ask(&self) -> Vec<Vec<f64>> {
         if self.best.1.is_none() {

@@ -33,6 +33,8 @@ pub struct SearchSettings {
     pub accuracy: f64,
     /// Method of the runs.
     pub method: Method,
+    /// Whether the known point is to be refined: a small run from it, without a first sample and without further runs.
+    pub refines: bool,
 }
 
 impl SearchSettings {
@@ -73,6 +75,8 @@ pub enum StoppedBy {
     Tolerance,
     /// The evaluations were used up.
     Budget,
+    /// The caller ended it.
+    Caller,
 }
 
 /// A search in progress.
@@ -88,6 +92,8 @@ pub struct Search {
     asked: Vec<Vec<f64>>,
     generation: u64,
     runs: u64,
+    /// Points of the first sample, apart from each other, from which simplices start, the best first.
+    starts: Vec<usize>,
     stopped_by: StoppedBy,
     /// Spread of the run after each batch; none outside of runs.
     spread: Option<f64>,
@@ -116,13 +122,26 @@ struct Evolution {
 struct Simplex {
     nelder_mead: NelderMead,
     before: Score,
+    /// Size at which it ends.
+    ends_at: f64,
+    /// Whether it is one of the last runs, which end the search where they find nothing better.
+    is_last: bool,
 }
 
 /// First standard deviation of CMA-ES, and first size of a simplex.
 const SIGMA: f64 = 0.25;
 const SIMPLEX: f64 = 0.12;
-/// Sizes of a simplex that starts again at the best point.
+/// Size at which the first simplex ends, before others look elsewhere.
+const FIRST_END: f64 = 1e-4;
+/// Sizes of the simplices that look elsewhere, from points of the first sample that are apart from each other, at the
+/// start and at the end.
+const ELSEWHERE: f64 = 0.08;
+const ELSEWHERE_END: f64 = 0.02;
+const APART: f64 = 0.12;
+/// Size of a simplex that starts again at the best point.
 const SMALL_SIMPLEX: f64 = 0.03;
+/// First standard deviation of a search that refines.
+const REFINING_SIGMA: f64 = 0.1;
 /// Part of the evaluations that is kept for the grid at most.
 const POLISH_PART: usize = 4;
 
@@ -138,6 +157,7 @@ impl Search {
             asked: Vec::new(),
             generation: 0,
             runs: 0,
+            starts: Vec::new(),
             stopped_by: StoppedBy::Budget,
             spread: None,
         }
@@ -181,6 +201,21 @@ impl Search {
     fn limit_of_runs(&self) -> usize {
         let all = self.settings.evaluations;
         all - (4 * self.n() + 1).min(all / POLISH_PART)
+    }
+
+    /// Ends the search before its time: what is left is the grid point next to the best point.
+    pub fn stop(&mut self) {
+        if matches!(self.step, Step::End) {
+            return;
+        }
+        self.stopped_by = StoppedBy::Caller;
+        self.spread = None;
+        self.step = match self.ranked().first() {
+            Some(&best) if !self.is_on_grid(&self.archive[best].0) => {
+                Step::Polish(Polish::nearest(&self.archive[best].0, &self.settings.steps))
+            }
+            _ => Step::End,
+        };
     }
 
     /// The next points; `None` at the end.
@@ -240,6 +275,7 @@ impl Search {
         }
         self.generation += 1;
         match std::mem::replace(&mut self.step, Step::End) {
+            Step::Start if self.settings.refines => self.begin_run(),
             Step::Start => self.step = Step::Sample,
             Step::Sample => self.begin_run(),
             Step::Evolution(run) => self.go_on_with_evolution(run, scores),
@@ -269,20 +305,20 @@ impl Search {
         self.runs += 1;
         let order = self.ranked();
         if self.uses_simplex() {
-            let best = order[0];
-            // The second run starts from the second best region, the others again from the best point.
-            let is_apart = |index: &&usize| {
-                let distance = |(a, b): (&f64, &f64)| (a - b).abs();
-                self.archive[**index].0.iter().zip(&self.archive[best].0).map(distance).fold(0.0, f64::max) > SIMPLEX
-            };
-            let (from, size) = match run {
-                0 => (best, SIMPLEX),
-                1 => (order.iter().find(is_apart).copied().unwrap_or(best), SIMPLEX),
-                _ => (best, SMALL_SIMPLEX),
+            if run == 0 {
+                self.starts = self.starts_apart(&order);
+            }
+            let end = self.least_spread();
+            let start = usize::try_from(run).ok().and_then(|run| self.starts.get(run).copied());
+            let has_room = self.archive.len() + 20 * self.n() < self.limit_of_runs();
+            let (from, size, ends_at, is_last) = match start {
+                Some(start) if run == 0 && !self.settings.refines => (start, SIMPLEX, end.max(FIRST_END), false),
+                Some(start) if has_room && !self.settings.refines => (start, ELSEWHERE, end.max(ELSEWHERE_END), false),
+                _ => (order[0], SMALL_SIMPLEX, end, true),
             };
             let (point, score) = &self.archive[from];
             let nelder_mead = NelderMead::new(point, *score, size);
-            self.step = Step::Simplex(Simplex { nelder_mead, before });
+            self.step = Step::Simplex(Simplex { nelder_mead, before, ends_at, is_last });
             return;
         }
         let usual = CmaEs::usual_candidates(self.n());
@@ -295,8 +331,24 @@ impl Search {
             let mut random = CounterRandom::new(self.settings.seed, &[1, run]);
             ((0..self.n()).map(|_| random.uniform()).collect(), usual << run.min(6))
         };
-        let cma_es = CmaEs::new(&start, SIGMA, candidates, self.settings.seed, 2 + run);
+        let sigma = if self.settings.refines { REFINING_SIGMA } else { SIGMA };
+        let cma_es = CmaEs::new(&start, sigma, candidates, self.settings.seed, 2 + run);
         self.step = Step::Evolution(Box::new(Evolution { cma_es, bests: Vec::new(), before }));
+    }
+
+    /// The best points of the first sample that are apart from each other: one, and two more for each variable.
+    fn starts_apart(&self, order: &[usize]) -> Vec<usize> {
+        let mut starts: Vec<usize> = Vec::new();
+        for &index in order {
+            let is_apart = |other: &usize| {
+                let [a, b] = [index, *other].map(|at| &self.archive[at].0);
+                a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) > APART
+            };
+            if starts.len() <= 2 * self.n() && starts.iter().all(is_apart) {
+                starts.push(index);
+            }
+        }
+        starts
     }
 
     /// True if a run has improved on what was known before by more than rounding.
@@ -320,10 +372,10 @@ impl Search {
         objectives.get(objectives.len() / 2).map_or(0.0, |median| (median - best).abs().min(best.abs()))
     }
 
-    fn end_run(&mut self, before: Score) {
-        // A first run of the simplex is confirmed by a second from elsewhere.
-        let is_confirmed = self.runs > 1 && self.least.is_feasible() && !self.has_improved(before);
-        if is_confirmed {
+    /// Ends the search where a run, `is_last` of its kind, has found nothing better; else begins the next one.
+    fn end_run(&mut self, before: Score, is_last: bool) {
+        let is_confirmed = is_last && self.least.is_feasible() && !self.has_improved(before);
+        if is_confirmed || self.settings.refines {
             self.stopped_by = StoppedBy::Tolerance;
             self.begin_polish();
         } else {
@@ -345,7 +397,7 @@ impl Search {
             most - least <= self.settings.accuracy * self.range_of_objectives()
         });
         if run.cma_es.spread() < self.least_spread() || is_flat {
-            self.end_run(run.before);
+            self.end_run(run.before, self.runs > 1);
         } else {
             self.step = Step::Evolution(run);
         }
@@ -367,8 +419,8 @@ impl Search {
         let [best, worst] = run.nelder_mead.extremes();
         // Rounding is all that is left where every corner has the same objective.
         let is_level = run.nelder_mead.is_complete() && best.is_feasible() && best.objective == worst.objective;
-        if run.nelder_mead.is_complete() && (run.nelder_mead.size() < self.least_spread() || is_level) {
-            self.end_run(run.before);
+        if run.nelder_mead.is_complete() && (run.nelder_mead.size() < run.ends_at || is_level) {
+            self.end_run(run.before, run.is_last);
         } else {
             self.step = Step::Simplex(run);
         }

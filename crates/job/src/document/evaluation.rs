@@ -76,6 +76,12 @@ pub(super) fn of_some_kinds_only(document: &mut JobDocument, place: &ObjectPlace
             "tolerance, or optimise with robust",
         ),
         ("measures", !document.measures.is_empty(), tolerates, "tolerance"),
+        (
+            "correlations",
+            !document.correlations.is_empty(),
+            tolerates || (optimises && robust),
+            "tolerance, or optimise with robust",
+        ),
         ("limits", !document.limits.is_empty(), tolerates, "tolerance"),
         ("samples", document.samples.is_some(), tolerates, "tolerance"),
         ("sampling", document.sampling.is_some(), tolerates, "tolerance"),

@@ -8,6 +8,7 @@ mod analysis;
 mod arrangement;
 mod design;
 mod evaluation;
+mod halves;
 mod model;
 mod optimise;
 mod shafts;
@@ -31,7 +32,7 @@ pub use model::{
 };
 pub use optimise::{
     BudgetInput, CONFIRMED, ConstraintInput, GoalInput, MAX_CONSTRAINTS, MAX_OBJECTIVES, MAX_VARIABLES, MarginInput,
-    ObjectiveInput, RobustInput, RobustMeasureInput, SearchMethodInput, VariableInput,
+    ObjectiveInput, RelativeToInput, RobustInput, RobustMeasureInput, SPEED_STEPS, SearchMethodInput, VariableInput,
 };
 pub use shafts::{
     BearingAtSpeedInput, BearingInput, CouplingInput, RigidBodyInput, ShaftInertiaInput, ShaftInput, ShaftSegmentInput,
@@ -40,8 +41,8 @@ pub use shafts::{
 pub use sweep::{Axis, AxisPoints, Continuation, MAX_SWEEP_POINTS, Recorded, Spacing};
 pub use sweep_point::SweepPointInput;
 pub use tolerance::{
-    DistributionInput, LimitInput, MAX_MEASURES, MAX_SAMPLES, MAX_TOLERANCES, MORRIS_TRAJECTORIES, MeasureInput,
-    SCRAMBLES, SamplingInput, SensitivityInput, ToleranceInput,
+    CorrelationInput, DistributionInput, HalvesScatterInput, LimitInput, MAX_MEASURES, MAX_SAMPLES, MAX_TOLERANCES,
+    MORRIS_TRAJECTORIES, MeasureInput, SCRAMBLES, SamplingInput, SensitivityInput, ToleranceInput,
 };
 
 use super::field::{Input, Slot};
@@ -146,6 +147,10 @@ pub struct JobDocument {
     #[input(min_items = 1, max_items = MAX_TOLERANCES, group = "evaluations", when = "kind = optimise tolerance")]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tolerances: Vec<ToleranceInput>,
+    /// tolerance, and optimise with robust: inputs of tolerances that deviate in company.
+    #[input(min_items = 1, max_items = MAX_TOLERANCES, group = "evaluations", when = "kind = optimise tolerance")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub correlations: Vec<CorrelationInput>,
     /// tolerance: quantities of which the scatter is wanted.
     #[input(min_items = 1, max_items = MAX_MEASURES, group = "evaluations", when = "kind = tolerance")]
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -180,6 +185,8 @@ fn document_rules(document: &mut JobDocument, place: &ObjectPlace) {
     evaluation::of_some_kinds_only(document, place);
     tolerance::fill_classes(document, place);
     tolerance::tolerance_rules(document, place);
+    halves::correlation_rules(document, place);
+    halves::separate(document, place);
     let MeshStiffness::Ltca(ltca) = &document.model.mesh_stiffness else { return };
     if document.design.shafts.is_some() && ltca.body == BodyInput::Bore && ltca.fidelity != Fidelity::Uniform {
         place.conflict(

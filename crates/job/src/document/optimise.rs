@@ -12,6 +12,8 @@ pub const MAX_OBJECTIVES: usize = 3;
 pub const MAX_CONSTRAINTS: usize = 32;
 /// Best designs of a search that are evaluated once more with the settings of the document.
 pub const CONFIRMED: usize = 10;
+/// Neighbouring speeds at which the best design is evaluated.
+pub const SPEED_STEPS: usize = 4;
 
 /// An input that varies between two values.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
@@ -50,6 +52,13 @@ pub enum GoalInput {
     Target,
 }
 
+/// What the value of an objective is divided by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
+pub enum RelativeToInput {
+    /// The value of the document as it is given, at the same operating point.
+    Input,
+}
+
 /// A quantity that is to be small, large or near to a value.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 pub struct ObjectiveInput {
@@ -69,6 +78,10 @@ pub struct ObjectiveInput {
     #[input(unit = "unit of the input", min = -1e12, max = 1e12)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<f64>,
+    /// input: at each operating point the measure is divided by its value for the document as it is given, so that no point counts more
+    /// because its values are larger; the objective is a ratio then, 1 for the input.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative_to: Option<RelativeToInput>,
 }
 
 /// Margin of the pair to what is warned of or refused; of both gears, the smaller one.
@@ -129,6 +142,11 @@ pub struct BudgetInput {
     /// Spread of the search, as a part of the variables' ranges, at which it ends.
     #[input(min = 1e-12, max = 0.1, default = 1e-4)]
     pub accuracy: f64,
+    /// Time after which the search ends with the best design so far; no limit when null. How far a search comes in a time depends on the
+    /// machine and its load: rows and result of equal documents can differ.
+    #[input(unit = "s", min = 1.0, max = 1e6)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
 }
 
 /// Method of the search.
@@ -173,6 +191,13 @@ pub struct RobustInput {
     /// Points of another sample for the numbers of the input and of the winner.
     #[input(min = 8, max = 8192, default = 256)]
     pub confirm_samples: u32,
+    /// Whether a further search, on the statistic itself over the common sample, starts from the winner.
+    #[input(default = false)]
+    pub search: bool,
+    /// Most designs of that search, each with the common sample; 40 + 20 for each variable when null.
+    #[input(min = 10, max = 10_000)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub search_designs: Option<u32>,
 }
 
 pub(super) fn rules(document: &mut JobDocument, place: &ObjectPlace) {
@@ -185,9 +210,14 @@ pub(super) fn rules(document: &mut JobDocument, place: &ObjectPlace) {
         3 => 10,
         _ => 1,
     };
-    let budget = document.budget.get_or_insert(BudgetInput { evaluations: None, accuracy: 1e-4 });
+    let budget = document.budget.get_or_insert(BudgetInput { evaluations: None, accuracy: 1e-4, seconds: None });
     budget.evaluations = budget.evaluations.or(Some((usual * searches).min(MAX_EVALUATIONS)));
-    if document.robust.is_some() {
+    if let Some(robust) = &mut document.robust {
+        match (robust.search, robust.search_designs) {
+            (true, None) => robust.search_designs = Some(40 + 20 * document.variables.len() as u32),
+            (false, Some(_)) => place.conflict("robust/search_designs", "is given, but search is not true"),
+            _ => {}
+        }
         require(place, "tolerances", document.tolerances.is_empty(), "robust needs tolerances");
     }
     for (index, variable) in document.variables.iter().enumerate() {
@@ -213,6 +243,9 @@ pub(super) fn rules(document: &mut JobDocument, place: &ObjectPlace) {
     }
     for (index, objective) in document.objectives.iter().enumerate() {
         let at = |name: &str| format!("objectives/{index}/{name}");
+        if objective.relative_to.is_some() && objective.goal == GoalInput::Target {
+            place.conflict(&at("relative_to"), "is given, but a distance from a target has no sense as a ratio");
+        }
         match (objective.goal, objective.target) {
             (GoalInput::Target, None) if !place.is_refused(&at("target")) => {
                 place.missing(&at("target"), "is required for goal target: the value to come near to");

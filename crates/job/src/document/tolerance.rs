@@ -28,6 +28,15 @@ pub enum DistributionInput {
     FixedValues,
 }
 
+/// Whether both halves deviate together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Words)]
+pub enum HalvesScatterInput {
+    /// Both halves have one deviation.
+    Together,
+    /// Each half has its own deviation.
+    Independent,
+}
+
 /// The scatter of an input about its value in the document.
 #[derive(Debug, Clone, PartialEq, Serialize, Input)]
 pub struct ToleranceInput {
@@ -42,6 +51,10 @@ pub struct ToleranceInput {
     #[input(min = -1e6, max = 1e6, min_items = 1, max_items = MAX_ALSO)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub also_factors: Option<Vec<f64>>,
+    /// independent: the left and the right half deviate each for itself. For the modifications of flanks, of which each half can have its
+    /// own; the document as it is solved has a tolerance for each half in place of this one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub halves: Option<HalvesScatterInput>,
     /// Distribution of the deviation, which is added to the value of the document.
     #[input(default = DistributionInput::Normal)]
     pub distribution: DistributionInput,
@@ -74,6 +87,18 @@ pub struct ToleranceInput {
     #[input(unit = "unit of the input", min = -1e9, max = 1e9, min_items = 1, max_items = 10_000)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub values: Option<Vec<f64>>,
+}
+
+/// Inputs that deviate in company.
+#[derive(Debug, Clone, PartialEq, Serialize, Input)]
+pub struct CorrelationInput {
+    /// The inputs, by the pointers of their tolerances; one with independent halves stands for both.
+    #[input(min_items = 1, max_items = MAX_TOLERANCES)]
+    pub pointers: Vec<String>,
+    /// Correlation of each with each other one, of normal deviations; other distributions have it by their normal scores. At least
+    /// -1 / (number of inputs - 1).
+    #[input(min = -1.0, max = 1.0)]
+    pub correlation: f64,
 }
 
 /// A quantity of which the scatter is wanted.
@@ -146,6 +171,10 @@ pub(super) fn rules(document: &mut JobDocument, place: &ObjectPlace) {
             "samples",
             format!("is {samples}; with sampling sobol it is 8 times a power of two: 128, 256, …, 65536"),
         );
+    }
+    let needs_independence = [Some(SensitivityInput::Jansen), Some(SensitivityInput::Morris)];
+    if needs_independence.contains(&document.sensitivity) && !document.correlations.is_empty() {
+        place.conflict("sensitivity", "needs independent inputs, but correlations are given; use from_sample or none");
     }
     if document.sensitivity == Some(SensitivityInput::Jansen) && document.sampling == Some(SamplingInput::Random) {
         place.conflict("sensitivity", "is jansen, which needs sampling sobol");
@@ -241,9 +270,14 @@ impl JobDocument {
                 let search = u64::from(self.budget.as_ref().and_then(|budget| budget.evaluations).unwrap_or_default());
                 // The input, the best ones with the settings of the document, and the samples.
                 let robust = self.robust.as_ref().map_or(0, |robust| {
-                    u64::from(robust.samples) * u64::from(robust.candidates) + 2 * u64::from(robust.confirm_samples)
+                    let designs = robust.search_designs.unwrap_or_default();
+                    u64::from(robust.samples) * (u64::from(robust.candidates) + u64::from(designs))
+                        + u64::from(designs)
+                        + 3 * u64::from(robust.confirm_samples)
                 });
-                1 + search + super::CONFIRMED as u64 + robust
+                // Two for the range of each variable, and the neighbours in speed.
+                let further = 2 * self.variables.len() as u64 + super::SPEED_STEPS as u64;
+                1 + search + super::CONFIRMED as u64 + robust + further
             }
             super::JobKind::Tolerance => {
                 let samples = u64::from(self.samples.unwrap_or_default());

@@ -25,7 +25,8 @@ pub use mesh::{ApexSensitivity, ContactForceTable, Convergence, FlankLoad, Mesh,
 pub use numerics::{NotFinite, NumericsResult, WallMs};
 pub use optimise::{
     ActiveLimit, BestDesign, ConstraintResult, Flatness, FrontDesign, InputDesign, ObjectiveResult, OptimiseResult,
-    PointGain, RobustCandidate, RobustResult, RobustStatistics, SearchHistory, SearchNumerics,
+    PointGain, RobustCandidate, RobustResult, RobustSearch, RobustStatistics, SearchHistory, SearchNumerics,
+    SpeedNeighbour,
 };
 pub use quantity::{Change, Quantity, QuantityKind, gear_data_quantities, quantities};
 pub use response::{

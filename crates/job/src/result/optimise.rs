@@ -21,6 +21,9 @@ pub struct OptimiseResult {
     pub active: Vec<ActiveLimit>,
     /// Range of each variable among the evaluated designs whose first objective is within 2 % of the best.
     pub flatness: Vec<Flatness>,
+    /// The best design at neighbouring speeds: how near it stands to a jump. Empty without a response, and where the speed is a variable.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub neighbours: Vec<SpeedNeighbour>,
     pub history: SearchHistory,
     /// With several objectives: designs none of which is better in every objective, along the first one.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
@@ -67,6 +70,9 @@ pub struct ObjectiveResult {
     /// `minimise`, `maximise` or `target`; over the operating points `worst`, `mean`, `rms` or `weighted`.
     pub goal: String,
     pub over: String,
+    /// `input`: input and best are ratios to the values of the input, those of the operating points are not.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub relative_to: Option<String>,
     /// Value of the input and of the best design: of goal target the distance from it.
     pub input: Option<f64>,
     pub best: Option<f64>,
@@ -124,6 +130,23 @@ pub struct Flatness {
     pub range_within_2_percent: [f64; 2],
     /// Designs within 2 %.
     pub designs: u32,
+    /// By how much the first objective is worse, in per cent, with this variable alone at the lower and the upper end of the range: more
+    /// than 2 where the variables have to move together. Null at the best value itself, and where the design is infeasible.
+    #[serde(default)]
+    pub rise_at_ends_percent: [Option<f64>; 2],
+}
+
+/// The best design at another speed.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+pub struct SpeedNeighbour {
+    /// Speed of every operating point over that of the document, in per cent, less 100.
+    pub speed_percent: f64,
+    /// First objective; null where it could not be evaluated.
+    pub objective: Option<f64>,
+    /// Whether a jump lies between this speed and the next one towards the speed of the document: the measure of a point changes by more than
+    /// a half.
+    pub jump: bool,
 }
 
 /// The course of the search, an entry for each batch of evaluations.
@@ -136,6 +159,10 @@ pub struct SearchHistory {
     pub best: Vec<Option<f64>>,
     /// Spread of the search, as a part of the ranges; null outside of runs.
     pub sigma: Vec<Option<f64>>,
+    /// With several objectives: part of the improvements up to nothing that the designs so far reach (hypervolume of the front against the
+    /// input, in units of the input's values); empty where the input has no values.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub hypervolume: Vec<f64>,
 }
 
 /// A design of the front.
@@ -161,8 +188,27 @@ pub struct RobustResult {
     pub sample: u32,
     pub input: Option<RobustStatistics>,
     pub best: Option<RobustStatistics>,
+    /// The best design without deviations, where it is not the winner.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub nominal_best: Option<RobustStatistics>,
+    /// The search on the statistic, where it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub search: Option<RobustSearch>,
     /// Improvement of the statistic in per cent of the input's.
     pub gain_percent: Option<f64>,
+}
+
+/// The search on the statistic over the common sample.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema))]
+pub struct RobustSearch {
+    /// Designs that were tried.
+    pub designs: u32,
+    /// The statistic over the common sample, of the best candidate before and of the best design after.
+    pub before: Option<f64>,
+    pub after: Option<f64>,
+    /// Why it ended: as in numerics.
+    pub stopped_by: String,
 }
 
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -199,11 +245,14 @@ pub struct SearchNumerics {
     pub failed: u32,
     /// Batches of evaluations.
     pub generations: u32,
-    /// `tolerance` (further runs found nothing better) or `budget`.
+    /// `tolerance` (further runs found nothing better), `budget` or `time`.
     pub stopped_by: String,
     /// `cma_es` or `nelder_mead`.
     pub method: String,
     pub seed: u32,
     /// Positions of the contact analysis during the search, where it differs from that of the document.
     pub search_positions: Option<u32>,
+    /// Accuracy of the contact during the search, where it differs from that of the document.
+    #[serde(default)]
+    pub search_accuracy: Option<f64>,
 }

@@ -14,6 +14,9 @@ pub struct ToleranceResult {
     pub failed: u32,
     /// Values that were cut at the range of their field.
     pub clipped: u32,
+    /// Points that were taken from an earlier study of the same document with other samples.
+    #[serde(default)]
+    pub points_reused: u32,
     pub samples: u32,
     pub sampling: String,
     pub seed: u32,

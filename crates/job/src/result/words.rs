@@ -109,12 +109,20 @@ words! {
         Search = "search",
         /// Neighbours of the best design on the grid.
         Polish = "polish",
+        /// The grid point nearest to the best design, where the time was up.
+        Nearest = "nearest",
         /// The best designs with the settings of the document.
         Confirm = "confirm",
         /// Candidates over the common sample of the tolerances.
         Robust = "robust",
+        /// Designs of the search on the statistic over the tolerances, and their samples.
+        RobustSearch = "robust_search",
         /// Input and winner over another sample.
         RobustConfirm = "robust_confirm",
+        /// The best design with one variable at the end of its range of equally good values.
+        Flatness = "flatness",
+        /// The best design at neighbouring speeds.
+        Speed = "speed",
         /// Samples of the sensitivity.
         Sensitivity = "sensitivity",
     }

@@ -14,6 +14,13 @@ pub fn input_hash(document: &JobDocument) -> String {
     hash("result", &unnamed)
 }
 
+/// Hash of the inputs of a row of a tolerance study: those of the document without its sample and what is made of it.
+pub(super) fn rows_hash(document: &JobDocument) -> String {
+    let mut rows = JobDocument { name: None, label: None, limits: Vec::new(), ..document.clone() };
+    (rows.samples, rows.sampling, rows.sensitivity, rows.seed) = (None, None, None, None);
+    hash("tolerance-rows", &rows)
+}
+
 /// Hash of a contact analysis: the teeth with their errors, the torque and the choices of the model; not speed,
 /// supports, inertias or the analysis of the response.
 pub(super) fn mesh_hash(case: &ContactCase) -> String {

@@ -226,6 +226,7 @@ pub fn solve(job: &CheckedJob, context: &SolveContext) -> Result<Outcome, SolveE
         JobKind::Optimise => {
             let (optimised, reused) = optimise::run(document, stored, context, &memo)?;
             has_reused = reused;
+            result.warnings.extend(optimise::warnings(&optimised));
             result.optimise = Some(optimised);
         }
         JobKind::Tolerance => {
@@ -268,6 +269,8 @@ mod acceptance_tests;
 mod contact_tests;
 #[cfg(test)]
 mod evaluation_tests;
+#[cfg(test)]
+mod further_evaluation_tests;
 #[cfg(test)]
 mod limits_tests;
 #[cfg(test)]

@@ -108,6 +108,11 @@ pub(super) fn prepare_with(document: &JobDocument, pairs: &Pairs) -> Result<Prep
     Ok(Prepared { warnings: prepared.warnings.iter().cloned().chain(bounds).collect(), ..prepared })
 }
 
+/// Why the pair of a document cannot exist; nothing of one that does.
+pub(super) fn infeasibilities(document: &JobDocument) -> Vec<gear::Infeasibility> {
+    Pair::new(&pair_spec(document, &mut Vec::new())).err().unwrap_or_default()
+}
+
 fn pair_spec(document: &JobDocument, warnings: &mut Vec<Warning>) -> PairSpec {
     let design = &document.design;
     let helix_angle_rad = design.helix_angle_deg.to_radians();

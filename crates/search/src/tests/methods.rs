@@ -48,8 +48,15 @@ fn f91_rosenbrock_in_six_dimensions() {
 }
 
 fn whole(n: usize, seed: u64, steps: Vec<f64>, evaluations: usize, score: impl Fn(&[f64]) -> Score) -> Search {
-    let settings =
-        SearchSettings { start: vec![0.5; n], steps, seed, evaluations, accuracy: 1e-5, method: Method::Auto };
+    let settings = SearchSettings {
+        start: vec![0.5; n],
+        steps,
+        seed,
+        evaluations,
+        accuracy: 1e-5,
+        method: Method::Auto,
+        refines: false,
+    };
     let mut search = Search::new(settings);
     while let Some(batch) = search.ask() {
         let scores: Vec<_> = batch.points.iter().map(|x| score(x)).collect();
@@ -88,6 +95,7 @@ fn f91_the_edge_of_a_disc() {
                 evaluations: 600,
                 accuracy: 1e-6,
                 method,
+                refines: false,
             };
             let mut search = Search::new(settings);
             while let Some(batch) = search.ask() {
@@ -100,6 +108,27 @@ fn f91_the_edge_of_a_disc() {
             assert!(score.is_feasible() && error.abs() < 2e-3, "{method:?} {seed}: {point:?}, {score:?}");
         }
     }
+}
+
+/// Several valleys with kinks, as of a worst case over operating points: the best one is the narrowest.
+#[test]
+fn the_best_of_several_valleys_is_found() {
+    let valleys = |x: &[f64]| {
+        let valley = |at: [f64; 2], floor: f64, slope: f64| {
+            let along = x[0] - at[0] + 0.5 * (x[1] - at[1]);
+            floor + slope * along.abs().max(0.4 * (x[1] - at[1]).abs())
+        };
+        let wide = valley([0.4, 0.7], 1.5, 8.0).min(valley([0.7, 0.2], 1.7, 6.0));
+        wide.min(valley([0.25, 0.9], 1.2, 12.0))
+    };
+    let found: Vec<(f64, usize)> = (0..20)
+        .map(|seed| {
+            let search = whole(2, seed, vec![0.0; 2], 450, |x| Score::feasible(valleys(x)));
+            (search.archive()[search.best().unwrap()].1.objective, search.archive().len())
+        })
+        .collect();
+    println!("valleys: {found:?}");
+    assert!(found.iter().filter(|(least, _)| *least < 1.01 * 1.2).count() >= 13, "{found:?}");
 }
 
 #[test]

@@ -13,6 +13,7 @@ fn run(problem: &Problem, seed: u64) -> (Option<usize>, usize) {
         evaluations: 6000,
         accuracy: 1e-6,
         method: Method::Auto,
+        refines: false,
     });
     let goal = problem.least + 1e-3 * problem.least.abs();
     let (mut count, mut reached) = (0, None);

@@ -14,6 +14,7 @@ import { initLists } from "./lists.js";
 import { initStart } from "./start.js";
 import { initResets, showWhatIsSet } from "./summary.js";
 import { initSweep } from "./sweep.js";
+import { initVary } from "./vary.js";
 
 const CHECK_AFTER_MS = 250;
 
@@ -312,6 +313,7 @@ initResets(form, changed);
 initLists(form, changed);
 byId("shafts-edit").addEventListener("click", editShafts);
 initSweep(form, { readDocument: () => readDocument(form), changed });
+initVary(form, changed);
 const start = initStart({ fill, read: contents });
 start();
 // What was typed last is kept even where the page is left before its check.

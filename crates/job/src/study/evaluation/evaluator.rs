@@ -2,7 +2,8 @@
 
 use super::inputs::{Inputs, put_point, with_values};
 use super::measure::{Level, Measure};
-use crate::document::{Fidelity, JobDocument, JobKind, MeshStiffness, OperatingPointInput};
+use super::shortfall::shortfall;
+use crate::document::{Fidelity, JobDocument, JobKind, MeshForce, MeshStiffness, OperatingPointInput};
 use crate::result::{JobResult, MeshCurve, SweepPoint};
 use crate::study::check::CheckedJob;
 use crate::study::mesh::MeshMemo;
@@ -39,6 +40,9 @@ pub(in crate::study) struct Evaluator<'a> {
 /// Positions of the contact analysis during a search, instead of as many as an accuracy asks for: those make small
 /// steps.
 pub(in crate::study) const SEARCH_POSITIONS: u32 = 32;
+/// Accuracy of the contact during a search: the tables of the mesh force take less than half of the time of the usual
+/// accuracy and move accelerations by about one per cent.
+pub(in crate::study) const SEARCH_ACCURACY: f64 = 0.01;
 
 impl<'a> Evaluator<'a> {
     pub(in crate::study) fn new(
@@ -59,15 +63,32 @@ impl<'a> Evaluator<'a> {
         Self { base, points, measures, level, context, memo }
     }
 
-    /// The base with fixed positions of the contact analysis; `None` where that changes nothing.
+    /// The base with fixed positions of the contact analysis, and coarser tables of the mesh force; `None` where that
+    /// changes nothing.
     pub(in crate::study) fn coarse_base(&self) -> Option<JobDocument> {
         let mut base = self.base.clone();
+        let has_tables = self.level == Level::Response && base.model.mesh_force == MeshForce::Contact;
+        // Bodies displaced by shafts have coarser tables already.
+        let is_alone = base.design.shafts.is_none();
         let MeshStiffness::Ltca(ltca) = &mut base.model.mesh_stiffness else { return None };
-        if self.level == Level::Geometry || ltca.positions.is_some() {
-            return None;
+        if self.level > Level::Geometry && ltca.positions.is_none() {
+            ltca.positions = Some(SEARCH_POSITIONS);
         }
-        ltca.positions = Some(SEARCH_POSITIONS);
-        Some(base)
+        if has_tables && is_alone {
+            ltca.accuracy = ltca.accuracy.max(SEARCH_ACCURACY);
+        }
+        (base.model != self.base.model).then_some(base)
+    }
+
+    /// The same at other speeds: those of all operating points times a factor.
+    pub(in crate::study) fn at_speeds(&self, factor: f64) -> Self {
+        let scaled = |point: &OperatingPointInput| OperatingPointInput {
+            pinion_speed_rpm: point.pinion_speed_rpm.map(|speed_rpm| factor * speed_rpm),
+            ..point.clone()
+        };
+        let mut base = self.base.clone();
+        base.operation.pinion_speed_rpm *= factor;
+        Self { base, points: self.points.iter().map(scaled).collect(), ..*self }
     }
 
     /// The operating points: speed in r/min and torque in N m of each.
@@ -105,10 +126,8 @@ impl<'a> Evaluator<'a> {
         };
         let jobs = match self.jobs(base, inputs, values) {
             Ok(jobs) => jobs,
-            Err(error) => {
-                let count = count(&error);
-                return Ok(failed(&error.into(), 1.0 + count));
-            }
+            // Worse than a pair that exists, and the worse the farther it is from one.
+            Err((error, missing)) => return Ok(failed(&error.into(), 2.0 + missing)),
         };
         let count = self.points.len();
         let mut found: Vec<Option<f64>> = vec![None; self.measures.len() * count];
@@ -144,12 +163,25 @@ impl<'a> Evaluator<'a> {
         Ok(Outcome { measures, violation: 0.0, error: None, row: first })
     }
 
-    fn jobs(&self, base: &JobDocument, inputs: &[Inputs], values: &[f64]) -> Result<Vec<CheckedJob>, DocumentError> {
-        let document = with_values(base.clone(), inputs, values)?;
+    /// The jobs of all operating points; or what is wrong with the document, and how far it is from one that exists.
+    fn jobs(
+        &self,
+        base: &JobDocument,
+        inputs: &[Inputs],
+        values: &[f64],
+    ) -> Result<Vec<CheckedJob>, (DocumentError, f64)> {
+        let document = with_values(base.clone(), inputs, values).map_err(|error| {
+            let missing = count(&error);
+            (error, missing)
+        })?;
         let at_point = |point: &OperatingPointInput| {
             let mut document = document.clone();
             put_point(&mut document, point);
-            CheckedJob::of_point(document, &self.memo.pairs)
+            let missing = |error: DocumentError| {
+                let missing = shortfall(&document).unwrap_or_else(|| count(&error));
+                (error, missing)
+            };
+            CheckedJob::of_point(document.clone(), &self.memo.pairs).map_err(missing)
         };
         self.points.iter().map(at_point).collect()
     }

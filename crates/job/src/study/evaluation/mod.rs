@@ -9,11 +9,12 @@ mod evaluator;
 mod inputs;
 mod measure;
 mod rows;
+mod shortfall;
 
 pub(super) use check::{Found, check_measure, check_pointers};
-pub(super) use evaluator::{Evaluator, Outcome, SEARCH_POSITIONS};
+pub(super) use evaluator::{Evaluator, Outcome, SEARCH_ACCURACY, SEARCH_POSITIONS};
 pub(super) use inputs::Inputs;
-pub(super) use measure::{Measure, reduce};
+pub(super) use measure::{Level, Measure, reduce};
 pub(super) use rows::{Rows, Task};
 
 pub use inputs::{document_at, document_of_input};

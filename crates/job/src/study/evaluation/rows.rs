@@ -29,6 +29,8 @@ pub(in crate::study) struct Rows<'a> {
     expected: usize,
     /// Rows of the same values and settings, which need not be solved again.
     known: HashMap<(u8, Vec<u64>), usize>,
+    /// Rows of an earlier job with the settings 0, by their values.
+    earlier: HashMap<Vec<u64>, SweepPoint>,
     pub has_reused: bool,
     /// Positions that are to be evaluated; all when there are none. The rows of the others are empty.
     wanted: Option<HashSet<usize>>,
@@ -48,6 +50,7 @@ impl<'a> Rows<'a> {
             rows: Vec::new(),
             expected: expected.max(1) as usize,
             known: HashMap::new(),
+            earlier: HashMap::new(),
             has_reused,
             wanted: None,
             done: 0,
@@ -60,9 +63,26 @@ impl<'a> Rows<'a> {
         Self { wanted: Some(positions.iter().copied().collect()), ..rows }
     }
 
+    /// Gives rows of an earlier job with the settings 0 and of nothing but values.
+    pub(in crate::study) fn know(&mut self, rows: Vec<SweepPoint>) {
+        self.earlier = rows.into_iter().map(|row| (bits(&row.values), row)).collect();
+    }
+
+    /// Position of the first stored row of one of these phases: where an earlier attempt had ended what comes before
+    /// them.
+    pub(in crate::study) fn first_stored(&self, phases: &[EvaluationPhase]) -> Option<usize> {
+        let is_of = |row: &SweepPoint| row.phase.is_some_and(|phase| phases.contains(&phase));
+        self.stored.iter().filter(|(_, row)| is_of(row)).map(|(position, _)| *position).min()
+    }
+
     /// Rows so far.
     pub(in crate::study) fn len(&self) -> usize {
         self.rows.len()
+    }
+
+    /// Number of the batch that follows.
+    pub(in crate::study) fn next_generation(&self) -> u32 {
+        self.rows.last().and_then(|row| row.generation).unwrap_or(0) + 1
     }
 
     /// Evaluates tasks side by side, in any order; their rows follow those of before in the order of the tasks.
@@ -84,6 +104,7 @@ impl<'a> Rows<'a> {
         };
         let progress = AtomicUsize::new(self.done);
         let (stored, rows, known, wanted) = (&self.stored, &self.rows, &self.known, &self.wanted);
+        let earlier = &self.earlier;
         let count = || {
             let done = progress.fetch_add(1, Ordering::Relaxed) + 1;
             (self.context.progress)(Stage::Evaluations, (done as f64 / self.expected as f64).min(1.0));
@@ -103,8 +124,13 @@ impl<'a> Rows<'a> {
                 return Ok(row.clone());
             }
             // Among positions apart, the row of the same values may be an empty one.
-            let mut row = match known.get(&key(task)).filter(|_| wanted.is_none()) {
-                Some(known) => rows[*known].clone(),
+            let of_same_values = known.get(&key(task)).filter(|_| wanted.is_none()).map(|known| &rows[*known]);
+            let of_earlier = || {
+                let is_plain = settings == 0 && task.further.is_empty();
+                if is_plain { earlier.get(&bits(&task.values)) } else { None }
+            };
+            let mut row = match of_same_values.or_else(of_earlier) {
+                Some(known) => known.clone(),
                 None => {
                     let outcome = evaluate(task)?;
                     let mut row = outcome.row.clone();
@@ -129,4 +155,8 @@ impl<'a> Rows<'a> {
         }
         Ok(first..self.rows.len())
     }
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
 }

@@ -8,7 +8,7 @@ use crate::result::{
     ActiveLimit, BestDesign, ConstraintResult, Flatness, FrontDesign, InputDesign, ObjectiveResult, OptimiseResult,
     PointGain, SearchNumerics, SweepPoint,
 };
-use crate::study::evaluation::SEARCH_POSITIONS;
+use crate::study::evaluation::{SEARCH_ACCURACY, SEARCH_POSITIONS};
 use herringbone_search::{StoppedBy, crowded_front, knee};
 
 /// Designs of a front that are listed.
@@ -36,6 +36,7 @@ pub(super) fn result(solver: &Solver, rows: &[SweepPoint], course: &Course, best
         constraints: row.map(|row| constraints(problem, row)).unwrap_or_default(),
         active: row.map(|row| active(problem, row)).unwrap_or_default(),
         flatness: row.map(|row| flatness(solver, all, row)).unwrap_or_default(),
+        neighbours: Vec::new(),
         history: course.history.clone(),
         front: front_designs(solver, rows, course),
         robust: None,
@@ -44,16 +45,22 @@ pub(super) fn result(solver: &Solver, rows: &[SweepPoint], course: &Course, best
             infeasible: all.iter().filter(is_infeasible).count() as u32,
             failed: all.iter().filter(|row| row.error.is_some()).count() as u32,
             generations: course.generations,
-            stopped_by: match course.stopped_by {
-                StoppedBy::Tolerance => "tolerance",
-                StoppedBy::Budget => "budget",
-            }
-            .to_owned(),
+            stopped_by: stopped_by(course.stopped_by).to_owned(),
             method: method(solver).to_owned(),
             seed: solver.document.seed.unwrap_or(1),
-            search_positions: course.has_coarse_search.then_some(SEARCH_POSITIONS),
+            search_positions: solver.search_differs(|ltca| f64::from(ltca.positions.unwrap_or(0)), SEARCH_POSITIONS),
+            search_accuracy: solver.search_differs(|ltca| ltca.accuracy, SEARCH_ACCURACY),
         },
         points: Vec::new(),
+    }
+}
+
+/// Why a search ended, as a word.
+pub(super) fn stopped_by(reason: StoppedBy) -> &'static str {
+    match reason {
+        StoppedBy::Tolerance => "tolerance",
+        StoppedBy::Budget => "budget",
+        StoppedBy::Caller => "time",
     }
 }
 
@@ -133,6 +140,7 @@ fn objective(solver: &Solver, index: usize, input: &SweepPoint, best: Option<&Sw
         unit: measure.unit.to_owned(),
         goal: objective.goal.as_word().to_owned(),
         over: objective.over.as_word().to_owned(),
+        relative_to: objective.relative_to.map(|word| word.as_word().to_owned()),
         input,
         best,
         gain_percent: gain(objective.goal, input, best),
@@ -204,7 +212,12 @@ fn flatness(solver: &Solver, rows: &[SweepPoint], best: &SweepPoint) -> Vec<Flat
     let of = |(index, variable): (usize, &crate::document::VariableInput)| {
         let range = good.iter().map(|row| row.values[index]);
         let range = range.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], value| [a.min(value), b.max(value)]);
-        Flatness { pointer: variable.pointer.clone(), range_within_2_percent: range, designs: good.len() as u32 }
+        Flatness {
+            pointer: variable.pointer.clone(),
+            range_within_2_percent: range,
+            designs: good.len() as u32,
+            ..Flatness::default()
+        }
     };
     solver.problem.variables.iter().enumerate().map(of).collect()
 }

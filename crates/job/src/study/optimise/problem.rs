@@ -4,6 +4,7 @@ use crate::document::{ConstraintInput, GoalInput, JobDocument, ObjectiveInput, V
 use crate::study::axes;
 use crate::study::evaluation::{Found, Inputs, Measure, check_measure, check_pointers, reduce};
 use crate::{DocumentError, Violation};
+use std::sync::OnceLock;
 
 /// The problem of a document of kind `optimise`.
 pub(in crate::study) struct Problem<'a> {
@@ -18,6 +19,8 @@ pub(in crate::study) struct Problem<'a> {
     /// Number of operating points, and their shares.
     points: usize,
     shares: Vec<f64>,
+    /// Measures of the document as it is given, once they are known.
+    reference: OnceLock<Vec<f64>>,
 }
 
 impl<'a> Problem<'a> {
@@ -66,7 +69,37 @@ impl<'a> Problem<'a> {
             constraints: &document.constraints,
             points: shares.len().max(1),
             shares: if shares.is_empty() { vec![1.0] } else { shares },
+            reference: OnceLock::new(),
         })
+    }
+
+    /// Takes the measures of the document as it is given, to which objectives may be relative.
+    ///
+    /// # Errors
+    /// Index of an objective that is relative to a value which there is not, or which is 0, and why.
+    pub(in crate::study) fn relate_to(&self, input: Option<&Vec<f64>>) -> Result<(), (usize, String)> {
+        for (index, _) in self.objectives.iter().enumerate().filter(|(_, one)| one.relative_to.is_some()) {
+            let Some(measures) = input else {
+                return Err((index, "the document itself could not be evaluated".to_owned()));
+            };
+            if let Some(at) = self.of_measure(measures, index).iter().position(|value| *value == 0.0) {
+                return Err((index, format!("its value for the document itself is 0 at operating point {at}")));
+            }
+        }
+        if let Some(measures) = input {
+            self.reference.get_or_init(|| measures.clone());
+        }
+        Ok(())
+    }
+
+    /// Values of an objective's measure at the operating points; relative to those of the document if it is so.
+    fn values_of(&self, measures: &[f64], index: usize) -> Vec<f64> {
+        let values = self.of_measure(measures, index);
+        if self.objectives[index].relative_to.is_none() {
+            return values.to_vec();
+        }
+        let reference = self.of_measure(self.reference.get().map_or(measures, Vec::as_slice), index);
+        values.iter().zip(reference).map(|(value, own)| value / own.abs()).collect()
     }
 
     /// Values of the variables at a point of the unit cube, with twelve digits.
@@ -116,9 +149,9 @@ impl<'a> Problem<'a> {
     /// The values of the objectives, as they are shown: of goal target the distance from it.
     pub(in crate::study) fn objectives_of(&self, measures: &[f64]) -> Vec<f64> {
         let value = |(index, objective): (usize, &ObjectiveInput)| {
-            let values = self.of_measure(measures, index);
+            let values = self.values_of(measures, index);
             match objective.goal {
-                GoalInput::Minimise => reduce(values, objective.over, &self.shares),
+                GoalInput::Minimise => reduce(&values, objective.over, &self.shares),
                 GoalInput::Maximise => {
                     let negative: Vec<f64> = values.iter().map(|value| -value).collect();
                     -reduce(&negative, objective.over, &self.shares)

@@ -1,19 +1,35 @@
 //! Choice of the best design by its values over the tolerances.
 
-use super::run::{Course, OWN, SEARCH, Solver};
+use super::outcome::stopped_by;
+use super::run::{AFTER_ROBUST_SEARCH, Course, OWN, SEARCH, Solver};
 use crate::document::{GoalInput, JobDocument, RobustInput, RobustMeasureInput};
 use crate::field::Words;
-use crate::result::{EvaluationPhase, RobustCandidate, RobustResult, RobustStatistics, SweepPoint};
+use crate::result::{EvaluationPhase, RobustCandidate, RobustResult, RobustSearch, RobustStatistics, SweepPoint};
 use crate::study::SolveError;
-use crate::study::evaluation::{Inputs, Rows, Task};
+use crate::study::evaluation::{Rows, Task};
 use crate::study::tolerance::{Scatter, scrambles};
 use herringbone_search::statistics::{mean, percentile, student_t_interval};
-use herringbone_search::{MAX_SOBOL_POINTS, sobol_point};
+use herringbone_search::{MAX_SOBOL_POINTS, Method, Score, Search, SearchSettings, StoppedBy, sobol_point};
 
 /// Least distance of candidates in units of the ranges.
 const APART: f64 = 0.05;
 
-/// Ranks candidates by their statistic over a common sample; returns the numbers and the row of the winner.
+/// What the samples of candidates and designs have in common.
+struct Robust<'a> {
+    solver: &'a Solver<'a>,
+    robust: &'a RobustInput,
+    scatter: Scatter<'a>,
+    /// The settings of the search, and the number by which they are told apart.
+    base: (&'a JobDocument, u8),
+    /// Points of the unit cube of the common sample.
+    common: Vec<Vec<f64>>,
+}
+
+/// A design with its statistic over the common sample.
+type Ranked = (usize, f64, Option<f64>);
+
+/// Ranks candidates by their statistic over a common sample, and searches on from the winner where that is wanted;
+/// returns the numbers and the row of the winner.
 ///
 /// # Errors
 /// [`SolveError::Canceled`].
@@ -23,57 +39,177 @@ pub(super) fn run(
     course: &Course,
     best: Option<usize>,
 ) -> Result<(Option<RobustResult>, Option<usize>), SolveError> {
-    let (Some(robust), Some(_)) = (&solver.document.robust, best) else { return Ok((None, best)) };
+    let (Some(robust), Some(nominal_best)) = (&solver.document.robust, best) else { return Ok((None, best)) };
     let scatter = Scatter::new(solver.document, &solver.evaluator.base);
-    let chosen = candidates(solver, &rows.rows, course, robust.candidates as usize);
     let seed = u64::from(solver.document.seed.unwrap_or(1));
+    let points = |count: u32, sample: u64| -> Vec<Vec<f64>> {
+        let seed = scrambles(seed, sample)[0];
+        let all = 0..count.min(MAX_SOBOL_POINTS);
+        all.map(|index| scatter.in_company(sobol_point(index, scatter.len(), seed))).collect()
+    };
+    let (common, fresh) = (points(robust.samples, 20), points(robust.confirm_samples, 21));
     let base = solver.search_base.map_or((&solver.evaluator.base, OWN), |base| (base, SEARCH));
-    let mut ranked = Vec::new();
-    for at in chosen {
-        let values = rows.rows[at].values.clone();
-        let nominal = solver.oriented(&rows.rows[at]).first().copied().unwrap_or(f64::NAN);
-        let common = points(robust.samples, scatter.len(), scrambles(seed, 20)[0]);
-        let found = sample(solver, rows, &scatter, &values, common, (EvaluationPhase::Robust, base))?;
-        let value = statistic(&found, robust);
-        ranked.push((at, nominal, value));
-    }
-    ranked.sort_by(|a, b| a.2.unwrap_or(f64::INFINITY).total_cmp(&b.2.unwrap_or(f64::INFINITY)));
-    let winner = ranked.first().map(|(at, ..)| *at).or(best);
-    let sign = if solver.problem.objectives[0].goal == GoalInput::Maximise { -1.0 } else { 1.0 };
-    let shown = |value: f64| sign * value;
+    let all = Robust { solver, robust, scatter, base, common };
+    let ranked = all.rank(rows, candidates(solver, &rows.rows, course, robust.candidates as usize))?;
+    let mut winner = ranked.first().map_or(nominal_best, |(at, ..)| *at);
+    let search = match ranked.first() {
+        Some(first) if robust.search => {
+            let (found, at) = all.search(rows, first)?;
+            winner = at;
+            Some(found)
+        }
+        _ => None,
+    };
     // Another sample, with the settings of the document.
     let own = (&solver.evaluator.base, OWN);
-    let fresh = || points(robust.confirm_samples, scatter.len(), scrambles(seed, 21)[0]);
-    let phase = EvaluationPhase::RobustConfirm;
-    let of_input = sample(solver, rows, &scatter, &solver.input_values(), fresh(), (phase, own))?;
-    let of_best = match winner {
-        Some(at) => {
-            let values = rows.rows[at].values.clone();
-            sample(solver, rows, &scatter, &values, fresh(), (phase, own))?
-        }
-        None => Vec::new(),
+    let of_design = |rows: &mut Rows, values: Vec<f64>| {
+        let mut found = all.samples(rows, &[values], &fresh, (EvaluationPhase::RobustConfirm, own))?;
+        Ok::<_, SolveError>(found.pop().unwrap_or_default())
+    };
+    let of_input = of_design(rows, solver.input_values())?;
+    let of_best = of_design(rows, rows.rows[winner].values.clone())?;
+    let of_nominal = match rows.rows[nominal_best].values != rows.rows[winner].values {
+        true => of_design(rows, rows.rows[nominal_best].values.clone())?,
+        false => Vec::new(),
     };
     let (before, after) = (statistic(&of_input, robust), statistic(&of_best, robust));
     let gain_percent = before
         .zip(after)
         .filter(|(before, _)| *before != 0.0)
         .map(|(before, after)| 100.0 * (before - after) / before.abs());
+    let sign = all.sign();
+    let candidate = |(at, nominal, value): Ranked| RobustCandidate {
+        position: at as u64,
+        nominal: sign * nominal,
+        robust: value.map(|value| sign * value),
+    };
     let result = RobustResult {
         measure: robust.measure.as_word().to_owned(),
-        candidates: ranked
-            .into_iter()
-            .map(|(at, nominal, value)| RobustCandidate {
-                position: at as u64,
-                nominal: shown(nominal),
-                robust: value.map(shown),
-            })
-            .collect(),
+        candidates: ranked.into_iter().map(candidate).collect(),
         sample: robust.confirm_samples,
         input: statistics(&of_input, sign),
         best: statistics(&of_best, sign),
+        nominal_best: statistics(&of_nominal, sign),
+        search,
         gain_percent,
     };
-    Ok((Some(result), winner))
+    Ok((Some(result), Some(winner)))
+}
+
+impl Robust<'_> {
+    /// Of a goal to be made large, values that are made small have the other sign.
+    fn sign(&self) -> f64 {
+        if self.solver.problem.objectives[0].goal == GoalInput::Maximise { -1.0 } else { 1.0 }
+    }
+
+    /// Rows by their statistic over the common sample, the best first.
+    fn rank(&self, rows: &mut Rows, chosen: Vec<usize>) -> Result<Vec<Ranked>, SolveError> {
+        let designs: Vec<Vec<f64>> = chosen.iter().map(|at| rows.rows[*at].values.clone()).collect();
+        let found = self.samples(rows, &designs, &self.common, (EvaluationPhase::Robust, self.base))?;
+        let of = |(at, sample): (usize, Vec<Option<f64>>)| {
+            let nominal = self.solver.oriented(&rows.rows[at]).first().copied().unwrap_or(f64::NAN);
+            (at, nominal, statistic(&sample, self.robust))
+        };
+        let mut ranked: Vec<Ranked> = chosen.into_iter().zip(found).map(of).collect();
+        ranked.sort_by(|a, b| a.2.unwrap_or(f64::INFINITY).total_cmp(&b.2.unwrap_or(f64::INFINITY)));
+        Ok(ranked)
+    }
+
+    /// Searches for a smaller statistic over the common sample from a candidate on; returns the row of the best design
+    /// with the settings of the document.
+    fn search(&self, rows: &mut Rows, first: &Ranked) -> Result<(RobustSearch, usize), SolveError> {
+        let (solver, problem) = (self.solver, self.solver.problem);
+        let (start, before) = (first.0, first.2);
+        let mut search = Search::new(SearchSettings {
+            start: problem.point(&rows.rows[start].values),
+            steps: problem.steps(),
+            seed: u64::from(solver.document.seed.unwrap_or(1)) << 8 | 255,
+            evaluations: self.robust.search_designs.unwrap_or_default() as usize,
+            accuracy: solver.document.budget.as_ref().map_or(1e-4, |budget| budget.accuracy),
+            method: Method::CmaEs,
+            refines: true,
+        });
+        let phase = EvaluationPhase::RobustSearch;
+        let mut designs: Vec<Vec<f64>> = Vec::new();
+        while let Some(batch) = search.ask() {
+            let values: Vec<Vec<f64>> = batch.points.iter().map(|point| problem.values(point)).collect();
+            let generation = rows.next_generation();
+            let is_up = search.stopped_by() == StoppedBy::Caller;
+            let of_nominal = if is_up { EvaluationPhase::Nearest } else { phase };
+            let nominal = solver.evaluate(rows, values.clone(), (of_nominal, generation), self.base)?;
+            // Designs that violate a constraint have no sample.
+            let violations: Vec<Option<f64>> = rows.rows[nominal].iter().map(|row| row.violation).collect();
+            let is_feasible = |at: &usize| violations[*at] == Some(0.0);
+            let feasible: Vec<usize> = (0..values.len()).filter(is_feasible).collect();
+            let sampled: Vec<Vec<f64>> = feasible.iter().map(|at| values[*at].clone()).collect();
+            let found = self.samples(rows, &sampled, &self.common, (phase, self.base))?;
+            let mut scores: Vec<Score> =
+                violations.iter().map(|violation| Score::infeasible(violation.unwrap_or(1.0).max(1e-9))).collect();
+            for (at, sample) in feasible.into_iter().zip(found) {
+                scores[at] = statistic(&sample, self.robust).map_or(Score::infeasible(1e-9), Score::feasible);
+            }
+            search.tell(&scores);
+            designs.extend(values);
+            if search.stopped_by() != StoppedBy::Caller && solver.is_time_up(rows, &AFTER_ROBUST_SEARCH) {
+                search.stop();
+            }
+        }
+        let best = search.best().map(|at| (&designs[at], search.archive()[at].1));
+        let best =
+            best.filter(|(_, score)| score.is_feasible() && before.is_none_or(|before| score.objective < before));
+        let found = RobustSearch {
+            designs: designs.len() as u32,
+            before: before.map(|value| self.sign() * value),
+            after: best.map(|(_, score)| score.objective).or(before).map(|value| self.sign() * value),
+            stopped_by: stopped_by(search.stopped_by()).to_owned(),
+        };
+        let Some((values, _)) = best else { return Ok((found, start)) };
+        let generation = rows.next_generation();
+        let own = (&solver.evaluator.base, OWN);
+        let at = solver.evaluate(rows, vec![values.clone()], (EvaluationPhase::RobustConfirm, generation), own)?.start;
+        let is_answer = solver.score(&rows.rows[at], 0).is_feasible() && solver.is_permitted(&rows.rows[at]);
+        Ok((found, if is_answer { at } else { start }))
+    }
+
+    /// The first objective, to be made small, of each design at the points of a sample; `None` where it could not be
+    /// evaluated.
+    fn samples(
+        &self,
+        rows: &mut Rows,
+        designs: &[Vec<f64>],
+        points: &[Vec<f64>],
+        (phase, (base, settings)): (EvaluationPhase, (&JobDocument, u8)),
+    ) -> Result<Vec<Vec<Option<f64>>>, SolveError> {
+        let solver = self.solver;
+        let design_of = |values: &[f64]| {
+            let mut design = base.clone();
+            let mut refused = Vec::new();
+            for (inputs, value) in solver.problem.inputs.iter().zip(values) {
+                inputs.put(&mut design, *value, &mut refused);
+            }
+            design
+        };
+        let generation = rows.next_generation();
+        let mut tasks = Vec::new();
+        for values in designs {
+            let mut design = design_of(values);
+            tasks.extend(points.iter().map(|point| Task {
+                values: values.clone(),
+                further: self.scatter.values(&mut design, point).0,
+                phase,
+                generation: Some(generation),
+            }));
+        }
+        // What scatters is judged by the objective alone.
+        let gate = |_: &[Option<f64>]| 0.0;
+        let evaluate = |task: &Task| {
+            solver.evaluator.evaluate(&design_of(&task.values), &self.scatter.inputs, &task.further, &gate)
+        };
+        let range = rows.run(tasks, settings + 4, evaluate, &|outcome, row| solver.complete(outcome, row))?;
+        let values: Vec<Option<f64>> =
+            rows.rows[range].iter().map(|row| solver.oriented(row).first().copied()).collect();
+        Ok(values.chunks(points.len().max(1)).map(<[Option<f64>]>::to_vec).collect())
+    }
 }
 
 /// Rows of the best designs that are apart from each other.
@@ -94,41 +230,6 @@ fn candidates(solver: &Solver, rows: &[SweepPoint], course: &Course, most: usize
         }
     }
     chosen
-}
-
-fn points(count: u32, dimensions: usize, seed: u32) -> Vec<Vec<f64>> {
-    (0..count.min(MAX_SOBOL_POINTS)).map(|index| sobol_point(index, dimensions, seed)).collect()
-}
-
-/// The first objective, to be made small, at the points of a sample about a design; `None` of those that violate
-/// nothing but could not be evaluated.
-fn sample(
-    solver: &Solver,
-    rows: &mut Rows,
-    scatter: &Scatter,
-    values: &[f64],
-    points: Vec<Vec<f64>>,
-    (phase, (base, settings)): (EvaluationPhase, (&JobDocument, u8)),
-) -> Result<Vec<Option<f64>>, SolveError> {
-    let mut design = base.clone();
-    let mut refused = Vec::new();
-    for (inputs, value) in solver.problem.inputs.iter().zip(values) {
-        inputs.put(&mut design, *value, &mut refused);
-    }
-    let generation = rows.rows.last().and_then(|row| row.generation).unwrap_or(0) + 1;
-    let task = |point: &Vec<f64>| Task {
-        values: values.to_vec(),
-        further: scatter.values(&mut design.clone(), point).0,
-        phase,
-        generation: Some(generation),
-    };
-    let tasks: Vec<Task> = points.iter().map(task).collect();
-    let inputs: Vec<Inputs> = scatter.inputs.clone();
-    // What scatters is judged by the objective alone.
-    let gate = |_: &[Option<f64>]| 0.0;
-    let evaluate = |task: &Task| solver.evaluator.evaluate(&design, &inputs, &task.further, &gate);
-    let range = rows.run(tasks, settings + 4, evaluate, &|outcome, row| solver.complete(outcome, row))?;
-    Ok(rows.rows[range].iter().map(|row| solver.oriented(row).first().copied()).collect())
 }
 
 /// The statistic by which candidates are ranked; `None` if more than a tenth of the sample has no value.

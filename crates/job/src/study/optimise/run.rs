@@ -1,15 +1,16 @@
 //! The run of an optimisation.
 
+use super::neighbours;
 use super::outcome;
 use super::problem::Problem;
 use super::robust;
-use crate::document::{CONFIRMED, JobDocument, SearchMethodInput};
+use crate::document::{CONFIRMED, JobDocument, Ltca, MeshStiffness, SearchMethodInput};
 use crate::result::{EvaluationPhase, OptimiseResult, SearchHistory, SweepPoint};
 use crate::study::evaluation::{Evaluator, Outcome, Rows, Task};
 use crate::study::mesh::MeshMemo;
 use crate::study::points::StoredPoints;
-use crate::study::{SolveContext, SolveError};
-use herringbone_search::{Method, Phase, Score, Search, SearchSettings, StoppedBy};
+use crate::study::{SolveContext, SolveError, Stage};
+use herringbone_search::{Method, Phase, Score, Search, SearchSettings, StoppedBy, hypervolume};
 
 /// Settings of evaluations, by which rows of the same values are told apart.
 pub(super) const OWN: u8 = 0;
@@ -21,10 +22,12 @@ pub(super) struct Course {
     pub history: SearchHistory,
     pub stopped_by: StoppedBy,
     pub generations: u32,
+    /// Improvements of the designs so far, of which none is better than another in every objective, as parts of the
+    /// input's values.
+    gains: Vec<Vec<f64>>,
     /// Range of the rows of the searches, and of those with the settings of the document.
     pub searched: std::ops::Range<usize>,
     pub confirmed: std::ops::Range<usize>,
-    pub has_coarse_search: bool,
 }
 
 /// Solves a document of kind `optimise`.
@@ -41,10 +44,18 @@ pub(in crate::study) fn run(
     let evaluator = Evaluator::new(document, &problem.measures, context, memo);
     let mut rows = Rows::new(stored, document.evaluations(), context);
     let coarse = evaluator.coarse_base();
-    let solver = Solver { document, problem: &problem, evaluator: &evaluator, search_base: coarse.as_ref() };
+    let clock = Clock { now_ms: context.clock_ms, started_ms: (context.clock_ms)() };
+    let search_base = coarse.as_ref();
+    let solver = Solver { document, problem: &problem, evaluator: &evaluator, search_base, clock };
     solver.evaluate_input(&mut rows)?;
+    problem.relate_to(rows.rows[0].measures.as_ref()).map_err(|(index, reason)| SolveError::Failed {
+        stage: Stage::Evaluations,
+        code: "input-has-no-value".to_owned(),
+        detail: format!("/objectives/{index}/relative_to is input, but {reason}"),
+        sim_time_s: None,
+        step: None,
+    })?;
     let mut course = solver.search(&mut rows)?;
-    course.has_coarse_search = coarse.is_some();
     let first = rows.len();
     if coarse.is_some() {
         solver.confirm(&mut rows, course.searched.clone())?;
@@ -54,6 +65,11 @@ pub(in crate::study) fn run(
     let (robust, best) = robust::run(&solver, &mut rows, &course, best)?;
     let mut result = outcome::result(&solver, &rows.rows, &course, best);
     result.robust = robust;
+    if let Some(best) = best {
+        neighbours::confirm_flatness(&solver, &mut rows, best, &mut result.flatness)?;
+        result.neighbours = neighbours::at_speeds(&solver, &mut rows, best)?;
+    }
+    result.numerics.evaluations = rows.len() as u32;
     let has_reused = rows.has_reused;
     result.points = rows.rows;
     Ok((result, has_reused))
@@ -66,7 +82,26 @@ pub(super) struct Solver<'a> {
     pub evaluator: &'a Evaluator<'a>,
     /// The base of the search's evaluations, where it differs from that of the document.
     pub search_base: Option<&'a JobDocument>,
+    clock: Clock<'a>,
 }
+
+struct Clock<'a> {
+    now_ms: &'a (dyn Fn() -> f64 + Sync),
+    started_ms: f64,
+}
+
+/// Phases after that of the search, and after that of the search on a robust measure.
+const AFTER_SEARCH: [EvaluationPhase; 7] = [
+    EvaluationPhase::Nearest,
+    EvaluationPhase::Confirm,
+    EvaluationPhase::Robust,
+    EvaluationPhase::RobustSearch,
+    EvaluationPhase::RobustConfirm,
+    EvaluationPhase::Flatness,
+    EvaluationPhase::Speed,
+];
+pub(super) const AFTER_ROBUST_SEARCH: [EvaluationPhase; 4] =
+    [EvaluationPhase::Nearest, EvaluationPhase::RobustConfirm, EvaluationPhase::Flatness, EvaluationPhase::Speed];
 
 impl Solver<'_> {
     /// Writes objectives and violation into a row.
@@ -80,7 +115,16 @@ impl Solver<'_> {
         row.violation = Some(self.problem.violation(&known));
     }
 
-    fn evaluate(
+    /// Whether the time is up, or was in an earlier attempt, which went on with the phases `after`: its rows say where.
+    pub(super) fn is_time_up(&self, rows: &Rows, after: &[EvaluationPhase]) -> bool {
+        let Some(seconds) = self.document.budget.as_ref().and_then(|budget| budget.seconds) else { return false };
+        match rows.first_stored(after) {
+            Some(end) => rows.len() >= end,
+            None => (self.clock.now_ms)() - self.clock.started_ms > 1e3 * seconds,
+        }
+    }
+
+    pub(super) fn evaluate(
         &self,
         rows: &mut Rows,
         points: Vec<Vec<f64>>,
@@ -95,6 +139,15 @@ impl Solver<'_> {
             |task| self.evaluator.evaluate(base, &self.problem.inputs, &task.values, &gate),
             &|outcome, row| self.complete(outcome, row),
         )
+    }
+
+    /// The setting of the search where it differs from that of the document.
+    pub(super) fn search_differs<T>(&self, of: impl Fn(&Ltca) -> f64, setting: T) -> Option<T> {
+        let value = |document: &JobDocument| match &document.model.mesh_stiffness {
+            MeshStiffness::Ltca(ltca) => Some(of(ltca)),
+            _ => None,
+        };
+        (value(self.search_base?) != value(&self.evaluator.base)).then_some(setting)
     }
 
     fn evaluate_input(&self, rows: &mut Rows) -> Result<(), SolveError> {
@@ -131,9 +184,9 @@ impl Solver<'_> {
             history: SearchHistory::default(),
             stopped_by: StoppedBy::Tolerance,
             generations: 0,
+            gains: Vec::new(),
             searched: first..first,
             confirmed: 0..0,
-            has_coarse_search: false,
         };
         for number in 0..searches {
             let share = evaluations * (number + 1) / searches - evaluations * number / searches;
@@ -159,6 +212,9 @@ impl Solver<'_> {
                 }
             };
             self.one_search(rows, &mut course, (number, share), &start, &score)?;
+            if course.stopped_by == StoppedBy::Caller {
+                break;
+            }
         }
         course.searched = first..rows.len();
         Ok(course)
@@ -183,6 +239,7 @@ impl Solver<'_> {
                 Some(SearchMethodInput::NelderMead) => Method::NelderMead,
                 _ => Method::Auto,
             },
+            refines: false,
         });
         let base = self.search_base.map_or((&self.evaluator.base, OWN), |base| (base, SEARCH));
         while let Some(batch) = search.ask() {
@@ -190,6 +247,7 @@ impl Solver<'_> {
             let phase = match batch.phase {
                 Phase::Start | Phase::Sample => EvaluationPhase::Sample,
                 Phase::Run => EvaluationPhase::Search,
+                Phase::Polish if search.stopped_by() == StoppedBy::Caller => EvaluationPhase::Nearest,
                 Phase::Polish => EvaluationPhase::Polish,
             };
             let points = batch.points.iter().map(|point| self.problem.values(point)).collect();
@@ -197,9 +255,12 @@ impl Solver<'_> {
             let scores: Vec<Score> = rows.rows[solved].iter().map(score).collect();
             search.tell(&scores);
             self.note(course, &rows.rows, search.spread());
+            if search.stopped_by() != StoppedBy::Caller && self.is_time_up(rows, &AFTER_SEARCH) {
+                search.stop();
+            }
         }
-        if search.stopped_by() == StoppedBy::Budget {
-            course.stopped_by = StoppedBy::Budget;
+        if search.stopped_by() != StoppedBy::Tolerance {
+            course.stopped_by = search.stopped_by();
         }
         Ok(())
     }
@@ -215,6 +276,28 @@ impl Solver<'_> {
         history.evaluations.push(rows.len() as u32);
         history.best.push(best);
         history.sigma.push(spread);
+        if self.problem.objectives.len() > 1 {
+            self.note_gains(course, rows, from);
+        }
+    }
+
+    /// Adds the improvements of the rows from `from` on to the front, and its volume to the history.
+    fn note_gains(&self, course: &mut Course, rows: &[SweepPoint], from: usize) {
+        let input = self.oriented(&rows[0]);
+        if input.is_empty() || input.iter().any(|value| *value == 0.0) {
+            return;
+        }
+        for row in rows[from..].iter().filter(|row| row.violation == Some(0.0) && row.objectives.is_some()) {
+            let gain: Vec<f64> =
+                self.oriented(row).iter().zip(&input).map(|(value, own)| (own - value) / own.abs()).collect();
+            let covers = |one: &[f64], other: &[f64]| one.iter().zip(other).all(|(a, b)| a >= b);
+            if gain.iter().any(|part| *part <= 0.0) || course.gains.iter().any(|other| covers(other, &gain)) {
+                continue;
+            }
+            course.gains.retain(|other| !covers(&gain, other));
+            course.gains.push(gain);
+        }
+        course.history.hypervolume.push(hypervolume(&course.gains));
     }
 
     /// Evaluates the best designs with the settings of the document.
@@ -234,7 +317,7 @@ impl Solver<'_> {
             }
         }
         chosen.truncate(CONFIRMED);
-        let generation = rows.rows.last().and_then(|row| row.generation).unwrap_or(0) + 1;
+        let generation = rows.next_generation();
         self.evaluate(rows, chosen, (EvaluationPhase::Confirm, generation), (&self.evaluator.base, OWN))?;
         Ok(())
     }

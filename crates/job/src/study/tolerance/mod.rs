@@ -1,5 +1,6 @@
 //! Tolerance studies: a sample of deviations, evaluated, and its statistics.
 
+mod earlier;
 mod run;
 mod scatter;
 mod statistics;

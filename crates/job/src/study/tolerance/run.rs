@@ -1,5 +1,6 @@
 //! The run of a tolerance study.
 
+use super::earlier::Earlier;
 use super::scatter::{Scatter, scrambles};
 use super::statistics;
 use crate::DocumentError;
@@ -85,6 +86,8 @@ pub(in crate::study) fn run(
     let quantities = Quantities::new(document)?;
     let evaluator = Evaluator::new(document, &quantities.measures, context, memo);
     let mut rows = Rows::new(stored, document.evaluations(), context);
+    let earlier = Earlier::load(document, context);
+    rows.know(earlier.rows.clone());
     let Evaluated { points, sample, further, trajectories, clipped } = evaluate_all(document, &evaluator, &mut rows)?;
     let shares = evaluator.shares();
     let of_row = |row: &SweepPoint| -> Vec<Option<f64>> {
@@ -109,12 +112,14 @@ pub(in crate::study) fn run(
         sensitivity: statistics::sensitivity(&sampled),
         failed,
         clipped,
+        points_reused: earlier.reused(&rows.rows[1..]),
         samples: sample.len() as u32,
         sampling: document.sampling.unwrap_or(SamplingInput::Sobol).as_word().to_owned(),
         seed: document.seed.unwrap_or(1),
         points: Vec::new(),
     };
-    let has_reused = rows.has_reused;
+    earlier.save(&rows.rows[1..], context);
+    let has_reused = rows.has_reused || result.points_reused > 0;
     Ok((ToleranceResult { points: rows.rows, ..result }, has_reused))
 }
 
@@ -174,7 +179,7 @@ fn evaluate_all(document: &JobDocument, evaluator: &Evaluator, rows: &mut Rows) 
     let sensitivity = document.sensitivity.unwrap_or(SensitivityInput::FromSample);
     let inputs = scatter.len();
     let both = sample_points(document, if sensitivity == SensitivityInput::Jansen { 2 * inputs } else { inputs });
-    let first: Vec<Vec<f64>> = both.iter().map(|point| point[..inputs].to_vec()).collect();
+    let first: Vec<Vec<f64>> = both.iter().map(|point| scatter.in_company(point[..inputs].to_vec())).collect();
     let mut trajectories = Vec::new();
     let sample = match sensitivity {
         SensitivityInput::Morris => 0..0,

@@ -1,14 +1,16 @@
 //! How inputs scatter.
 
-use crate::document::{DistributionInput, JobDocument, SCRAMBLES, ToleranceInput};
+use crate::document::{CorrelationInput, DistributionInput, JobDocument, SCRAMBLES, ToleranceInput};
 use crate::study::evaluation::Inputs;
-use herringbone_search::{CounterRandom, normal_distribution, normal_quantile};
+use herringbone_search::{CounterRandom, correlated, normal_distribution, normal_quantile};
 
 /// The inputs that scatter, with the distributions of their deviations.
 pub(in crate::study) struct Scatter<'a> {
     pub inputs: Vec<Inputs<'a>>,
     distributions: Vec<Distribution<'a>>,
     ranges: Vec<[f64; 2]>,
+    /// Inputs that deviate in company, and their correlation.
+    companies: Vec<(Vec<usize>, f64)>,
 }
 
 struct Distribution<'a> {
@@ -30,7 +32,12 @@ impl<'a> Scatter<'a> {
             tolerance,
             cut: if tolerance.cut { normal_distribution(-tolerance.sigmas) } else { 0.0 },
         };
+        let company = |correlation: &CorrelationInput| {
+            let place = |pointer: &String| document.tolerances.iter().position(|one| one.pointer == *pointer);
+            (correlation.pointers.iter().filter_map(place).collect(), correlation.correlation)
+        };
         Self {
+            companies: document.correlations.iter().map(company).collect(),
             ranges: inputs.iter().map(&mut range).collect(),
             distributions: document.tolerances.iter().map(distribution).collect(),
             inputs,
@@ -39,6 +46,15 @@ impl<'a> Scatter<'a> {
 
     pub(in crate::study) fn len(&self) -> usize {
         self.inputs.len()
+    }
+
+    /// A point of the unit cube with independent coordinates as one with those of the inputs in company.
+    pub(in crate::study) fn in_company(&self, mut point: Vec<f64>) -> Vec<f64> {
+        for (members, correlation) in &self.companies {
+            let own: Vec<f64> = members.iter().map(|member| point[*member]).collect();
+            members.iter().zip(correlated(&own, *correlation)).for_each(|(member, part)| point[*member] = part);
+        }
+        point
     }
 
     /// Values of the inputs of `document` with the deviations at a point of the unit cube, within the ranges of their
@@ -118,6 +134,7 @@ mod tests {
             pointer: String::new(),
             also: Vec::new(),
             also_factors: None,
+            halves: None,
             distribution,
             mean: 1.0,
             tolerance: Some(3.0),

@@ -116,6 +116,12 @@ fn beyond_limit(sampled: &Sampled, index: usize, values: &[f64]) -> Option<Beyon
 /// unweighted sample that say as much; `None` below [`LEAST_EFFECTIVE`].
 fn with_halved_tolerance(sampled: &Sampled, input: usize, solved: &[(&Vec<f64>, f64)]) -> Option<(f64, f64)> {
     let tolerance = &sampled.document.tolerances[input];
+    // The weights are those of independent inputs.
+    let is_in_company =
+        sampled.document.correlations.iter().any(|company| company.pointers.contains(&tolerance.pointer));
+    if is_in_company {
+        return None;
+    }
     let weight = |(point, value): &(&Vec<f64>, f64)| Some((*value, halved_density(tolerance, point[input])?));
     let mut weighted: Vec<(f64, f64)> = solved.iter().map(weight).collect::<Option<_>>()?;
     let (sum, squares) = weighted.iter().fold((0.0, 0.0), |(sum, squares), (_, w)| (sum + w, squares + w * w));
