@@ -28,6 +28,9 @@ const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
 /// First and longest pause before a failed write is retried.
 const RETRY_AFTER: Duration = Duration::from_secs(1);
 const MAX_RETRY_AFTER: Duration = Duration::from_secs(30);
+/// How long the points since the last update are tried to be written when a job stops or fails. They can be solved
+/// again; its state must not wait for the room that they would take.
+const LAST_POINTS: Duration = Duration::from_secs(3);
 
 /// The current stage, and the completed fraction of the whole job.
 type Progress = (Stage, f64);
@@ -233,8 +236,15 @@ impl JobRun<'_> {
     /// Stores the points that were solved after the last update.
     async fn store_points(&self, points: &RunningPoints, (stage, fraction): Progress) {
         let batch = points.take_unwritten();
-        if !batch.is_empty() {
-            self.retry_until_stored(|| self.recorder.progress(&self.job, stage.as_str(), fraction, &batch)).await;
+        if batch.is_empty() {
+            return;
+        }
+        let write = || self.recorder.progress(&self.job, stage.as_str(), fraction, &batch);
+        if retry(write, tokio::time::sleep(LAST_POINTS)).await.is_none() {
+            tracing::warn!(
+                points = batch.rows.len(),
+                "the last points are not written; if the job goes on, they are solved again"
+            );
         }
     }
 

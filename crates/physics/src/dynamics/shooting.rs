@@ -58,13 +58,8 @@ impl<const D: usize> Corrector<'_, '_, D> {
             x[c] = solution[i];
             v[c] = solution[i + n];
         }
-        let time = self.periods as f64 * self.shooting.model.period_tau;
-        for mode in &self.shooting.rigid_body {
-            let speed = -self.shooting.along(mode, &defect.0) / time;
-            for c in 0..D {
-                v[c] += speed * mode[c];
-            }
-        }
+        let closing = self.shooting.closing_velocity(defect, self.periods);
+        (0..D).for_each(|c| v[c] += closing[c]);
         x.iter().chain(&v).all(|c| c.is_finite()).then_some((x, v))
     }
 }
@@ -106,6 +101,18 @@ impl<'m, const D: usize> Shooting<'m, D> {
         let masses = model.masses_kg();
         let rigid_body = rigid_body_modes(model, &active, &masses, mean_stiffness_n_per_m)?;
         Ok(Self { model, active, masses, rigid_body, limits })
+    }
+
+    /// Velocity along the rigid-body modes, in addition to that of the start, with which a motion does not drift along
+    /// them; `defect`: end less start after `periods` mesh periods.
+    pub(crate) fn closing_velocity(&self, defect: &Perturbation<D>, periods: u64) -> [f64; D] {
+        let time = periods as f64 * self.model.period_tau;
+        let mut v = [0.0; D];
+        for mode in &self.rigid_body {
+            let speed = -self.along(mode, &defect.0) / time;
+            (0..D).for_each(|c| v[c] += speed * mode[c]);
+        }
+        v
     }
 
     /// Integrates the motion of `motion_model` from `start` over `periods` mesh periods, with the unit perturbations of

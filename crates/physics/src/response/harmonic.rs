@@ -11,12 +11,14 @@ use super::report::{MotionAssessment, assemble_response, solved_halves};
 use super::solve::{ROUNDING, ResponseProblem, SAFETY, acceleration_floor};
 use super::steady::{check_load_balance, displaced};
 use crate::dynamics::{
-    DynamicModel, DynamicsError, HarmonicBalance, HarmonicOrbit, MotionState, PER_HALF, Shooting, StepCounts,
-    state_difference,
+    DynamicModel, DynamicsError, HarmonicBalance, HarmonicOrbit, MotionState, PER_HALF, Perturbation, Shooting,
+    StepCounts, ZG, ZP, state_difference,
 };
 
 /// Error of a start, relative to the velocities, at which a motion counts as periodic: this part of the accuracy.
 const CLOSED: f64 = 0.1;
+/// Part of this error that the series is permitted.
+const PART_OF_SERIES: f64 = 0.25;
 /// Corrections of a start from its series.
 const MOST_CORRECTIONS: usize = 4;
 /// Change beyond which the series is not that of a motion in contact.
@@ -49,7 +51,7 @@ impl ResponseProblem<'_> {
     ) -> Result<Option<Response>, DynamicsError> {
         let closed = CLOSED * self.analysis.accuracy;
         let Some(balance) = HarmonicBalance::new(model, self.mean_stiffness_n_per_m()) else { return Ok(None) };
-        let Some(orbit) = balance.solve(start, closed) else { return Ok(None) };
+        let Some(orbit) = balance.solve(start, PART_OF_SERIES * closed) else { return Ok(None) };
         let shooting = || Shooting::new(model, self.mean_stiffness_n_per_m(), self.limits(tolerance));
         let rigid_body = balance.has_rigid_body_modes().then(shooting).transpose()?;
         let mut counts = StepCounts::default();
@@ -134,12 +136,22 @@ impl ResponseProblem<'_> {
                 check_load_balance(model, shooting, &defect)?;
             }
             let size = largest_component(&([0.0; D], from.v)).max(1e-9 * largest_component(&(from.x, [0.0; D])));
-            let change = largest_component(&defect) / size;
+            // Torsional impacts set the rigid-body modes of a pair off.
+            let set_off = rigid_body.filter(|_| !DynamicModel::<D>::IS_TRAIN);
+            let closing = set_off.map_or([0.0; D], |shooting| shooting.closing_velocity(&defect, 1));
+            let mut elastic = defect;
+            (0..D).for_each(|c| elastic.0[c] += closing[c] * model.period_tau);
+            let change = largest_component(&elastic) / size;
             if change.is_nan() || change > FAR {
                 return Ok(None);
             }
-            let correction = balance.correction(&defect);
-            let start_error = largest_component(&correction) / size;
+            let mut correction = balance.correction(&defect);
+            (0..D).for_each(|c| correction.1[c] += closing[c]);
+            let start_error = if DynamicModel::<D>::IS_TRAIN {
+                largest_component(&correction) / size
+            } else {
+                largest_by_direction(&correction, &from.v, size)
+            };
             if start_error <= closed {
                 return Ok(Some(ClosedRecord { from, start_error, finished }));
             }
@@ -173,4 +185,20 @@ impl ResponseProblem<'_> {
         }
         worst
     }
+}
+
+/// Largest part of a correction over the velocity, of the axial motions and of the others apart: axial accelerations are
+/// to be as exact as the circumferential ones, though they are smaller. Not of a train. `size`: of the velocity.
+fn largest_by_direction<const D: usize>(correction: &Perturbation<D>, velocity: &[f64; D], size: f64) -> f64 {
+    /// Smallest part of the velocity that counts as motion in a direction.
+    const LEAST: f64 = 1e-4;
+    let is_axial = |c: usize| matches!(c % PER_HALF, ZP | ZG);
+    let largest = |values: &[f64; D], axial: bool| {
+        (0..D).filter(|c| is_axial(*c) == axial).fold(0.0f64, |m, c| m.max(values[c].abs()))
+    };
+    let part = |axial: bool| {
+        let by = largest(&correction.0, axial).max(largest(&correction.1, axial));
+        by / largest(velocity, axial).max(LEAST * size)
+    };
+    part(true).max(part(false))
 }
