@@ -295,6 +295,9 @@ fn rows(sizing: &mut Sizing) -> Option<()> {
     Some(())
 }
 
+/// A part of the measurements; None where it could not be measured.
+type Part<'a> = &'a dyn Fn(&mut Sizing) -> Option<()>;
+
 /// Jobs of one operating point that take no time: what a chunk costs each of them.
 fn chunk_costs(sizing: &mut Sizing, servers: usize) -> Option<()> {
     let bench = Bench::new(servers)?;
@@ -330,7 +333,7 @@ fn chunk_costs(sizing: &mut Sizing, servers: usize) -> Option<()> {
 fn rates() {
     println!("program {}, load {}", executable(), load());
     let mut sizing = Sizing::default();
-    let parts: [(&str, &dyn Fn(&mut Sizing) -> Option<()>); 7] = [
+    let parts: [(&str, Part); 7] = [
         ("speeds", &speeds),
         ("three", &|_| three_servers()),
         ("reactions", &|_| reactions()),

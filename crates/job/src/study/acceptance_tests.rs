@@ -1,5 +1,5 @@
-//! An optimisation of the loaded contact against a known cure: run it with `--ignored --nocapture`. What takes minutes is
-//! in `scripts/optimise-study`.
+//! An optimisation of the loaded contact against a known cure: run it with `--ignored --nocapture`. What takes minutes
+//! is in `scripts/optimise-study`.
 
 use super::{CheckedJob, SolveContext, solve};
 use crate::result::{JobResult, OptimiseResult};

@@ -37,10 +37,16 @@ pub(crate) struct ElasticSystem<const D: usize> {
     pub under_load: Vec<f64>,
     pub static_s_m: Vec<f64>,
     pub has_rigid_body_modes: bool,
-    /// Solver coordinates per coordinate q, and their masses; none for a train, whose first coordinates are q.
-    basis: Option<(Vec<[f64; D]>, [f64; D])>,
+    /// None for a train, whose first coordinates are q.
+    basis: Option<Basis<D>>,
     antisymmetric: Antisymmetric<D>,
     largest_gain: OnceLock<f64>,
+}
+
+/// Solver coordinates per coordinate q, and their masses.
+struct Basis<const D: usize> {
+    columns: Vec<[f64; D]>,
+    masses: [f64; D],
 }
 
 /// Antisymmetric perturbations of the system.
@@ -166,7 +172,7 @@ impl<const D: usize> ElasticSystem<D> {
         let components: Vec<C64> = at_rest.map(|(rate, pole)| -rate / pole.value).collect();
         let under_load = modes.state(&components).as_slice()[..basis.len()].to_vec();
         let rigid = model.active().count() - basis.len();
-        let basis = (Some((basis, masses)), rigid);
+        let basis = (Some(Basis { columns: basis, masses }), rigid);
         let mut system = Self::new(Arc::new(modes), rows, reference_stiffness, under_load, basis);
         if D == PER_HALF && model.parity() > 0.0 {
             let other = Self::of_pair(&model.antisymmetric(), reference_stiffness);
@@ -180,7 +186,7 @@ impl<const D: usize> ElasticSystem<D> {
         rows: Rows,
         reference_stiffness: [f64; 2],
         under_load: Vec<f64>,
-        (basis, rigid): (Option<(Vec<[f64; D]>, [f64; D])>, usize),
+        (basis, rigid): (Option<Basis<D>>, usize),
     ) -> Self {
         let excitation =
             |rows: &[Vec<f64>]| -> Vec<Vec<C64>> { rows.iter().map(|row| modes.excitation(row)).collect() };
@@ -251,7 +257,7 @@ impl<const D: usize> ElasticSystem<D> {
     /// Solver coordinates and their velocities of coordinates q and theirs.
     pub(super) fn to_solver(&self, displacements: &[f64], velocities: &[f64]) -> Perturbation<D> {
         let (mut x, mut v) = ([0.0; D], [0.0; D]);
-        let Some((basis, _)) = &self.basis else {
+        let Some(Basis { columns: basis, .. }) = &self.basis else {
             x[..displacements.len()].copy_from_slice(displacements);
             v[..velocities.len()].copy_from_slice(velocities);
             return (x, v);
@@ -280,7 +286,7 @@ impl<const D: usize> ElasticSystem<D> {
     /// Components of a perturbation in the complex modes; rigid-body motion has none.
     pub(super) fn components(&self, perturbation: &Perturbation<D>) -> Vec<C64> {
         let n = self.modes.coordinates();
-        let Some((basis, masses)) = &self.basis else {
+        let Some(Basis { columns: basis, masses }) = &self.basis else {
             return self.modes.components(&perturbation.0[..n], &perturbation.1[..n]);
         };
         let project = |values: &[f64; D]| -> Vec<f64> {

@@ -1,6 +1,6 @@
-//! Numerical methods that several modules share: Gauss–Legendre rules, Fourier series, interpolation, periodic splines, monotone
-//! cubics, dense linear algebra on flat row-major slices, eigenvalues of matrices without symmetry, systems of which
-//! only products are known.
+//! Numerical methods that several modules share: Gauss–Legendre rules, Fourier series, interpolation, periodic splines,
+//! monotone cubics, dense linear algebra on flat row-major slices, eigenvalues of matrices without symmetry, systems of
+//! which only products are known.
 
 pub(crate) mod dense;
 pub(crate) mod eigen;

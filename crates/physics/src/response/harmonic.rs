@@ -123,9 +123,18 @@ impl ResponseProblem<'_> {
         (tolerance, closed): (f64, f64),
         counts: &mut StepCounts,
     ) -> Result<Option<ClosedRecord<'m, D>>, DynamicsError> {
+        let full = |from: MotionState<D>| {
+            self.record(model, (from, tolerance), 1, self.recorder(model, 1), self.energy(model))
+        };
+        // Series and energy balance cost more than the motion: they are recorded once it closes.
+        let is_dear = self.analysis.energy_balance || !self.analysis.channels.is_empty();
         let mut from = orbit.start;
         for _ in 0..=MOST_CORRECTIONS {
-            let finished = self.record(model, (from, tolerance), 1, self.recorder(model, 1), self.energy(model))?;
+            let finished = if is_dear {
+                self.record(model, (from, tolerance), 1, self.rms_recorder(model), None)?
+            } else {
+                full(from)?
+            };
             *counts += finished.record.counts;
             let touches = |shares: [f64; 3]| shares.contains(&1.0);
             if !finished.recorder.contact_shares().into_iter().all(touches) {
@@ -153,6 +162,7 @@ impl ResponseProblem<'_> {
                 largest_by_direction(&correction, &from.v, size)
             };
             if start_error <= closed {
+                let finished = if is_dear { full(from)? } else { finished };
                 return Ok(Some(ClosedRecord { from, start_error, finished }));
             }
             from = displaced(model, from, &correction);
@@ -187,8 +197,8 @@ impl ResponseProblem<'_> {
     }
 }
 
-/// Largest part of a correction over the velocity, of the axial motions and of the others apart: axial accelerations are
-/// to be as exact as the circumferential ones, though they are smaller. Not of a train. `size`: of the velocity.
+/// Largest part of a correction over the velocity, of the axial motions and of the others apart: axial accelerations
+/// are to be as exact as the circumferential ones, though they are smaller. Not of a train. `size`: of the velocity.
 fn largest_by_direction<const D: usize>(correction: &Perturbation<D>, velocity: &[f64; D], size: f64) -> f64 {
     /// Smallest part of the velocity that counts as motion in a direction.
     const LEAST: f64 = 1e-4;

@@ -419,7 +419,7 @@ impl ResponseProblem<'_> {
     }
 
     /// Recorder of the accelerations alone.
-    fn rms_recorder<const D: usize>(&self, model: &DynamicModel<D>) -> ChannelRecorder<D> {
+    pub(super) fn rms_recorder<const D: usize>(&self, model: &DynamicModel<D>) -> ChannelRecorder<D> {
         let mut statistics = Vec::new();
         for half in solved_halves::<D>() {
             statistics.push((ChannelId::mesh_acceleration(half), false));

@@ -79,6 +79,8 @@ async function refresh() {
     fillService(system);
     fillWorkers(system);
     byId("waiting").replaceChildren(...reasons(system).map((reason) => el("li", {}, reason)));
+    // Below the first card only once that has its height: nothing moves.
+    for (const id of ["of-workers", "of-waiting"]) show(byId(id), true);
   } catch (error) {
     notify(notice, error);
   }

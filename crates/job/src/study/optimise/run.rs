@@ -284,7 +284,7 @@ impl Solver<'_> {
     /// Adds the improvements of the rows from `from` on to the front, and its volume to the history.
     fn note_gains(&self, course: &mut Course, rows: &[SweepPoint], from: usize) {
         let input = self.oriented(&rows[0]);
-        if input.is_empty() || input.iter().any(|value| *value == 0.0) {
+        if input.is_empty() || input.contains(&0.0) {
             return;
         }
         for row in rows[from..].iter().filter(|row| row.violation == Some(0.0) && row.objectives.is_some()) {

@@ -1,4 +1,5 @@
-//! Harmonic balance of pairs and trains: against the shooting method, and its proof of stability against Floquet multipliers.
+//! Harmonic balance of pairs and trains: against the shooting method, and its proof of stability against Floquet
+//! multipliers.
 
 use std::sync::Arc;
 
@@ -69,8 +70,8 @@ fn the_orbit_is_that_of_the_shooting_method() {
     }
 }
 
-/// Pairs whose steady motion keeps contact: mirror-symmetric, staggered (the pinion floats along its axis), with unequal
-/// halves that torsional springs couple, without backlash, under a torque the other way.
+/// Pairs whose steady motion keeps contact: mirror-symmetric, staggered (the pinion floats along its axis), with
+/// unequal halves that torsional springs couple, without backlash, under a torque the other way.
 fn pairs() -> Vec<(&'static str, Parameters)> {
     let linear = parameters("A");
     let changed = |change: &dyn Fn(&mut Parameters)| {
