@@ -207,7 +207,10 @@ export function writeDocument(form, document) {
 /** Pointers of the members that are kept without a field. */
 export const extraPointers = () => [...extras.keys()];
 
-/** Puts a list without fields into the document, in place of what was there; nothing for an empty one. @param {string} pointer @param {any[]} value */
+/**
+ * Puts a list without fields into the document, in place of what was there; nothing for an empty one.
+ * @param {string} pointer @param {any[]} value
+ */
 export function setExtra(pointer, value) {
   for (const place of extras.keys()) if (place === pointer || place.startsWith(`${pointer}/`)) extras.delete(place);
   if (value.length) for (const [place, leaf] of leavesOf(value, pointer)) extras.set(place, leaf);

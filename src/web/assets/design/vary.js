@@ -60,7 +60,10 @@ export function initVary(form, changed) {
     }
   }
 
-  /** @param {{ pointer: string, also?: string[], from: number, to: number, step?: number | null }} variable @param {number} place */
+  /**
+   * @param {{ pointer: string, also?: string[], from: number, to: number, step?: number | null }} variable
+   * @param {number} place
+   */
   function row(variable, place) {
     const { label, unit } = pointerLabel(variable.pointer);
     const bound = (name, what) => {

@@ -25,7 +25,10 @@ async function goTo(button, act) {
   }
 }
 
-/** Sweeps the torque for the input and for the best design, and compares both. @param {HTMLButtonElement} button @param {Best} best */
+/**
+ * Sweeps the torque for the input and for the best design, and compares both.
+ * @param {HTMLButtonElement} button @param {Best} best
+ */
 export function compareOverTorque(button, { id, name, input, position }) {
   const given = (input.operating_points ?? []).map(({ pinion_torque_nm: torque }) => torque).filter((torque) => typeof torque === "number");
   const torques = given.length ? given.map(Number) : [input.operation.pinion_torque_nm];
@@ -41,7 +44,10 @@ export function compareOverTorque(button, { id, name, input, position }) {
   });
 }
 
-/** Studies the tolerances of the best design: those of the document, or usual ones. @param {HTMLButtonElement} button @param {Best} best */
+/**
+ * Studies the tolerances of the best design: those of the document, or usual ones.
+ * @param {HTMLButtonElement} button @param {Best} best
+ */
 export function studyTolerances(button, { id, name, input, position }) {
   return goTo(button, async () => {
     const study = asKind(await api.pointInput(id, position), "tolerance");

@@ -80,7 +80,8 @@ async function refresh() {
     fillWorkers(system);
     byId("waiting").replaceChildren(...reasons(system).map((reason) => el("li", {}, reason)));
     // Below the first card only once that has its height: nothing moves.
-    for (const id of ["of-workers", "of-waiting"]) show(byId(id), true);
+    show(byId("of-workers"), true);
+    show(byId("of-waiting"), true);
   } catch (error) {
     notify(notice, error);
   }
