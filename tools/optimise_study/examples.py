@@ -3,7 +3,7 @@
 import copy
 
 from plot import BLUE, ORANGE, GREEN, GREY, BLACK, Field, Sheet
-from program import example, say_cost, say_gain, say_robust, solve, sweep, with_values, worst_acceleration
+from program import example, say, solve, sweep, with_values, worst_acceleration
 
 
 def write(name, sheet):
@@ -16,8 +16,7 @@ def relief():
     """Relief for three torques, and the curves of input and best over the torque."""
     document = example("optimise_relief")
     result = solve(document)
-    say_cost(result)
-    say_gain(result)
+    say(result)
     found = result["optimise"]
     axis = [{"pointer": "/operation/pinion_torque_nm", "from": 200, "to": 1400, "points": 25}]
     curves = [[(row["values"][0], worst_acceleration(row)) for row in sweep(design, axis)]
@@ -41,9 +40,7 @@ def shafts():
     """Helix correction on shafts between bearings, robust to the torque."""
     document = example("optimise_helix_shafts")
     result = solve(document)
-    say_cost(result)
-    say_gain(result)
-    say_robust(result)
+    say(result)
     found = result["optimise"]
     ratio, curves = [0.5 + 0.05 * i for i in range(21)], []
     torque = document["operation"]["pinion_torque_nm"]

@@ -71,6 +71,14 @@ def worst_acceleration(row):
     return max(found.values()) if found else float("inf")
 
 
+def say(result):
+    """Cost, gain and, of a robust choice, its percentiles."""
+    say_cost(result)
+    say_gain(result)
+    if result["optimise"].get("robust"):
+        say_robust(result)
+
+
 def say_cost(result):
     cost, numerics = result["cost"], result["optimise"]["numerics"]
     print(f"  {numerics['evaluations']} evaluations, {cost['wall_s']:.0f} s ({cost['cpu_s']:.0f} s of processor), "
@@ -97,7 +105,7 @@ def say_gain(result):
 
 
 def say_robust(result):
-    robust = result["optimise"].get("robust")
+    robust = result["optimise"]["robust"]
     for name in ("input", "nominal_best", "best"):
         if robust.get(name):
             of = robust[name]
