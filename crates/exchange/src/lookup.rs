@@ -42,6 +42,11 @@ impl LookupQuantity {
         ("transmission_error", LookupQuantity::TransmissionError),
         ("impact_force", LookupQuantity::ImpactForce),
     ];
+
+    /// Whether a table of this name holds the quantity; of the left half where the halves differ.
+    pub(crate) fn is_named(self, table: &str) -> bool {
+        Self::ALL.contains(&(table.trim_start_matches("left_"), self))
+    }
 }
 
 /// A quantity over the angle of the pinion; the first and the last value of a period are the same.
@@ -106,8 +111,7 @@ impl LookupTables {
 
     /// The table of a quantity; of the left half where the halves differ.
     pub fn table(&self, quantity: LookupQuantity) -> Option<&LookupTable> {
-        let (name, _) = LookupQuantity::ALL.iter().find(|(_, one)| *one == quantity)?;
-        self.tables.iter().find(|table| table.name.trim_start_matches("left_") == *name)
+        self.tables.iter().find(|table| quantity.is_named(&table.name))
     }
 
     /// The file; `None` where it is of one quantity and there is no such table.
@@ -116,11 +120,7 @@ impl LookupTables {
     /// The file cannot be written, which does not happen in memory.
     pub fn write(&self, form: LookupForm, quantity: LookupQuantity) -> io::Result<Option<Vec<u8>>> {
         Ok(match form {
-            LookupForm::Json => {
-                let mut text = serde_json::to_vec_pretty(self)?;
-                text.push(b'\n');
-                Some(text)
-            }
+            LookupForm::Json => Some(json_file(self)?),
             LookupForm::Modelica => Some(self.modelica().into_bytes()),
             LookupForm::Simulink => Some(self.variables()?),
             LookupForm::Amesim => self.table(quantity).map(|table| {
@@ -164,6 +164,13 @@ impl LookupTables {
         writer.words("convention", &[CONVENTION])?;
         writer.finish()
     }
+}
+
+/// A value as a JSON file.
+pub(crate) fn json_file(value: &impl Serialize) -> io::Result<Vec<u8>> {
+    let mut text = serde_json::to_vec_pretty(value)?;
+    text.push(b'\n');
+    Ok(text)
 }
 
 fn pairs(table: &LookupTable) -> String {

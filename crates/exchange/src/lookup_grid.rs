@@ -1,7 +1,7 @@
 //! Look-up tables of a mesh over the angle of the pinion and its torque, of the tables at several torques.
 
 use crate::arrays::{ArrayForm, ArrayWriter};
-use crate::lookup::{LookupForm, LookupQuantity, LookupTable, LookupTables, angles};
+use crate::lookup::{LookupForm, LookupQuantity, LookupTable, LookupTables, angles, json_file};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io;
@@ -56,8 +56,7 @@ impl LookupGrids {
 
     /// The grid of a quantity; of the left half where the halves differ.
     pub fn grid(&self, quantity: LookupQuantity) -> Option<&LookupGrid> {
-        let (name, _) = LookupQuantity::ALL.iter().find(|(_, one)| *one == quantity)?;
-        self.grids.iter().find(|grid| grid.name.trim_start_matches("left_") == *name)
+        self.grids.iter().find(|grid| quantity.is_named(&grid.name))
     }
 
     /// The file; `None` where there is no such grid, or the form has one axis only.
@@ -66,11 +65,7 @@ impl LookupGrids {
     /// The file cannot be written, which does not happen in memory.
     pub fn write(&self, form: LookupForm, quantity: LookupQuantity) -> io::Result<Option<Vec<u8>>> {
         Ok(match form {
-            LookupForm::Json => {
-                let mut text = serde_json::to_vec_pretty(self)?;
-                text.push(b'\n');
-                Some(text)
-            }
+            LookupForm::Json => Some(json_file(self)?),
             LookupForm::Modelica => Some(self.modelica().into_bytes()),
             LookupForm::Simulink => Some(self.variables()?),
             LookupForm::Amesim => self.grid(quantity).map(|grid| self.amesim(grid).into_bytes()),

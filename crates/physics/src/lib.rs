@@ -64,6 +64,7 @@ pub mod gear;
 pub mod impact;
 pub mod iso6336;
 pub mod numerics;
+pub mod recent;
 pub mod response;
 pub mod shafts;
 pub(crate) mod simd;

@@ -3,7 +3,6 @@
 
 use std::any::Any;
 use std::cell::RefCell;
-use std::collections::VecDeque;
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::Complex;
@@ -13,6 +12,7 @@ use super::equations::{HalfEquations, PER_HALF, ZP};
 use super::model::{DynamicModel, MotionState};
 use super::rigid_body::RigidBodyModes;
 use super::variation::Perturbation;
+use crate::recent::Recent;
 
 type C64 = Complex<f64>;
 
@@ -86,7 +86,7 @@ const KEPT: usize = 8;
 
 thread_local! {
     /// The systems of the last pairs, so that the points of a sweep over the speed share theirs.
-    static SYSTEMS: RefCell<VecDeque<(PairInputs, Arc<dyn Any + Send + Sync>)>> = const { RefCell::new(VecDeque::new()) };
+    static SYSTEMS: RefCell<Recent<PairInputs, Arc<dyn Any + Send + Sync>>> = const { RefCell::new(Recent::new(KEPT)) };
 }
 
 impl<const D: usize> ElasticSystem<D> {
@@ -106,14 +106,12 @@ impl<const D: usize> ElasticSystem<D> {
             omega_ref: model.omega_ref,
         };
         SYSTEMS.with(|systems| {
-            let known = systems.borrow().iter().find(|(known, _)| *known == inputs).map(|(_, system)| system.clone());
+            let known = systems.borrow().get(&inputs);
             if let Some(system) = known.and_then(|system| system.downcast::<Self>().ok()) {
                 return Some(system);
             }
             let system = Arc::new(Self::of_pair(model, mean_stiffness_n_per_m)?);
-            let mut systems = systems.borrow_mut();
-            systems.truncate(KEPT - 1);
-            systems.push_front((inputs, system.clone()));
+            systems.borrow_mut().put(inputs, system.clone());
             Some(system)
         })
     }

@@ -4,7 +4,6 @@ mod mode;
 mod springs;
 
 use std::cell::RefCell;
-use std::collections::VecDeque;
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use serde::{Deserialize, Serialize};
@@ -19,6 +18,7 @@ use super::modal_train::ModalTrain;
 use super::model::DynamicModel;
 use super::parameters::Parameters;
 use super::trajectory::number_of_coordinates;
+use crate::recent::Recent;
 
 /// Natural frequencies and mode shapes of the undamped system with mean mesh stiffness and closed contact; of a train
 /// with its reference mesh stiffnesses.
@@ -52,7 +52,7 @@ const KEPT: usize = 8;
 
 thread_local! {
     /// The modes of the last pairs, so that the points of a sweep over the speed share theirs.
-    static RECENT: RefCell<VecDeque<(PairInputs, NaturalModes)>> = const { RefCell::new(VecDeque::new()) };
+    static MODES: RefCell<Recent<PairInputs, NaturalModes>> = const { RefCell::new(Recent::new(KEPT)) };
 }
 
 impl NaturalModes {
@@ -70,14 +70,12 @@ impl NaturalModes {
             masses: masses(p),
             radii_m: [p.pinion_radius_m, p.gear_radius_m],
         };
-        RECENT.with(|recent| {
-            if let Some((_, modes)) = recent.borrow().iter().find(|(known, _)| *known == inputs) {
-                return Ok(modes.clone());
+        MODES.with(|known| {
+            if let Some(modes) = known.borrow().get(&inputs) {
+                return Ok(modes);
             }
             let modes = Self::of_pair(p, &inputs)?;
-            let mut recent = recent.borrow_mut();
-            recent.truncate(KEPT - 1);
-            recent.push_front((inputs, modes.clone()));
+            known.borrow_mut().put(inputs, modes.clone());
             Ok(modes)
         })
     }
