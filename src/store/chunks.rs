@@ -62,6 +62,8 @@ pub enum ChunkPart {
     Points { ranges: Vec<[u64; 2]> },
     /// The places `from` to `to` (not included) of a line that is followed by continuation.
     Stretch { line: u64, from: u64, to: u64 },
+    /// Evaluations of an optimisation: the positions of their rows as for points, and what is to be evaluated (JSON).
+    Evaluations { ranges: Vec<[u64; 2]>, batch: String },
 }
 
 /// The state of a chunk.

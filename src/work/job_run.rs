@@ -6,7 +6,7 @@ use super::failure::{document_failure, internal_failure, panic_failure, public_f
 use super::measure;
 use super::recorder::JobRecorder;
 use super::reuse::stored_completion;
-use super::running_points::RunningPoints;
+use super::running_points::{EvaluateElsewhere, RunningPoints};
 use super::solver::Solver;
 use super::stop_signal::{StopReason, StopSignal};
 use crate::store::{
@@ -57,6 +57,8 @@ pub(super) struct JobRun<'a> {
     pub class: WorkClass,
     /// Whether the stored rows are of this attempt, and not reused.
     pub rows_are_own: bool,
+    /// What makes evaluations on other machines.
+    pub elsewhere: Option<Arc<dyn EvaluateElsewhere>>,
     pub config: &'a WorkConfig,
     pub recorder: &'a JobRecorder,
     pub solver: &'a Arc<dyn Solver>,
@@ -92,7 +94,8 @@ impl JobRun<'_> {
             }
         };
         let Some(stored) = stored else { return };
-        let points = Arc::new(RunningPoints::resume(stored, version));
+        let elsewhere = self.elsewhere.as_ref().map(|elsewhere| (Arc::clone(elsewhere), Arc::clone(self.stop)));
+        let points = Arc::new(RunningPoints::resume(stored, version).with_elsewhere(elsewhere));
         let started = Instant::now();
         let progress = watch::Sender::new((Stage::Geometry, self.job.progress));
         let mut updates = progress.subscribe();

@@ -99,7 +99,7 @@ impl QueueShared {
                     // Several jobs may have caused one notification: each worker that claims a job wakes the next.
                     self.wake(class).notify_one();
                     let span = measure::span(&claim.job);
-                    self.runner.run_job(claim, class, &pool, false).instrument(span).await;
+                    self.runner.run_job(claim, class, &pool, false, None).instrument(span).await;
                 }
                 Ok(None) => {
                     refusal.clear();

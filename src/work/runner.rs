@@ -3,6 +3,7 @@
 use super::config::WorkConfig;
 use super::job_run::JobRun;
 use super::recorder::JobRecorder;
+use super::running_points::EvaluateElsewhere;
 use super::solver::Solver;
 use super::stop_signal::{StopReason, StopSignal};
 use crate::store::{Claim, JobId, WorkClass};
@@ -62,8 +63,15 @@ impl Runner {
     }
 
     /// Runs a claimed job to its end. `rows_are_own`: the rows that are stored are of this attempt, computed on other
-    /// machines.
-    pub(super) async fn run_job(&self, claim: Claim, class: WorkClass, pool: &rayon::ThreadPool, rows_are_own: bool) {
+    /// machines. `elsewhere`: what makes evaluations on other machines.
+    pub(super) async fn run_job(
+        &self,
+        claim: Claim,
+        class: WorkClass,
+        pool: &rayon::ThreadPool,
+        rows_are_own: bool,
+        elsewhere: Option<Arc<dyn EvaluateElsewhere>>,
+    ) {
         let id = claim.job.id;
         tracing::info!("job started");
         let stop = Arc::new(StopSignal::default());
@@ -74,6 +82,7 @@ impl Runner {
             computed_before: claim.computed,
             class,
             rows_are_own,
+            elsewhere,
             config: &self.config,
             recorder: &self.recorder,
             solver: &self.solver,

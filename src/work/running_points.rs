@@ -1,16 +1,25 @@
 //! The points of a running sweep: passed on by the threads of the pool, stored together with the progress.
 
+use super::stop_signal::StopSignal;
 use crate::store::{EndStateRow, LineEndRow, PointBatch, PointRow, PointsDigest, RowsSummary};
 use herringbone_job::not_finite;
 use herringbone_job::result::{NotFinite, SweepPoint};
-use herringbone_job::study::{LineEnd, PointStore, StoredPoints};
-use std::collections::HashSet;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use herringbone_job::study::{EvaluationBatch, LineEnd, PointStore, StoredPoints};
+use std::collections::{HashMap, HashSet};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Makes evaluations on other machines.
+pub(super) trait EvaluateElsewhere: Send + Sync {
+    /// Has evaluations made; returns the rows that are stored then, none when the job is to stop. `evaluation_ms`: mean
+    /// time of an evaluation in this process.
+    fn evaluate(&self, batch: EvaluationBatch, evaluation_ms: Option<f64>, stop: &StopSignal) -> Vec<PointRow>;
+}
 
 /// The points from an earlier attempt, and those that are solved and not yet stored.
 pub(super) struct RunningPoints {
     solver_version: &'static str,
     state: Mutex<PointsState>,
+    elsewhere: Option<(Arc<dyn EvaluateElsewhere>, Arc<StopSignal>)>,
 }
 
 #[derive(Default)]
@@ -37,7 +46,12 @@ impl RunningPoints {
         }
         let positions = resumed.rows.keys().map(|position| *position as u64).collect();
         let state = PointsState { resumed, positions, unwritten: PointBatch::default() };
-        Self { solver_version, state: Mutex::new(state) }
+        Self { solver_version, state: Mutex::new(state), elsewhere: None }
+    }
+
+    /// With what makes evaluations on other machines until the job is to stop.
+    pub(super) fn with_elsewhere(self, elsewhere: Option<(Arc<dyn EvaluateElsewhere>, Arc<StopSignal>)>) -> Self {
+        Self { elsewhere, ..self }
     }
 
     /// Takes the points that were solved since the last call.
@@ -116,5 +130,14 @@ impl PointStore for RunningPoints {
             state.unwritten.ends.retain(|earlier| earlier.line != end.line);
             state.unwritten.ends.push(end);
         }
+    }
+
+    fn evaluate(&self, batch: EvaluationBatch, evaluation_ms: Option<f64>) -> HashMap<usize, SweepPoint> {
+        let Some((elsewhere, stop)) = &self.elsewhere else { return HashMap::new() };
+        let rows = elsewhere.evaluate(batch, evaluation_ms, stop);
+        let read = |row: PointRow| Some((row.position as usize, serde_json::from_str(&row.body).ok()?));
+        let rows: HashMap<usize, SweepPoint> = rows.into_iter().filter_map(read).collect();
+        self.lock().positions.extend(rows.keys().map(|position| *position as u64));
+        rows
     }
 }

@@ -29,6 +29,7 @@ mod proxy;
 mod queue;
 mod rates;
 mod rights;
+mod searches;
 mod setting;
 mod tls;
 mod worker;

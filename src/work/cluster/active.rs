@@ -1,5 +1,6 @@
 //! The jobs that workers compute now, and their chunks that are not stored: what the database says, in memory.
 
+use super::evaluations::EvaluationPlan;
 use super::members::Members;
 use super::message::{Beat, BeatAnswer, key_of};
 use super::plan::SweepPlan;
@@ -23,6 +24,8 @@ pub(super) struct ActiveJob {
     pub solver: String,
     /// What is left of a sweep.
     pub plan: Option<SweepPlan>,
+    /// Of an optimisation, whose search runs in this process: what its last batch still needs.
+    pub evaluations: Option<EvaluationPlan>,
     pub open: BTreeMap<u32, OpenChunk>,
     pub next_chunk: u32,
     /// Rows that are stored, of how many.
@@ -88,6 +91,7 @@ impl ActiveJob {
             input: claim.input,
             solver,
             plan,
+            evaluations: None,
             open: BTreeMap::new(),
             next_chunk: 0,
             rows: stored,
@@ -97,6 +101,25 @@ impl ActiveJob {
             computed: Duration::ZERO,
             turn_started: now,
             stop: None,
+        }
+    }
+
+    /// An optimisation, whose search runs in this process.
+    pub(super) fn of_search(claim: Claim, solver: String, evaluations: EvaluationPlan, now: Instant) -> Self {
+        Self { evaluations: Some(evaluations), ..Self::new(claim, solver, None, 0, now) }
+    }
+
+    /// Whether the job runs in this process and only parts of it are computed by workers: its time, its end and its
+    /// progress are those of its run here.
+    pub(super) fn runs_here(&self) -> bool {
+        self.evaluations.is_some()
+    }
+
+    /// Positions of the rows of a part.
+    pub(super) fn positions(&self, part: &ChunkPart) -> Option<Vec<[u64; 2]>> {
+        match part {
+            ChunkPart::Evaluations { ranges, .. } => Some(ranges.clone()),
+            _ => Some(self.plan.as_ref()?.positions(part)),
         }
     }
 
@@ -110,10 +133,11 @@ impl ActiveJob {
         if self.stop.is_some() {
             return None;
         }
-        let (class, part) = match &mut self.plan {
-            Some(plan) => plan.cut(slots)?,
-            None if self.next_chunk == 0 => (ChunkClass::Single, ChunkPart::Whole),
-            None => return None,
+        let (class, part) = match (&mut self.plan, &mut self.evaluations) {
+            (Some(plan), _) => plan.cut(slots)?,
+            (None, Some(evaluations)) => (ChunkClass::Sweep, evaluations.cut(slots)?),
+            (None, None) if self.next_chunk == 0 => (ChunkClass::Single, ChunkPart::Whole),
+            (None, None) => return None,
         };
         let key = ChunkKey { job: self.job.id, attempt: self.job.attempt, chunk: self.next_chunk };
         self.next_chunk += 1;
@@ -218,10 +242,12 @@ impl State {
     /// Takes up that all results of a chunk are stored.
     pub(super) fn store(&mut self, key: ChunkKey, measured: Option<(u64, f64)>, end: Option<&LineEndRow>) {
         let Some(job) = self.job(key) else { return };
-        if let Some(chunk) = job.open.remove(&key.chunk)
-            && let Some(plan) = &mut job.plan
-        {
+        let Some(chunk) = job.open.remove(&key.chunk) else { return };
+        if let Some(plan) = &mut job.plan {
             plan.store(&chunk.part, measured, end);
+        }
+        if let Some(evaluations) = &mut job.evaluations {
+            evaluations.store(measured);
         }
     }
 }

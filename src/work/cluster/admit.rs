@@ -1,6 +1,7 @@
 //! Taking up jobs: from the queue, as many as can be computed soon, and those of an earlier process.
 
 use super::active::{ActiveJob, OpenChunk};
+use super::evaluations::WorkersOfSearch;
 use super::names::{depends_on_processor, is_of_version, processor_class, solver_of, solver_of_class};
 use super::plan::SweepPlan;
 use super::shared::Shared;
@@ -10,6 +11,7 @@ use crate::work::failure::{document_failure, public_failure};
 use crate::work::job_run::retry;
 use crate::work::measure;
 use crate::work::reuse::stored_completion;
+use crate::work::running_points::EvaluateElsewhere;
 use crate::work::stop_signal::StopReason;
 use herringbone_job::document::{JobDocument, JobKind, MethodInput};
 use herringbone_job::study::SweepOrder;
@@ -52,7 +54,8 @@ fn has_room(shared: &Shared, class: WorkClass) -> bool {
     match class {
         WorkClass::Single => singles < (SINGLES_BY_SLOT * slots).max(LEAST_WINDOW),
         WorkClass::Sweep => {
-            let sweeps = state.jobs.values().filter(|job| job.class == WorkClass::Sweep).count() + state.finishing;
+            let is_sweep = |job: &&ActiveJob| job.class == WorkClass::Sweep && !job.runs_here();
+            let sweeps = state.jobs.values().filter(is_sweep).count() + state.finishing;
             sweeps < shared.work.sweep_workers as usize || of_sweeps < 2 * slots
         }
     }
@@ -70,14 +73,15 @@ async fn take_up(shared: &Arc<Shared>, claim: Claim, class: WorkClass) {
         }
     };
     if document.kind == JobKind::Optimise {
-        // Each batch of a search follows from the one before: such a job is computed in this process.
+        // Each batch of a search follows from the one before: the search runs in this process.
         let place = Arc::clone(&shared.local_places).try_acquire_owned().ok();
-        return run_here(shared, claim, class, false, place);
+        let workers = Arc::new(WorkersOfSearch::new(shared, claim.clone(), &document));
+        return run_here(shared, claim, class, false, place, Some(workers));
     }
     if is_for_here(shared, class, &document).await
         && let Ok(place) = Arc::clone(&shared.local_places).try_acquire_owned()
     {
-        return run_here(shared, claim, class, false, Some(place));
+        return run_here(shared, claim, class, false, Some(place), None);
     }
     let (store, version) = (shared.store(), shared.solver.version());
     let input_hash = shared.solver.input_hash(&document);
@@ -161,17 +165,25 @@ fn is_worth_sending(class: WorkClass, document: &JobDocument, point_s: Option<f6
     is_long || wait_s > LONG_WAIT_S
 }
 
-/// Runs a job in this process.
+/// Runs a job in this process. `workers`: those that make the evaluations of an optimisation.
 pub(super) fn run_here(
     shared: &Arc<Shared>,
     claim: Claim,
     class: WorkClass,
     rows_are_own: bool,
     place: Option<tokio::sync::OwnedSemaphorePermit>,
+    workers: Option<Arc<WorkersOfSearch>>,
 ) {
     let (task, span) = (Arc::clone(shared), measure::span(&claim.job));
     let run = async move {
-        task.runner.run_job(claim, class, &task.local_pool, rows_are_own).await;
+        let id = claim.job.id;
+        let is_search = workers.is_some();
+        let elsewhere = workers.map(|workers| workers as Arc<dyn EvaluateElsewhere>);
+        task.runner.run_job(claim, class, &task.local_pool, rows_are_own, elsewhere).await;
+        let has_open_chunks = is_search && task.state().remove(id).is_some_and(|job| !job.open.is_empty());
+        if has_open_chunks {
+            task.broadcast_stop(id).await;
+        }
         drop(place);
         if rows_are_own || class == WorkClass::Sweep {
             let mut state = task.state();
@@ -196,6 +208,11 @@ pub(super) async fn resume(shared: &Arc<Shared>) -> Result<(), StoreError> {
     shared.state().last_sequence = last;
     for claim in shared.store().distributed_jobs().await? {
         let Ok(document) = herringbone_job::parse(claim.input.as_bytes()) else { continue };
+        if document.kind == JobKind::Optimise {
+            // The search goes through its rows again, and takes those that are stored.
+            shared.recorder().release(&claim.job, ReleaseReason::Shutdown, Duration::ZERO).await?;
+            continue;
+        }
         let (plan, stored) = match WorkClass::of_kind(&claim.job.kind) {
             WorkClass::Single => (None, 0),
             WorkClass::Sweep => {

@@ -2,6 +2,7 @@
 
 use super::active::ActiveJob;
 use super::admit::{LAST_CHUNKS, LEAST_WINDOW, admit, run_here, until_stored};
+use super::evaluations::EvaluationPlan;
 use super::message::{
     ChunkMessage, ID_HEADER, MESSAGE_BYTES, SCHEMA, SCHEMA_HEADER, SOLVER_HEADER, State as MotionState, TRACE_HEADER,
     pack,
@@ -99,7 +100,7 @@ impl Dispatcher {
         self.last_tick = now;
         let turn = Duration::from_secs(self.shared.work.sweep_turn_s.into());
         let mut has_long_turns = false;
-        for job in self.shared.state().jobs.values_mut() {
+        for job in self.shared.state().jobs.values_mut().filter(|job| !job.runs_here()) {
             if job.open.values().any(|chunk| chunk.is_running(now)) {
                 job.computed += passed;
             }
@@ -109,7 +110,8 @@ impl Dispatcher {
             has_long_turns |= job.stop.is_none() && is_long_turn(job, turn, now);
         }
         if has_long_turns && self.shared.store().has_queued(WorkClass::Sweep).await.unwrap_or(false) {
-            for job in self.shared.state().jobs.values_mut().filter(|job| job.stop.is_none()) {
+            let mut state = self.shared.state();
+            for job in state.jobs.values_mut().filter(|job| job.stop.is_none() && !job.runs_here()) {
                 if is_long_turn(job, turn, now) {
                     job.stop = Some(StopReason::Turn);
                 }
@@ -123,7 +125,7 @@ impl Dispatcher {
         let turn = Duration::from_secs(self.shared.work.sweep_turn_s.into());
         let stopped: Vec<_> = {
             let state = self.shared.state();
-            let jobs = state.jobs.values().filter_map(|job| Some((job, job.stop?)));
+            let jobs = state.jobs.values().filter(|job| !job.runs_here()).filter_map(|job| Some((job, job.stop?)));
             let due = jobs.filter(|(job, stop)| match stop {
                 // What is being computed is waited for.
                 StopReason::Turn => job.open.is_empty() || now > job.turn_started + turn + LAST_CHUNKS,
@@ -147,15 +149,9 @@ impl Dispatcher {
                 }
             }
             self.shared.state().remove(job.id);
-            self.broadcast_stop(job.id).await;
+            self.shared.broadcast_stop(job.id).await;
         }
         Ok(())
-    }
-
-    /// Tells all workers to stop a job; one that misses it learns it with its next beat.
-    async fn broadcast_stop(&self, job: JobId) {
-        let subject = self.shared.space.subject("cancel");
-        let _ = self.shared.nats.client.publish(subject, job.to_string().into()).await;
     }
 
     /// Cuts chunks while fewer are out than can be computed soon, by turns.
@@ -290,11 +286,17 @@ impl Dispatcher {
 
     /// Runs a job in this process that is too large to be sent.
     fn run_here(&self, key: ChunkKey) {
-        let job = self.shared.state().remove(key.job);
+        let mut state = self.shared.state();
+        if let Some(job) = state.jobs.get_mut(&key.job).filter(|job| job.runs_here()) {
+            job.open.clear();
+            return job.evaluations.iter_mut().for_each(EvaluationPlan::refuse);
+        }
+        let job = state.remove(key.job);
+        drop(state);
         if let Some(job) = job {
             tracing::info!(job = %key.job, "the job is too large to be sent and runs here");
             let class = job.class;
-            run_here(&self.shared, claim_of(job), class, false, None);
+            run_here(&self.shared, claim_of(job), class, false, None, None);
         }
     }
 
@@ -311,14 +313,14 @@ impl Dispatcher {
             if until_stored(&self.shared, || self.shared.store().end_chunks(id)).await.is_none() {
                 return;
             }
-            run_here(&self.shared, claim_of(job), WorkClass::Sweep, rows_are_own, None);
+            run_here(&self.shared, claim_of(job), WorkClass::Sweep, rows_are_own, None, None);
         }
     }
 
     async fn store_progress(&self) -> Result<(), StoreError> {
         let changed: Vec<_> = {
             let mut state = self.shared.state();
-            let jobs = state.jobs.values_mut().filter(|job| job.stop.is_none());
+            let jobs = state.jobs.values_mut().filter(|job| job.stop.is_none() && !job.runs_here());
             jobs.filter_map(|job| {
                 let progress = job.progress();
                 let is_changed = progress >= job.published + PROGRESS_STEP;

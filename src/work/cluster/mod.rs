@@ -11,6 +11,7 @@ mod answers;
 mod config;
 mod connect;
 mod dispatch;
+mod evaluations;
 mod measure;
 mod members;
 mod message;

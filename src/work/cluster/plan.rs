@@ -186,7 +186,7 @@ impl SweepPlan {
     /// Positions of the points of a part, as ranges.
     pub(super) fn positions(&self, part: &ChunkPart) -> Vec<[u64; 2]> {
         match part {
-            ChunkPart::Whole => Vec::new(),
+            ChunkPart::Whole | ChunkPart::Evaluations { .. } => Vec::new(),
             ChunkPart::Points { ranges } => ranges.clone(),
             ChunkPart::Stretch { line, from, to } => {
                 let line = self.order.line(*line as usize);

@@ -156,7 +156,7 @@ impl Queue for NatsQueue {
     fn workers(&self) -> Workers {
         let (state, (singles_here, sweeps_here)) = (self.shared.state(), self.shared.runner.busy());
         let (slots, running) = state.members.totals(Instant::now());
-        let sweeps = state.jobs.values().filter(|job| job.class == WorkClass::Sweep).count();
+        let sweeps = state.jobs.values().filter(|job| job.class == WorkClass::Sweep && !job.runs_here()).count();
         Workers {
             total: slots + self.shared.config.local_workers as usize,
             busy: running + singles_here,

@@ -201,7 +201,7 @@ fn is_whole(state: &mut State, key: ChunkKey) -> bool {
 fn positions(state: &mut State, key: ChunkKey) -> Option<Vec<[u64; 2]>> {
     let job = state.job(key)?;
     let chunk = job.open.get(&key.chunk)?;
-    Some(job.plan.as_ref()?.positions(&chunk.part))
+    job.positions(&chunk.part)
 }
 
 /// Stores results in one transaction, and again until it succeeds; false when the service closes before that.

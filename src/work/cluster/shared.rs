@@ -5,7 +5,7 @@ use super::config::ClusterConfig;
 use super::connect::Nats;
 use super::names::Space;
 use super::streams::Streams;
-use crate::store::{ChunkClass, Store};
+use crate::store::{ChunkClass, JobId, Store};
 use crate::work::config::WorkConfig;
 use crate::work::recorder::JobRecorder;
 use crate::work::runner::Runner;
@@ -83,6 +83,11 @@ impl Shared {
 
     pub(super) fn closing(&self) -> &CancellationToken {
         self.runner.closing()
+    }
+
+    /// Tells all workers to stop a job; one that misses it learns it with its next beat.
+    pub(super) async fn broadcast_stop(&self, job: JobId) {
+        let _ = self.nats.client.publish(self.space.subject("cancel"), job.to_string().into()).await;
     }
 
     /// Waits for so long; false when the service closes.

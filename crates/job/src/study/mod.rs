@@ -47,7 +47,7 @@ use serde::{Deserialize, Serialize};
 pub use check::CheckedJob;
 pub use demand::{Demand, demand};
 pub use derived::DerivedValue;
-pub use evaluation::{document_at, document_of_input, is_measure};
+pub use evaluation::{EvaluationBatch, EvaluationSettings, EvaluationTask, document_at, document_of_input, is_measure};
 pub use hash::input_hash;
 pub use part::{SweepOrder, SweepPart, solve_part};
 pub use points::{LineEnd, NoPointStore, PointStore, StoredPoints};

@@ -1,9 +1,9 @@
-//! A part of a sweep or of a tolerance study that is solved apart from the rest, as on another machine: some of its
-//! points, or a stretch of a line that is followed by continuation.
+//! A part of a sweep, a tolerance study or an optimisation that is solved apart from the rest, as on another machine: some
+//! of its points, or a stretch of a line that is followed by continuation.
 
 use super::mesh::MeshMemo;
 use super::sweep::{Points, together, ways};
-use super::{CheckedJob, LineEnd, SolveContext, SolveError, branches, tolerance};
+use super::{CheckedJob, EvaluationBatch, LineEnd, SolveContext, SolveError, branches, optimise, tolerance};
 use crate::document::{Axis, JobDocument, JobKind};
 use crate::result::BranchDirection;
 use rayon::prelude::*;
@@ -81,6 +81,8 @@ pub enum SweepPart {
     /// Points of a line, in the order in which it is followed: those at the places `from` to `to` (not included) of
     /// [`SweepOrder::line`]. `start`: the state at the end of the point before.
     Stretch { line: usize, from: usize, to: usize, start: Option<Vec<f64>> },
+    /// Evaluations of a document of kind `optimise`.
+    Evaluations(EvaluationBatch),
 }
 
 /// Solves a part of a sweep: its rows go to the point store of the context. Returns where a line was left.
@@ -98,6 +100,12 @@ pub fn solve_part(job: &CheckedJob, part: &SweepPart, context: &SolveContext) ->
                 return Err(no_such_part());
             }
             tolerance::run_part(document, positions, context, &memo).map(|()| None)
+        }
+        SweepPart::Evaluations(batch) => {
+            if document.kind != JobKind::Optimise {
+                return Err(no_such_part());
+            }
+            optimise::run_part(document, batch, context, &memo).map(|()| None)
         }
         SweepPart::Points(positions) => {
             if !is_sweep || order.is_continued() || positions.iter().any(|position| *position >= order.points()) {

@@ -1,5 +1,6 @@
 //! The points of a sweep, stored as they are solved, so that a sweep that was stopped resumes there.
 
+use super::evaluation::EvaluationBatch;
 use crate::result::SweepPoint;
 use std::collections::{BTreeMap, HashMap};
 
@@ -12,6 +13,12 @@ pub trait PointStore: Sync {
 
     /// Stores a solved point. `end`, with continuation: the point up to which its line has been followed.
     fn save(&self, position: usize, row: &SweepPoint, end: Option<&LineEnd>);
+
+    /// Has evaluations made on other machines, and stores their rows; returns them by position. Those that are missing
+    /// are to be made by the caller. `evaluation_ms`: mean time of an evaluation that was made here.
+    fn evaluate(&self, _batch: EvaluationBatch, _evaluation_ms: Option<f64>) -> HashMap<usize, SweepPoint> {
+        HashMap::new()
+    }
 }
 
 /// Rows and line ends of an earlier run.

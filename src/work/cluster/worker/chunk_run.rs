@@ -307,7 +307,9 @@ async fn send_whole(
 fn points_of(part: &ChunkPart) -> u64 {
     match part {
         ChunkPart::Whole => 1,
-        ChunkPart::Points { ranges } => ranges.iter().map(|[from, to]| to.saturating_sub(*from)).sum(),
+        ChunkPart::Points { ranges } | ChunkPart::Evaluations { ranges, .. } => {
+            ranges.iter().map(|[from, to]| to.saturating_sub(*from)).sum()
+        }
         ChunkPart::Stretch { from, to, .. } => to.saturating_sub(*from),
     }
 }
@@ -347,8 +349,9 @@ impl SolveTask {
             Err(error) => return Solved::Failed(document_failure(error)),
         };
         let solved = match self.sweep_part() {
-            Some(part) => solve_part(&job, &part, &context).map(Solved::Part),
-            None => solver.solve(&job, &context).map(|outcome| self.whole(outcome)),
+            Ok(Some(part)) => solve_part(&job, &part, &context).map(Solved::Part),
+            Err(error) => return Solved::Failed(internal_failure(&error.to_string())),
+            Ok(None) => solver.solve(&job, &context).map(|outcome| self.whole(outcome)),
         };
         match solved {
             Ok(solved) => solved,
@@ -362,10 +365,11 @@ impl SolveTask {
         }
     }
 
-    /// The part of a sweep; `None` for a whole job.
-    fn sweep_part(&self) -> Option<SweepPart> {
-        match &self.part {
+    /// The part of a sweep or of an optimisation; `None` for a whole job.
+    fn sweep_part(&self) -> serde_json::Result<Option<SweepPart>> {
+        Ok(match &self.part {
             ChunkPart::Whole => None,
+            ChunkPart::Evaluations { batch, .. } => Some(SweepPart::Evaluations(serde_json::from_str(batch)?)),
             ChunkPart::Points { ranges } => {
                 let positions = ranges.iter().flat_map(|[from, to]| *from..*to).map(|position| position as usize);
                 Some(SweepPart::Points(positions.collect()))
@@ -374,7 +378,7 @@ impl SolveTask {
                 let start = self.start.as_ref().and_then(|state| state.values().ok());
                 Some(SweepPart::Stretch { line: *line as usize, from: *from as usize, to: *to as usize, start })
             }
-        }
+        })
     }
 
     /// The result of a whole job, with its series compressed.

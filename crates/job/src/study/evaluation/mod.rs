@@ -10,12 +10,14 @@ mod inputs;
 mod measure;
 mod rows;
 mod shortfall;
+mod task;
 
 pub(super) use check::{Found, check_measure, check_pointers};
 pub(super) use evaluator::{Evaluator, Outcome, SEARCH_ACCURACY, SEARCH_POSITIONS};
 pub(super) use inputs::Inputs;
 pub(super) use measure::{Level, Measure, reduce};
-pub(super) use rows::{Rows, Task};
+pub(super) use rows::{Evaluate, Rows};
 
 pub use inputs::{document_at, document_of_input};
 pub use measure::is_measure;
+pub use task::{EvaluationBatch, EvaluationSettings, EvaluationTask};

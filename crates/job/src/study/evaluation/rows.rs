@@ -1,24 +1,14 @@
 //! The rows of a job of evaluations, solved or taken from an earlier attempt.
 
 use super::evaluator::Outcome;
+use super::task::{EvaluationBatch, EvaluationSettings, EvaluationTask};
 use crate::result::{EvaluationPhase, SweepPoint};
 use crate::study::points::StoredPoints;
 use crate::study::{SolveContext, SolveError, Stage};
 use rayon::prelude::*;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// An evaluation to be made.
-#[derive(Debug, Clone)]
-pub(in crate::study) struct Task {
-    /// Values of the inputs, the first of each.
-    pub values: Vec<f64>,
-    /// Values of further inputs that are not in the row.
-    pub further: Vec<f64>,
-    pub phase: EvaluationPhase,
-    pub generation: Option<u32>,
-}
 
 /// The rows so far.
 pub(in crate::study) struct Rows<'a> {
@@ -28,18 +18,48 @@ pub(in crate::study) struct Rows<'a> {
     /// Evaluations that are expected altogether.
     expected: usize,
     /// Rows of the same values and settings, which need not be solved again.
-    known: HashMap<(u8, Vec<u64>), usize>,
-    /// Rows of an earlier job with the settings 0, by their values.
+    known: HashMap<(EvaluationSettings, Vec<u64>), usize>,
+    /// Rows of an earlier job with the settings of the document, by their values.
     earlier: HashMap<Vec<u64>, SweepPoint>,
     pub has_reused: bool,
     /// Positions that are to be evaluated; all when there are none. The rows of the others are empty.
     wanted: Option<HashSet<usize>>,
     /// Evaluations that were counted as done.
     done: usize,
+    /// Evaluations that were made here, and their time in milliseconds.
+    made: (usize, f64),
 }
 
-/// Turns an outcome into the numbers of the row.
-pub(in crate::study) type Complete<'f> = &'f (dyn Fn(&Outcome, &mut SweepPoint) + Sync);
+/// Makes evaluations.
+pub(in crate::study) trait Evaluate: Sync {
+    /// # Errors
+    /// [`SolveError::Canceled`].
+    fn outcome(&self, task: &EvaluationTask) -> Result<Outcome, SolveError>;
+
+    /// Turns an outcome into the numbers of the row.
+    fn complete(&self, outcome: &Outcome, row: &mut SweepPoint);
+
+    /// Makes an evaluation: its row.
+    ///
+    /// # Errors
+    /// [`SolveError::Canceled`].
+    fn row(&self, task: &EvaluationTask) -> Result<SweepPoint, SolveError> {
+        let outcome = self.outcome(task)?;
+        let mut row = outcome.row.clone();
+        row.error.clone_from(&outcome.error);
+        row.measures.clone_from(&outcome.measures);
+        self.complete(&outcome, &mut row);
+        Ok(of_task(row, task))
+    }
+}
+
+/// A row with what its task says.
+fn of_task(mut row: SweepPoint, task: &EvaluationTask) -> SweepPoint {
+    row.values.clone_from(&task.values);
+    row.phase = Some(task.phase);
+    row.generation = task.generation;
+    row
+}
 
 impl<'a> Rows<'a> {
     pub(in crate::study) fn new(stored: StoredPoints, expected: u64, context: &'a SolveContext<'a>) -> Self {
@@ -54,6 +74,7 @@ impl<'a> Rows<'a> {
             has_reused,
             wanted: None,
             done: 0,
+            made: (0, 0.0),
         }
     }
 
@@ -63,7 +84,7 @@ impl<'a> Rows<'a> {
         Self { wanted: Some(positions.iter().copied().collect()), ..rows }
     }
 
-    /// Gives rows of an earlier job with the settings 0 and of nothing but values.
+    /// Gives rows of an earlier job with the settings of the document and of nothing but values.
     pub(in crate::study) fn know(&mut self, rows: Vec<SweepPoint>) {
         self.earlier = rows.into_iter().map(|row| (bits(&row.values), row)).collect();
     }
@@ -86,75 +107,113 @@ impl<'a> Rows<'a> {
     }
 
     /// Evaluates tasks side by side, in any order; their rows follow those of before in the order of the tasks.
-    /// `settings`: a number for the settings that `evaluate` uses.
     ///
     /// # Errors
     /// [`SolveError::Canceled`].
     pub(in crate::study) fn run(
         &mut self,
-        tasks: Vec<Task>,
-        settings: u8,
-        evaluate: impl Fn(&Task) -> Result<Outcome, SolveError> + Sync,
-        complete: Complete,
+        tasks: Vec<EvaluationTask>,
+        evaluate: &impl Evaluate,
     ) -> Result<Range<usize>, SolveError> {
         let first = self.rows.len();
-        let key = |task: &Task| {
-            let values = task.values.iter().chain(&task.further).map(|value| value.to_bits());
-            (settings, values.collect::<Vec<_>>())
-        };
         let progress = AtomicUsize::new(self.done);
-        let (stored, rows, known, wanted) = (&self.stored, &self.rows, &self.known, &self.wanted);
-        let earlier = &self.earlier;
         let count = || {
             let done = progress.fetch_add(1, Ordering::Relaxed) + 1;
             (self.context.progress)(Stage::Evaluations, (done as f64 / self.expected as f64).min(1.0));
         };
-        let solve = |(at, task): (usize, &Task)| -> Result<SweepPoint, SolveError> {
+        let places: Vec<Place> = tasks.iter().enumerate().map(|(at, task)| self.place(first + at, task)).collect();
+        let made_elsewhere = self.evaluate_elsewhere(first, &tasks, &places);
+        // The row, and the time of an evaluation that was made here.
+        let solve = |(at, (task, place)): (usize, (&EvaluationTask, Place))| {
             let position = first + at;
-            if wanted.as_ref().is_some_and(|wanted| !wanted.contains(&position)) {
-                return Ok(SweepPoint::default());
-            }
-            let is_same = |row: &&SweepPoint| {
-                row.phase == Some(task.phase)
-                    && row.values.len() == task.values.len()
-                    && row.values.iter().zip(&task.values).all(|(a, b)| a.to_bits() == b.to_bits())
-            };
-            if let Some(row) = stored.get(&position).filter(is_same) {
-                count();
-                return Ok(row.clone());
-            }
-            // Among positions apart, the row of the same values may be an empty one.
-            let of_same_values = known.get(&key(task)).filter(|_| wanted.is_none()).map(|known| &rows[*known]);
-            let of_earlier = || {
-                let is_plain = settings == 0 && task.further.is_empty();
-                if is_plain { earlier.get(&bits(&task.values)) } else { None }
-            };
-            let mut row = match of_same_values.or_else(of_earlier) {
-                Some(known) => known.clone(),
-                None => {
-                    let outcome = evaluate(task)?;
-                    let mut row = outcome.row.clone();
-                    row.error.clone_from(&outcome.error);
-                    row.measures.clone_from(&outcome.measures);
-                    complete(&outcome, &mut row);
-                    row
+            let (row, made_ms) = match place {
+                Place::Unwanted => return Ok((SweepPoint::default(), None)),
+                Place::Stored(row) => {
+                    count();
+                    return Ok((row.clone(), None));
                 }
+                Place::Known(row) => (of_task(row.clone(), task), None),
+                Place::New => match made_elsewhere.get(&position) {
+                    Some(row) => {
+                        count();
+                        return Ok((of_task(row.clone(), task), None));
+                    }
+                    None => {
+                        let started_ms = (self.context.clock_ms)();
+                        (evaluate.row(task)?, Some((self.context.clock_ms)() - started_ms))
+                    }
+                },
             };
-            row.values.clone_from(&task.values);
-            row.phase = Some(task.phase);
-            row.generation = task.generation;
             self.context.points.save(position, &row, None);
             count();
-            Ok(row)
+            Ok((row, made_ms))
         };
-        let solved: Vec<SweepPoint> = tasks.par_iter().enumerate().map(solve).collect::<Result<_, SolveError>>()?;
+        let solved: Vec<(SweepPoint, Option<f64>)> =
+            tasks.par_iter().zip(places).enumerate().map(solve).collect::<Result<_, SolveError>>()?;
         self.done = progress.into_inner();
-        for (at, (task, row)) in tasks.iter().zip(solved).enumerate() {
+        for (at, (task, (row, made_ms))) in tasks.iter().zip(solved).enumerate() {
+            if let Some(made_ms) = made_ms {
+                self.made = (self.made.0 + 1, self.made.1 + made_ms);
+            }
             self.known.entry(key(task)).or_insert(first + at);
             self.rows.push(row);
         }
         Ok(first..self.rows.len())
     }
+
+    /// Where the row of a task comes from.
+    fn place(&self, position: usize, task: &EvaluationTask) -> Place<'_> {
+        if self.wanted.as_ref().is_some_and(|wanted| !wanted.contains(&position)) {
+            return Place::Unwanted;
+        }
+        let is_same = |row: &&SweepPoint| row.phase == Some(task.phase) && bits(&row.values) == bits(&task.values);
+        if let Some(row) = self.stored.get(&position).filter(is_same) {
+            return Place::Stored(row);
+        }
+        // Among positions apart, the row of the same values may be an empty one.
+        let of_same_values =
+            self.known.get(&key(task)).filter(|_| self.wanted.is_none()).map(|known| &self.rows[*known]);
+        let of_earlier = || {
+            let is_plain = task.settings == EvaluationSettings::Own && task.further.is_empty();
+            if is_plain { self.earlier.get(&bits(&task.values)) } else { None }
+        };
+        of_same_values.or_else(of_earlier).map_or(Place::New, Place::Known)
+    }
+
+    /// Has the new ones of some tasks evaluated on other machines; the rows of those that were, by their positions.
+    fn evaluate_elsewhere(
+        &self,
+        first: usize,
+        tasks: &[EvaluationTask],
+        places: &[Place],
+    ) -> HashMap<usize, SweepPoint> {
+        let is_new = |at: &usize| matches!(places[*at], Place::New);
+        let new = (0..tasks.len()).filter(is_new).map(|at| ((first + at) as u64, tasks[at].clone()));
+        let tasks: BTreeMap<u64, EvaluationTask> = if self.wanted.is_none() { new.collect() } else { BTreeMap::new() };
+        if tasks.is_empty() {
+            return HashMap::new();
+        }
+        let measures_of_input = self.rows.first().and_then(|row| row.measures.clone());
+        let evaluation_ms = (self.made.0 > 0).then(|| self.made.1 / self.made.0 as f64);
+        self.context.points.evaluate(EvaluationBatch { measures_of_input, tasks }, evaluation_ms)
+    }
+}
+
+/// Where a row comes from.
+#[derive(Clone, Copy)]
+enum Place<'a> {
+    /// It is not wanted.
+    Unwanted,
+    /// An earlier attempt stored it.
+    Stored(&'a SweepPoint),
+    /// Another row of the same values and settings.
+    Known(&'a SweepPoint),
+    /// It is to be evaluated.
+    New,
+}
+
+fn key(task: &EvaluationTask) -> (EvaluationSettings, Vec<u64>) {
+    (task.settings, task.values.iter().chain(&task.further).map(|value| value.to_bits()).collect())
 }
 
 fn bits(values: &[f64]) -> Vec<u64> {

@@ -8,4 +8,4 @@ mod run;
 
 pub(super) use neighbours::warnings;
 pub(super) use problem::{Problem, check_shafts};
-pub(super) use run::run;
+pub(super) use run::{run, run_part};

@@ -1,10 +1,10 @@
 //! What lies around the best design: how far each variable can go alone, and whether a jump is near.
 
-use super::run::{OWN, Solver};
+use super::run::Solver;
 use crate::document::SPEED_STEPS;
 use crate::result::{EvaluationPhase, Flatness, OptimiseResult, SpeedNeighbour};
 use crate::study::SolveError;
-use crate::study::evaluation::{Level, Rows, Task};
+use crate::study::evaluation::{EvaluationSettings, EvaluationTask, Level, Rows};
 use crate::warning::Warning;
 
 /// Speeds of the neighbours over that of the document, in per cent, less 100: outwards on either side.
@@ -12,8 +12,11 @@ const SPEEDS_PERCENT: [f64; SPEED_STEPS] = [-2.0, -5.0, 2.0, 5.0];
 /// Ratio of a measure at neighbouring speeds from which on it has jumped: a resonance of the usual damping is not as
 /// steep.
 const JUMP: f64 = 1.5;
-/// Settings of evaluations at other speeds, by which their rows are told apart: 16 and the place of the speed.
-const SPEED: u8 = 16;
+
+/// Factor of the speeds at a place among the neighbours.
+pub(super) fn speed_factor(place: u8) -> f64 {
+    1.0 + SPEEDS_PERCENT.get(usize::from(place)).copied().unwrap_or_default() / 100.0
+}
 
 /// Evaluates the best design with one variable after the other at the ends of its range of good values.
 ///
@@ -42,8 +45,7 @@ pub(super) fn confirm_flatness(
         return Ok(());
     }
     let generation = rows.next_generation();
-    let found =
-        solver.evaluate(rows, designs, (EvaluationPhase::Flatness, generation), (&solver.evaluator.base, OWN))?;
+    let found = solver.evaluate(rows, designs, (EvaluationPhase::Flatness, generation), EvaluationSettings::Own)?;
     let of_best = solver.score(&own, 0).objective;
     for ((variable, end), at) in places.into_iter().zip(found) {
         let score = solver.score(&rows.rows[at], 0);
@@ -68,20 +70,18 @@ pub(super) fn at_speeds(solver: &Solver, rows: &mut Rows, best: usize) -> Result
     }
     let own = rows.rows[best].clone();
     let measures = |measures: &Option<Vec<f64>>| measures.as_ref().map(|all| problem.of_measure(all, 0).to_vec());
+    let generation = rows.next_generation();
+    let task = |place: u8| EvaluationTask {
+        settings: EvaluationSettings::Speed(place),
+        values: own.values.clone(),
+        further: Vec::new(),
+        phase: EvaluationPhase::Speed,
+        generation: Some(generation),
+    };
+    let evaluated = rows.run((0..SPEED_STEPS as u8).map(task).collect(), solver)?;
     let mut found = Vec::new();
     let mut inner = measures(&own.measures);
-    for (place, speed_percent) in SPEEDS_PERCENT.into_iter().enumerate() {
-        let evaluator = solver.evaluator.at_speeds(1.0 + speed_percent / 100.0);
-        let task = Task {
-            values: own.values.clone(),
-            further: Vec::new(),
-            phase: EvaluationPhase::Speed,
-            generation: Some(rows.next_generation()),
-        };
-        let gate = |_: &[Option<f64>]| 0.0;
-        let evaluate = |task: &Task| evaluator.evaluate(&evaluator.base, &problem.inputs, &task.values, &gate);
-        let complete = |outcome: &_, row: &mut _| solver.complete(outcome, row);
-        let at = rows.run(vec![task], SPEED + place as u8, evaluate, &complete)?.start;
+    for ((place, speed_percent), at) in SPEEDS_PERCENT.into_iter().enumerate().zip(evaluated) {
         if place == SPEED_STEPS / 2 {
             inner = measures(&own.measures);
         }

@@ -1,12 +1,12 @@
 //! Choice of the best design by its values over the tolerances.
 
 use super::outcome::stopped_by;
-use super::run::{AFTER_ROBUST_SEARCH, Course, OWN, SEARCH, Solver};
-use crate::document::{GoalInput, JobDocument, RobustInput, RobustMeasureInput};
+use super::run::{AFTER_ROBUST_SEARCH, Course, Solver};
+use crate::document::{GoalInput, RobustInput, RobustMeasureInput};
 use crate::field::Words;
 use crate::result::{EvaluationPhase, RobustCandidate, RobustResult, RobustSearch, RobustStatistics, SweepPoint};
 use crate::study::SolveError;
-use crate::study::evaluation::{Rows, Task};
+use crate::study::evaluation::{EvaluationSettings, EvaluationTask, Rows};
 use crate::study::tolerance::{Scatter, scrambles};
 use herringbone_search::statistics::{mean, percentile, student_t_interval};
 use herringbone_search::{MAX_SOBOL_POINTS, Method, Score, Search, SearchSettings, StoppedBy, sobol_point};
@@ -18,9 +18,7 @@ const APART: f64 = 0.05;
 struct Robust<'a> {
     solver: &'a Solver<'a>,
     robust: &'a RobustInput,
-    scatter: Scatter<'a>,
-    /// The settings of the search, and the number by which they are told apart.
-    base: (&'a JobDocument, u8),
+    scatter: &'a Scatter<'a>,
     /// Points of the unit cube of the common sample.
     common: Vec<Vec<f64>>,
 }
@@ -39,8 +37,9 @@ pub(super) fn run(
     course: &Course,
     best: Option<usize>,
 ) -> Result<(Option<RobustResult>, Option<usize>), SolveError> {
-    let (Some(robust), Some(nominal_best)) = (&solver.document.robust, best) else { return Ok((None, best)) };
-    let scatter = Scatter::new(solver.document, &solver.evaluator.base);
+    let (Some(robust), Some(scatter), Some(nominal_best)) = (&solver.document.robust, &solver.scatter, best) else {
+        return Ok((None, best));
+    };
     let seed = u64::from(solver.document.seed.unwrap_or(1));
     let points = |count: u32, sample: u64| -> Vec<Vec<f64>> {
         let seed = scrambles(seed, sample)[0];
@@ -48,8 +47,7 @@ pub(super) fn run(
         all.map(|index| scatter.in_company(sobol_point(index, scatter.len(), seed))).collect()
     };
     let (common, fresh) = (points(robust.samples, 20), points(robust.confirm_samples, 21));
-    let base = solver.search_base.map_or((&solver.evaluator.base, OWN), |base| (base, SEARCH));
-    let all = Robust { solver, robust, scatter, base, common };
+    let all = Robust { solver, robust, scatter, common };
     let ranked = all.rank(rows, candidates(solver, &rows.rows, course, robust.candidates as usize))?;
     let mut winner = ranked.first().map_or(nominal_best, |(at, ..)| *at);
     let search = match ranked.first() {
@@ -61,9 +59,9 @@ pub(super) fn run(
         _ => None,
     };
     // Another sample, with the settings of the document.
-    let own = (&solver.evaluator.base, OWN);
     let of_design = |rows: &mut Rows, values: Vec<f64>| {
-        let mut found = all.samples(rows, &[values], &fresh, (EvaluationPhase::RobustConfirm, own))?;
+        let settings = EvaluationSettings::OwnSample;
+        let mut found = all.samples(rows, &[values], &fresh, (EvaluationPhase::RobustConfirm, settings))?;
         Ok::<_, SolveError>(found.pop().unwrap_or_default())
     };
     let of_input = of_design(rows, solver.input_values())?;
@@ -102,10 +100,18 @@ impl Robust<'_> {
         if self.solver.problem.objectives[0].goal == GoalInput::Maximise { -1.0 } else { 1.0 }
     }
 
+    /// Settings of samples during the search.
+    fn settings(&self) -> EvaluationSettings {
+        match self.solver.search_base {
+            Some(_) => EvaluationSettings::SearchSample,
+            None => EvaluationSettings::OwnSample,
+        }
+    }
+
     /// Rows by their statistic over the common sample, the best first.
     fn rank(&self, rows: &mut Rows, chosen: Vec<usize>) -> Result<Vec<Ranked>, SolveError> {
         let designs: Vec<Vec<f64>> = chosen.iter().map(|at| rows.rows[*at].values.clone()).collect();
-        let found = self.samples(rows, &designs, &self.common, (EvaluationPhase::Robust, self.base))?;
+        let found = self.samples(rows, &designs, &self.common, (EvaluationPhase::Robust, self.settings()))?;
         let of = |(at, sample): (usize, Vec<Option<f64>>)| {
             let nominal = self.solver.oriented(&rows.rows[at]).first().copied().unwrap_or(f64::NAN);
             (at, nominal, statistic(&sample, self.robust))
@@ -136,13 +142,13 @@ impl Robust<'_> {
             let generation = rows.next_generation();
             let is_up = search.stopped_by() == StoppedBy::Caller;
             let of_nominal = if is_up { EvaluationPhase::Nearest } else { phase };
-            let nominal = solver.evaluate(rows, values.clone(), (of_nominal, generation), self.base)?;
+            let nominal = solver.evaluate(rows, values.clone(), (of_nominal, generation), solver.search_settings())?;
             // Designs that violate a constraint have no sample.
             let violations: Vec<Option<f64>> = rows.rows[nominal].iter().map(|row| row.violation).collect();
             let is_feasible = |at: &usize| violations[*at] == Some(0.0);
             let feasible: Vec<usize> = (0..values.len()).filter(is_feasible).collect();
             let sampled: Vec<Vec<f64>> = feasible.iter().map(|at| values[*at].clone()).collect();
-            let found = self.samples(rows, &sampled, &self.common, (phase, self.base))?;
+            let found = self.samples(rows, &sampled, &self.common, (phase, self.settings()))?;
             let mut scores: Vec<Score> =
                 violations.iter().map(|violation| Score::infeasible(violation.unwrap_or(1.0).max(1e-9))).collect();
             for (at, sample) in feasible.into_iter().zip(found) {
@@ -165,7 +171,7 @@ impl Robust<'_> {
         };
         let Some((values, _)) = best else { return Ok((found, start)) };
         let generation = rows.next_generation();
-        let own = (&solver.evaluator.base, OWN);
+        let own = EvaluationSettings::Own;
         let at = solver.evaluate(rows, vec![values.clone()], (EvaluationPhase::RobustConfirm, generation), own)?.start;
         let is_answer = solver.score(&rows.rows[at], 0).is_feasible() && solver.is_permitted(&rows.rows[at]);
         Ok((found, if is_answer { at } else { start }))
@@ -178,34 +184,22 @@ impl Robust<'_> {
         rows: &mut Rows,
         designs: &[Vec<f64>],
         points: &[Vec<f64>],
-        (phase, (base, settings)): (EvaluationPhase, (&JobDocument, u8)),
+        (phase, settings): (EvaluationPhase, EvaluationSettings),
     ) -> Result<Vec<Vec<Option<f64>>>, SolveError> {
         let solver = self.solver;
-        let design_of = |values: &[f64]| {
-            let mut design = base.clone();
-            let mut refused = Vec::new();
-            for (inputs, value) in solver.problem.inputs.iter().zip(values) {
-                inputs.put(&mut design, *value, &mut refused);
-            }
-            design
-        };
         let generation = rows.next_generation();
         let mut tasks = Vec::new();
         for values in designs {
-            let mut design = design_of(values);
-            tasks.extend(points.iter().map(|point| Task {
+            let mut design = solver.design(settings, values);
+            tasks.extend(points.iter().map(|point| EvaluationTask {
+                settings,
                 values: values.clone(),
                 further: self.scatter.values(&mut design, point).0,
                 phase,
                 generation: Some(generation),
             }));
         }
-        // What scatters is judged by the objective alone.
-        let gate = |_: &[Option<f64>]| 0.0;
-        let evaluate = |task: &Task| {
-            solver.evaluator.evaluate(&design_of(&task.values), &self.scatter.inputs, &task.further, &gate)
-        };
-        let range = rows.run(tasks, settings + 4, evaluate, &|outcome, row| solver.complete(outcome, row))?;
+        let range = rows.run(tasks, solver)?;
         let values: Vec<Option<f64>> =
             rows.rows[range].iter().map(|row| solver.oriented(row).first().copied()).collect();
         Ok(values.chunks(points.len().max(1)).map(<[Option<f64>]>::to_vec).collect())

@@ -1,21 +1,20 @@
 //! The run of an optimisation.
 
-use super::neighbours;
+use super::neighbours::{self, speed_factor};
 use super::outcome;
 use super::problem::Problem;
 use super::robust;
 use crate::document::{CONFIRMED, JobDocument, Ltca, MeshStiffness, SearchMethodInput};
 use crate::result::{EvaluationPhase, OptimiseResult, SearchHistory, SweepPoint};
-use crate::study::evaluation::{Evaluator, Outcome, Rows, Task};
+use crate::study::evaluation::{
+    Evaluate, EvaluationBatch, EvaluationSettings, EvaluationTask, Evaluator, Outcome, Rows,
+};
 use crate::study::mesh::MeshMemo;
 use crate::study::points::StoredPoints;
+use crate::study::tolerance::Scatter;
 use crate::study::{SolveContext, SolveError, Stage};
 use herringbone_search::{Method, Phase, Score, Search, SearchSettings, StoppedBy, hypervolume};
-
-/// Settings of evaluations, by which rows of the same values are told apart.
-pub(super) const OWN: u8 = 0;
-pub(super) const SEARCH: u8 = 1;
-const INPUT: u8 = 2;
+use rayon::prelude::*;
 
 /// What a run has found, for the result.
 pub(super) struct Course {
@@ -44,17 +43,9 @@ pub(in crate::study) fn run(
     let evaluator = Evaluator::new(document, &problem.measures, context, memo);
     let mut rows = Rows::new(stored, document.evaluations(), context);
     let coarse = evaluator.coarse_base();
-    let clock = Clock { now_ms: context.clock_ms, started_ms: (context.clock_ms)() };
-    let search_base = coarse.as_ref();
-    let solver = Solver { document, problem: &problem, evaluator: &evaluator, search_base, clock };
+    let solver = Solver::new(document, &problem, &evaluator, coarse.as_ref(), context);
     solver.evaluate_input(&mut rows)?;
-    problem.relate_to(rows.rows[0].measures.as_ref()).map_err(|(index, reason)| SolveError::Failed {
-        stage: Stage::Evaluations,
-        code: "input-has-no-value".to_owned(),
-        detail: format!("/objectives/{index}/relative_to is input, but {reason}"),
-        sim_time_s: None,
-        step: None,
-    })?;
+    relate(&problem, rows.rows[0].measures.as_ref())?;
     let mut course = solver.search(&mut rows)?;
     let first = rows.len();
     if coarse.is_some() {
@@ -75,6 +66,40 @@ pub(in crate::study) fn run(
     Ok((result, has_reused))
 }
 
+/// Makes evaluations of a document of kind `optimise` apart from the rest; their rows go to the point store of the
+/// context.
+///
+/// # Errors
+/// [`SolveError::Canceled`]; [`SolveError::Document`] if the problem is none.
+pub(in crate::study) fn run_part(
+    document: &JobDocument,
+    batch: &EvaluationBatch,
+    context: &SolveContext,
+    memo: &MeshMemo,
+) -> Result<(), SolveError> {
+    let problem = Problem::new(document)?;
+    let evaluator = Evaluator::new(document, &problem.measures, context, memo);
+    let coarse = evaluator.coarse_base();
+    let solver = Solver::new(document, &problem, &evaluator, coarse.as_ref(), context);
+    relate(&problem, batch.measures_of_input.as_ref())?;
+    batch.tasks.par_iter().try_for_each(|(position, task)| {
+        let row = solver.row(task)?;
+        context.points.save(*position as usize, &row, None);
+        Ok(())
+    })
+}
+
+/// Relates objectives to the measures of the document itself.
+fn relate(problem: &Problem, measures: Option<&Vec<f64>>) -> Result<(), SolveError> {
+    problem.relate_to(measures).map_err(|(index, reason)| SolveError::Failed {
+        stage: Stage::Evaluations,
+        code: "input-has-no-value".to_owned(),
+        detail: format!("/objectives/{index}/relative_to is input, but {reason}"),
+        sim_time_s: None,
+        step: None,
+    })
+}
+
 /// What a run needs everywhere.
 pub(super) struct Solver<'a> {
     pub document: &'a JobDocument,
@@ -82,6 +107,8 @@ pub(super) struct Solver<'a> {
     pub evaluator: &'a Evaluator<'a>,
     /// The base of the search's evaluations, where it differs from that of the document.
     pub search_base: Option<&'a JobDocument>,
+    /// The tolerances, where designs are judged by them.
+    pub scatter: Option<Scatter<'a>>,
     clock: Clock<'a>,
 }
 
@@ -103,9 +130,31 @@ const AFTER_SEARCH: [EvaluationPhase; 7] = [
 pub(super) const AFTER_ROBUST_SEARCH: [EvaluationPhase; 4] =
     [EvaluationPhase::Nearest, EvaluationPhase::RobustConfirm, EvaluationPhase::Flatness, EvaluationPhase::Speed];
 
-impl Solver<'_> {
+impl Evaluate for Solver<'_> {
+    fn outcome(&self, task: &EvaluationTask) -> Result<Outcome, SolveError> {
+        let (evaluator, inputs) = (self.evaluator, &self.problem.inputs);
+        let gate = |found: &[Option<f64>]| self.problem.violation(found);
+        let no_gate = |_: &[Option<f64>]| 0.0;
+        match task.settings {
+            EvaluationSettings::Input => evaluator.evaluate(&evaluator.base, &[], &[], &no_gate),
+            EvaluationSettings::Own | EvaluationSettings::Search => {
+                evaluator.evaluate(self.base(task.settings), inputs, &task.values, &gate)
+            }
+            // What scatters is judged by the objective alone.
+            EvaluationSettings::OwnSample | EvaluationSettings::SearchSample => {
+                let design = self.design(task.settings, &task.values);
+                let inputs = self.scatter.as_ref().map(|scatter| scatter.inputs.as_slice()).unwrap_or_default();
+                evaluator.evaluate(&design, inputs, &task.further, &no_gate)
+            }
+            EvaluationSettings::Speed(place) => {
+                let evaluator = evaluator.at_speeds(speed_factor(place));
+                evaluator.evaluate(&evaluator.base, inputs, &task.values, &no_gate)
+            }
+        }
+    }
+
     /// Writes objectives and violation into a row.
-    pub(super) fn complete(&self, outcome: &Outcome, row: &mut SweepPoint) {
+    fn complete(&self, outcome: &Outcome, row: &mut SweepPoint) {
         let Some(measures) = &outcome.measures else {
             row.violation = Some(outcome.violation);
             return;
@@ -113,6 +162,44 @@ impl Solver<'_> {
         let known: Vec<Option<f64>> = measures.iter().copied().map(Some).collect();
         row.objectives = Some(self.problem.objectives_of(measures));
         row.violation = Some(self.problem.violation(&known));
+    }
+}
+
+impl<'a> Solver<'a> {
+    fn new(
+        document: &'a JobDocument,
+        problem: &'a Problem<'a>,
+        evaluator: &'a Evaluator<'a>,
+        search_base: Option<&'a JobDocument>,
+        context: &'a SolveContext<'a>,
+    ) -> Self {
+        let scatter = document.robust.is_some().then(|| Scatter::new(document, &evaluator.base));
+        let clock = Clock { now_ms: context.clock_ms, started_ms: (context.clock_ms)() };
+        Self { document, problem, evaluator, search_base, scatter, clock }
+    }
+
+    /// The base of evaluations with some settings.
+    fn base(&self, settings: EvaluationSettings) -> &JobDocument {
+        let own = &self.evaluator.base;
+        match settings {
+            EvaluationSettings::Search | EvaluationSettings::SearchSample => self.search_base.unwrap_or(own),
+            _ => own,
+        }
+    }
+
+    /// Settings of the search.
+    pub(super) fn search_settings(&self) -> EvaluationSettings {
+        if self.search_base.is_some() { EvaluationSettings::Search } else { EvaluationSettings::Own }
+    }
+
+    /// The document of a design.
+    pub(super) fn design(&self, settings: EvaluationSettings, values: &[f64]) -> JobDocument {
+        let mut design = self.base(settings).clone();
+        let mut refused = Vec::new();
+        for (inputs, value) in self.problem.inputs.iter().zip(values) {
+            inputs.put(&mut design, *value, &mut refused);
+        }
+        design
     }
 
     /// Whether the time is up, or was in an earlier attempt, which went on with the phases `after`: its rows say where.
@@ -129,16 +216,11 @@ impl Solver<'_> {
         rows: &mut Rows,
         points: Vec<Vec<f64>>,
         (phase, generation): (EvaluationPhase, u32),
-        (base, settings): (&JobDocument, u8),
+        settings: EvaluationSettings,
     ) -> Result<std::ops::Range<usize>, SolveError> {
-        let task = |values| Task { values, further: Vec::new(), phase, generation: Some(generation) };
-        let gate = |found: &[Option<f64>]| self.problem.violation(found);
-        rows.run(
-            points.into_iter().map(task).collect(),
-            settings,
-            |task| self.evaluator.evaluate(base, &self.problem.inputs, &task.values, &gate),
-            &|outcome, row| self.complete(outcome, row),
-        )
+        let task =
+            |values| EvaluationTask { settings, values, further: Vec::new(), phase, generation: Some(generation) };
+        rows.run(points.into_iter().map(task).collect(), self)
     }
 
     /// The setting of the search where it differs from that of the document.
@@ -151,16 +233,14 @@ impl Solver<'_> {
     }
 
     fn evaluate_input(&self, rows: &mut Rows) -> Result<(), SolveError> {
-        let task = Task {
+        let task = EvaluationTask {
+            settings: EvaluationSettings::Input,
             values: self.input_values(),
             further: Vec::new(),
             phase: EvaluationPhase::Input,
             generation: Some(0),
         };
-        // The document is evaluated as it is: its violations have their numbers too.
-        let gate = |_: &[Option<f64>]| 0.0;
-        let evaluate = |_: &Task| self.evaluator.evaluate(&self.evaluator.base, &[], &[], &gate);
-        rows.run(vec![task], INPUT, evaluate, &|outcome, row| self.complete(outcome, row))?;
+        rows.run(vec![task], self)?;
         Ok(())
     }
 
@@ -241,7 +321,6 @@ impl Solver<'_> {
             },
             refines: false,
         });
-        let base = self.search_base.map_or((&self.evaluator.base, OWN), |base| (base, SEARCH));
         while let Some(batch) = search.ask() {
             course.generations += 1;
             let phase = match batch.phase {
@@ -251,7 +330,7 @@ impl Solver<'_> {
                 Phase::Polish => EvaluationPhase::Polish,
             };
             let points = batch.points.iter().map(|point| self.problem.values(point)).collect();
-            let solved = self.evaluate(rows, points, (phase, course.generations), base)?;
+            let solved = self.evaluate(rows, points, (phase, course.generations), self.search_settings())?;
             let scores: Vec<Score> = rows.rows[solved].iter().map(score).collect();
             search.tell(&scores);
             self.note(course, &rows.rows, search.spread());
@@ -318,7 +397,7 @@ impl Solver<'_> {
         }
         chosen.truncate(CONFIRMED);
         let generation = rows.next_generation();
-        self.evaluate(rows, chosen, (EvaluationPhase::Confirm, generation), (&self.evaluator.base, OWN))?;
+        self.evaluate(rows, chosen, (EvaluationPhase::Confirm, generation), EvaluationSettings::Own)?;
         Ok(())
     }
 

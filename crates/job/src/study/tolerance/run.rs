@@ -8,7 +8,8 @@ use crate::document::{JobDocument, MORRIS_TRAJECTORIES, MeasureInput, SCRAMBLES,
 use crate::field::Words;
 use crate::result::{EvaluationPhase, SweepPoint, ToleranceResult};
 use crate::study::evaluation::{
-    Evaluator, Found, Inputs, Measure, Outcome, Rows, Task, check_measure, check_pointers, reduce,
+    Evaluate, EvaluationSettings, EvaluationTask, Evaluator, Found, Inputs, Measure, Outcome, Rows, check_measure,
+    check_pointers, reduce,
 };
 use crate::study::mesh::MeshMemo;
 use crate::study::optimise::check_shafts;
@@ -154,27 +155,27 @@ struct Evaluated {
 
 /// Makes the evaluations of a study: the document, the sample, and those for the sensitivity.
 fn evaluate_all(document: &JobDocument, evaluator: &Evaluator, rows: &mut Rows) -> Result<Evaluated, SolveError> {
-    let scatter = Scatter::new(document, &evaluator.base);
+    let scatter = &Scatter::new(document, &evaluator.base);
+    let samples = Samples { evaluator, scatter };
     let mut clipped = 0;
     let mut evaluate = |points: &[Vec<f64>], phase: EvaluationPhase, rows: &mut Rows| {
         let task = |point: &Vec<f64>| {
             let (values, cut) = scatter.values(&mut evaluator.base.clone(), point);
             clipped += cut;
-            Task { values, further: Vec::new(), phase, generation: None }
+            let settings = EvaluationSettings::Own;
+            EvaluationTask { settings, values, further: Vec::new(), phase, generation: None }
         };
         let tasks = points.iter().map(task).collect();
-        let gate = |_: &[Option<f64>]| 0.0;
-        let solve = |task: &Task| evaluator.evaluate(&evaluator.base, &scatter.inputs, &task.values, &gate);
-        rows.run(tasks, 0, solve, &complete)
+        rows.run(tasks, &samples)
     };
-    let input = Task {
+    let input = EvaluationTask {
+        settings: EvaluationSettings::Input,
         values: scatter.inputs.iter().map(|i| i.value(&mut evaluator.base.clone()).unwrap_or_default()).collect(),
         further: Vec::new(),
         phase: EvaluationPhase::Input,
         generation: None,
     };
-    let gate = |_: &[Option<f64>]| 0.0;
-    rows.run(vec![input], 1, |_| evaluator.evaluate(&evaluator.base, &[], &[], &gate), &complete)?;
+    rows.run(vec![input], &samples)?;
 
     let sensitivity = document.sensitivity.unwrap_or(SensitivityInput::FromSample);
     let inputs = scatter.len();
@@ -215,7 +216,23 @@ fn evaluate_all(document: &JobDocument, evaluator: &Evaluator, rows: &mut Rows) 
     Ok(Evaluated { points: first, sample, further, trajectories, clipped })
 }
 
-fn complete(_outcome: &Outcome, _row: &mut SweepPoint) {}
+/// The document, and samples of its tolerances.
+struct Samples<'a> {
+    evaluator: &'a Evaluator<'a>,
+    scatter: &'a Scatter<'a>,
+}
+
+impl Evaluate for Samples<'_> {
+    fn outcome(&self, task: &EvaluationTask) -> Result<Outcome, SolveError> {
+        let (evaluator, gate) = (self.evaluator, |_: &[Option<f64>]| 0.0);
+        match task.settings {
+            EvaluationSettings::Input => evaluator.evaluate(&evaluator.base, &[], &[], &gate),
+            _ => evaluator.evaluate(&evaluator.base, &self.scatter.inputs, &task.values, &gate),
+        }
+    }
+
+    fn complete(&self, _outcome: &Outcome, _row: &mut SweepPoint) {}
+}
 
 /// Points of the unit cube: those of the scrambled sequences by turns, so that the first half is a sample too.
 fn sample_points(document: &JobDocument, dimensions: usize) -> Vec<Vec<f64>> {
