@@ -9,7 +9,7 @@ import acceptance  # noqa: E402
 import examples  # noqa: E402
 
 CASES = {"relief": examples.relief, "shafts": examples.shafts, "scatter": examples.scatter, "grid": acceptance.grid,
-         "promise": acceptance.promise, "promise-shafts": acceptance.promise_shafts, "cliff": acceptance.cliff,
+         "grid-crowning": acceptance.grid_crowning, "promise": acceptance.promise, "promise-shafts": acceptance.promise_shafts, "cliff": acceptance.cliff,
          "coverage": acceptance.coverage, "time": acceptance.time}
 
 for name in sys.argv[1:] or CASES:

@@ -3,16 +3,16 @@
 import math
 import random
 
-from program import (ACCELERATION, example, response, say, say_cost, solve, sweep, with_values,
+from program import (ACCELERATION, example, put, response, say, say_cost, solve, sweep, with_values,
                      worst_acceleration)
 
 # As a search has them, so that both see one function.
 SEARCH = {"positions": 32, "accuracy": 0.01}
 
 
-def relief_alone():
+def relief_alone(variables=2):
     document = example("optimise_relief")
-    document["variables"] = document["variables"][:2]
+    document["variables"] = document["variables"][:variables]
     for variable in document["variables"]:
         del variable["step"]
     del document["constraints"]
@@ -20,28 +20,42 @@ def relief_alone():
     return document
 
 
-def grid():
-    """Relief amount and length at three torques against a grid of 41 x 41 designs (at most 200 evaluations, 1 %)."""
-    document = relief_alone()
+def against_grid(document, count, thirds, evaluations):
+    """Prints the least of a grid at three torques, and what searches find with a number of evaluations."""
     worst = {}
-    axes = [{"pointer": variable["pointer"], "also": variable["also"], "from": variable["from"], "to": variable["to"],
-             "points": 41} for variable in document["variables"]]
+    axes = [{"pointer": variable["pointer"], "also": variable.get("also", []), "from": variable["from"],
+             "to": variable["to"], "points": count} for variable in document["variables"][:2]]
     for point in document["operating_points"]:
         document["operation"]["pinion_torque_nm"] = point["pinion_torque_nm"]
-        for row in sweep(document, axes):
-            place = tuple(row["values"])
-            worst[place] = max(worst.get(place, 0.0), worst_acceleration(row))
+        for third in thirds:
+            if third is not None:
+                put(document, document["variables"][2]["pointer"], third)
+            for row in sweep(document, axes):
+                place = (*row["values"], third)
+                worst[place] = max(worst.get(place, 0.0), worst_acceleration(row))
     document["operation"]["pinion_torque_nm"] = 800.0
+    if thirds[0] is not None:
+        put(document, document["variables"][2]["pointer"], thirds[0])
     place = min(worst, key=worst.get)
     print(f"  grid: least {worst[place]:.4f} m/s2 at {place}, of {len(worst)} designs")
     for seed in range(1, 6):
-        document["budget"], document["seed"] = {"evaluations": 200}, seed
+        document["budget"], document["seed"] = {"evaluations": evaluations}, seed
         result = solve(document)
         found = result["optimise"]
         best = found["objectives"][0]["best"]
         searched = sum(row["phase"] in ("sample", "search", "polish") for row in found["points"])
         print(f"  seed {seed}: {best:.4f} m/s2 at {list(found['best']['values'].values())}, {100 * (best / worst[place] - 1):+.2f} % "
               f"of the grid's, {searched} evaluations of the search, {result['cost']['cpu_s']:.0f} s of processor")
+
+
+def grid():
+    """Relief amount and length at three torques against a grid of 41 x 41 designs (at most 200 evaluations, 1 %)."""
+    against_grid(relief_alone(), 41, [None], 200)
+
+
+def grid_crowning():
+    """The same with crowning as a third variable against 21 x 21 x 21 designs (at most 300 evaluations)."""
+    against_grid(relief_alone(3), 21, [0.75 * step for step in range(21)], 300)
 
 
 def promise_document():

@@ -113,4 +113,5 @@ def say_robust(result):
                   f"{of['p90_interval']}, max {of['max']:.4g}, failed {of['failed']}")
     if robust.get("search"):
         print(f"    search on the measure: {robust['search']}")
-    print(f"    gain of {robust['measure']}: {robust['gain_percent']:.1f} %")
+    gain = robust["gain_percent"]
+    print(f"    gain of {robust['measure']}: " + ("none is said: too many points failed" if gain is None else f"{gain:.1f} %"))
