@@ -368,7 +368,7 @@ fn deviations_of_what_the_input_has_not_are_within_its_range() {
     ]);
     document["design"]["pinion"]["left"] = json!({});
     document["objectives"] = json!([{"measure": "/geometry/total_contact_ratio", "goal": "maximise"}]);
-    document["constraints"] = json!([]);
+    document["constraints"] = json!([{"measure": "/geometry/total_contact_ratio", "at_least": 1.0}]);
     document["tolerances"] = json!([{"pointer": amount, "tolerance": 5}]);
     document["robust"] = json!({"samples": 8, "candidates": 2, "confirm_samples": 32});
     let robust = optimised(&document).robust.expect("robust");
