@@ -7,8 +7,7 @@
 //! (Conry and Seireg 1973 with a local term h.) B is the smooth flexibility of the bodies between the stations of the
 //! contact lines, P interpolates it to the points, K couples the points of one line locally. Newton on the nonlinear
 //! local approach within an active set, all changes of the set at once and warm-started; when that cycles, a careful
-//! active-set method that never leaves f >= 0. Near the solution the derivatives of one step serve the next ones (chord
-//! method): a step without a new factorisation costs a tenth.
+//! active-set method that never leaves f >= 0.
 
 use super::system::{ContactProblem, LEAST_FORCE};
 use crate::watch::{Canceled, Meter};
@@ -22,8 +21,10 @@ pub(super) struct Distribution {
     pub approach: f64,
     /// dF/dd at the solution, with the contact set as it is.
     pub stiffness: f64,
-    /// Newton and chord iterations.
+    /// Newton iterations.
     pub iterations: u32,
+    /// Forces about which the last step was linearised.
+    pub linearised_n: Vec<f64>,
 }
 
 /// Errors of a distribution.
@@ -49,12 +50,6 @@ const NEWTON_ITERATIONS: u32 = 30;
 /// Change of a force, as a part of the whole, after which Newton's iteration ends: its convergence is quadratic, what
 /// is left is of the order of the change's square.
 const TOLERANCE: f64 = 1e-6;
-/// The same after a chord step, which leaves a part of its change.
-const CHORD_TOLERANCE: f64 = 1e-7;
-/// Change of a force, as a part of the mean force of the points that carry, below which the derivatives are kept; and
-/// the part of the change before that a chord step may leave. Beyond, the problem is linearised again.
-const CHORD_CHANGE: f64 = 0.5;
-const CHORD_GAIN: f64 = 0.2;
 
 /// Prescribed quantity of a distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,20 +97,14 @@ pub(super) fn distribute<P: ContactProblem>(
     let of_carrier = total / carriers.len() as f64;
     let limit = NEWTON_ITERATIONS + 40 + 6 * n as u32;
     let mut change = f64::INFINITY;
-    // Whether the derivatives of the last step serve the next one.
-    let mut keeps = false;
+    let mut linearised_n = vec![0.0; n];
     for iteration in 1..=limit {
         let primal = iteration > NEWTON_ITERATIONS;
-        let is_chord = std::mem::take(&mut keeps) && !primal;
-        let all = (total, above_datum);
-        let step = match is_chord {
-            true => system.chord(all, datum, &forces, &active, work, meter)?,
-            false => system.newton(all, datum, &forces, &active, work, meter)?,
-        };
+        linearised_n.copy_from_slice(&forces);
+        let step = system.newton((total, above_datum), datum, &forces, &active, work, meter)?;
         let Some((approach, stiffness)) = step else {
             return Err(DistributionError::NotConverged { iterations: iteration, change });
         };
-        let change_before = change;
         let new_forces = system.new_forces(work);
         let mut same = true;
         change = 0.0;
@@ -191,14 +180,10 @@ pub(super) fn distribute<P: ContactProblem>(
             }
         }
         let rounding = 16.0 * f64::EPSILON * stiffness * approach.abs() / of_carrier;
-        let tolerance = if is_chord { CHORD_TOLERANCE } else { TOLERANCE };
-        if same && change < tolerance + rounding {
-            let stiffness = system.stiffness(total, &forces, &active, work, meter)?;
-            return Ok(Distribution { forces, approach: approach + datum, stiffness, iterations: iteration });
+        if same && change < TOLERANCE + rounding {
+            let approach = approach + datum;
+            return Ok(Distribution { forces, approach, stiffness, iterations: iteration, linearised_n });
         }
-        let carrying = active.iter().filter(|active| **active).count().max(1) as f64;
-        let converges = !is_chord || change < CHORD_GAIN * change_before;
-        keeps = same && converges && change * of_carrier * carrying < CHORD_CHANGE * total;
     }
     Err(DistributionError::NotConverged { iterations: limit, change })
 }

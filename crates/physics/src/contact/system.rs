@@ -6,9 +6,7 @@
 use std::ops::Range;
 
 use crate::compliance::{STENCIL, Stencil};
-use crate::numerics::dense::{
-    cholesky, cholesky_solve, dot, forward_solve, lu_factor, lu_substitute, multiply_vectors,
-};
+use crate::numerics::dense::{cholesky, cholesky_solve, dot, forward_solve, lu_solve, multiply_vectors};
 use crate::simd::vectorised;
 use crate::watch::{Canceled, Meter};
 
@@ -50,34 +48,6 @@ pub(super) trait ContactProblem {
         work: &mut Self::Workspace,
         meter: &mut Meter,
     ) -> Result<Option<(f64, f64)>, Canceled>;
-
-    /// The same with the derivatives of the last [Newton step](Self::newton) on the same active points: a chord step,
-    /// for forces near those of that step.
-    ///
-    /// # Errors
-    /// [`Canceled`].
-    fn chord(
-        &self,
-        prescribed: (f64, Option<f64>),
-        datum: f64,
-        forces: &[f64],
-        active: &[bool],
-        work: &mut Self::Workspace,
-        meter: &mut Meter,
-    ) -> Result<Option<(f64, f64)>, Canceled>;
-
-    /// Stiffness at `forces` near those of the last Newton step on the same active points.
-    ///
-    /// # Errors
-    /// [`Canceled`].
-    fn stiffness(
-        &self,
-        total: f64,
-        forces: &[f64],
-        active: &[bool],
-        work: &mut Self::Workspace,
-        meter: &mut Meter,
-    ) -> Result<f64, Canceled>;
 
     /// Forces after the step.
     fn new_forces<'w>(&self, work: &'w Self::Workspace) -> &'w [f64];
@@ -123,26 +93,18 @@ pub(super) struct SystemWorkspace {
     /// Forces per unit displacement of every mode, point by point.
     pub mode_forces: Vec<f64>,
     weight: Vec<f64>,
-    /// Factors of the last linearisation.
     matrix: Vec<f64>,
-    pivots: Vec<usize>,
     sides: Vec<f64>,
     block: Vec<f64>,
     columns: Vec<f64>,
     line_points: Vec<usize>,
     station_force: Vec<f64>,
     station_shift: Vec<f64>,
-    /// Forces per unit of approach, and their sum.
     unit: Vec<f64>,
-    stiffness: f64,
-    changed: Vec<f64>,
 }
 
 /// Least force that counts as contact, as a part of the mean force of the points.
 pub(super) const LEAST_FORCE: f64 = 1e-9;
-/// Part of the stiffness by which changed slopes may correct it at last, and the number of corrections at most.
-const CORRECTION: f64 = 1e-7;
-const MOST_CORRECTIONS: usize = 8;
 /// Diagonals of W.
 const BAND: usize = 2 * STENCIL - 1;
 impl<L: LocalApproach> ContactSystem<'_, L> {
@@ -170,9 +132,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         meter.checkpoint()?;
         let (n, r) = (self.gaps.len(), self.stations);
         let floor = LEAST_FORCE * total / all as f64;
-        work.slope.clear();
         work.slope.resize(n, 1.0);
-        work.target.clear();
         work.target.resize(n, 0.0);
         for i in 0..n {
             if active[i] {
@@ -200,139 +160,20 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
                 multiply(self.bulk, &work.station_force, side, meter)?;
             }
         }
-        if !lu_factor(&mut work.matrix, &mut work.pivots, r, meter)? {
+        if !lu_solve(&mut work.matrix, &mut work.sides, r, meter)? {
             return Ok(None);
         }
-        lu_substitute(&work.matrix, &work.pivots, &mut work.sides, r, meter)?;
         work.new_forces.clear();
         work.new_forces.resize(n, 0.0);
         work.unit.clear();
         work.unit.resize(n, 0.0);
         work.mode_forces.clear();
         work.mode_forces.resize(n * modes, 0.0);
-        let (stiffness, rest) = match self.coupling.is_empty() {
-            true => self.forces_of_points(active, work),
-            false => self.forces_of_lines(active, work),
-        };
-        work.stiffness = stiffness;
-        Ok(Some((stiffness, rest)))
-    }
-
-    /// As [`Self::linear_response`] about other forces, with the slopes of the last one on the same active points: only
-    /// the forces of no approach are new.
-    ///
-    /// # Errors
-    /// [`Canceled`].
-    pub(super) fn linear_response_again(
-        &self,
-        (total, all): (f64, usize),
-        datum: f64,
-        forces: &[f64],
-        active: &[bool],
-        work: &mut SystemWorkspace,
-        meter: &mut Meter,
-    ) -> Result<(f64, f64), Canceled> {
-        meter.checkpoint()?;
-        let floor = LEAST_FORCE * total / all as f64;
-        for i in (0..self.gaps.len()).filter(|i| active[*i]) {
-            let at = forces[i].max(floor);
-            work.target[i] = work.slope[i] * at - self.local.approach(i, at).0 - (self.gaps[i] - datum);
-        }
-        let mut values = std::mem::take(&mut work.new_forces);
-        values.clone_from(&work.target);
-        self.solve_again(active, &mut values, work, meter)?;
-        let rest = values.iter().sum();
-        work.new_forces = values;
-        Ok((work.stiffness, rest))
-    }
-
-    /// Solves (D + P B Pᵀ) x = b on the active points with the factors of the last linearisation; `values`: b, then x,
-    /// 0 at the other points.
-    fn solve_again(
-        &self,
-        active: &[bool],
-        values: &mut [f64],
-        work: &mut SystemWorkspace,
-        meter: &mut Meter,
-    ) -> Result<(), Canceled> {
-        work.station_force.clear();
-        work.station_force.resize(self.stations, 0.0);
-        work.changed.clear();
-        work.changed.extend_from_slice(values);
-        self.divide(active, &mut work.changed, &work.slope, &work.block, &mut work.columns);
-        for ((stencil, value), _) in self.stencils.iter().zip(&work.changed).zip(active).filter(|(_, active)| **active)
-        {
-            for (k, w) in stencil.weights.iter().enumerate() {
-                work.station_force[stencil.first + k] += w * value;
-            }
-        }
-        work.station_shift.clear();
-        work.station_shift.resize(self.stations, 0.0);
-        multiply(self.bulk, &work.station_force, &mut work.station_shift, meter)?;
-        lu_substitute(&work.matrix, &work.pivots, &mut work.station_shift, self.stations, meter)?;
-        for (i, value) in values.iter_mut().enumerate() {
-            *value = if active[i] { *value - self.stencils[i].at(&work.station_shift) } else { 0.0 };
-        }
-        self.divide(active, values, &work.slope, &work.block, &mut work.columns);
-        Ok(())
-    }
-
-    /// D⁻¹ b on the active points, by the slopes or the factors of the lines of the last linearisation.
-    fn divide(&self, active: &[bool], values: &mut [f64], slopes: &[f64], factors: &[f64], scratch: &mut Vec<f64>) {
-        if self.coupling.is_empty() {
-            values.iter_mut().zip(slopes).for_each(|(value, slope)| *value /= slope);
-            return;
-        }
-        let mut from = 0;
-        for range in self.lines {
-            let own = || range.clone().filter(|&i| active[i]);
-            scratch.clear();
-            scratch.extend(own().map(|i| values[i]));
-            let m = scratch.len();
-            cholesky_solve(&factors[from..from + m * m], scratch, m);
-            from += m * m;
-            own().zip(scratch.iter()).for_each(|(i, value)| values[i] = *value);
-        }
-    }
-
-    /// Sum of the forces per unit of approach at `forces`: with the slopes there, from those of the last linearisation.
-    ///
-    /// With A of that linearisation, u its forces per unit and A + E the system at `forces`, v = A⁻¹ (1 - E u) is right
-    /// up to E², and 2·1ᵀv - vᵀ(A + E)v, which is stationary at the solution, up to E⁴; with u itself it is 1ᵀu - uᵀE u,
-    /// right up to E².
-    ///
-    /// # Errors
-    /// [`Canceled`].
-    fn stiffness_at(
-        &self,
-        (total, all): (f64, usize),
-        forces: &[f64],
-        active: &[bool],
-        work: &mut SystemWorkspace,
-        meter: &mut Meter,
-    ) -> Result<f64, Canceled> {
-        let floor = LEAST_FORCE * total / all as f64;
-        let change = |i: usize, work: &SystemWorkspace| self.local.approach(i, forces[i].max(floor)).1 - work.slope[i];
-        let changes: Vec<f64> =
-            active.iter().enumerate().map(|(i, active)| if *active { change(i, work) } else { 0.0 }).collect();
-        let correction: f64 = work.unit.iter().zip(&changes).map(|(u, e)| u * e * u).sum();
-        let mut stiffness = work.stiffness - correction;
-        if correction.abs() < CORRECTION * stiffness.abs() {
-            return Ok(stiffness);
-        }
-        let mut before = work.unit.clone();
-        for _ in 0..MOST_CORRECTIONS {
-            let mut values: Vec<f64> = before.iter().zip(&changes).map(|(u, e)| 1.0 - e * u).collect();
-            self.solve_again(active, &mut values, work, meter)?;
-            let terms = values.iter().zip(&before).zip(&changes).map(|((v, u), e)| (*v, v * e * (v - u)));
-            let (sum, correction) = terms.fold((0.0, 0.0), |(sum, rest), (v, e)| (sum + v, rest + e));
-            stiffness = sum - correction;
-            before = values;
-            if correction.abs() < CORRECTION * stiffness.abs() {
-                break;
-            }
-        }
-        Ok(stiffness)
+        Ok(Some(if self.coupling.is_empty() {
+            self.forces_of_points(active, work)
+        } else {
+            self.forces_of_lines(active, work)
+        }))
     }
 
     /// I + B W and the right-hand sides when D is diagonal: W is banded.
@@ -596,38 +437,6 @@ impl<L: LocalApproach> ContactProblem for ContactSystem<'_, L> {
             *f += approach * u;
         }
         Ok(Some((approach, stiffness)))
-    }
-
-    fn chord(
-        &self,
-        (total, prescribed): (f64, Option<f64>),
-        datum: f64,
-        forces: &[f64],
-        active: &[bool],
-        work: &mut SystemWorkspace,
-        meter: &mut Meter,
-    ) -> Result<Option<(f64, f64)>, Canceled> {
-        let all = (total, self.gaps.len());
-        let (stiffness, rest) = self.linear_response_again(all, datum, forces, active, work, meter)?;
-        let approach = prescribed.unwrap_or_else(|| (total - rest) / stiffness);
-        if !approach.is_finite() {
-            return Ok(None);
-        }
-        for (f, u) in work.new_forces.iter_mut().zip(&work.unit) {
-            *f += approach * u;
-        }
-        Ok(Some((approach, stiffness)))
-    }
-
-    fn stiffness(
-        &self,
-        total: f64,
-        forces: &[f64],
-        active: &[bool],
-        work: &mut SystemWorkspace,
-        meter: &mut Meter,
-    ) -> Result<f64, Canceled> {
-        self.stiffness_at((total, self.gaps.len()), forces, active, work, meter)
     }
 
     fn new_forces<'w>(&self, work: &'w SystemWorkspace) -> &'w [f64] {

@@ -36,53 +36,20 @@ pub(crate) fn solve_dense(a: &mut [f64], rhs: &mut [f64], n: usize) {
 /// # Errors
 /// [`Canceled`].
 pub(crate) fn lu_solve(a: &mut [f64], sides: &mut [f64], n: usize, meter: &mut Meter) -> Result<bool, Canceled> {
-    let mut pivots = Vec::with_capacity(n);
-    if !lu_factor(a, &mut pivots, n, meter)? {
-        return Ok(false);
-    }
-    lu_substitute(a, &pivots, sides, n, meter)?;
-    Ok(true)
-}
-
-/// LU factors of an n×n matrix, in place, with partial pivoting: `pivots` becomes the row that is exchanged with each.
-/// `false` when a pivot vanishes.
-///
-/// # Errors
-/// [`Canceled`].
-pub(crate) fn lu_factor(a: &mut [f64], pivots: &mut Vec<usize>, n: usize, meter: &mut Meter) -> Result<bool, Canceled> {
     vectorised(
         #[inline(always)]
-        || lu_factor_inlined(a, pivots, n, meter),
-    )
-}
-
-/// Solves A X = B for several right-hand sides, which follow one another in `sides`, with the factors of
-/// [`lu_factor`].
-///
-/// # Errors
-/// [`Canceled`].
-pub(crate) fn lu_substitute(
-    a: &[f64],
-    pivots: &[usize],
-    sides: &mut [f64],
-    n: usize,
-    meter: &mut Meter,
-) -> Result<(), Canceled> {
-    vectorised(
-        #[inline(always)]
-        || lu_substitute_inlined(a, pivots, sides, n, meter),
+        || lu_solve_inlined(a, sides, n, meter),
     )
 }
 
 #[inline(always)]
-fn lu_factor_inlined(a: &mut [f64], pivots: &mut Vec<usize>, n: usize, meter: &mut Meter) -> Result<bool, Canceled> {
-    pivots.clear();
+fn lu_solve_inlined(a: &mut [f64], sides: &mut [f64], n: usize, meter: &mut Meter) -> Result<bool, Canceled> {
     for k in 0..n {
         let pivot = (k..n).max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs())).unwrap_or(k);
-        pivots.push(pivot);
         if pivot != k {
             let (upper, lower) = a.split_at_mut(pivot * n);
             upper[k * n..(k + 1) * n].swap_with_slice(&mut lower[..n]);
+            sides.chunks_exact_mut(n).for_each(|side| side.swap(k, pivot));
         }
         let (upper, lower) = a.split_at_mut((k + 1) * n);
         let head = &upper[k * n..];
@@ -97,22 +64,6 @@ fn lu_factor_inlined(a: &mut [f64], pivots: &mut Vec<usize>, n: usize, meter: &m
                 row[k] = factor;
                 row[k + 1..].iter_mut().zip(&head[k + 1..]).for_each(|(r, h)| *r -= factor * h);
             }
-        }
-    }
-    Ok(true)
-}
-
-#[inline(always)]
-fn lu_substitute_inlined(
-    a: &[f64],
-    pivots: &[usize],
-    sides: &mut [f64],
-    n: usize,
-    meter: &mut Meter,
-) -> Result<(), Canceled> {
-    for side in sides.chunks_exact_mut(n.max(1)) {
-        for (k, pivot) in pivots.iter().enumerate() {
-            side.swap(k, *pivot);
         }
     }
     for group in sides.chunks_mut(GROUP * n.max(1)) {
@@ -145,7 +96,7 @@ fn lu_substitute_inlined(
             }
         }
     }
-    Ok(())
+    Ok(true)
 }
 
 /// Vectors that are worked on together, and from how many on.

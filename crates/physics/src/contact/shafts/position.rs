@@ -140,9 +140,10 @@ impl<'a> JointSolver<'a> {
                 continue;
             }
             let mut tilting = [[0.0; 3]; 2];
+            let linearised_n = [&solved.linearised_n[..left], &solved.linearised_n[left..]];
             for half in Half::BOTH {
                 let h = half.index();
-                let of_teeth = self.halves[h].tooth_stiffness(solved.forces.len(), force_bt_n / cos, &forces[h]);
+                let of_teeth = self.halves[h].tooth_stiffness(solved.forces.len(), force_bt_n / cos, linearised_n[h]);
                 tilting[h] = of_teeth.map_err(|error| to_contact_error(error, half, phases[h]))?;
             }
             let mut forces = forces.into_iter();

@@ -10,7 +10,7 @@ use std::ops::Range;
 use super::flexibility::{ContactShafts, NODES};
 use crate::contact::point_contacts::PointContacts;
 use crate::contact::system::{ContactProblem, ContactSystem, LocalApproach, SystemWorkspace};
-use crate::numerics::dense::{lu_factor, lu_substitute};
+use crate::numerics::dense::lu_solve;
 use crate::watch::{Canceled, Meter};
 
 /// Both halves at one position.
@@ -30,14 +30,8 @@ pub(super) struct HalvesWorkspace {
     new_forces: Vec<f64>,
     /// Shift of the floating member, in the direction in which the pinion's closes the contact by n_z times it.
     pub(super) shift: f64,
-    stiffness: f64,
     /// Openings at the nodes of either half by the forces on the other.
     openings: [[f64; NODES]; 2],
-    /// Factors of the small system of the last linearisation, and its solutions: of no approach, per unit of approach,
-    /// and per unit of the shift.
-    matrix: Vec<f64>,
-    pivots: Vec<usize>,
-    sides: Vec<f64>,
 }
 
 /// p of both halves.
@@ -103,11 +97,8 @@ impl ContactProblem for HalvesOnShafts<'_> {
         let ranges = [0..left, left..left + right];
         // (I + X G) p = y + s_L X_L 1 + s_R X_R 1 with X = Vᵀ A⁻¹ V and y = Vᵀ A⁻¹ c of either half; the right-hand
         // sides are y, the approach's and the shift's.
-        let (mut matrix, mut sides) = (std::mem::take(&mut work.matrix), std::mem::take(&mut work.sides));
-        matrix.clear();
-        matrix.resize(BOTH * BOTH, 0.0);
-        sides.clear();
-        sides.resize(3 * BOTH, 0.0);
+        let mut matrix = vec![0.0; BOTH * BOTH];
+        let mut sides = vec![0.0; 3 * BOTH];
         for (h, range) in ranges.iter().enumerate() {
             let system = &self.halves[h];
             let own = &mut work.halves[h];
@@ -140,45 +131,42 @@ impl ContactProblem for HalvesOnShafts<'_> {
                 }
             }
         }
-        if !lu_factor(&mut matrix, &mut work.pivots, BOTH, meter)? {
+        if !lu_solve(&mut matrix, &mut sides, BOTH, meter)? {
             return Ok(None);
         }
-        lu_substitute(&matrix, &work.pivots, &mut sides, BOTH, meter)?;
-        (work.matrix, work.sides) = (matrix, sides);
-        Ok(self.close((total, prescribed), work))
-    }
-
-    fn chord(
-        &self,
-        (total, prescribed): (f64, Option<f64>),
-        datum: f64,
-        forces: &[f64],
-        active: &[bool],
-        work: &mut HalvesWorkspace,
-        meter: &mut Meter,
-    ) -> Result<Option<(f64, f64)>, Canceled> {
-        let [left, right] = self.counts();
-        for (h, range) in [0..left, left..left + right].into_iter().enumerate() {
-            let (own, all) = (&mut work.halves[h], (total, left + right));
-            let (forces, active) = (&forces[range.clone()], &active[range]);
-            self.halves[h].linear_response_again(all, datum, forces, active, own, meter)?;
-            let of_nodes = node_forces(self.halves[h].modes, &own.new_forces);
-            work.sides[h * NODES..(h + 1) * NODES].copy_from_slice(&of_nodes);
+        // Sum of the forces, and of their axial components, of every side.
+        let sum = |side: usize, weights: [f64; 2]| -> f64 {
+            let side = &sides[side * BOTH..(side + 1) * BOTH];
+            side.chunks_exact(NODES).zip(weights).map(|(p, w)| w * p.iter().sum::<f64>()).sum()
+        };
+        let of_all = [0, 1, 2].map(|side| sum(side, [1.0; 2]));
+        let axial = [0, 1, 2].map(|side| sum(side, self.shafts.frame.axial));
+        // shift = by_shift[0] + by_shift[1] approach.
+        let by_shift =
+            if self.floats { [(self.axial_n - axial[0]) / axial[2], -axial[1] / axial[2]] } else { [0.0; 2] };
+        let stiffness = of_all[1] + by_shift[1] * of_all[2];
+        let approach = prescribed.unwrap_or_else(|| (total - of_all[0] - by_shift[0] * of_all[2]) / stiffness);
+        let shift = by_shift[0] + by_shift[1] * approach;
+        if !(approach.is_finite() && shift.is_finite()) {
+            return Ok(None);
         }
-        lu_substitute(&work.matrix, &work.pivots, &mut work.sides[..BOTH], BOTH, meter)?;
-        Ok(self.close((total, prescribed), work))
-    }
-
-    /// That of the last linearisation: what is derived from it here needs no more.
-    fn stiffness(
-        &self,
-        _total: f64,
-        _forces: &[f64],
-        _active: &[bool],
-        work: &mut HalvesWorkspace,
-        _meter: &mut Meter,
-    ) -> Result<f64, Canceled> {
-        Ok(work.stiffness)
+        work.shift = shift;
+        let p: Vec<f64> =
+            (0..BOTH).map(|i| sides[i] + approach * sides[BOTH + i] + shift * sides[2 * BOTH + i]).collect();
+        work.new_forces.clear();
+        for h in 0..2 {
+            let openings = self.openings_across(h, &p[(1 - h) * NODES..(2 - h) * NODES]);
+            let closing = approach + self.shafts.frame.axial[h] * shift;
+            let by_node = openings.map(|opening| closing - opening);
+            let own = &work.halves[h];
+            work.new_forces.extend(
+                own.new_forces
+                    .iter()
+                    .zip(own.mode_forces.chunks_exact(NODES))
+                    .map(|(f, columns)| f + columns.iter().zip(&by_node).map(|(c, s)| c * s).sum::<f64>()),
+            );
+        }
+        Ok(Some((approach, stiffness)))
     }
 
     fn new_forces<'w>(&self, work: &'w HalvesWorkspace) -> &'w [f64] {
@@ -202,45 +190,5 @@ impl ContactProblem for HalvesOnShafts<'_> {
         let across: f64 = modes.iter().zip(&work.openings[h]).map(|(v, q)| v * q).sum();
         let within = self.halves[h].deflection(own, [left, right][h], &work.halves[h]);
         within + across - self.shafts.frame.axial[h] * work.shift
-    }
-}
-
-impl HalvesOnShafts<'_> {
-    /// Approach and shift by the sums of the forces; forces of the points. Approach and stiffness.
-    fn close(&self, (total, prescribed): (f64, Option<f64>), work: &mut HalvesWorkspace) -> Option<(f64, f64)> {
-        let sides = &work.sides;
-        // Sum of the forces, and of their axial components, of every side.
-        let sum = |side: usize, weights: [f64; 2]| -> f64 {
-            let side = &sides[side * BOTH..(side + 1) * BOTH];
-            side.chunks_exact(NODES).zip(weights).map(|(p, w)| w * p.iter().sum::<f64>()).sum()
-        };
-        let of_all = [0, 1, 2].map(|side| sum(side, [1.0; 2]));
-        let axial = [0, 1, 2].map(|side| sum(side, self.shafts.frame.axial));
-        // shift = by_shift[0] + by_shift[1] approach.
-        let by_shift =
-            if self.floats { [(self.axial_n - axial[0]) / axial[2], -axial[1] / axial[2]] } else { [0.0; 2] };
-        let stiffness = of_all[1] + by_shift[1] * of_all[2];
-        let approach = prescribed.unwrap_or_else(|| (total - of_all[0] - by_shift[0] * of_all[2]) / stiffness);
-        let shift = by_shift[0] + by_shift[1] * approach;
-        if !(approach.is_finite() && shift.is_finite()) {
-            return None;
-        }
-        (work.shift, work.stiffness) = (shift, stiffness);
-        let p: Vec<f64> =
-            (0..BOTH).map(|i| sides[i] + approach * sides[BOTH + i] + shift * sides[2 * BOTH + i]).collect();
-        work.new_forces.clear();
-        for h in 0..2 {
-            let openings = self.openings_across(h, &p[(1 - h) * NODES..(2 - h) * NODES]);
-            let closing = approach + self.shafts.frame.axial[h] * shift;
-            let by_node = openings.map(|opening| closing - opening);
-            let own = &work.halves[h];
-            work.new_forces.extend(
-                own.new_forces
-                    .iter()
-                    .zip(own.mode_forces.chunks_exact(NODES))
-                    .map(|(f, columns)| f + columns.iter().zip(&by_node).map(|(c, s)| c * s).sum::<f64>()),
-            );
-        }
-        Some((approach, stiffness))
     }
 }

@@ -272,14 +272,7 @@ fn rigid_shafts_are_rigid_bodies() {
             ];
             for (name, elastic, rigid) in curves {
                 let errors = elastic.iter().zip(rigid).map(|(e, r)| e / r - 1.0).collect::<Vec<_>>();
-                // The iteration ends at changes of 1e-7 of the force; points that hardly carry have the larger part of it.
-                let tolerance = if name == "stiffness" { 1e-6 } else { 1e-9 };
-                check_worst(
-                    TOPIC,
-                    &format!("rigid shafts, positions {positions:?}, {side}: {name}"),
-                    errors,
-                    tolerance,
-                );
+                check_worst(TOPIC, &format!("rigid shafts, positions {positions:?}, {side}: {name}"), errors, 1e-9);
             }
         }
     }
