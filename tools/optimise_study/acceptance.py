@@ -94,7 +94,8 @@ def promise_shafts():
     document["kind"] = "optimise"
     document["operating_points"] = [{"pinion_torque_nm": torque} for torque in (500, 800)]
     pinion = document["design"]["pinion"]
-    pinion["left"] = pinion["right"] = {}
+    # A length, so that the tolerance of the amount has a meaning for the input too.
+    pinion["left"] = pinion["right"] = {"tip_relief": {"amount_um": 0.0, "length_mm": 6.0}}
     halves = ["/design/pinion/left", "/design/pinion/right"]
     both = lambda name: {"pointer": f"{halves[0]}/{name}", "also": [f"{halves[1]}/{name}"]}
     document["variables"] = [{**both("tip_relief/amount_um"), "from": 0, "to": 40},

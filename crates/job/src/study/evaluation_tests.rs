@@ -355,27 +355,6 @@ fn f98_rows_are_those_of_the_documents_one_by_one() {
     }
 }
 
-/// Deviations end where the range of their field does, also of objects that only the variables bring in.
-#[test]
-fn deviations_of_what_the_input_has_not_are_within_its_range() {
-    let mut document = search();
-    document["kind"] = json!("optimise");
-    let amount = "/design/pinion/left/tip_relief/amount_um";
-    document["variables"] = json!([
-        {"pointer": amount, "from": 0, "to": 20},
-        {"pointer": "/design/pinion/left/tip_relief/length_mm", "from": 2, "to": 10},
-        {"pointer": "/design/face_width_mm", "from": 60, "to": 90},
-    ]);
-    document["design"]["pinion"]["left"] = json!({});
-    document["objectives"] = json!([{"measure": "/geometry/total_contact_ratio", "goal": "maximise"}]);
-    document["constraints"] = json!([{"measure": "/geometry/total_contact_ratio", "at_least": 1.0}]);
-    document["tolerances"] = json!([{"pointer": amount, "tolerance": 5}]);
-    document["robust"] = json!({"samples": 8, "candidates": 2, "confirm_samples": 32});
-    let robust = optimised(&document).robust.expect("robust");
-    let failed = [robust.input, robust.best].map(|one| one.expect("a sample").failed);
-    assert_eq!((failed, robust.gain_percent.is_some()), ([0, 0], true));
-}
-
 #[test]
 fn robust_candidates_are_compared_over_the_tolerances() {
     let mut document = search();

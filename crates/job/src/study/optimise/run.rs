@@ -173,7 +173,7 @@ impl<'a> Solver<'a> {
         search_base: Option<&'a JobDocument>,
         context: &'a SolveContext<'a>,
     ) -> Self {
-        let scatter = document.robust.is_some().then(|| Scatter::new(document));
+        let scatter = document.robust.is_some().then(|| Scatter::new(document, &evaluator.base));
         let clock = Clock { now_ms: context.clock_ms, started_ms: (context.clock_ms)() };
         Self { document, problem, evaluator, search_base, scatter, clock }
     }

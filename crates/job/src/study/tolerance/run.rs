@@ -155,7 +155,7 @@ struct Evaluated {
 
 /// Makes the evaluations of a study: the document, the sample, and those for the sensitivity.
 fn evaluate_all(document: &JobDocument, evaluator: &Evaluator, rows: &mut Rows) -> Result<Evaluated, SolveError> {
-    let scatter = &Scatter::new(document);
+    let scatter = &Scatter::new(document, &evaluator.base);
     let samples = Samples { evaluator, scatter };
     let mut clipped = 0;
     let mut evaluate = |points: &[Vec<f64>], phase: EvaluationPhase, rows: &mut Rows| {

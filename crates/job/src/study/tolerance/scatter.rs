@@ -8,6 +8,7 @@ use herringbone_search::{CounterRandom, correlated, normal_distribution, normal_
 pub(in crate::study) struct Scatter<'a> {
     pub inputs: Vec<Inputs<'a>>,
     distributions: Vec<Distribution<'a>>,
+    ranges: Vec<[f64; 2]>,
     /// Inputs that deviate in company, and their correlation.
     companies: Vec<(Vec<usize>, f64)>,
 }
@@ -19,9 +20,14 @@ struct Distribution<'a> {
 }
 
 impl<'a> Scatter<'a> {
-    /// The tolerances of a document.
-    pub(in crate::study) fn new(document: &'a JobDocument) -> Self {
+    /// The tolerances of a document; `base` has their inputs.
+    pub(in crate::study) fn new(document: &'a JobDocument, base: &JobDocument) -> Self {
+        let mut base = base.clone();
         let inputs: Vec<Inputs> = document.tolerances.iter().map(Inputs::of_tolerance).collect();
+        let mut range = |inputs: &Inputs| {
+            let range = base.slot(inputs.pointer).and_then(|slot| slot.range());
+            range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
+        };
         let distribution = |tolerance: &'a ToleranceInput| Distribution {
             tolerance,
             cut: if tolerance.cut { normal_distribution(-tolerance.sigmas) } else { 0.0 },
@@ -32,6 +38,7 @@ impl<'a> Scatter<'a> {
         };
         Self {
             companies: document.correlations.iter().map(company).collect(),
+            ranges: inputs.iter().map(&mut range).collect(),
             distributions: document.tolerances.iter().map(distribution).collect(),
             inputs,
         }
@@ -55,12 +62,9 @@ impl<'a> Scatter<'a> {
     pub(in crate::study) fn values(&self, document: &mut JobDocument, point: &[f64]) -> (Vec<f64>, u32) {
         let mut clipped = 0;
         let mut value = |index: usize| {
-            let inputs = &self.inputs[index];
-            let own = inputs.value(document).unwrap_or_default();
+            let own = self.inputs[index].value(document).unwrap_or_default();
             let wanted = own + self.distributions[index].deviation(point[index]);
-            // Of the document at hand: one that is searched over may have objects that the input has not.
-            let range = document.slot(inputs.pointer).and_then(|slot| slot.range());
-            let [least, most] = range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+            let [least, most] = self.ranges[index];
             let value = wanted.clamp(least, most);
             clipped += u32::from(value != wanted);
             value
