@@ -19,8 +19,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tracing::Instrument;
 
-/// Time of a point of a sweep below which sending it costs more than computing it.
-const WORTH_SENDING_S: f64 = 2e-3;
+/// Time of a point of a sweep, or of an evaluation, below which sending it costs more than computing it.
+pub(super) const WORTH_SENDING_S: f64 = 2e-3;
 /// Periods of integration above which a job of one operating point is worth sending.
 const WORTH_SENDING_PERIODS: u32 = 10_000;
 /// Time of the jobs that wait above which anything is sent.

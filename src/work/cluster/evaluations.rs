@@ -2,8 +2,9 @@
 //! search goes on when their rows are stored.
 
 use super::active::ActiveJob;
-use super::admit::until_stored;
+use super::admit::{WORTH_SENDING_S, until_stored};
 use super::names::{depends_on_processor, processor_class, solver_of, solver_of_class};
+use super::plan::{CHUNK_S, ranges_of};
 use super::shared::Shared;
 use crate::store::{ChunkPart, Claim, PointRow};
 use crate::work::running_points::EvaluateElsewhere;
@@ -15,10 +16,6 @@ use std::time::{Duration, Instant};
 use tokio::runtime::Handle;
 use tokio::sync::Notify;
 
-/// Time of an evaluation below which sending it costs more than making it.
-const WORTH_SENDING_S: f64 = 2e-3;
-/// Computing time of a chunk that is aimed at.
-const CHUNK_S: f64 = 2.0;
 /// Most evaluations of a chunk.
 const MOST_TASKS: usize = 256;
 /// Longest wait until it is asked again whether the job is to stop.
@@ -72,17 +69,11 @@ impl EvaluationPlan {
         if tasks.is_empty() {
             return None;
         }
-        let mut ranges: Vec<[u64; 2]> = Vec::new();
-        for &position in tasks.keys() {
-            match ranges.last_mut() {
-                Some(last) if last[1] == position => last[1] += 1,
-                _ => ranges.push([position, position + 1]),
-            }
-        }
+        let positions: Vec<u64> = tasks.keys().copied().collect();
         let batch = EvaluationBatch { measures_of_input: self.measures_of_input.clone(), tasks };
         // Numbers and words: always JSON.
         let batch = serde_json::to_string(&batch).unwrap_or_default();
-        Some(ChunkPart::Evaluations { ranges, batch })
+        Some(ChunkPart::Evaluations { ranges: ranges_of(&positions), batch })
     }
 
     /// Takes up that a chunk is stored: the number and time of its evaluations.

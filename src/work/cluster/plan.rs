@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 /// Points of a scout.
 const SCOUT_POINTS: usize = 8;
 /// Computing time of a chunk that is aimed at, and the least one.
-const CHUNK_S: f64 = 2.0;
+pub(super) const CHUNK_S: f64 = 2.0;
 const LEAST_CHUNK_S: f64 = 0.2;
 /// Most points of a chunk.
 const MOST_POINTS: f64 = 5000.0;
@@ -200,7 +200,7 @@ impl SweepPlan {
 }
 
 /// Ascending positions as ranges.
-fn ranges_of(positions: &[u64]) -> Vec<[u64; 2]> {
+pub(super) fn ranges_of(positions: &[u64]) -> Vec<[u64; 2]> {
     let mut ranges: Vec<[u64; 2]> = Vec::new();
     for &position in positions {
         match ranges.last_mut() {
