@@ -19,8 +19,8 @@ use tokio::sync::{OwnedSemaphorePermit, mpsc};
 /// Pieces of a large file that wait for the client.
 const WAITING_PIECES: usize = 4;
 
-/// The rows of a job in one group, with the names of its CSV; `input`, the job document, is in the metadata. Where a row
-/// has no value, the file has null.
+/// The rows of a job in one group, with the names of its CSV; `input`, the job document, is in the metadata. Where a
+/// row has no value, the file has null.
 ///
 /// # Errors
 /// A column does not fit its kind, which does not happen.
