@@ -106,6 +106,9 @@ mod read_back {
         assert!(answer.header("content-disposition").ends_with("-series.parquet\""));
         let file = File::read(&answer);
         assert!(file.n_groups > 1, "samples in several parts");
+        let url = format!("{path}/series?format=parquet");
+        let packed = app.get_with(&url, &[("accept-encoding", "gzip")]).await;
+        assert_eq!((packed.status, packed.header("content-encoding")), (200, "gzip"), "sent to its end");
         assert!(file.bits("a_x_left") == bits(&json["y"]) && file.bits("t_s") == bits(&json["t"]));
         assert_eq!(file.metadata["dt_s"].parse(), Ok(1e-4));
         assert!(path.ends_with(&file.metadata["job_id"]) && !file.metadata["solver_version"].is_empty());

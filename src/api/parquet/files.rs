@@ -7,7 +7,7 @@ use crate::api::table::{Cells, POSITION, Table};
 use crate::api::text_body::{PIECE_BYTES, TextBody};
 use crate::store::JobRecord;
 use axum::body::{Body, Bytes};
-use futures_util::stream;
+use futures_util::stream::{self, StreamExt};
 use herringbone_exchange::parquet::{ParquetCells, ParquetColumn, ParquetKind, ParquetWriter};
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -89,7 +89,8 @@ pub(in crate::api) async fn series_body(
         }
     });
     let pieces = stream::unfold(receiver, async |mut receiver| Some((receiver.recv().await?, receiver)));
-    Ok(Body::new(GuardedBody::new(Body::from_stream(Box::pin(pieces)), place)))
+    // Compression asks once more after the end.
+    Ok(Body::new(GuardedBody::new(Body::from_stream(Box::pin(pieces.fuse())), place)))
 }
 
 struct SeriesParquet {
