@@ -19,16 +19,20 @@ DATA = Path(__file__).parents[1] / "crates" / "exchange" / "tests"
 NUMBERS = [b"-1e308", b"1e-320", b"0.0", b"NaN", b"1e999", b"-0.0", b"99999999999"]
 
 
-def originals():
-    files = [path.read_bytes() for path in sorted((DATA / "data").glob("*.rexs*"))]
-    # The calculation of the tests of that format.
+def calculation():
+    """The lines with values of the KISSsoft calculation in the tests of that format."""
     text = (DATA / "exchange" / "z12.rs").read_text()
     pairs = re.findall(r'\("(Z[^"]+)", "([^"]*)"\)', text.split("];")[0])
-    calculation = "VERSION=20.0;\r\nMODULE=Z012;\r\n" + "".join(f"{key}={value}¶\r\n" for key, value in pairs)
+    return "".join(f"{key}={value}¶\r\n" for key, value in pairs)
+
+
+def originals():
+    files = [path.read_bytes() for path in sorted((DATA / "data").glob("*.rexs*"))]
+    lines = "VERSION=20.0;\r\nMODULE=Z012;\r\n" + calculation()
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("model.rexs", files[0])
-    return [*files, calculation.encode("utf-16"), calculation.encode("cp1252"), packed.getvalue()]
+    return [*files, lines.encode("utf-16"), lines.encode("cp1252"), packed.getvalue()]
 
 
 def damaged(files):

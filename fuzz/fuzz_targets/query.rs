@@ -13,7 +13,7 @@ use herringbone::work::{Jobs, Solver, WorkConfig};
 use herringbone_job::DocumentError;
 use herringbone_job::document::JobDocument;
 use herringbone_job::result::JobResult;
-use herringbone_job::study::{self, RecordedChannel, CheckedJob, Outcome, SolveContext, SolveError};
+use herringbone_job::study::{self, CheckedJob, Outcome, RecordedChannel, SolveContext, SolveError};
 use http_body_util::BodyExt;
 use jiff::Timestamp;
 use libfuzzer_sys::fuzz_target;
@@ -37,7 +37,8 @@ impl Solver for AtOnce {
     fn solve(&self, _: &CheckedJob, _: &SolveContext) -> Result<Outcome, SolveError> {
         let values = (0..5000).map(|index| f64::from(index).sin()).collect();
         let (quantity, unit) = ("acceleration".to_owned(), "m/s2".to_owned());
-        let channel = RecordedChannel { name: "a_x_left".to_owned(), quantity, unit, t0_s: 0.5, dt_s: 1e-4, rms: 0.7, values };
+        let channel =
+            RecordedChannel { name: "a_x_left".to_owned(), quantity, unit, t0_s: 0.5, dt_s: 1e-4, rms: 0.7, values };
         Ok(Outcome { result: JobResult::default(), series: vec![channel] })
     }
 

@@ -15,6 +15,7 @@ mod guard;
 mod guarded_body;
 mod middleware;
 mod openapi;
+mod parquet;
 mod points;
 mod problem;
 mod request;

@@ -17,13 +17,18 @@ use std::sync::{Arc, Mutex, PoisonError};
 const TIMES: usize = 1 << 16;
 
 /// Channels of a job that share their times.
-pub(super) struct SeriesFile {
+pub(super) struct SeriesSource {
     pub store: Store,
     pub id: JobId,
-    pub form: ArrayForm,
     pub entries: Vec<SeriesEntry>,
     /// Indices of the samples.
     pub window: Range<usize>,
+}
+
+/// Channels as a file of arrays.
+pub(super) struct SeriesFile {
+    pub source: SeriesSource,
+    pub form: ArrayForm,
 }
 
 /// What is written next.
@@ -77,8 +82,8 @@ impl SeriesFile {
         for reserved in ["t0_s", "dt_s", "t_s", "channels", "units"] {
             names.name(reserved);
         }
-        let names = self.entries.iter().map(|entry| names.name(&entry.channel)).collect();
-        let channels = self.entries.iter().cloned().map(Step::Channel);
+        let names = self.source.entries.iter().map(|entry| names.name(&entry.channel)).collect();
+        let channels = self.source.entries.iter().cloned().map(Step::Channel);
         let steps = [Step::Head, Step::Times(0)].into_iter().chain(channels).chain([Step::End]).collect();
         let encoder = Encoder { file: self, writer, written, names, steps };
         let parts = stream::try_unfold(encoder, async |mut encoder| {
@@ -98,19 +103,21 @@ impl SeriesFile {
 
 impl Encoder {
     async fn step(mut self, step: Step) -> Result<Self, ApiError> {
-        let n = self.file.window.len();
+        let n = self.file.source.window.len();
         match step {
             Step::Head => {
-                let first = self.file.entries.first();
-                let (t0_s, dt_s) = first.map_or((0.0, 0.0), |entry| (entry.time_s(self.file.window.start), entry.dt_s));
+                let first = self.file.source.entries.first();
+                let (t0_s, dt_s) =
+                    first.map_or((0.0, 0.0), |entry| (entry.time_s(self.file.source.window.start), entry.dt_s));
                 self.writer.scalar("t0_s", t0_s).map_err(ApiError::internal)?;
                 self.writer.scalar("dt_s", dt_s).map_err(ApiError::internal)?;
                 self.writer.begin("t_s", n as u64).map_err(ApiError::internal)?;
             }
             Step::Times(done) => {
                 let end = (done + TIMES).min(n);
-                if let Some(entry) = self.file.entries.first() {
-                    let times: Vec<f64> = (done..end).map(|at| entry.time_s(self.file.window.start + at)).collect();
+                if let Some(entry) = self.file.source.entries.first() {
+                    let times: Vec<f64> =
+                        (done..end).map(|at| entry.time_s(self.file.source.window.start + at)).collect();
                     self.writer.push(&times).map_err(ApiError::internal)?;
                 }
                 if end < n {
@@ -118,9 +125,9 @@ impl Encoder {
                 }
             }
             Step::Channel(entry) => {
-                let packed = self.file.store.series(self.file.id, &entry.channel).await?;
+                let packed = self.file.source.store.series(self.file.source.id, &entry.channel).await?;
                 let packed = packed.ok_or_else(super::routes::job_not_found)?;
-                let at = self.file.entries.iter().position(|other| *other == entry).unwrap_or_default();
+                let at = self.file.source.entries.iter().position(|other| *other == entry).unwrap_or_default();
                 self.writer.begin(&self.names[at], n as u64).map_err(ApiError::internal)?;
                 self.steps.push_front(Step::Part(Box::new(packed), 0, 0));
             }
@@ -134,7 +141,7 @@ impl Encoder {
     async fn part(mut self, packed: Box<PackedSeries>, part: usize, first: usize) -> Result<Self, ApiError> {
         let encoded = tokio::task::spawn_blocking(move || {
             let values = packed.unpack_part(part)?;
-            let (start, end) = (self.file.window.start, self.file.window.end);
+            let (start, end) = (self.file.source.window.start, self.file.source.window.end);
             let end_of_part = first + values.len();
             let within = start.clamp(first, end_of_part) - first..end.clamp(first, end_of_part) - first;
             self.writer.push(values.get(within).unwrap_or_default()).map_err(ApiError::internal)?;
@@ -151,7 +158,7 @@ impl Encoder {
         let empty = ArrayWriter::new(self.file.form, Written::default()).map_err(ApiError::internal)?;
         let mut writer = mem::replace(&mut self.writer, empty);
         let channels: Vec<&str> = self.names.iter().map(String::as_str).collect();
-        let units: Vec<&str> = self.file.entries.iter().map(|entry| entry.unit.as_str()).collect();
+        let units: Vec<&str> = self.file.source.entries.iter().map(|entry| entry.unit.as_str()).collect();
         writer.words("channels", &channels).map_err(ApiError::internal)?;
         writer.words("units", &units).map_err(ApiError::internal)?;
         writer.finish().map_err(ApiError::internal)?;

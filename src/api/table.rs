@@ -139,7 +139,7 @@ impl Table {
 }
 
 /// The column with the places of rows, which are whole numbers.
-const POSITION: &str = "position";
+pub(super) const POSITION: &str = "position";
 
 fn row_position(column: &TableColumn, row: usize) -> u64 {
     match &column.cells {

@@ -296,6 +296,25 @@ impl Store {
         let parts = rows.into_iter().map(|row| row.try_get("samples")).collect::<Result<_, _>>()?;
         Ok(Some(PackedSeries { entry, parts }))
     }
+
+    /// Reads one channel of a job that succeeded with only the part of its samples that has this index.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub async fn series_part(&self, id: JobId, channel: &str, part: usize) -> Result<Option<PackedSeries>, StoreError> {
+        let row = sqlx::query(
+            "SELECT channel, quantity, unit, n, t0_s, dt_s, min, max, rms, samples \
+             FROM series JOIN series_samples USING (dataset_id, position) \
+             WHERE dataset_id = (SELECT dataset_id FROM results WHERE job_id = $1) AND channel = $2 AND part = $3",
+        )
+        .bind(id.to_string())
+        .bind(channel)
+        .bind(part as i64)
+        .fetch_optional(&self.reader)
+        .await?;
+        let Some(row) = row else { return Ok(None) };
+        Ok(Some(PackedSeries { entry: SeriesEntry::from_row(&row)?, parts: vec![row.try_get("samples")?] }))
+    }
 }
 
 fn decode(bytes: &[u8]) -> Result<Vec<f64>, StoreError> {

@@ -66,7 +66,7 @@ async fn the_list_of_series_is_as_before_and_can_be_limited_to_names() {
     app.get(&format!("{path}/series?channels=a_x_left,nothing")).await.assert_problem(404, "not-found");
     let csv = app.get_with(&format!("{path}/series"), &[("accept", "text/csv")]).await;
     csv.assert_problem(406, "not-acceptable");
-    let wrong = app.get(&format!("{path}/series?format=parquet")).await;
+    let wrong = app.get(&format!("{path}/series?format=hdf5")).await;
     wrong.assert_problem(400, "invalid-parameter");
     wrong.violation("/format");
     let nothing = app.get(&format!("{path}/series?format=npz&from=100")).await;

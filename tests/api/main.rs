@@ -24,6 +24,7 @@ mod log;
 mod metrics;
 mod openapi;
 mod operation;
+mod parquet;
 mod points;
 mod process;
 mod read_job;

@@ -11,7 +11,7 @@ import openpyxl
 import pandas
 import pytest
 import scipy.io
-from herringbone import Herringbone, Job
+from herringbone import Herringbone, Job, Problem
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 # Since 3.1 pandas reads every number exactly.
@@ -118,6 +118,56 @@ def test_points_in_pandas_with_either_decimal_sign(sweep):
         assert same(table["/operation/pinion_speed_rpm"], speeds)
         name = "mesh_circumferential_acceleration_rms_left_m_s2"
         assert same(table[name], columns(sweep)[name])
+
+
+def parquet(job: Job, path: str, **parameters) -> bytes:
+    """A Parquet file; skips the test where the service was built without that form, unless it is to be tested."""
+    if "TEST_PARQUET" not in os.environ:
+        pytest.importorskip("pyarrow")
+        try:
+            get(job, path, format="parquet")
+        except Problem as problem:
+            if problem.status == 406 and "Parquet" in problem.detail:
+                pytest.skip(problem.detail)
+            raise
+    return get(job, path, format="parquet", **parameters)
+
+
+def test_points_as_parquet_in_pandas_and_pyarrow(sweep):
+    content = parquet(sweep, "/points")
+    table = pandas.read_parquet(io.BytesIO(content))
+    assert same(table["/operation/pinion_speed_rpm"], [row["point"]["values"][0] for row in rows(sweep)])
+    assert list(table["position"]) == [row["position"] for row in rows(sweep)] and table["position"].dtype == "int64"
+    exact = columns(sweep)
+    assert len(exact) > 20
+    for name, values in exact.items():
+        if any(isinstance(value, str) for value in values):
+            assert [None if pandas.isna(word) else word for word in table[name]] == values, name
+        else:
+            numbers = [numpy.nan if value is None else value for value in values]
+            assert numpy.array_equal(table[name].astype(float), numbers, equal_nan=True), name
+    schema = pyarrow_parquet().read_schema(io.BytesIO(content))
+    assert json.loads(schema.metadata[b"units"])["/operation/pinion_speed_rpm"] == "r/min"
+    assert schema.metadata[b"job_id"].decode() == sweep.id and schema.metadata[b"solver_version"]
+    assert json.loads(schema.metadata[b"input"])["kind"] == "sweep"
+
+
+def test_series_as_parquet_in_pandas_and_pyarrow(response):
+    names = [channel["name"] for channel in response.channels()]
+    content = parquet(response, "/series")
+    table = pandas.read_parquet(io.BytesIO(content))
+    assert list(table.columns) == ["t_s", *names]
+    for name in names:
+        exact = json.loads(get(response, f"/series/{name}", method="none"))
+        assert same(table[name], exact["y"]) and same(table["t_s"], exact["t"]), name
+    metadata = pyarrow_parquet().read_schema(io.BytesIO(content)).metadata
+    assert json.loads(metadata[b"units"])["a_x_left"] == "m/s2" and float(metadata[b"dt_s"]) > 0
+
+
+def pyarrow_parquet():
+    import pyarrow.parquet
+
+    return pyarrow.parquet
 
 
 def test_workbooks_in_openpyxl_and_pandas(sweep, response):

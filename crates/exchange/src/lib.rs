@@ -9,6 +9,8 @@ mod container;
 mod draft;
 pub mod lookup;
 pub mod lookup_grid;
+#[cfg(feature = "parquet")]
+pub mod parquet;
 mod refusal;
 mod report;
 mod rexs;

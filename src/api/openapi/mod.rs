@@ -74,6 +74,7 @@ fn description() -> Value {
             let Some(operations) = operations.as_object_mut() else { continue };
             for operation in operations.values_mut() {
                 documents::set_schemas(path, operation);
+                responses::leave_out_missing(operation);
                 responses::set_binary(operation);
                 responses::add_common(path, operation);
                 links::add(operation);

@@ -1,6 +1,7 @@
 //! Parts of responses that endpoints have in common.
 
 use crate::api::config::MAX_REQUEST_ID_CHARS;
+use crate::api::parquet;
 use crate::api::problem::CODES;
 use serde_json::{Value, json};
 
@@ -152,12 +153,28 @@ fn simplify(schema: &mut Value) {
 }
 
 /// Media types of files that are no text.
-const BINARY: [&str; 4] = [
+const BINARY: [&str; 5] = [
     "application/x-npz",
     "application/x-matlab-data",
     "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+    "application/vnd.apache.parquet",
     "audio/wav",
 ];
+
+/// Leaves out the form of answers that this program was built without: what is described is what it serves.
+pub(super) fn leave_out_missing(operation: &mut Value) {
+    if parquet::IS_BUILT {
+        return;
+    }
+    if let Some(content) = operation.pointer_mut("/responses/200/content").and_then(Value::as_object_mut) {
+        content.remove(parquet::MEDIA_TYPE);
+    }
+    for parameter in operation["parameters"].as_array_mut().into_iter().flatten() {
+        if let Some(Value::String(pattern)) = parameter.pointer_mut("/schema/pattern") {
+            *pattern = pattern.replace(&format!("|{}", parquet::NAME), "");
+        }
+    }
+}
 
 /// Describes the bodies of responses that are files as such.
 pub(super) fn set_binary(operation: &mut Value) {

@@ -2,6 +2,7 @@
 
 use super::query::QueryParameters;
 use crate::api::csv::Decimal;
+use crate::api::parquet;
 use crate::api::problem::{ApiError, ProblemCode};
 use crate::api::workbook::MEDIA_TYPE;
 use axum::extract::Request;
@@ -33,7 +34,7 @@ pub(crate) fn negotiate(headers: &HeaderMap, offers: &[&'static str]) -> Result<
 /// without either. Each form is given with its name and media type.
 ///
 /// # Errors
-/// 406 when `Accept` permits none of them, or not the one that the query selects.
+/// 406 when `Accept` permits none of them, or not the one that the query selects, or the program was built without it.
 pub(crate) fn negotiate_form<T: Copy>(
     headers: &HeaderMap,
     query: &mut QueryParameters,
@@ -41,8 +42,17 @@ pub(crate) fn negotiate_form<T: Copy>(
 ) -> Result<T, ApiError> {
     let names: Vec<_> = forms.iter().map(|form| (form.0, form)).collect();
     let chosen = query.choice("format", &names);
-    let offers: Vec<_> = chosen.map_or_else(|| forms.iter().map(|form| form.1).collect(), |form| vec![form.1]);
-    let media_type = negotiate(headers, &offers)?;
+    let is_built = |media_type: &str| parquet::IS_BUILT || media_type != parquet::MEDIA_TYPE;
+    let built: Vec<_> = forms.iter().map(|form| form.1).filter(|media_type| is_built(media_type)).collect();
+    let offers = match chosen {
+        Some(form) if !is_built(form.1) => return Err(parquet::missing(&built)),
+        Some(form) => vec![form.1],
+        None => built.clone(),
+    };
+    let media_type = negotiate(headers, &offers).map_err(|error| {
+        let is_accepted = media_ranges(headers).iter().any(|(range, _)| range == parquet::MEDIA_TYPE);
+        if is_accepted && built.len() < forms.len() { parquet::missing(&built) } else { error }
+    })?;
     let form = chosen.or_else(|| forms.iter().find(|form| form.1 == media_type));
     form.map(|form| form.2).ok_or_else(|| ApiError::internal("a media type that was not offered"))
 }
@@ -69,6 +79,7 @@ pub(crate) enum TableForm {
     Csv(Decimal),
     Workbook,
     Arrays(ArrayForm),
+    Parquet,
 }
 
 /// Selects the representation of the rows of a sweep: by the query parameter `format`, by `decimal` (CSV), or by
@@ -77,12 +88,13 @@ pub(crate) enum TableForm {
 /// # Errors
 /// 406 when `Accept` permits none of them, or not the one that the query selects.
 pub(crate) fn negotiate_table_form(headers: &HeaderMap, query: &mut QueryParameters) -> Result<TableForm, ApiError> {
-    const FORMS: [(&str, &str, TableForm); 5] = [
+    const FORMS: [(&str, &str, TableForm); 6] = [
         ("json", "application/json", TableForm::Json),
         ("csv", "text/csv", TableForm::Csv(Decimal::Point)),
         ("xlsx", MEDIA_TYPE, TableForm::Workbook),
         ("npz", "application/x-npz", TableForm::Arrays(ArrayForm::Npz)),
         ("mat", "application/x-matlab-data", TableForm::Arrays(ArrayForm::Mat)),
+        (parquet::NAME, parquet::MEDIA_TYPE, TableForm::Parquet),
     ];
     let Some(decimal) = query.choice("decimal", &Decimal::ALL) else {
         return match negotiate_form(headers, query, &FORMS)? {

@@ -3,6 +3,7 @@
 use crate::api::config::{DEFAULT_ROWS, MAX_ROWS, MAX_SWEEP_ROWS};
 use crate::api::csv::Decimal;
 use crate::api::guarded_body::GuardedBody;
+use crate::api::parquet;
 use crate::api::points::{self, RowRange};
 use crate::api::problem::{ApiError, ProblemCode};
 use crate::api::request::{JobPath, QueryParameters, TableForm, negotiate_table_form};
@@ -10,6 +11,7 @@ use crate::api::state::AppState;
 use crate::api::table::Table;
 use crate::api::text_body::TextBody;
 use crate::api::workbook::{self, MAX_WORKBOOK_ROWS, write_workbook};
+use crate::store::JobRecord;
 use axum::body::Body;
 use axum::extract::State;
 use axum::http::HeaderMap;
@@ -45,15 +47,16 @@ pub(super) struct PointItem {
     description = "The points of a sweep that runs, failed or was canceled can be read as far as they are solved; \
         there may then be gaps between\ntheir positions, which are filled later. Files have all of them unless `limit` \
         is given: CSV; `xlsx`, a workbook with the rows,\nthe input and the units; `npz` (NumPy) and `mat` (MATLAB, version 5), \
-        an array for each column, with `columns` and `units`.",
+        an array for each column, with `columns` and `units`; \
+        `parquet`, in programs built with that feature, with null where\na row has no value, and `units`, `meanings`, `job_id`, `solver_version` and `input` in its metadata.",
     params(
         ("id" = String, Path, format = "uuid", description = "Id of the job"),
         ("from" = Option<u64>, Query, description = "First position; 0 when left out.", minimum = 0,
             maximum = 200_000),
         ("limit" = Option<u64>, Query, description = "Points per page, 1 to 10000; 1000 when left out (CSV: all).",
             minimum = 1, maximum = 10_000, example = 1000),
-        ("format" = Option<String>, Query, pattern = "^(json|csv|xlsx|npz|mat)$", description = "`json` (the default), `csv`, `xlsx`, `npz` \
-            or `mat`. The same as the media type in `Accept`."),
+        ("format" = Option<String>, Query, pattern = "^(json|csv|xlsx|npz|mat|parquet)$", description = "`json` (the default), `csv`, `xlsx`, `npz`, \
+            `mat` or, in programs built with it, `parquet`. The same as the media type in `Accept`."),
         ("decimal" = Option<Decimal>, Query, description = "Answer with CSV: `point` (fields between commas, the default of `text/csv`) or \
             `comma` (decimal commas, fields between semicolons, CR LF, byte order mark: for spreadsheets of such a locale). The \
             same as `Accept: text/csv; decimal=comma`."),
@@ -64,10 +67,12 @@ pub(super) struct PointItem {
             (String = "text/csv", example = "position,branch,/operation/pinion_speed_rpm\n0,,300.0\n"),
             (Vec<u8> = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"),
             (Vec<u8> = "application/x-npz"),
-            (Vec<u8> = "application/x-matlab-data"))),
+            (Vec<u8> = "application/x-matlab-data"),
+            (Vec<u8> = "application/vnd.apache.parquet"))),
         (status = 400, description = "`invalid-parameter`."),
         (status = 404, description = "No such job, or it is not a sweep."),
-        (status = 406, description = "None of these media types is accepted, or a sheet has no room for the rows."),
+        (status = 406, description = "None of these media types is accepted, the program was built without the one that is, or a sheet has no \
+            room for the rows."),
         (status = 503, description = "`too-many-large-answers` or `storage-unavailable`; `Retry-After` says when to try again."),
     )
 )]
@@ -82,6 +87,7 @@ pub(super) async fn list_points(
     let limit = query.integer("limit", 1, MAX_ROWS, false);
     query.finish()?;
     let input = super::sweep_input(&state, id).await?;
+    let job = super::find_job(&state, id).await?;
     let shape = SweepShape::of_stored(&input).map_err(ApiError::internal)?;
     let store = state.jobs().store();
     let vary = (VARY, "accept");
@@ -97,16 +103,17 @@ pub(super) async fn list_points(
             let body = points::csv_body(store, id, of_file, shape, decimal).await?;
             Ok(([(CONTENT_TYPE, "text/csv; charset=utf-8"), vary], body).into_response())
         }
-        TableForm::Workbook | TableForm::Arrays(_) => {
+        TableForm::Workbook | TableForm::Arrays(_) | TableForm::Parquet => {
             // The whole table is in memory until it was sent.
             let place = state.large_body_place().await?;
             let permit = state.large_read_permit().await?;
             let pages = points::pages(store, id, of_file).await?;
             let table = Table::of_points(pages, &shape).await?;
-            let bytes = tokio::task::spawn_blocking(move || encode(&table, form, &input));
+            let bytes = tokio::task::spawn_blocking(move || encode(&table, form, &job, &input));
             let bytes = bytes.await.map_err(ApiError::internal)??;
             let (media_type, ending) = match form {
                 TableForm::Arrays(form) => (form.media_type(), form.ending()),
+                TableForm::Parquet => (parquet::MEDIA_TYPE, parquet::NAME),
                 _ => (workbook::MEDIA_TYPE, "xlsx"),
             };
             let body = Body::new(GuardedBody::new(TextBody::new(bytes).into(), (place, permit)));
@@ -115,15 +122,18 @@ pub(super) async fn list_points(
     }
 }
 
-fn encode(table: &Table, form: TableForm, input: &str) -> Result<Vec<u8>, ApiError> {
-    let TableForm::Arrays(form) = form else {
-        if table.n_rows() > MAX_WORKBOOK_ROWS {
+fn encode(table: &Table, form: TableForm, job: &JobRecord, input: &str) -> Result<Vec<u8>, ApiError> {
+    match form {
+        TableForm::Arrays(form) => table.to_arrays(form).map_err(ApiError::internal),
+        TableForm::Parquet => parquet::table_bytes(table, job, input),
+        _ if table.n_rows() > MAX_WORKBOOK_ROWS => {
             let detail =
                 format!("A sheet has {MAX_WORKBOOK_ROWS} rows at most; take CSV, or pages with from and limit.");
-            return Err(ApiError::new(ProblemCode::NotAcceptable, detail));
+            Err(ApiError::new(ProblemCode::NotAcceptable, detail))
         }
-        let document = serde_json::from_str(input).map_err(ApiError::internal)?;
-        return write_workbook("points", table, &document).map_err(ApiError::internal);
-    };
-    table.to_arrays(form).map_err(ApiError::internal)
+        _ => {
+            let document = serde_json::from_str(input).map_err(ApiError::internal)?;
+            write_workbook("points", table, &document).map_err(ApiError::internal)
+        }
+    }
 }

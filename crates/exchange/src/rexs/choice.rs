@@ -6,6 +6,7 @@ use crate::ImportOptions;
 use crate::refusal::Refusal;
 use crate::report::{Alternative, StageKind};
 use herringbone_job::Violation;
+use std::collections::BTreeSet;
 
 /// Most stages that are named in a refusal.
 const MAX_NAMED: usize = 30;
@@ -36,7 +37,10 @@ pub(super) fn choose(model: &Model, stages: &Stages, options: &ImportOptions) ->
         None if doubles == 1 => 0,
         None if doubles == 0 && singles == 1 && options.mirror => 0,
         None if doubles == 0 && !options.mirror => {
-            let summary = "The file has single-helical stages only; mirror makes a double-helical pair of one of them.";
+            let kinds: BTreeSet<_> = candidates.iter().map(|one| one.halves[0].kind_of_teeth()).collect();
+            let kinds = Vec::from_iter(kinds).join(" and ");
+            let summary =
+                format!("The file has {kinds} stages only; mirror makes a double-helical pair of one of them.");
             return Err(Refusal::unsupported(summary, listed(model, stages, "single-helical")));
         }
         None => {
@@ -48,12 +52,13 @@ pub(super) fn choose(model: &Model, stages: &Stages, options: &ImportOptions) ->
     let candidate = candidates[index].clone();
     let mirrored = candidate.kind == StageKind::SingleHelical;
     if mirrored && !options.mirror {
+        let kind = candidate.halves[0].kind_of_teeth();
         let detail = format!(
-            "{}: a single-helical stage; mirror makes a double-helical pair of it, each half a copy of the stage",
+            "{}: a {kind} stage; mirror makes a double-helical pair of it, each half a copy of the stage",
             candidate.halves[0].describe(model)
         );
         let error = Violation::new(format!("/pair/{}", index + 1), "single-helical", detail);
-        return Err(Refusal::unsupported("The chosen stage is single-helical.", vec![error]));
+        return Err(Refusal::unsupported(format!("The chosen stage is {kind}."), vec![error]));
     }
     let note =
         (options.mirror && !mirrored).then_some("is double-helical as it stands in the file: nothing was mirrored");
@@ -86,7 +91,7 @@ fn listed(model: &Model, stages: &Stages, code: &str) -> Vec<Violation> {
             let ids = candidate.ids(model).iter().map(i64::to_string).collect::<Vec<_>>().join(" and ");
             let kind = match candidate.kind {
                 StageKind::DoubleHelical => "double-helical",
-                StageKind::SingleHelical => "single-helical",
+                StageKind::SingleHelical => candidate.halves[0].kind_of_teeth(),
             };
             let text = candidate.halves.iter().map(|half| half.describe(model)).collect::<Vec<_>>().join(" + ");
             let detail = format!("pair {}: {text} (stage {ids}), {kind}", index + 1);

@@ -78,7 +78,8 @@ pub(crate) fn import(file: &ModelFile, options: &ImportOptions) -> Result<Import
         draft.warn("not-mirrored", "", format!("{label} {note}"));
     }
     if choice.mirrored {
-        let detail = format!("{label} is single-helical: each half is a copy of the stage, and the torque is doubled");
+        let kind = pair.halves[0].kind_of_teeth();
+        let detail = format!("{label} is {kind}: each half is a copy of the stage, and the torque is doubled");
         draft.warn("mirrored", "", detail);
     }
     draft.set("/name", label.chars().take(herringbone_job::document::MAX_NAME_CHARS).collect::<String>());

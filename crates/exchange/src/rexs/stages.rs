@@ -57,6 +57,11 @@ impl Stage {
         }
         text
     }
+
+    /// What the teeth are, as gear engineers say it.
+    pub(super) fn kind_of_teeth(&self) -> &'static str {
+        if self.helix_angle_deg == Some(0.0) { "spur" } else { "single-helical" }
+    }
 }
 
 impl Candidate {

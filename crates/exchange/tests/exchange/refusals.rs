@@ -129,6 +129,37 @@ fn two_stages_that_are_no_halves_are_told_why() {
     assert!(spur.contains("spur gears"), "{spur}");
 }
 
+/// As in a public model of a shaft with a mass: a stage without helix angle is not called helical.
+#[test]
+fn a_spur_stage_is_called_so() {
+    let mut model = Gearbox::double_helical("1.7");
+    for half in [0, 1] {
+        for gear in [PINION[half], WHEEL[half]] {
+            let angle_deg = if half == 0 { 0.0 } else { 25.0 * if gear == PINION[half] { -1.0 } else { 1.0 } };
+            model.attribute(gear, "helix_angle_reference_diameter", "deg", json!(angle_deg));
+        }
+    }
+    let listed = said(model.xml().as_bytes());
+    assert!(listed.contains("single-helical and spur stages only"), "{listed}");
+    assert!(
+        listed.contains("β 0° (stage 51), spur") && listed.contains("β 25° (stage 52), single-helical"),
+        "{listed}"
+    );
+    let chosen = ImportOptions { pair: Some(1), ..ImportOptions::default() };
+    let refusal = refused(model.xml().as_bytes(), &chosen);
+    assert_eq!(
+        (refusal.summary.as_str(), refusal.errors[0].code.as_str()),
+        ("The chosen stage is spur.", "single-helical")
+    );
+    assert!(refusal.errors[0].detail.contains("a spur stage; mirror makes"), "{refusal:?}");
+    let import = imported(model.xml().as_bytes(), &ImportOptions { mirror: true, ..chosen });
+    assert!(
+        import.warnings.iter().any(|warning| warning.detail.contains("is spur: each half is a copy")),
+        "{:?}",
+        import.warnings
+    );
+}
+
 #[test]
 fn contradictions_within_a_pair_are_refused_with_their_places() {
     let change = |change: &dyn Fn(&mut Gearbox)| {

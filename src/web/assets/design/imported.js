@@ -32,8 +32,8 @@ export function refusalOf(name, error) {
   const errors = error.errors ?? [];
   const pairs = errors.flatMap(({ pointer, detail }) => {
     const pair = Number(pointer.match(/^\/pair\/(\d+)$/)?.[1]);
-    const mirror = /single-helical/.test(detail);
-    return pair ? [{ label: `${mirror ? "Mirror" : "Take"} ${detail.replace(/, (single|double)-helical$/, "")}`, pair, mirror }] : [];
+    const mirror = /, (single-helical|spur)$|; mirror makes/.test(detail);
+    return pair ? [{ label: `${mirror ? "Mirror" : "Take"} ${detail.replace(/, (single-helical|double-helical|spur)$/, "")}`, pair, mirror }] : [];
   });
   const reasons = errors.filter(({ pointer }) => !/^\/pair\/\d+$/.test(pointer)).map(({ detail }) => detail);
   const needsTorque = errors.length === 1 && errors[0].pointer === "/operation/pinion_torque_nm" && errors[0].code === "missing";
