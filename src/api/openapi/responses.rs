@@ -169,7 +169,9 @@ pub(super) fn leave_out_missing(operation: &mut Value) {
     if let Some(content) = operation.pointer_mut("/responses/200/content").and_then(Value::as_object_mut) {
         content.remove(parquet::MEDIA_TYPE);
     }
-    for parameter in operation["parameters"].as_array_mut().into_iter().flatten() {
+    // By index a missing member would come in as null.
+    let parameters = operation.get_mut("parameters").and_then(Value::as_array_mut);
+    for parameter in parameters.into_iter().flatten() {
         if let Some(Value::String(pattern)) = parameter.pointer_mut("/schema/pattern") {
             *pattern = pattern.replace(&format!("|{}", parquet::NAME), "");
         }

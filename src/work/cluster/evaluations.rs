@@ -1,5 +1,5 @@
-//! Evaluations of an optimisation by workers. The search runs in this process; a batch of it is cut into chunks, and the
-//! search goes on when their rows are stored.
+//! Evaluations of an optimisation by workers. The search runs in this process; a batch of it is cut into chunks, and
+//! the search goes on when their rows are stored.
 
 use super::active::ActiveJob;
 use super::admit::{WORTH_SENDING_S, until_stored};

@@ -1,5 +1,5 @@
-//! A part of a sweep, a tolerance study or an optimisation that is solved apart from the rest, as on another machine: some
-//! of its points, or a stretch of a line that is followed by continuation.
+//! A part of a sweep, a tolerance study or an optimisation that is solved apart from the rest, as on another machine:
+//! some of its points, or a stretch of a line that is followed by continuation.
 
 use super::mesh::MeshMemo;
 use super::sweep::{Points, together, ways};
