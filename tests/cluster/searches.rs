@@ -41,6 +41,12 @@ fn outcome_and_rows(service: &Service, path: &str) -> (Value, Value) {
     (outcome(service, path).0, service.get(&format!("{path}/points?limit=10000")))
 }
 
+/// Waits until the service knows so many workers.
+fn wait_for_workers(service: &Service, count: usize) {
+    service
+        .until("/api/v1/system", |answer| answer.json()["machines"].as_array().is_some_and(|all| all.len() == count));
+}
+
 fn chunks(setting: &Setting) -> i64 {
     number(setting.program.database(), "SELECT COUNT(*) FROM chunks WHERE json_extract(part, '$.kind') = 'evaluations'")
 }
@@ -52,7 +58,7 @@ fn workers_make_the_evaluations_and_one_that_is_killed_is_replaced() {
     let expected = alone(&document);
     let service = setting.program.start();
     let (first, second) = (setting.worker(), setting.worker());
-    service.until("/api/v1/system", |answer| answer.json()["machines"].as_array().is_some_and(|all| all.len() == 2));
+    wait_for_workers(&service, 2);
     let path = service.submit(&document);
     wait_until("both compute", || {
         [&first, &second].iter().all(|worker| worker.log().matches("chunk computed").count() > 2)
@@ -72,7 +78,7 @@ fn a_search_goes_on_after_the_service_has_died() {
     let expected = alone(&document);
     let service = setting.program.start();
     let _worker = setting.worker();
-    service.until("/api/v1/system", |answer| answer.json()["machines"].as_array().is_some_and(|all| all.len() == 1));
+    wait_for_workers(&service, 1);
     let path = service.submit(&document);
     wait_for_rows(&setting, 30);
     assert!(chunks(&setting) > 0);
@@ -93,7 +99,7 @@ fn a_canceled_search_and_one_without_workers_end() {
     let Some(setting) = Setting::new(&[]) else { return };
     let service = setting.program.start();
     let worker = setting.worker();
-    service.until("/api/v1/system", |answer| answer.json()["machines"].as_array().is_some_and(|all| all.len() == 1));
+    wait_for_workers(&service, 1);
     let mut endless = search(5000);
     endless["analysis"]["mesh_periods"] = json!(20_000);
     let path = service.submit(&endless);

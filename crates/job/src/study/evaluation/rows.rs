@@ -121,19 +121,20 @@ impl<'a> Rows<'a> {
             let done = progress.fetch_add(1, Ordering::Relaxed) + 1;
             (self.context.progress)(Stage::Evaluations, (done as f64 / self.expected as f64).min(1.0));
         };
-        let places: Vec<Place> = tasks.iter().enumerate().map(|(at, task)| self.place(first + at, task)).collect();
-        let made_elsewhere = self.evaluate_elsewhere(first, &tasks, &places);
+        let sources: Vec<RowSource> =
+            tasks.iter().enumerate().map(|(at, task)| self.source(first + at, task)).collect();
+        let made_elsewhere = self.evaluate_elsewhere(first, &tasks, &sources);
         // The row, and the time of an evaluation that was made here.
-        let solve = |(at, (task, place)): (usize, (&EvaluationTask, Place))| {
+        let solve = |(at, (task, source)): (usize, (&EvaluationTask, RowSource))| {
             let position = first + at;
-            let (row, made_ms) = match place {
-                Place::Unwanted => return Ok((SweepPoint::default(), None)),
-                Place::Stored(row) => {
+            let (row, made_ms) = match source {
+                RowSource::Unwanted => return Ok((SweepPoint::default(), None)),
+                RowSource::Stored(row) => {
                     count();
                     return Ok((row.clone(), None));
                 }
-                Place::Known(row) => (of_task(row.clone(), task), None),
-                Place::New => match made_elsewhere.get(&position) {
+                RowSource::Known(row) => (of_task(row.clone(), task), None),
+                RowSource::New => match made_elsewhere.get(&position) {
                     Some(row) => {
                         count();
                         return Ok((of_task(row.clone(), task), None));
@@ -149,7 +150,7 @@ impl<'a> Rows<'a> {
             Ok((row, made_ms))
         };
         let solved: Vec<(SweepPoint, Option<f64>)> =
-            tasks.par_iter().zip(places).enumerate().map(solve).collect::<Result<_, SolveError>>()?;
+            tasks.par_iter().zip(sources).enumerate().map(solve).collect::<Result<_, SolveError>>()?;
         self.done = progress.into_inner();
         for (at, (task, (row, made_ms))) in tasks.iter().zip(solved).enumerate() {
             if let Some(made_ms) = made_ms {
@@ -162,13 +163,13 @@ impl<'a> Rows<'a> {
     }
 
     /// Where the row of a task comes from.
-    fn place(&self, position: usize, task: &EvaluationTask) -> Place<'_> {
+    fn source(&self, position: usize, task: &EvaluationTask) -> RowSource<'_> {
         if self.wanted.as_ref().is_some_and(|wanted| !wanted.contains(&position)) {
-            return Place::Unwanted;
+            return RowSource::Unwanted;
         }
         let is_same = |row: &&SweepPoint| row.phase == Some(task.phase) && bits(&row.values) == bits(&task.values);
         if let Some(row) = self.stored.get(&position).filter(is_same) {
-            return Place::Stored(row);
+            return RowSource::Stored(row);
         }
         // Among positions apart, the row of the same values may be an empty one.
         let of_same_values =
@@ -177,7 +178,7 @@ impl<'a> Rows<'a> {
             let is_plain = task.settings == EvaluationSettings::Own && task.further.is_empty();
             if is_plain { self.earlier.get(&bits(&task.values)) } else { None }
         };
-        of_same_values.or_else(of_earlier).map_or(Place::New, Place::Known)
+        of_same_values.or_else(of_earlier).map_or(RowSource::New, RowSource::Known)
     }
 
     /// Has the new ones of some tasks evaluated on other machines; the rows of those that were, by their positions.
@@ -185,9 +186,9 @@ impl<'a> Rows<'a> {
         &self,
         first: usize,
         tasks: &[EvaluationTask],
-        places: &[Place],
+        sources: &[RowSource],
     ) -> HashMap<usize, SweepPoint> {
-        let is_new = |at: &usize| matches!(places[*at], Place::New);
+        let is_new = |at: &usize| matches!(sources[*at], RowSource::New);
         let new = (0..tasks.len()).filter(is_new).map(|at| ((first + at) as u64, tasks[at].clone()));
         let tasks: BTreeMap<u64, EvaluationTask> = if self.wanted.is_none() { new.collect() } else { BTreeMap::new() };
         if tasks.is_empty() {
@@ -201,7 +202,7 @@ impl<'a> Rows<'a> {
 
 /// Where a row comes from.
 #[derive(Clone, Copy)]
-enum Place<'a> {
+enum RowSource<'a> {
     /// It is not wanted.
     Unwanted,
     /// An earlier attempt stored it.
