@@ -157,9 +157,11 @@ fn progress_bar() -> ProgressBar {
 }
 
 fn write_json(result: &herringbone_job::result::JobResult) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    // Standard output alone is written line by line.
+    let mut out = std::io::BufWriter::with_capacity(1 << 16, std::io::stdout().lock());
     serde_json::to_writer_pretty(&mut out, result)?;
-    writeln!(out)
+    writeln!(out)?;
+    out.flush()
 }
 
 fn write_csv(series: &RecordedChannel, path: &PathBuf, decimal: Decimal) -> std::io::Result<()> {

@@ -10,43 +10,70 @@ const ROUND_DIGITS: usize = 12;
 
 /// The values of a grid of `count` points.
 pub fn values(from: f64, to: f64, count: usize, spacing: Spacing) -> Vec<f64> {
-    (0..count).map(|index| value(from, to, count, spacing, index)).collect()
+    let last = count.saturating_sub(1);
+    match spacing {
+        Spacing::Linear => {
+            let ends = DecimalEnds::new(from, to, last as f64);
+            (0..count)
+                .map(|index| at(from, to, (index, last), |from, to| linear(&ends, from, to, index, last)))
+                .collect()
+        }
+        Spacing::Logarithmic => (0..count).map(|index| value(from, to, count, spacing, index)).collect(),
+    }
 }
 
 /// The value at position `index` of a grid of `count` points. A logarithmic grid needs both ends above 0.
 pub fn value(from: f64, to: f64, count: usize, spacing: Spacing, index: usize) -> f64 {
     let last = count.saturating_sub(1);
-    if index == 0 {
-        return from;
-    }
-    if index >= last {
-        return to;
-    }
-    match spacing {
-        Spacing::Linear => linear(from, to, index as f64, last as f64),
+    at(from, to, (index, last), |from, to| match spacing {
+        Spacing::Linear => linear(&DecimalEnds::new(from, to, last as f64), from, to, index, last),
         Spacing::Logarithmic => logarithmic(from, to, index as f64 / last as f64),
+    })
+}
+
+/// An end of a grid, or what is `between` them.
+fn at(from: f64, to: f64, (index, last): (usize, usize), between: impl FnOnce(f64, f64) -> f64) -> f64 {
+    match index {
+        0 => from,
+        _ if index >= last => to,
+        _ => between(from, to),
     }
 }
 
 /// With both ends as whole multiples of the same power of ten, as they are written, the value is a quotient of two
 /// whole numbers: one division, so the float nearest to the decimal value. Ends with too many digits for that are
 /// interpolated in floating point.
-fn linear(from: f64, to: f64, index: f64, last: f64) -> f64 {
-    exact_linear(from, to, index, last).unwrap_or_else(|| from + (to - from) * (index / last))
+fn linear(ends: &Option<DecimalEnds>, from: f64, to: f64, index: usize, last: usize) -> f64 {
+    let (index, last) = (index as f64, last as f64);
+    let exact = ends.as_ref().and_then(|ends| ends.value(index, last));
+    exact.unwrap_or_else(|| from + (to - from) * (index / last))
 }
 
-fn exact_linear(from: f64, to: f64, index: f64, last: f64) -> Option<f64> {
-    let (a, b) = (decimal(from)?, decimal(to)?);
-    let exponent = a.1.min(b.1);
-    let whole = |(digits, own): (f64, i32)| digits * 10f64.powi(own - exponent);
-    let (a, b) = (whole(a), whole(b));
-    let divisor = last * 10f64.powi((-exponent).max(0));
-    if a.abs().max(b.abs()) * last > EXACT || divisor > EXACT || exponent > 15 {
-        return None;
+/// Ends of a grid as whole multiples of a power of ten.
+struct DecimalEnds {
+    from: f64,
+    to: f64,
+    exponent: i32,
+    divisor: f64,
+}
+
+impl DecimalEnds {
+    /// None of ends with too many digits. `last`: index of the last value.
+    fn new(from: f64, to: f64, last: f64) -> Option<Self> {
+        let (a, b) = (decimal(from)?, decimal(to)?);
+        let exponent = a.1.min(b.1);
+        let whole = |(digits, own): (f64, i32)| digits * 10f64.powi(own - exponent);
+        let (from, to) = (whole(a), whole(b));
+        let divisor = last * 10f64.powi((-exponent).max(0));
+        let fits = from.abs().max(to.abs()) * last <= EXACT && divisor <= EXACT && exponent <= 15;
+        fits.then_some(Self { from, to, exponent, divisor })
     }
-    let sum = a * (last - index) + b * index;
-    let scaled = sum * 10f64.powi(exponent.max(0));
-    (scaled.abs() <= EXACT).then_some(scaled / divisor)
+
+    fn value(&self, index: f64, last: f64) -> Option<f64> {
+        let sum = self.from * (last - index) + self.to * index;
+        let scaled = sum * 10f64.powi(self.exponent.max(0));
+        (scaled.abs() <= EXACT).then_some(scaled / self.divisor)
+    }
 }
 
 /// A number as its shortest decimal digits, a whole number, and the power of ten they are multiples of.

@@ -152,6 +152,14 @@ impl Axis {
         self.len() == 0
     }
 
+    /// The values by position, as [`Axis::value`] has them.
+    pub fn values(&self) -> Vec<f64> {
+        match &self.points {
+            AxisPoints::Values { values } => values.clone(),
+            AxisPoints::Range { from, to, points, spacing } => grid::values(*from, *to, *points as usize, *spacing),
+        }
+    }
+
     /// The value at position `index`; both ends of a range, and round values between them, are met exactly.
     pub fn value(&self, index: usize) -> f64 {
         match &self.points {

@@ -36,10 +36,10 @@ pub(super) fn check_axes(document: &JobDocument) -> Result<(), DocumentError> {
         }
         // Ranges are intervals, so the extremes stand for all values; of whole numbers every value has to be one.
         let whole = axis.pointers().any(|pointer| base.slot(pointer).is_some_and(|slot| slot.is_whole_number()));
-        let values = || (0..axis.len()).map(|position| axis.value(position));
-        let least = values().fold(f64::INFINITY, f64::min);
-        let greatest = values().fold(f64::NEG_INFINITY, f64::max);
-        let fractional = values().find(|number| whole && number.fract() != 0.0);
+        let values = axis.values();
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let fractional = values.iter().copied().find(|number| whole && number.fract() != 0.0);
         for number in [Some(least), Some(greatest), fractional].into_iter().flatten() {
             if let Err(DocumentError::Invalid(found)) = at(base.clone(), [(axis, number)]) {
                 violations.extend(found.into_iter().map(|violation| Violation {

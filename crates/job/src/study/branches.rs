@@ -18,7 +18,7 @@ const STILL_M_S2: f64 = 1e-9;
 
 /// Positions on an axis from its least value up, or from its greatest down.
 pub(super) fn order(axis: &Axis, direction: BranchDirection) -> Vec<usize> {
-    let values: Vec<f64> = (0..axis.len()).map(|index| axis.value(index)).collect();
+    let values = axis.values();
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
     if direction == BranchDirection::Down {

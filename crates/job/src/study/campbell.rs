@@ -51,8 +51,9 @@ pub(super) fn run(
 }
 
 fn diagram(speed: &Axis, other_axis_value: Option<f64>, teeth: f64, natural_modes: Vec<NaturalMode>) -> Campbell {
-    let speeds = || (0..speed.len()).map(|index| speed.value(index));
-    let range = [speeds().fold(f64::INFINITY, f64::min), speeds().fold(f64::NEG_INFINITY, f64::max)];
+    let speeds = speed.values();
+    let [least, greatest] = [f64::min, f64::max].map(|of| speeds.iter().copied().reduce(of).unwrap_or_default());
+    let range = [least, greatest];
     let mut crossings = Vec::new();
     for (mode, natural) in (0u32..).zip(&natural_modes) {
         let mesh_strain_energy =

@@ -84,7 +84,7 @@ fn rows(document: &JobDocument) -> usize {
 
 /// Every input that varies over the rows, with its extreme values: those of axes and variables. Deviations are small.
 fn varied(document: &JobDocument) -> impl Iterator<Item = (&str, Vec<f64>)> {
-    let of_axis = |axis: &Axis| (0..axis.len()).map(|index| axis.value(index)).collect::<Vec<f64>>();
+    let of_axis = |axis: &Axis| axis.values();
     let axes = document.axes.iter().flat_map(move |axis| axis.pointers().map(move |pointer| (pointer, of_axis(axis))));
     let variables = document.variables.iter().flat_map(|variable| {
         let ends = [variable.from, variable.to];

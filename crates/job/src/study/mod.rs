@@ -56,7 +56,7 @@ pub use sweep::continued_from;
 pub use vibration::is_channel;
 
 /// Version of the calculation: results and stages stored under another version are not reused.
-pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-10");
+pub const SOLVER_VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "-11");
 
 /// Stages in the order they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

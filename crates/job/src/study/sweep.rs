@@ -31,6 +31,8 @@ pub(super) struct Points<'a> {
     context: &'a SolveContext<'a>,
     memo: &'a MeshMemo,
     order: SweepOrder,
+    /// Values of the axes.
+    axes: Vec<Vec<f64>>,
     solved: AtomicUsize,
     /// Points that are to be solved altogether.
     all: usize,
@@ -40,14 +42,18 @@ impl<'a> Points<'a> {
     /// Of a sweep of which `all` points are to be solved, for the progress.
     pub(super) fn new(sweep: &'a JobDocument, context: &'a SolveContext<'a>, memo: &'a MeshMemo, all: usize) -> Self {
         let (base, order) = (base(sweep), SweepOrder::of(sweep));
-        Self { base, sweep, context, memo, order, solved: AtomicUsize::new(0), all: all.max(1) }
+        let axes = sweep.axes.iter().map(Axis::values).collect();
+        Self { base, sweep, context, memo, order, axes, solved: AtomicUsize::new(0), all: all.max(1) }
     }
 
     fn values(&self, position: usize) -> Vec<f64> {
-        let (first, second) = (&self.sweep.axes[0], self.sweep.axes.get(1));
-        let mut values = vec![first.value(position % first.len())];
-        values.extend(second.map(|axis| axis.value(position / first.len() % axis.len())));
-        values
+        let mut places = position;
+        let value = |axis: &Vec<f64>| {
+            let value = axis[places % axis.len()];
+            places /= axis.len();
+            value
+        };
+        self.axes.iter().map(value).collect()
     }
 
     fn count(&self, solved: usize) {
@@ -115,7 +121,7 @@ pub(super) fn run(
     let axes = document.axes.iter().map(|axis| SweepAxis {
         pointer: axis.pointer.clone(),
         also: axis.also.clone(),
-        values: (0..axis.len()).map(|index| axis.value(index)).collect(),
+        values: axis.values(),
     });
     let mut sweep = SweepResult {
         axes: axes.collect(),

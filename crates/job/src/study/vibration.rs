@@ -11,6 +11,9 @@ use herringbone_physics::dynamics::{self, DynamicsError, ModalTrain, Parameters}
 use herringbone_physics::response::{self, Analysis, ChannelId, Regime};
 use herringbone_physics::watch::Watch;
 
+/// Poincaré points of a motion that does not repeat, of a single response.
+const POINCARE_POINTS_OF_RESPONSE: usize = 2000;
+
 /// Outcome of the response stage.
 pub(super) struct Vibration {
     pub summary: ResponseResult,
@@ -180,6 +183,7 @@ pub(super) fn analysis(
         initial_state: state.and_then(|state| <[f64; 24]>::try_from(state).ok()),
         energy_balance: options.whole,
         multipliers: options.whole,
+        poincare_points: if options.whole { POINCARE_POINTS_OF_RESPONSE } else { 0 },
         ..Analysis::default()
     })
 }

@@ -43,6 +43,14 @@ struct FlankSurface {
     cells: Vec<Vec<[[f64; 4]; 4]>>,
 }
 
+/// Place of a phase between the knots.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PhasePlace {
+    interval: usize,
+    /// Relative position within the interval.
+    u: f64,
+}
+
 /// Largest number of levels; a level is stored in a [`ContactSide`].
 const MAX_LEVELS: usize = 100;
 
@@ -132,29 +140,42 @@ impl ContactForce {
         (c[1] + u * (2.0 * c[2] + u * 3.0 * c[3])) / width
     }
 
+    /// Place of a phase between the knots.
+    pub(super) fn place(&self, phase: f64) -> PhasePlace {
+        let (interval, u, _) = self.interval(phase, phase);
+        PhasePlace { interval, u }
+    }
+
     /// Force (N) and stiffness (N/m) of a flank at the displacement `e` (m) beyond first contact.
-    fn at(&self, side: ContactSide, e: f64, phase: f64, interior: f64) -> (f64, f64) {
+    fn at(&self, side: ContactSide, e: f64, PhasePlace { interval, u }: PhasePlace) -> (f64, f64) {
         if e <= 0.0 {
             return (0.0, 0.0);
         }
-        let (i, u, _) = self.interval(phase, interior);
         let flank = self.flank(side);
         let level = flank.level(e);
         let above = e - flank.level_m[level];
-        let c = flank.cells[level][i].map(|row| cubic(&row, u));
+        let c = flank.cells[level][interval].map(|row| cubic(&row, u));
         (c[0] + above * (c[1] + above * (c[2] + above * c[3])), c[1] + above * (2.0 * c[2] + above * 3.0 * c[3]))
     }
 
     /// Force (N, with the sign of s) and stiffness (N/m) at the displacement `s` (m) with half the backlash `b` (m).
     pub fn force(&self, s: f64, b: f64, phase: f64, interior: f64) -> (f64, f64) {
-        let (i, u, _) = self.interval(phase, interior);
-        let e = s - b - cubic(&self.driving.free[i], u);
+        let (interval, u, _) = self.interval(phase, interior);
+        let (force, stiffness, _) = self.force_at(s, b, PhasePlace { interval, u });
+        (force, stiffness)
+    }
+
+    /// Force and stiffness as [`ContactForce::force`] has them, and the flank that is touched: 1 driving, −1 back, 0
+    /// none.
+    pub(super) fn force_at(&self, s: f64, b: f64, place: PhasePlace) -> (f64, f64, ContactSide) {
+        let e = s - b - cubic(&self.driving.free[place.interval], place.u);
         if e > 0.0 {
-            return self.at(1, e, phase, interior);
+            let (force, stiffness) = self.at(1, e, place);
+            return (force, stiffness, 1);
         }
-        let e = -s - b - cubic(&self.back.free[i], u);
-        let (force, stiffness) = self.at(-1, e, phase, interior);
-        (-force, stiffness)
+        let e = -s - b - cubic(&self.back.free[place.interval], place.u);
+        let (force, stiffness) = self.at(-1, e, place);
+        (-force, stiffness, -ContactSide::from(e > 0.0))
     }
 
     /// Displacement s at which the mesh force equals `force` (N, of either sign) at a phase, m.
@@ -163,14 +184,15 @@ impl ContactForce {
         let flank = self.flank(side);
         let load = force.abs();
         let top = flank.level_m[flank.level_m.len() - 1];
-        let (at_top, slope) = self.at(side, top, phase, phase);
+        let place = self.place(phase);
+        let (at_top, slope) = self.at(side, top, place);
         let e = if load >= at_top {
             top + (load - at_top) / slope.max(f64::MIN_POSITIVE)
         } else {
             let (mut low, mut high) = (0.0, top);
             let mut e = 0.5 * top;
             for _ in 0..200 {
-                let (f, k) = self.at(side, e, phase, phase);
+                let (f, k) = self.at(side, e, place);
                 if f < load {
                     low = e;
                 } else {

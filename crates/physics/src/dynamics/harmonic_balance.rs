@@ -14,6 +14,7 @@ use nalgebra::Complex;
 
 use super::elastic_system::{ElasticSystem, residues};
 use super::excitation::ImpactWaveform;
+use super::frequency_response::FrequencyResponses;
 use super::harmonic_grid::{HarmonicGrid, MeshForces};
 use super::model::{ContactSide, DynamicModel, MotionState};
 use super::variation::Perturbation;
@@ -91,35 +92,32 @@ impl<'m, const D: usize> HarmonicBalance<'m, D> {
             return None;
         }
         let mut samples = FEWEST_SAMPLES;
-        let mut s: Vec<f64> = Vec::with_capacity(self.halves() * samples);
-        (0..self.halves()).for_each(|j| s.extend(std::iter::repeat_n(self.model.s(j, &near.x), samples)));
-        let mut gains = Vec::new();
+        // Real and imaginary parts of the amplitudes of each s, by order from 0.
+        let mut s = vec![0.0; self.halves() * samples];
+        (0..self.halves()).for_each(|j| s[j * samples] = self.model.s(j, &near.x));
+        let mut responses = FrequencyResponses::default();
         loop {
-            let mut grid = HarmonicGrid::new(self, samples, gains);
-            let forces = grid.solve(&mut s, OF_S * tolerance)?;
-            if !grid.keeps_contact(&s, &sides) {
-                return None;
+            let mut grid = HarmonicGrid::new(self, samples, responses);
+            let forces = grid.solve(&mut s, &sides, OF_S * tolerance)?;
+            let (start, upper) = self.start(near, &forces, &grid.responses);
+            let excess = size_of(&upper) / (OVER_NEXT * tolerance * size_of(&(start.x, start.v)));
+            if excess < 1.0 || samples == MOST_SAMPLES {
+                return Some(self.orbit(start, forces, &grid));
             }
-            let (start, upper) = self.start(near, &forces);
-            if size_of(&upper) < OVER_NEXT * tolerance * size_of(&(start.x, start.v)) || samples == MOST_SAMPLES {
-                return Some(self.orbit(start, forces, &grid, &s));
-            }
-            (s, gains) = grid.refined(&s);
-            samples *= 2;
+            let factor = if excess > OVER_NEXT * OVER_NEXT { 4 } else { 2 };
+            let factor = factor.min(MOST_SAMPLES / samples);
+            let mut finer = vec![0.0; factor * s.len()];
+            let meshes = finer.chunks_mut(factor * samples).zip(s.chunks(samples));
+            meshes.for_each(|(finer, s)| finer[..samples].copy_from_slice(s));
+            (s, samples, responses) = (finer, factor * samples, grid.responses);
         }
     }
 
-    fn orbit(
-        &self,
-        mut start: MotionState<D>,
-        forces: MeshForces,
-        grid: &HarmonicGrid<'_, '_, D>,
-        s: &[f64],
-    ) -> HarmonicOrbit<D> {
-        for (j, s) in s.chunks(grid.samples).enumerate() {
-            start.contact[j] = self.model.contact_of(j, s[0], 0.0);
+    fn orbit(&self, mut start: MotionState<D>, forces: MeshForces, grid: &HarmonicGrid<'_, '_, D>) -> HarmonicOrbit<D> {
+        let MeshForces { excess: mut normal, deviation, s_at_start_m } = forces;
+        for (j, s) in s_at_start_m.into_iter().enumerate() {
+            start.contact[j] = self.model.contact_of(j, s, 0.0);
         }
-        let MeshForces { excess: mut normal, deviation } = forces;
         for (normal, impact) in normal.iter_mut().zip(&grid.impact) {
             normal.iter_mut().zip(impact).for_each(|(normal, impact)| *normal += impact);
         }
@@ -128,26 +126,20 @@ impl<'m, const D: usize> HarmonicBalance<'m, D> {
 
     /// State at the phase 0 from the amplitudes of the mesh forces, and the part of it that the upper half of their
     /// orders makes. The motion due to the impacts is that of the whole pulse.
-    fn start(&self, near: &MotionState<D>, forces: &MeshForces) -> (MotionState<D>, Perturbation<D>) {
-        let mut components = [vec![C64::ZERO; self.system.poles.len()], vec![C64::ZERO; self.system.poles.len()]];
-        let orders = forces.excess.first().map_or(0, Vec::len);
-        for order in 0..orders {
-            let omega = self.omega(order);
-            for (m, pole) in self.system.poles.iter().enumerate() {
-                let (mut up, mut down) = (C64::ZERO, C64::ZERO);
-                for (rate, excess) in self.system.normal.iter().zip(&forces.excess) {
-                    up += rate[m] * excess[order];
-                    down += rate[m] * excess[order].conj();
-                }
-                let component = &mut components[usize::from(2 * order >= orders)][m];
-                *component += up / (C64::new(0.0, omega) - pole.value);
-                if order > 0 {
-                    *component += down / (C64::new(0.0, -omega) - pole.value);
-                }
-            }
+    fn start(
+        &self,
+        near: &MotionState<D>,
+        forces: &MeshForces,
+        responses: &FrequencyResponses,
+    ) -> (MotionState<D>, Perturbation<D>) {
+        let mut components = vec![C64::ZERO; self.system.poles.len()];
+        let mut upper = components.clone();
+        for (rates, excess) in self.system.normal.iter().zip(&forces.excess) {
+            let (low, high) = excess.split_at(excess.len() / 2);
+            responses.add_components(rates, low, 0, &mut components);
+            responses.add_components(rates, high, low.len(), &mut upper);
         }
-        let [lower, upper] = components;
-        let mut components: Vec<C64> = lower.iter().zip(&upper).map(|(a, b)| a + b).collect();
+        components.iter_mut().zip(&upper).for_each(|(all, upper)| *all += upper);
         for j in 0..self.halves() {
             let impact = &self.model.excitations[j].impact;
             let factors = [

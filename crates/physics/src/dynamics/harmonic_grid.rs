@@ -1,31 +1,34 @@
-//! Samples of the mesh period for harmonic balance, and the equation for the displacements of the meshes at them.
+//! Samples of the mesh period for harmonic balance, and the equation for the displacements of the meshes.
 
 use nalgebra::Complex;
 
+use super::contact_force::PhasePlace;
 use super::excitation::ImpactWaveform;
+use super::frequency_response::FrequencyResponses;
 use super::harmonic_balance::HarmonicBalance;
+use super::harmonic_preconditioner::Preconditioner;
 use super::model::ContactSide;
 use crate::numerics::fourier::Fourier;
 use crate::numerics::gmres::gmres;
+use crate::simd::vectorised;
 
 type C64 = Complex<f64>;
 
 /// Steps of Newton's method, and products per step.
 const MOST_STEPS: usize = 12;
 const MOST_PRODUCTS: usize = 60;
-/// Residual of the linear systems, relative to their right side: in the first step of a force law that is not linear,
-/// and the smallest.
+/// Residual of the linear systems, relative to their right side: the largest and the smallest.
 const FIRST_RESIDUAL: f64 = 1e-3;
 const LEAST_RESIDUAL: f64 = 1e-10;
 
-/// Samples of the period and what does not change with the motion.
+/// Samples of the period and what does not change with the motion. Amplitudes of s are lists of real and imaginary
+/// parts by order from 0, one mesh after the other.
 pub(super) struct HarmonicGrid<'b, 'm, const D: usize> {
     balance: &'b HarmonicBalance<'m, D>,
     pub samples: usize,
     fourier: Fourier,
-    /// Frequency response of each s (rows) to each normal force (columns) by order.
-    gains: Vec<[C64; 4]>,
-    /// Samples of both s, one mesh after the other, without the normal forces: load and torsional impacts.
+    pub responses: FrequencyResponses,
+    /// Amplitudes of every s without the normal forces: load and torsional impacts.
     given: Vec<f64>,
     /// Amplitudes of the impacts in the normal forces.
     pub impact: Vec<Vec<C64>>,
@@ -33,8 +36,15 @@ pub(super) struct HarmonicGrid<'b, 'm, const D: usize> {
     pub torsional: Vec<Vec<C64>>,
     /// Displacement excitation and its rate in scaled time at the samples; empty without.
     gap: Vec<Vec<(f64, f64)>>,
-    /// Mesh stiffness at the samples, N/m, one mesh after the other; empty for a tabulated contact force.
-    stiffness: Vec<f64>,
+    law: ForceLaw,
+}
+
+/// Law of the mesh forces at the samples, one mesh after the other.
+enum ForceLaw {
+    /// Mesh stiffness, N/m.
+    Stiffness(Vec<f64>),
+    /// Tabulated contact force.
+    Contact(Vec<PhasePlace>),
 }
 
 /// Amplitudes of the forces that each mesh adds to k_ref s, without impacts, and the largest deviation of its tangent
@@ -42,133 +52,159 @@ pub(super) struct HarmonicGrid<'b, 'm, const D: usize> {
 pub(super) struct MeshForces {
     pub excess: Vec<Vec<C64>>,
     pub deviation: Vec<f64>,
+    /// s of every mesh at the phase 0, m.
+    pub s_at_start_m: Vec<f64>,
 }
 
 impl<'b, 'm, const D: usize> HarmonicGrid<'b, 'm, D> {
-    /// `gains`: those of a grid with fewer samples, or none.
-    pub(super) fn new(balance: &'b HarmonicBalance<'m, D>, samples: usize, mut gains: Vec<[C64; 4]>) -> Self {
+    /// `responses`: those of a grid with fewer samples, or none.
+    pub(super) fn new(balance: &'b HarmonicBalance<'m, D>, samples: usize, mut responses: FrequencyResponses) -> Self {
         let model = balance.model;
         let halves = balance.halves();
         let orders = samples / 2;
-        let mut fourier = Fourier::new(samples);
         let system = &balance.system;
         let impact = (0..halves).map(|j| balance.impact_amplitudes(j, model.impact_normal, orders)).collect();
         let torsional: Vec<Vec<C64>> =
             (0..halves).map(|j| balance.impact_amplitudes(j, -model.impact_along, orders)).collect();
-        let mut caused = vec![vec![C64::ZERO; orders]; halves];
-        let known = gains.len();
         let strikes = torsional.iter().any(|along| !along.is_empty());
-        for order in if strikes { 0 } else { known }..orders {
-            // By normal forces and by torsional impacts, rows of s.
-            let mut gain = [C64::ZERO; 8];
-            let (columns, all) = (halves * halves, 2 * halves * halves);
-            let wanted = if strikes { all } else { columns };
-            system.response(balance.omega(order), &system.residues[..wanted], &mut gain[..wanted]);
-            if order >= known {
-                gains.push([gain[0], gain[1], gain[2], gain[3]]);
-            }
-            for (j, caused) in caused.iter_mut().enumerate() {
-                for (k, along) in torsional.iter().enumerate().filter(|(_, along)| !along.is_empty()) {
-                    caused[order] += gain[columns + halves * j + k] * along[order];
-                }
+        responses.extend(system, balance.omega(1), orders, strikes);
+        let mut given = vec![0.0; 2 * halves * orders];
+        for (j, given) in given.chunks_mut(2 * orders).enumerate() {
+            given[0] = system.static_s_m[j];
+            for (k, along) in torsional.iter().enumerate().filter(|(_, along)| !along.is_empty()) {
+                add_caused(responses.to_torsional(halves, (j, k)), along, given);
             }
         }
-        let mut given = vec![0.0; halves * samples];
-        for (j, given) in given.chunks_mut(samples).enumerate() {
-            caused[j][0] += system.static_s_m[j];
-            fourier.samples(caused[j].iter().copied(), given);
-        }
-        let mut stiffness = Vec::new();
-        if !model.uses_contact_force() {
-            stiffness.resize(halves * samples, 0.0);
+        let mut fourier = Fourier::new(samples);
+        let law = if model.uses_contact_force() {
+            let place = |j: usize, i: usize| {
+                let contact = model.excitations[j].contact.as_ref();
+                contact.map(|contact| contact.force.place(i as f64 / samples as f64 - contact.shift))
+            };
+            let places = (0..halves).flat_map(|j| (0..samples).filter_map(move |i| place(j, i)));
+            ForceLaw::Contact(places.collect())
+        } else {
+            let mut stiffness = vec![0.0; halves * samples];
             for (out, excitation) in stiffness.chunks_mut(samples).zip(&model.excitations) {
                 excitation.stiffness.sample(&mut fourier, out);
             }
-        }
+            ForceLaw::Stiffness(stiffness)
+        };
         let gap = (0..halves).map(|j| {
             let values = (0..samples).map_while(|i| model.gap(j, i as f64 / samples as f64));
             values.collect()
         });
-        let gap = gap.collect();
-        Self { balance, samples, fourier, gains, given, impact, torsional, gap, stiffness }
+        Self { balance, samples, fourier, responses, given, impact, torsional, gap: gap.collect(), law }
     }
 
-    /// Adds to `out` the samples of every s that the amplitudes of the normal forces cause.
-    fn add_caused(
-        fourier: &mut Fourier,
-        gains: &[[C64; 4]],
-        (normal, samples): (&[Vec<C64>], &mut [f64]),
-        out: &mut [f64],
-    ) {
-        let halves = normal.len();
-        for (j, out) in out.chunks_mut(samples.len()).enumerate() {
-            let along = |(order, gain): (usize, &[C64; 4])| {
-                (0..halves).map(|k| gain[halves * j + k] * normal[k][order]).sum::<C64>()
-            };
-            fourier.samples(gains.iter().enumerate().map(along), samples);
-            out.iter_mut().zip(&*samples).for_each(|(out, value)| *out += value);
-        }
-    }
-
-    /// What mesh `j` adds to the force of its reference stiffness at a sample, N, and its derivative by s, N/m.
-    fn excess(&self, j: usize, i: usize, s: f64) -> (f64, f64) {
+    /// Force that mesh `j` adds to that of its reference stiffness at every sample of s, N, and its derivative by s,
+    /// N/m. False where the mesh does not touch the flanks of `side`.
+    fn excess(&self, j: usize, s: &[f64], (force, slope): (&mut [f64], &mut [f64]), side: ContactSide) -> bool {
         let model = self.balance.model;
         let reference = self.balance.system.reference_stiffness[j];
-        let phase = i as f64 / self.samples as f64;
-        let (gap, rate) = self.gap[j].get(i).copied().unwrap_or((0.0, 0.0));
-        let (force, stiffness) = match self.stiffness.get(j * self.samples + i) {
-            Some(stiffness) => (stiffness * (s - gap - model.loaded_side(j) * model.b), *stiffness),
-            None => model.spring_force_in_contact(j, s - gap, phase),
-        };
-        (force - reference * s - model.halves[j].cm * rate, stiffness - reference)
+        let of_mesh = j * self.samples..(j + 1) * self.samples;
+        let mut touches = true;
+        match &self.law {
+            ForceLaw::Stiffness(stiffness) => {
+                let (half_play, has_gap) = (model.loaded_side(j) * model.b, !self.gap[j].is_empty());
+                for ((s, k), (force, slope)) in s.iter().zip(&stiffness[of_mesh]).zip(force.iter_mut().zip(slope)) {
+                    touches &= has_gap || model.flank_at(*s) == side;
+                    *force = k * (s - half_play) - reference * s;
+                    *slope = k - reference;
+                }
+                for (i, (gap, rate)) in self.gap[j].iter().enumerate() {
+                    touches &= model.flank_at(s[i] - gap) == side;
+                    force[i] -= stiffness[j * self.samples + i] * gap + model.halves[j].cm * rate;
+                }
+            }
+            ForceLaw::Contact(places) => {
+                let Some(contact) = &model.excitations[j].contact else { return false };
+                let gaps = self.gap[j].iter().copied().chain(std::iter::repeat((0.0, 0.0)));
+                for (((s, place), (gap, rate)), (force, slope)) in
+                    s.iter().zip(&places[of_mesh]).zip(gaps).zip(force.iter_mut().zip(slope))
+                {
+                    let (normal, stiffness, flank) = contact.force.force_at(s - gap, model.b, *place);
+                    touches &= flank == side;
+                    *force = normal - reference * s - model.halves[j].cm * rate;
+                    *slope = stiffness - reference;
+                }
+            }
+        }
+        touches
     }
 
-    /// Newton's method from samples of every s, one mesh after the other, to a relative error of s of about
-    /// `precision`; None where it does not converge.
-    pub(super) fn solve(&mut self, s: &mut [f64], precision: f64) -> Option<MeshForces> {
+    /// Newton's method from the amplitudes of every s to a relative error of s of about `precision`; None where it does
+    /// not converge, or where a mesh leaves the flanks of its side.
+    pub(super) fn solve(&mut self, s: &mut [f64], sides: &[ContactSide], precision: f64) -> Option<MeshForces> {
         let (n, halves) = (self.samples, self.balance.halves());
-        let is_linear = !self.balance.model.uses_contact_force();
+        let orders = n / 2;
+        let is_linear = matches!(self.law, ForceLaw::Stiffness(_));
         let precision = precision.clamp(1e-13, 1e-6);
-        let (mut force, mut slope) = (vec![0.0; s.len()], vec![0.0; s.len()]);
-        let mut amplitudes = vec![vec![C64::ZERO; n / 2]; halves];
+        let mut samples = vec![0.0; halves * n];
+        let (mut force, mut slope) = (vec![0.0; halves * n], vec![0.0; halves * n]);
+        let mut amplitudes = vec![vec![C64::ZERO; orders]; halves];
         let mut defect = vec![0.0; s.len()];
-        let mut caused = vec![0.0; n];
+        let mut preconditioner = None;
         let mut last = f64::INFINITY;
         let mut converged = false;
         for _ in 0..=MOST_STEPS {
-            for j in 0..halves {
-                for i in 0..n {
-                    let at = j * n + i;
-                    (force[at], slope[at]) = self.excess(j, i, s[at]);
-                }
-            }
-            for (force, out) in force.chunks(n).zip(&mut amplitudes) {
+            let mut touches = true;
+            for (j, out) in amplitudes.iter_mut().enumerate() {
+                let of_mesh = j * n..(j + 1) * n;
+                let samples = &mut samples[of_mesh.clone()];
+                self.fourier.samples(complex(&s[2 * orders * j..][..2 * orders]), samples);
+                let (force, slope) = (&mut force[of_mesh.clone()], &mut slope[of_mesh]);
+                touches &= self.excess(j, samples, (force, slope), sides[j]);
                 self.fourier.amplitudes(force.iter().copied(), out);
             }
+            let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, value| m.max(value.abs()));
             if converged {
-                let largest = |slopes: &[f64]| slopes.iter().fold(0.0f64, |m, k| m.max(k.abs()));
-                return Some(MeshForces { excess: amplitudes, deviation: slope.chunks(n).map(largest).collect() });
+                let deviation = slope.chunks(n).map(largest).collect();
+                let s_at_start_m = samples.iter().step_by(n).copied().collect();
+                return touches.then_some(MeshForces { excess: amplitudes, deviation, s_at_start_m });
             }
             for (amplitudes, impact) in amplitudes.iter_mut().zip(&self.impact) {
                 amplitudes.iter_mut().zip(impact).for_each(|(force, impact)| *force += impact);
             }
             defect.iter_mut().zip(&self.given).zip(&*s).for_each(|((defect, given), s)| *defect = given - s);
-            Self::add_caused(&mut self.fourier, &self.gains, (&amplitudes, &mut caused), &mut defect);
-            let (fourier, gains) = (&mut self.fourier, &self.gains);
+            let (fourier, responses) = (&mut self.fourier, &self.responses);
+            let gains = |at: (usize, usize)| responses.to_normal(halves, at);
+            for (j, defect) in defect.chunks_mut(2 * orders).enumerate() {
+                (0..halves).for_each(|k| add_caused(gains((j, k)), &amplitudes[k], defect));
+            }
+            let preconditioner = preconditioner.get_or_insert_with(|| {
+                for (slope, out) in slope.chunks(n).zip(&mut amplitudes) {
+                    fourier.amplitudes(slope.iter().copied(), out);
+                }
+                let stiffness = amplitudes.iter().zip(slope.chunks(n)).map(|(k, slope)| (k.as_slice(), largest(slope)));
+                Preconditioner::new(&gains, &stiffness.collect::<Vec<_>>())
+            });
+            let size = largest(&samples);
+            // No more digits than the step can use: in the norm of the amplitudes, which that of s is about.
+            let enough = 0.05 * precision * norm(s) / norm(&defect).max(f64::MIN_POSITIVE);
+            let residual = if is_linear { enough } else { enough.max(last * last) };
+            let residual = residual.clamp(LEAST_RESIDUAL, FIRST_RESIDUAL);
+            let mut given = vec![0.0; s.len()];
             let product = |v: &[f64], out: &mut [f64]| {
+                given.copy_from_slice(v);
+                preconditioner.solve(&mut given);
                 for (j, amplitudes) in amplitudes.iter_mut().enumerate() {
-                    let forces = v[j * n..][..n].iter().zip(&slope[j * n..][..n]).map(|(v, k)| -v * k);
+                    let samples = &mut samples[j * n..][..n];
+                    fourier.samples(complex(&given[2 * orders * j..][..2 * orders]), samples);
+                    let forces = samples.iter().zip(&slope[j * n..][..n]).map(|(v, k)| -v * k);
                     fourier.amplitudes(forces, amplitudes);
                 }
-                out.copy_from_slice(v);
-                Self::add_caused(fourier, gains, (&amplitudes, &mut caused), out);
+                out.copy_from_slice(&given);
+                for (j, out) in out.chunks_mut(2 * orders).enumerate() {
+                    (0..halves).for_each(|k| add_caused(gains((j, k)), &amplitudes[k], out));
+                }
             };
-            let size = s.iter().fold(0.0f64, |m, s| m.max(s.abs()));
-            // No more digits than the step can use.
-            let residual = if is_linear { precision } else { last * last };
-            let residual = residual.clamp(LEAST_RESIDUAL, FIRST_RESIDUAL);
-            let step = gmres(product, &defect, residual, MOST_PRODUCTS)?;
-            let moved = step.iter().fold(0.0f64, |m, s| m.max(s.abs())) / size;
+            let mut step = gmres(product, &defect, residual, MOST_PRODUCTS)?;
+            preconditioner.solve(&mut step);
+            for (step, samples) in step.chunks(2 * orders).zip(samples.chunks_mut(n)) {
+                fourier.samples(complex(step), samples);
+            }
+            let moved = largest(&samples) / size;
             if !moved.is_finite() {
                 return None;
             }
@@ -180,28 +216,29 @@ impl<'b, 'm, const D: usize> HarmonicGrid<'b, 'm, D> {
         }
         None
     }
+}
 
-    /// Whether every mesh touches the flanks of its side at all samples.
-    pub(super) fn keeps_contact(&self, s: &[f64], sides: &[ContactSide]) -> bool {
-        let touches = |(at, s): (usize, &f64)| {
-            let (j, i) = (at / self.samples, at % self.samples);
-            let contact = self.balance.model.contact_of(j, *s, i as f64 / self.samples as f64);
-            contact.signum() == sides[j]
-        };
-        s.iter().enumerate().all(touches)
-    }
+/// Amplitudes from their real and imaginary parts.
+fn complex(parts: &[f64]) -> impl Iterator<Item = C64> {
+    parts.chunks_exact(2).map(|parts| C64::new(parts[0], parts[1]))
+}
 
-    /// Twice as many samples of the same series, and the gains for the next grid.
-    pub(super) fn refined(mut self, s: &[f64]) -> (Vec<f64>, Vec<[C64; 4]>) {
-        let mut finer = Fourier::new(2 * self.samples);
-        let mut amplitudes = vec![C64::ZERO; self.samples / 2];
-        let mut out = vec![0.0; 2 * s.len()];
-        for (s, out) in s.chunks(self.samples).zip(out.chunks_mut(2 * self.samples)) {
-            self.fourier.amplitudes(s.iter().copied(), &mut amplitudes);
-            finer.samples(amplitudes.iter().copied(), out);
-        }
-        (out, self.gains)
-    }
+/// Adds the amplitudes that a force causes: products of the response by order with the amplitudes of the force.
+fn add_caused(response: &[C64], force: &[C64], out: &mut [f64]) {
+    vectorised(
+        #[inline(always)]
+        || {
+            for (out, (response, force)) in out.chunks_exact_mut(2).zip(response.iter().zip(force)) {
+                let caused = response * force;
+                out[0] += caused.re;
+                out[1] += caused.im;
+            }
+        },
+    );
+}
+
+fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum::<f64>().sqrt()
 }
 
 impl<const D: usize> HarmonicBalance<'_, D> {

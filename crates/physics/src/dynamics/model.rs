@@ -223,6 +223,12 @@ impl<const D: usize> DynamicModel<D> {
         if let Some(contact) = &self.excitations[j].contact {
             return contact.force.contact_of(s, self.b, phase - contact.shift);
         }
+        self.flank_at(s)
+    }
+
+    /// Contact with a mesh stiffness at the displacement `s` less the displacement excitation.
+    #[inline(always)]
+    pub(super) fn flank_at(&self, s: f64) -> ContactSide {
         if self.b == 0.0 || s > self.b {
             1
         } else if s < -self.b {
@@ -258,18 +264,6 @@ impl<const D: usize> DynamicModel<D> {
         }
         let spring = e.stiffness.value(phase, interior) * (s - f64::from(contact_side) * self.b);
         damper(contact_side != 0) + if contact_side != 0 { spring } else { 0.0 }
-    }
-
-    /// Normal force of the mesh spring (N) and its derivative by s (N/m) at the displacement `s` less the displacement
-    /// excitation, m. Without a tabulated contact force the flanks that the load presses are taken to touch.
-    pub(super) fn spring_force_in_contact(&self, j: usize, s: f64, phase: f64) -> (f64, f64) {
-        let e = &self.excitations[j];
-        if let Some(contact) = &e.contact {
-            let phase = phase - contact.shift;
-            return contact.force.force(s, self.b, phase, phase);
-        }
-        let stiffness = e.stiffness.value(phase, phase);
-        (stiffness * (s - self.loaded_side(j) * self.b), stiffness)
     }
 
     /// 1 where the load presses the driving flanks of a half, −1 where it presses the back flanks.

@@ -57,6 +57,8 @@ pub struct Analysis {
     /// Whether the Floquet multipliers are asked for. Without, they are computed only where nothing cheaper proves that
     /// the motion is stable.
     pub multipliers: bool,
+    /// Poincaré points of a motion that does not repeat, at least; 0: those of its record.
+    pub poincare_points: usize,
 }
 
 impl Default for Analysis {
@@ -72,6 +74,7 @@ impl Default for Analysis {
             max_steps: 100_000_000,
             energy_balance: false,
             multipliers: true,
+            poincare_points: 0,
         }
     }
 }

@@ -36,6 +36,11 @@ impl MeanSquares {
         }
     }
 
+    /// Mean squares of a channel so far.
+    pub(crate) fn of(&self, channel: ChannelId) -> Option<&[f64]> {
+        self.tracks.iter().find(|(id, ..)| *id == channel).map(|(_, _, squares)| squares.as_slice())
+    }
+
     pub(crate) fn finish(self) -> Vec<(ChannelId, Vec<f64>)> {
         self.tracks.into_iter().map(|(id, _, squares)| (id, squares)).collect()
     }

@@ -96,7 +96,7 @@ mod tests {
             let length = cut[1] - cut[0];
             table.set(cut[0], length);
             // Time runs three times as fast as the phase.
-            let values = moments.add(&[cut[0], 1.0 / 3.0], 3.0 * length, false);
+            let values = moments.add_with_values(&[cut[0], 1.0 / 3.0], 3.0 * length, false);
             orders.add(&values, &table, length);
         }
         let found = orders.finish();

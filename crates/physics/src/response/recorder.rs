@@ -145,9 +145,13 @@ impl<const D: usize> Observer<D> for ChannelRecorder<D> {
                 #[inline(always)]
                 || {
                     let degree = track.evaluator.polynomial(segment, &mut polynomial);
-                    let values = track.accumulator.add(&polynomial[..=degree], segment.h, track.extremes);
-                    if let (Some(orders), Some(table)) = (&mut track.orders, &self.order_table) {
-                        orders.add(&values, table, length);
+                    let c = &polynomial[..=degree];
+                    match (&mut track.orders, &self.order_table) {
+                        (Some(orders), Some(table)) => {
+                            let values = track.accumulator.add_with_values(c, segment.h, track.extremes);
+                            orders.add(&values, table, length);
+                        }
+                        _ => track.accumulator.add(c, segment.h, track.extremes),
                     }
                     degree
                 },

@@ -2,16 +2,18 @@
 
 use super::analysis::PoincarePoint;
 use super::channel::ChannelId;
-use super::confidence::MeanSquares;
+use super::confidence::{MeanSquares, rms_interval_95};
 use super::energy::EnergyBalance;
 use super::poincare::PoincareSection;
 use super::recorder::ChannelRecorder;
 use super::report::RecordedMotion;
-use super::statistics::MomentAccumulator;
 use crate::dynamics::{DynamicModel, DynamicsError, MotionState, Observer, Segment, StepCounts, TrajectoryObserver};
 
 /// Number of parts of a record from which its standard error is estimated.
-const BATCHES: u64 = 10;
+const BATCHES: usize = 10;
+/// Shortest record that ends by its statistics, and mesh periods between two looks at them.
+const STATISTICAL_RECORD_MESH_PERIODS: u64 = 300;
+const MESH_PERIODS_BETWEEN_LOOKS: u64 = 50;
 /// Up to this many recorded mesh periods the record is one of a known period, and periodicity is not tested.
 const SHORT_RECORD_MESH_PERIODS: u64 = 8;
 
@@ -32,9 +34,8 @@ pub(super) struct RecordedRun<'m, const D: usize> {
     pub energy: Option<EnergyBalance<'m, D>>,
     recent: PoincareSection<D>,
     points: Vec<PoincarePoint>,
-    batch: u64,
-    batches: Vec<f64>,
-    snapshot: MomentAccumulator,
+    /// Relative half of the 95 % interval of the RMS at which the record ends; 0: it has its full length.
+    statistical_accuracy: f64,
     squares: MeanSquares,
     counts: StepCounts,
     error: Option<DynamicsError>,
@@ -71,9 +72,7 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
                 PoincareSection::new()
             },
             points: Vec::with_capacity(recorded.min(1 << 20) as usize),
-            batch: (recorded / BATCHES).max(1),
-            batches: Vec::new(),
-            snapshot: MomentAccumulator::new(false),
+            statistical_accuracy: 0.0,
             squares: MeanSquares::new::<D>(recorded),
             counts: StepCounts::default(),
             error: None,
@@ -85,6 +84,27 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
     /// Adds an energy balance of the record.
     pub(crate) fn with_energy(self, energy: Option<EnergyBalance<'m, D>>) -> Self {
         Self { energy, ..self }
+    }
+
+    /// Ends the record as soon as half of the 95 % interval of the RMS of the circumferential acceleration is within
+    /// this part of it; 0: not before its end.
+    pub(crate) fn until_accurate(self, statistical_accuracy: f64) -> Self {
+        Self { statistical_accuracy, ..self }
+    }
+
+    /// Whether the statistics are accurate enough to end the record.
+    fn is_accurate(&self, recorded: u64) -> bool {
+        if self.statistical_accuracy <= 0.0
+            || recorded < STATISTICAL_RECORD_MESH_PERIODS
+            || !recorded.is_multiple_of(MESH_PERIODS_BETWEEN_LOOKS)
+        {
+            return false;
+        }
+        let squares = self.squares.of(ChannelId::mesh_acceleration(0));
+        let interval = squares.and_then(rms_interval_95);
+        interval.is_some_and(|interval| {
+            interval.high - interval.low <= self.statistical_accuracy * (interval.high + interval.low)
+        })
     }
 
     /// Stores the state at the start of the mesh period `store_at`.
@@ -121,7 +141,7 @@ impl<'m, const D: usize> RecordedRun<'m, D> {
             points: self.points,
             last: self.state,
             counts: self.counts,
-            batch_error: standard_error(&self.batches),
+            batch_error: self.squares.of(ChannelId::mesh_acceleration(0)).map_or(f64::INFINITY, standard_error),
             mean_squares: self.squares.finish(),
         };
         Ok(FinishedRun { record, recorder: self.recorder, energy: self.energy, stored: self.stored, from: self.from })
@@ -168,14 +188,8 @@ impl<'m, const D: usize> TrajectoryObserver<'m, D> for RecordedRun<'m, D> {
         self.state = *state;
         if recorded {
             self.squares.push(&self.recorder);
-            if (state.period - self.record_from).is_multiple_of(self.batch)
-                && let Some(now) = self.recorder.accumulator(ChannelId::mesh_acceleration(0))
-            {
-                self.batches.push(now.variance_since(&self.snapshot));
-                self.snapshot = *now;
-            }
         }
-        let goes_on = state.period < self.end;
+        let goes_on = state.period < self.end && !self.is_accurate(state.period.saturating_sub(self.record_from));
         if goes_on {
             self.begin_period();
         }
@@ -187,18 +201,22 @@ impl<'m, const D: usize> TrajectoryObserver<'m, D> for RecordedRun<'m, D> {
     }
 }
 
-fn poincare<const D: usize>(model: &DynamicModel<D>, state: &MotionState<D>) -> PoincarePoint {
+pub(super) fn poincare<const D: usize>(model: &DynamicModel<D>, state: &MotionState<D>) -> PoincarePoint {
     let x = |row: &[f64; D]| model.mesh_x(0, row);
     PoincarePoint { x_left_m: x(&state.x), v_x_left_m_s: x(&state.v) * model.omega_ref }
 }
 
-/// Relative standard error of an RMS from the mean squares of the parts of its record.
+/// Relative standard error of an RMS from the mean squares of the mesh periods of its record, by the scatter of its
+/// parts.
 fn standard_error(mean_squares: &[f64]) -> f64 {
-    let n = mean_squares.len() as f64;
-    if mean_squares.len() < 2 {
+    let batch = (mean_squares.len() / BATCHES).max(1);
+    let means: Vec<f64> =
+        mean_squares.chunks_exact(batch).map(|part| part.iter().sum::<f64>() / batch as f64).collect();
+    let n = means.len() as f64;
+    if means.len() < 2 {
         return f64::INFINITY;
     }
-    let mean = mean_squares.iter().sum::<f64>() / n;
-    let variance = mean_squares.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    let mean = means.iter().sum::<f64>() / n;
+    let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n - 1.0);
     if mean > 0.0 { 0.5 * (variance / n).sqrt() / mean } else { 0.0 }
 }

@@ -29,9 +29,26 @@ pub struct Statistics {
     pub max: f64,
 }
 
-/// Powers of the nodes: τ_q^n in row n.
-static POWERS: LazyLock<[[f64; NODES]; MAX_ORDER + 1]> =
-    LazyLock::new(|| std::array::from_fn(|n| std::array::from_fn(|q| GAUSS[q].0.powi(n as i32))));
+/// A rule of N nodes: nodes and weights, and the powers of the nodes, τ_q^n in row n.
+struct Rule<const N: usize> {
+    nodes: [(f64, f64); N],
+    powers: [[f64; N]; MAX_ORDER + 1],
+}
+
+impl<const N: usize> Rule<N> {
+    /// Highest degree of a polynomial whose square the rule integrates exactly.
+    const DEGREE: usize = N - 1;
+
+    fn new() -> Self {
+        let nodes: [(f64, f64); N] = gauss_legendre_unit();
+        Self { powers: std::array::from_fn(|n| std::array::from_fn(|q| nodes[q].0.powi(n as i32))), nodes }
+    }
+}
+
+/// Rules for the degrees of the usual orders, and for any.
+static RULE_16: LazyLock<Rule<16>> = LazyLock::new(Rule::new);
+static RULE_20: LazyLock<Rule<20>> = LazyLock::new(Rule::new);
+static RULE: LazyLock<Rule<NODES>> = LazyLock::new(Rule::new);
 
 /// Integrals and extremes of one channel, accumulated by segment.
 #[derive(Debug, Clone, Copy)]
@@ -60,10 +77,26 @@ impl MomentAccumulator {
         }
     }
 
-    /// Adds the polynomial `c` over [0, h]. Returns its values at the nodes, less a constant that is the same for all
-    /// segments.
+    /// Adds the polynomial `c` over [0, h].
     #[inline(always)]
-    pub(crate) fn add(&mut self, c: &[f64], h: f64, extremes: bool) -> [f64; NODES] {
+    pub(crate) fn add(&mut self, c: &[f64], h: f64, extremes: bool) {
+        // Fewer nodes for a lower degree; in lanes the highest coefficients of one can be zeros.
+        match c.iter().rposition(|c| *c != 0.0).unwrap_or(0) {
+            0..=Rule::<16>::DEGREE => _ = self.add_by(&RULE_16, c, h, extremes),
+            0..=Rule::<20>::DEGREE => _ = self.add_by(&RULE_20, c, h, extremes),
+            _ => _ = self.add_by(&RULE, c, h, extremes),
+        }
+    }
+
+    /// As [`MomentAccumulator::add`]. Returns the values at the nodes of [`GAUSS`], less a constant that is the same
+    /// for all segments.
+    #[inline(always)]
+    pub(crate) fn add_with_values(&mut self, c: &[f64], h: f64, extremes: bool) -> [f64; NODES] {
+        self.add_by(&RULE, c, h, extremes)
+    }
+
+    #[inline(always)]
+    fn add_by<const N: usize>(&mut self, rule: &Rule<N>, c: &[f64], h: f64, extremes: bool) -> [f64; N] {
         let offset = *self.offset.get_or_insert(c[0]);
         let mut b = [0.0; MAX_ORDER + 1];
         let mut power = 1.0;
@@ -73,15 +106,14 @@ impl MomentAccumulator {
         }
         b[0] -= offset;
         let b = &b[..c.len()];
-        // Exact: the degree of the square is within that of the quadrature.
-        let mut values = [0.0; NODES];
-        for (bi, row) in b.iter().zip(POWERS.iter()) {
+        let mut values = [0.0; N];
+        for (bi, row) in b.iter().zip(&rule.powers) {
             for (value, power) in values.iter_mut().zip(row) {
                 *value += bi * power;
             }
         }
         let (mut mean, mut square) = (0.0, 0.0);
-        for (value, (_, weight)) in values.iter().zip(GAUSS.iter()) {
+        for (value, (_, weight)) in values.iter().zip(&rule.nodes) {
             mean += weight * value;
             square += weight * value * value;
         }
@@ -89,24 +121,25 @@ impl MomentAccumulator {
         self.square_integral += h * square;
         self.length += h;
         if extremes {
-            self.add_extremes(b, &values, offset);
+            self.add_extremes(b, (&rule.nodes, &values), offset);
         }
         values
     }
 
     /// Extremes over the unit interval: nodes and both ends, then Newton's method for the derivative from the best of
     /// them.
-    fn add_extremes(&mut self, b: &[f64], at_nodes: &[f64; NODES], offset: f64) {
-        const POINTS: usize = NODES + 2;
-        let mut points = [(0.0, b[0]); POINTS];
-        for (point, (value, (node, _))) in points[1..].iter_mut().zip(at_nodes.iter().zip(GAUSS.iter())) {
+    fn add_extremes<const N: usize>(&mut self, b: &[f64], (nodes, values): (&[(f64, f64); N], &[f64; N]), offset: f64) {
+        let count = N + 2;
+        let mut room = [(0.0, b[0]); NODES + 2];
+        let points = &mut room[..count];
+        for (point, (value, (node, _))) in points[1..].iter_mut().zip(values.iter().zip(nodes)) {
             *point = (*node, *value);
         }
-        points[POINTS - 1] = (1.0, b.iter().sum());
+        points[count - 1] = (1.0, b.iter().sum());
         for sign in [1.0, -1.0] {
             let best = if sign > 0.0 { self.max - offset } else { offset - self.min };
             let mut at = 0;
-            for i in 1..POINTS {
+            for i in 1..count {
                 if sign * points[i].1 > sign * points[at].1 {
                     at = i;
                 }
@@ -115,9 +148,9 @@ impl MomentAccumulator {
             // The vertex of a parabola through neighbouring points exceeds the middle one by less than the larger
             // difference.
             let neighbour = |i: usize| (points[i].1 - points[at].1).abs();
-            let margin = neighbour(at.saturating_sub(1)).max(neighbour((at + 1).min(POINTS - 1)));
+            let margin = neighbour(at.saturating_sub(1)).max(neighbour((at + 1).min(count - 1)));
             if top + margin > best {
-                let (low, high) = (points[at.saturating_sub(1)].0, points[(at + 1).min(POINTS - 1)].0);
+                let (low, high) = (points[at.saturating_sub(1)].0, points[(at + 1).min(count - 1)].0);
                 let mut t = points[at].0;
                 for _ in 0..8 {
                     let (d1, d2) = derivatives(b, t);
@@ -146,13 +179,6 @@ impl MomentAccumulator {
         let mean = self.offset.unwrap_or(0.0) + first;
         let variance = (self.square_integral / self.length - first * first).max(0.0);
         (mean, if self.includes_mean { variance + mean * mean } else { variance })
-    }
-
-    /// Variance of the part after the snapshot `earlier`.
-    pub(crate) fn variance_since(&self, earlier: &MomentAccumulator) -> f64 {
-        let (first, second) = (self.integral - earlier.integral, self.square_integral - earlier.square_integral);
-        let length = self.length - earlier.length;
-        (second / length - (first / length).powi(2)).max(0.0)
     }
 
     /// Mean square, mean included, of the part after the snapshot `earlier`.

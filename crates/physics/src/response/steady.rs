@@ -3,7 +3,9 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::budget::{Budget, budget_exhausted, steps_per_period};
-use super::lyapunov::{CHAOS_PER_MESH_PERIOD, LYAPUNOV_MESH_PERIODS, lyapunov_exponent, perturbation_decay};
+use super::lyapunov::{
+    CHAOS_PER_MESH_PERIOD, LYAPUNOV_MESH_PERIODS, lyapunov_exponent, lyapunov_exponent_with, perturbation_decay,
+};
 use super::poincare::{PoincareSection, largest_component};
 use crate::dynamics::{
     BroydenSteps, DIVERGENCE_LIMIT_M, DynamicModel, DynamicsError, IntegrationLimits, Integrator, Motion, MotionState,
@@ -18,8 +20,16 @@ const MIN_TRANSIENT_MESH_PERIODS: u64 = 40;
 const NEWTON_START_CHANGE: f64 = 1e-3;
 /// Relative change over a fraction of its period below which an orbit has that fraction as its period.
 const SAME_PERIOD_CHANGE: f64 = 1e-6;
+/// Tolerance with which a transient is followed: its end is a start of Newton's method, or of a record.
+const TRANSIENT_TOLERANCE: f64 = 1e-6;
 /// Mesh periods between two attempts.
 const MESH_PERIODS_BETWEEN_ATTEMPTS: u64 = 40;
+/// Mesh periods after which a motion that has not nearly repeated is first tested for chaos; after as many again, and
+/// so on twice as late each time. Length of a test, and the exponent per mesh period above which it is decided: the
+/// exponents of regular motions over so few mesh periods stay well below.
+const CHAOS_TEST_MESH_PERIODS: u64 = 300;
+const CHAOS_TEST_LENGTH_MESH_PERIODS: u64 = 100;
+const SURELY_CHAOTIC_PER_MESH_PERIOD: f64 = 0.05;
 /// Length of the record of an aperiodic motion, and the limit of its steps.
 const LONG_RECORD_MESH_PERIODS: u64 = 2000;
 const LONG_RECORD_STEPS: u64 = 2_000_000;
@@ -50,6 +60,8 @@ pub(super) struct SteadyMotion<const D: usize> {
     pub multipliers: Vec<Complex<f64>>,
     /// Largest Lyapunov exponent per mesh period.
     pub lyapunov: Option<f64>,
+    /// Whether the motion counts as chaotic by its exponent, before the longest transient has passed.
+    pub chaotic_early: bool,
     /// Whether antisymmetric perturbations grow, so that the motion leaves the mirror symmetry.
     pub leaves_symmetry: bool,
     pub tolerance: f64,
@@ -65,6 +77,10 @@ pub(super) struct SteadyStateSearch<'a, const D: usize> {
     pub must_repeat: bool,
     /// Whether the motion reached from the start is required, even if another one keeps contact.
     pub from_start: bool,
+    /// Whether a motion is tested for chaos before the longest transient has passed.
+    pub tests_for_chaos: bool,
+    /// Whether the exponent of a motion that is surely chaotic is to be averaged over more mesh periods than show that.
+    pub wants_exponent: bool,
 }
 
 impl<const D: usize> SteadyStateSearch<'_, D> {
@@ -211,6 +227,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             floquet: None,
             multipliers: Vec::new(),
             lyapunov: None,
+            chaotic_early: false,
             leaves_symmetry: false,
             tolerance: self.limits.tolerance,
             counts: *counts,
@@ -263,6 +280,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             orbit: Some((1, period_map.monodromy)),
             floquet: Some(modulus.max(antisymmetric_modulus)),
             lyapunov: None,
+            chaotic_early: false,
             leaves_symmetry: antisymmetric_modulus > 1.0,
             tolerance: self.limits.tolerance,
             counts: *counts,
@@ -361,6 +379,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             orbit: Some((n, monodromy)),
             floquet: Some(modulus.max(antisymmetric_modulus).powf(1.0 / n as f64)),
             lyapunov: None,
+            chaotic_early: false,
             leaves_symmetry: antisymmetric_modulus > 1.0,
             tolerance: self.limits.tolerance,
             counts: *counts,
@@ -375,11 +394,14 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
     ) -> Result<SteadyMotion<D>, DynamicsError> {
         let all = budget.steps(0);
         let reserve = all - all / 8 * 3;
-        let mut motion = self.motion(start, budget);
+        let tolerance = self.limits.tolerance.max(TRANSIENT_TOLERANCE);
+        let mut motion = Motion::new(self.model, start, Integrator::Taylor, tolerance, budget.steps(0));
         let mut section = PoincareSection::without_rigid_body(self.model)?;
         section.push(motion.state);
         let mut next_attempt = 8;
         let mut periods_integrated = 0;
+        let mut next_test = if self.tests_for_chaos && !self.must_repeat { CHAOS_TEST_MESH_PERIODS } else { u64::MAX };
+        let mut surely_chaotic = None;
         // Half of the work is for the integration, three eighths for attempts at an orbit, the rest for what follows.
         while periods_integrated < MAX_TRANSIENT_MESH_PERIODS && motion.counts.steps <= all / 2 {
             periods_integrated += 1;
@@ -387,6 +409,20 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             motion.advance_period(&mut Unobserved, self.limits.watch, fraction)?;
             self.limits.watch.checkpoint(fraction)?;
             section.push(motion.state);
+            if periods_integrated >= next_test && section.repeats(NEWTON_START_CHANGE).is_none() {
+                let length = CHAOS_TEST_LENGTH_MESH_PERIODS;
+                let before = motion.counts.steps;
+                let follow = |_: f64, state: &MotionState<D>| section.push(*state);
+                let exponent = lyapunov_exponent_with(&mut motion, self.model, length, self.limits.watch, follow)?;
+                // The steps of the perturbation; those of the motion are counted with all others.
+                budget.spend(&StepCounts { steps: motion.counts.steps - before, ..StepCounts::default() }, 0);
+                periods_integrated += length;
+                next_test = 2 * periods_integrated;
+                if exponent > SURELY_CHAOTIC_PER_MESH_PERIOD {
+                    surely_chaotic = Some(exponent);
+                    break;
+                }
+            }
             if periods_integrated < next_attempt {
                 continue;
             }
@@ -418,19 +454,26 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             let change = section.change(1).unwrap_or(f64::INFINITY);
             return Err(DynamicsError::NotPeriodic { mesh_periods: periods_integrated, change });
         }
-        let periods = LYAPUNOV_MESH_PERIODS.min(budget.steps(1) / 2 / steps.max(1));
-        if periods == 0 {
+        let affordable = budget.steps(1) / 2 / steps.max(1);
+        if affordable == 0 {
             return Err(budget_exhausted(all, motion.time_s()));
         }
-        let mut exponent_of = |model: &DynamicModel<D>| {
+        let mut exponent_of = |model: &DynamicModel<D>, periods: u64| {
             let mut continued = self.motion(motion.state, budget);
-            let exponent = lyapunov_exponent(&mut continued, model, periods, self.limits.watch)?;
+            let exponent = lyapunov_exponent(&mut continued, model, periods.min(affordable), self.limits.watch)?;
             budget.spend(&continued.counts, 1);
             counts += continued.counts;
             Ok::<_, DynamicsError>(exponent)
         };
-        let exponent = exponent_of(self.model)?;
-        let leaves_symmetry = D == PER_HALF && exponent_of(&self.model.antisymmetric())? > CHAOS_PER_MESH_PERIOD;
+        let of_antisymmetric =
+            if surely_chaotic.is_some() { CHAOS_TEST_LENGTH_MESH_PERIODS } else { LYAPUNOV_MESH_PERIODS };
+        let leaves_symmetry =
+            D == PER_HALF && exponent_of(&self.model.antisymmetric(), of_antisymmetric)? > CHAOS_PER_MESH_PERIOD;
+        let exponent = match surely_chaotic {
+            // The motion is searched for anew without symmetry, or the exponent is good enough.
+            Some(exponent) if leaves_symmetry || !self.wants_exponent => exponent,
+            _ => exponent_of(self.model, LYAPUNOV_MESH_PERIODS)?,
+        };
         Ok(SteadyMotion {
             start: motion.state,
             record: LONG_RECORD_MESH_PERIODS.min(LONG_RECORD_STEPS / steps.max(1)).max(MIN_TRANSIENT_MESH_PERIODS),
@@ -438,6 +481,7 @@ impl<const D: usize> SteadyStateSearch<'_, D> {
             floquet: None,
             multipliers: Vec::new(),
             lyapunov: Some(exponent),
+            chaotic_early: surely_chaotic.is_some(),
             leaves_symmetry,
             tolerance: self.limits.tolerance,
             counts,
