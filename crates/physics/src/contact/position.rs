@@ -288,6 +288,7 @@ impl<'a> PositionSolver<'a> {
         self.start.clear();
         self.start.resize(self.points.len(), 0.0);
         let mut above: Option<(f64, f64, f64)> = None;
+        let mut lower = approaches_m.iter().rev().skip(1);
         for (sample, &approach_m) in samples.iter_mut().zip(approaches_m).rev() {
             if let Some((higher_m, force, stiffness)) = above {
                 expected_force = (force - stiffness * (higher_m - approach_m)).max(0.2 * force * approach_m / higher_m);
@@ -301,6 +302,12 @@ impl<'a> PositionSolver<'a> {
             *sample = (force * cos, solved.stiffness * cos * cos);
             above = Some((approach_m, force, solved.stiffness * cos));
             self.start = solved.forces;
+            // The next, lower level begins with the forces by the tangent.
+            if let Some(next_m) = lower.next() {
+                let change = (approach_m - next_m) * cos;
+                let tangent = self.start.iter_mut().zip(&self.work.unit);
+                tangent.for_each(|(force, unit)| *force = (*force - change * unit).max(0.0));
+            }
         }
         Ok(ForceCurve { free_m, samples })
     }

@@ -1,12 +1,13 @@
 //! The linearised load distribution of one position: one Newton step on the active set.
 //!
-//! With D the derivative of K f + h(f) on the active points and W = Pᵀ D⁻¹ P, every Newton step solves (I + B W) a = B
-//! Pᵀ D⁻¹ c between the stations of the contact lines only: its cost grows linearly with the points.
+//! With D the derivative of K f + h(f) on the active points and W = Pᵀ D⁻¹ P, every Newton step solves (I + W B) y =
+//! Pᵀ D⁻¹ c between the stations of the contact lines only: its cost grows linearly with the points. The displacements
+//! of the stations are a = B y, and D f = c − P a.
 
 use std::ops::Range;
 
 use crate::compliance::{STENCIL, Stencil};
-use crate::numerics::dense::{cholesky, cholesky_solve, dot, forward_solve, lu_solve, multiply_vectors};
+use crate::numerics::dense::{Augmented, cholesky, cholesky_solve, combine_rows, dot, forward_solve, multiply_vectors};
 use crate::simd::vectorised;
 use crate::watch::{Canceled, Meter};
 
@@ -93,14 +94,15 @@ pub(super) struct SystemWorkspace {
     /// Forces per unit displacement of every mode, point by point.
     pub mode_forces: Vec<f64>,
     weight: Vec<f64>,
-    matrix: Vec<f64>,
+    matrix: Augmented,
     sides: Vec<f64>,
     block: Vec<f64>,
     columns: Vec<f64>,
     line_points: Vec<usize>,
     station_force: Vec<f64>,
     station_shift: Vec<f64>,
-    unit: Vec<f64>,
+    /// Forces per unit of approach.
+    pub unit: Vec<f64>,
 }
 
 /// Least force that counts as contact, as a part of the mean force of the points.
@@ -146,12 +148,26 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         let modes = self.mode_count();
         work.sides.clear();
         work.sides.resize((2 + modes) * r, 0.0);
+        work.matrix.resize(r, 2 + modes);
         if self.coupling.is_empty() {
             self.add_points(active, work, meter)?;
         } else if !self.add_lines(active, work, meter)? {
             return Ok(None);
         }
-        if modes > 1 {
+        let sides = 2 + modes;
+        for i in 0..r {
+            let (right, row) = work.matrix.row_mut(i);
+            right.fill(0.0);
+            right.iter_mut().zip(work.sides.chunks_exact(r)).for_each(|(right, side)| *right = side[i]);
+            row[i] += 1.0;
+        }
+        if !work.matrix.solve(meter)? {
+            return Ok(None);
+        }
+        for (side, out) in work.sides.chunks_exact_mut(r.max(1)).enumerate() {
+            out.iter_mut().zip(work.matrix.solution(side)).for_each(|(out, value)| *out = value);
+        }
+        if sides > 3 {
             multiply_vectors(self.bulk, &mut work.sides, r, meter)?;
         } else {
             for side in work.sides.chunks_exact_mut(r.max(1)) {
@@ -159,9 +175,6 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
                 work.station_force.extend_from_slice(side);
                 multiply(self.bulk, &work.station_force, side, meter)?;
             }
-        }
-        if !lu_solve(&mut work.matrix, &mut work.sides, r, meter)? {
-            return Ok(None);
         }
         work.new_forces.clear();
         work.new_forces.resize(n, 0.0);
@@ -176,7 +189,7 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
         }))
     }
 
-    /// I + B W and the right-hand sides when D is diagonal: W is banded.
+    /// W B and the right-hand sides when D is diagonal: W is banded.
     fn add_points(&self, active: &[bool], work: &mut SystemWorkspace, meter: &mut Meter) -> Result<(), Canceled> {
         let r = self.stations;
         work.weight.clear();
@@ -194,38 +207,19 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
                 for (k, mode) in self.modes_of(i).iter().enumerate() {
                     work.sides[(2 + k) * r + row] += scaled * mode;
                 }
-                for (b, wb) in stencil.weights.iter().enumerate() {
-                    // Diagonal by diagonal: W[row][column] is at [row - column + 3][column].
-                    work.weight[(STENCIL - 1 + a - b) * r + stencil.first + b] += scaled * wb;
-                }
+                // Row by row: W[row][column] is at [row][column - row + 3].
+                let band = &mut work.weight[BAND * row + STENCIL - 1 - a..][..STENCIL];
+                band.iter_mut().zip(stencil.weights).for_each(|(weight, wb)| *weight += scaled * wb);
             }
         }
-        meter.zeros(&mut work.matrix, r * r)?;
-        vectorised(
-            #[inline(always)]
-            || self.identity_and_product(&work.weight, &mut work.matrix, meter),
-        )
-    }
-
-    /// Adds I + B W to `matrix`, W by its diagonals.
-    #[inline(always)]
-    fn identity_and_product(&self, diagonals: &[f64], matrix: &mut [f64], meter: &mut Meter) -> Result<(), Canceled> {
-        let r = self.stations;
-        for i in 0..r {
+        for (i, band) in work.weight.as_chunks::<BAND>().0.iter().enumerate() {
             meter.count(BAND * r)?;
-            let source = &self.bulk[i * r..(i + 1) * r];
-            let target = &mut matrix[i * r..(i + 1) * r];
-            for d in 0..BAND {
-                let weights = &diagonals[d * r..(d + 1) * r];
-                // Column k meets row k + d - 3 of W.
-                let from = (STENCIL - 1).saturating_sub(d);
-                let to = r.min(r + STENCIL - 1 - d);
-                let shifted = &source[from + d + 1 - STENCIL..to + d + 1 - STENCIL];
-                for ((t, w), b) in target[from..to].iter_mut().zip(&weights[from..to]).zip(shifted) {
-                    *t += w * b;
-                }
-            }
-            target[i] += 1.0;
+            // Rows of the bulk that the band meets; beyond the ends its weights are zero.
+            let rows: [&[f64]; BAND] = std::array::from_fn(|d| {
+                let k = (i + d).saturating_sub(STENCIL - 1).min(r - 1);
+                &self.bulk[k * r..(k + 1) * r]
+            });
+            combine_rows(band, &rows, work.matrix.row_mut(i).1);
         }
         Ok(())
     }
@@ -256,7 +250,6 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
     /// `work.columns` keeps L⁻¹ [1, c, modes, P]. `false` where a block is not positive definite.
     fn add_lines(&self, active: &[bool], work: &mut SystemWorkspace, meter: &mut Meter) -> Result<bool, Canceled> {
         let r = self.stations;
-        meter.zeros(&mut work.matrix, r * r)?;
         work.block.clear();
         work.columns.clear();
         meter.zeros(&mut work.weight, r * r)?;
@@ -318,21 +311,25 @@ impl<L: LocalApproach> ContactSystem<'_, L> {
                     }
                 }
             }
-            // I + B W, by the columns of this line.
-            for i in 0..r {
-                meter.count(width * width)?;
-                let target = &mut work.matrix[i * r + stations.start..i * r + stations.end];
-                for k in stations.clone() {
-                    let factor = self.bulk[i * r + k];
-                    let source = &work.weight[k * r + stations.start..k * r + stations.end];
-                    target.iter_mut().zip(source).for_each(|(t, w)| *t += factor * w);
+        }
+        // W B: W is a block for every line.
+        let (weight, matrix) = (&work.weight, &mut work.matrix);
+        vectorised(
+            #[inline(always)]
+            || {
+                for (i, weights) in weight.chunks_exact(r.max(1)).enumerate() {
+                    let (_, target) = matrix.row_mut(i);
+                    target.fill(0.0);
+                    for (weight, bulk) in weights.iter().zip(self.bulk.chunks_exact(r)) {
+                        if *weight != 0.0 {
+                            meter.count(r)?;
+                            target.iter_mut().zip(bulk).for_each(|(t, b)| *t += weight * b);
+                        }
+                    }
                 }
-            }
-        }
-        for i in 0..r {
-            work.matrix[i * r + i] += 1.0;
-        }
-        Ok(true)
+                Ok(true)
+            },
+        )
     }
 
     fn forces_of_lines(&self, active: &[bool], work: &mut SystemWorkspace) -> (f64, f64) {
@@ -469,9 +466,14 @@ impl Stencil {
 
 /// y = A x, A square and row-major.
 fn multiply(a: &[f64], x: &[f64], y: &mut [f64], meter: &mut Meter) -> Result<(), Canceled> {
-    for (value, row) in y.iter_mut().zip(a.chunks_exact(x.len().max(1))) {
-        meter.count(x.len())?;
-        *value = dot(row, x);
-    }
-    Ok(())
+    vectorised(
+        #[inline(always)]
+        || {
+            for (value, row) in y.iter_mut().zip(a.chunks_exact(x.len().max(1))) {
+                meter.count(x.len())?;
+                *value = dot(row, x);
+            }
+            Ok(())
+        },
+    )
 }

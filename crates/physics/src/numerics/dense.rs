@@ -1,5 +1,7 @@
 //! Small dense linear algebra on flat row-major slices: what the tooth contact needs, without allocation.
 
+use pulp::{Arch, Simd, WithSimd};
+
 use crate::simd::vectorised;
 use crate::watch::{Canceled, Meter};
 
@@ -97,6 +99,210 @@ fn lu_solve_inlined(a: &mut [f64], sides: &mut [f64], n: usize, meter: &mut Mete
         }
     }
     Ok(true)
+}
+
+/// Columns in which the rows of an [`Augmented`] matrix are worked on.
+const LANES: usize = 4;
+/// Numbers of a cache line.
+const LINE: usize = 8;
+
+/// The rows of a linear system side by side with its right-hand sides, padded so that the inner loops have whole
+/// vectors: for small systems that are solved many times.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Augmented {
+    n: usize,
+    /// Columns of the right-hand sides, which come first, and of all.
+    sides: usize,
+    stride: usize,
+    rows: Vec<f64>,
+    /// Where the first row begins.
+    start: usize,
+    /// Of the pivot's row in the rows below.
+    factors: Vec<f64>,
+}
+
+impl Augmented {
+    /// Makes room for `n` rows and `sides` right-hand sides; entries keep what was there.
+    pub(crate) fn resize(&mut self, n: usize, sides: usize) {
+        self.n = n;
+        self.sides = sides.next_multiple_of(LANES);
+        self.stride = (self.sides + n).next_multiple_of(LINE);
+        self.rows.resize(n * self.stride + LINE, 0.0);
+        // No vector lies across two cache lines.
+        self.start = self.rows.as_ptr().align_offset(LINE * size_of::<f64>()).min(LINE);
+    }
+
+    /// Right-hand sides, padded, and the n entries of row `i`.
+    #[inline(always)]
+    pub(crate) fn row_mut(&mut self, i: usize) -> (&mut [f64], &mut [f64]) {
+        let at = self.start + i * self.stride;
+        let (sides, row) = self.rows[at..at + self.stride].split_at_mut(self.sides);
+        (sides, &mut row[..self.n])
+    }
+
+    /// Solution of a right-hand side, row by row, after [`Augmented::solve`].
+    pub(crate) fn solution(&self, side: usize) -> impl Iterator<Item = f64> {
+        self.rows.iter().skip(self.start + side).step_by(self.stride.max(1)).take(self.n).copied()
+    }
+
+    /// Solves by elimination with partial pivoting; the solutions take the place of the right-hand sides. `false` when
+    /// a pivot vanishes.
+    ///
+    /// # Errors
+    /// [`Canceled`].
+    pub(crate) fn solve(&mut self, meter: &mut Meter) -> Result<bool, Canceled> {
+        Arch::new().dispatch(Elimination { system: self, meter })
+    }
+}
+
+/// Elimination of an [`Augmented`] system with vector instructions.
+struct Elimination<'a, 'm, 'w> {
+    system: &'a mut Augmented,
+    meter: &'m mut Meter<'w>,
+}
+
+impl WithSimd for Elimination<'_, '_, '_> {
+    type Output = Result<bool, Canceled>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self { system, meter } = self;
+        let Augmented { n, sides, stride, start, ref mut rows, ref mut factors } = *system;
+        let rows = &mut rows[start..start + n * stride];
+        rows.chunks_exact_mut(stride.max(1)).for_each(|row| row[sides + n..].fill(0.0));
+        for k in 0..n {
+            let at = sides + k;
+            let mut pivot = k;
+            let mut largest = rows[k * stride + at].abs();
+            for i in k + 1..n {
+                let size = rows[i * stride + at].abs();
+                if size > largest {
+                    (pivot, largest) = (i, size);
+                }
+            }
+            let (upper, lower) = rows.split_at_mut((k + 1) * stride);
+            let head = &mut upper[k * stride..];
+            if pivot != k {
+                head.swap_with_slice(&mut lower[(pivot - k - 1) * stride..(pivot - k) * stride]);
+            }
+            let inverse = 1.0 / head[at];
+            if !inverse.is_finite() || inverse == 0.0 {
+                return Ok(false);
+            }
+            // Whole vectors: columns before the pivot's are not read any more.
+            let first = sides + k / LANES * LANES;
+            factors.clear();
+            factors.extend(lower.chunks_exact(stride).map(|row| row[at] * inverse));
+            let width = stride - first + sides;
+            let pieces = Meter::pieces(width);
+            for (rows, factors) in lower.chunks_mut(stride * pieces).zip(factors.chunks(pieces)) {
+                meter.count(factors.len() * width)?;
+                for (from, to) in [(0, sides), (first, stride)] {
+                    let mut from = from;
+                    while from < to {
+                        let part = (to - from).min(MOST_VECTORS * S::F64_LANES);
+                        let head = &head[from..from + part];
+                        subtract_multiples(simd, head, &mut rows[from..], (stride, factors));
+                        from += part;
+                    }
+                }
+            }
+        }
+        for i in (0..n).rev() {
+            meter.count((n - i) * sides)?;
+            let (upper, below) = rows.split_at_mut((i + 1) * stride);
+            let (own, row) = upper[i * stride..].split_at_mut(sides);
+            for (factor, done) in row[i + 1..n].iter().zip(below.chunks_exact(stride)) {
+                subtract_multiple(simd, own, *factor, &done[..sides]);
+            }
+            let inverse = 1.0 / row[i];
+            own.iter_mut().for_each(|value| *value *= inverse);
+        }
+        Ok(true)
+    }
+}
+
+/// `out` −= factor · row. Not fused, so that the result does not depend on the instructions.
+#[inline(always)]
+fn subtract_multiple<S: Simd>(simd: S, out: &mut [f64], factor: f64, row: &[f64]) {
+    let (out, out_tail) = S::as_mut_simd_f64s(out);
+    let (row, row_tail) = S::as_simd_f64s(row);
+    let factors = simd.splat_f64s(factor);
+    for (out, row) in out.iter_mut().zip(row) {
+        *out = simd.sub_f64s(*out, simd.mul_f64s(factors, *row));
+    }
+    for (out, row) in out_tail.iter_mut().zip(row_tail) {
+        *out -= factor * row;
+    }
+}
+
+/// Vectors of a row that stay in the registers.
+const MOST_VECTORS: usize = 12;
+
+/// Subtracts multiples of `head` from the beginnings of rows that follow one another in `stride`: its length is that of
+/// whole vectors, at most [`MOST_VECTORS`].
+#[inline(always)]
+fn subtract_multiples<S: Simd>(simd: S, head: &[f64], rows: &mut [f64], (stride, factors): (usize, &[f64])) {
+    macro_rules! of_width {
+        ($($width:literal),*) => {
+            match head.len() / S::F64_LANES {
+                $($width => subtract_of_width::<S, $width>(simd, head, rows, (stride, factors)),)*
+                _ => {}
+            }
+        };
+    }
+    of_width!(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12);
+}
+
+/// [`subtract_multiples`] of a row of `N` vectors.
+#[inline(always)]
+fn subtract_of_width<S: Simd, const N: usize>(
+    simd: S,
+    head: &[f64],
+    rows: &mut [f64],
+    (stride, factors): (usize, &[f64]),
+) {
+    let Ok(head) = <[S::f64s; N]>::try_from(S::as_simd_f64s(head).0) else { return };
+    for (row, factor) in rows.chunks_mut(stride).zip(factors) {
+        let factor = simd.splat_f64s(*factor);
+        let (row, _) = S::as_mut_simd_f64s(&mut row[..N * S::F64_LANES]);
+        for (out, head) in row.iter_mut().zip(&head) {
+            *out = simd.sub_f64s(*out, simd.mul_f64s(factor, *head));
+        }
+    }
+}
+
+/// `out` = Σ_k weights_k · rows_k; all rows have its length.
+pub(crate) fn combine_rows<const N: usize>(weights: &[f64; N], rows: &[&[f64]; N], out: &mut [f64]) {
+    Arch::new().dispatch(RowCombination { weights, rows, out });
+}
+
+struct RowCombination<'a, const N: usize> {
+    weights: &'a [f64; N],
+    rows: &'a [&'a [f64]; N],
+    out: &'a mut [f64],
+}
+
+impl<const N: usize> WithSimd for RowCombination<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { weights, rows, out } = self;
+        let weights_of = weights.map(|weight| simd.splat_f64s(weight));
+        let parts = rows.map(|row| S::as_simd_f64s(row));
+        let (out, tail) = S::as_mut_simd_f64s(out);
+        for (i, out) in out.iter_mut().enumerate() {
+            let mut sum = simd.splat_f64s(0.0);
+            for k in 0..N {
+                sum = simd.add_f64s(sum, simd.mul_f64s(weights_of[k], parts[k].0[i]));
+            }
+            *out = sum;
+        }
+        for (i, out) in tail.iter_mut().enumerate() {
+            *out = (0..N).fold(0.0, |sum, k| sum + weights[k] * parts[k].1[i]);
+        }
+    }
 }
 
 /// Vectors that are worked on together, and from how many on.
