@@ -5,7 +5,7 @@ use super::dataset::{ensure_dataset, is_current};
 use super::lifecycle::JobId;
 use sha2::{Digest, Sha256};
 use sqlx::sqlite::SqliteRow;
-use sqlx::{FromRow, Row, Sqlite, Transaction};
+use sqlx::{FromRow, QueryBuilder, Row, Sqlite, Transaction};
 
 /// A solved point of a sweep.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -267,6 +267,9 @@ async fn copy_points_of_same_input(
     Ok(())
 }
 
+/// Rows that one statement inserts: what a statement costs beside its rows is then a small part.
+const ROWS_PER_STATEMENT: usize = 64;
+
 /// Stores points, in a transaction that has checked that the job belongs to this attempt. Rows that are stored already
 /// stay as they are. Returns the number of those that were not.
 pub(super) async fn insert_points(
@@ -279,18 +282,20 @@ pub(super) async fn insert_points(
     }
     let id = id.to_string();
     let mut inserted = 0;
-    for row in &batch.rows {
-        let done = sqlx::query(
-            "INSERT INTO sweep_points (dataset_id, position, solver_version, body) VALUES ($1, $2, $3, $4) \
-             ON CONFLICT (dataset_id, position) DO NOTHING",
-        )
-        .bind(&id)
-        .bind(row.position as i64)
-        .bind(&batch.solver_version)
-        .bind(&row.body)
-        .execute(&mut **transaction)
-        .await?;
-        inserted += done.rows_affected();
+    let mut rows = batch.rows.as_slice();
+    while !rows.is_empty() {
+        // Of two sizes, so that the statements are prepared once.
+        let count = if rows.len() < ROWS_PER_STATEMENT { 1 } else { ROWS_PER_STATEMENT };
+        let (now, later) = rows.split_at(count);
+        rows = later;
+        let mut insert =
+            QueryBuilder::<Sqlite>::new("INSERT INTO sweep_points (dataset_id, position, solver_version, body) ");
+        insert.push_values(now, |mut values, row| {
+            values.push_bind(&id).push_bind(row.position as i64);
+            values.push_bind(&batch.solver_version).push_bind(&row.body);
+        });
+        insert.push(" ON CONFLICT (dataset_id, position) DO NOTHING");
+        inserted += insert.build().execute(&mut **transaction).await?.rows_affected();
     }
     for EndStateRow { position, state } in &batch.end_states {
         sqlx::query("UPDATE sweep_points SET end_state = $3 WHERE dataset_id = $1 AND position = $2")

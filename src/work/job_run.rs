@@ -25,6 +25,8 @@ use tokio_util::sync::CancellationToken;
 
 /// Shortest time between two updates of the progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(250);
+/// Points that are written in one transaction.
+const POINTS_PER_TRANSACTION: usize = 2000;
 /// First and longest pause before a failed write is retried.
 const RETRY_AFTER: Duration = Duration::from_secs(1);
 const MAX_RETRY_AFTER: Duration = Duration::from_secs(30);
@@ -108,7 +110,11 @@ impl JobRun<'_> {
             }
             SolveOutcome::Stopped => {
                 let last = *updates.borrow();
-                self.store_points(&points, last).await;
+                // Of points this cheap those of the last moment are solved again sooner than a cancellation waits.
+                let is_canceled = self.stop.reason() == Some(StopReason::Cancel);
+                if !(is_canceled && points.unwritten() > POINTS_PER_TRANSACTION) {
+                    self.store_points(&points, last).await;
+                }
                 self.finish_stopped(started.elapsed()).await;
             }
         }
@@ -147,15 +153,18 @@ impl JobRun<'_> {
             let _ = send.send(outcome.unwrap_or_else(|panic| SolveOutcome::Failed(panic_failure(panic.as_ref()))));
         });
         let mut is_refused = false;
+        let mut has_more = false;
         loop {
             // The outcome ends the wait for the next update; short jobs store no progress.
             tokio::select! {
                 outcome = &mut receive => {
                     return outcome.unwrap_or_else(|_| SolveOutcome::Failed(internal_failure("the calculation vanished")));
                 }
-                () = tokio::time::sleep(PROGRESS_INTERVAL) => {}
+                () = tokio::time::sleep(if has_more { Duration::ZERO } else { PROGRESS_INTERVAL }) => {}
             }
-            let batch = points.take_unwritten();
+            // A few at a time: a stop waits for the transaction.
+            let (batch, more) = points.take_some_unwritten(POINTS_PER_TRANSACTION);
+            has_more = more;
             if updates.has_changed().unwrap_or(false) || !batch.is_empty() {
                 let (stage, fraction) = *updates.borrow_and_update();
                 let written = self.recorder.progress(&self.job, stage.as_str(), fraction, &batch).await;
@@ -165,6 +174,7 @@ impl JobRun<'_> {
                         tracing::warn!(%error, "progress not written");
                     }
                     points.restore(batch);
+                    has_more = false;
                 }
                 is_refused = written.is_err();
             }

@@ -61,6 +61,25 @@ impl RunningPoints {
         batch
     }
 
+    /// Takes up to `most` of the points that were solved since the last call, all of a sweep whose lines are followed,
+    /// and whether there are more.
+    pub(super) fn take_some_unwritten(&self, most: usize) -> (PointBatch, bool) {
+        let mut state = self.lock();
+        let unwritten = &mut state.unwritten;
+        if unwritten.rows.len() <= most || !unwritten.ends.is_empty() {
+            drop(state);
+            return (self.take_unwritten(), false);
+        }
+        let later = unwritten.rows.split_off(most);
+        let rows = std::mem::replace(&mut unwritten.rows, later);
+        (PointBatch { solver_version: self.solver_version.to_owned(), rows, ..PointBatch::default() }, true)
+    }
+
+    /// Number of points that are not yet stored.
+    pub(super) fn unwritten(&self) -> usize {
+        self.lock().unwritten.rows.len()
+    }
+
     /// Returns a batch that could not be stored, for the next call of [`RunningPoints::take_unwritten`].
     pub(super) fn restore(&self, mut batch: PointBatch) {
         let mut state = self.lock();

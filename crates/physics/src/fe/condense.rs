@@ -108,7 +108,7 @@ pub(super) fn condense(
     let size = 3 * kept.len();
     let mut front = DenseMatrix::zeros(size, size);
     plan.assemble(kept, &index, &mut front);
-    extend(&mut front, &mut DenseMatrix::zeros(0, 0), &inside, &index);
+    extend((&mut front, &mut DenseMatrix::zeros(0, 0)), &inside, &index, watch)?;
     let mut stiffness = front.as_ref().to_owned();
     mirror(&mut stiffness);
     let mut forces = Mat::<f64>::zeros(size, load_count);
@@ -135,10 +135,19 @@ fn enumerate(tree: &Dissection, rank: &mut [usize], next: &mut usize) {
 }
 
 /// Adds the lower triangle of `part` into the front: columns below `inner` go to `left`, the others to `right`.
-fn extend(left: &mut DenseMatrix, right: &mut DenseMatrix, part: &UpdateMatrix, index: &[usize]) {
+///
+/// # Errors
+/// [`FeError::Canceled`].
+fn extend(
+    (left, right): (&mut DenseMatrix, &mut DenseMatrix),
+    part: &UpdateMatrix,
+    index: &[usize],
+    watch: Watch,
+) -> Result<(), FeError> {
     let inner = left.columns;
     // Ranks rise in both, so the triangle stays the lower one.
     for (j, &pj) in part.points.iter().enumerate() {
+        watch.checkpoint_quietly()?;
         for b in 0..3 {
             let column = 3 * index[pj] + b;
             let source = &part.stiffness.column(3 * j + b)[3 * j..];
@@ -152,6 +161,7 @@ fn extend(left: &mut DenseMatrix, right: &mut DenseMatrix, part: &UpdateMatrix, 
             }
         }
     }
+    Ok(())
 }
 
 fn mirror(matrix: &mut Mat<f64>) {
@@ -164,6 +174,8 @@ fn mirror(matrix: &mut Mat<f64>) {
 
 impl Elimination<'_> {
     fn eliminate(&self, tree: &Dissection) -> Result<UpdateMatrix, FeError> {
+        // Before the parts of a tree that are left are assembled.
+        self.watch.checkpoint_quietly()?;
         let parts: Vec<UpdateMatrix> = match tree.children.as_slice() {
             [] => Vec::new(),
             [a, b] => {
@@ -172,6 +184,7 @@ impl Elimination<'_> {
             }
             more => more.iter().map(|child| self.eliminate(child)).collect::<Result<_, _>>()?,
         };
+        self.watch.checkpoint_quietly()?;
         self.front(&tree.own, parts)
     }
 
@@ -245,7 +258,7 @@ impl Elimination<'_> {
         let mut remainder = DenseMatrix::zeros(outer, outer);
         self.assemble(own, &index, &mut front);
         for part in &parts {
-            extend(&mut front, &mut remainder, part, &index);
+            extend((&mut front, &mut remainder), part, &index, self.watch)?;
         }
 
         // Loads.
@@ -276,6 +289,7 @@ impl Elimination<'_> {
         for part in &parts {
             let columns: Vec<usize> = part.loads.iter().map(|&load| column(load)).collect();
             for (source, &target) in columns.iter().enumerate() {
+                self.watch.checkpoint_quietly()?;
                 for (i, &point) in part.points.iter().enumerate() {
                     for c in 0..3 {
                         forces[(3 * index[point] + c, target)] += part.forces[(3 * i + c, source)];
@@ -284,6 +298,7 @@ impl Elimination<'_> {
             }
             if let (Some(sum), Some(old)) = (&mut compliance, &part.compliance) {
                 for (b, &column) in columns.iter().enumerate() {
+                    self.watch.checkpoint_quietly()?;
                     for (a, &row) in columns.iter().enumerate().skip(b) {
                         sum[(row, column)] += old[(a, b)];
                     }
@@ -321,8 +336,8 @@ fn front_work(inner: usize, outer: usize) -> f64 {
     inner * (inner * inner / 3.0 + inner * outer + outer * outer)
 }
 
-/// Work between two checkpoints, in multiplications: some 30 ms for complex numbers.
-const PANEL_WORK: usize = 200_000_000;
+/// Work between two checkpoints, in multiplications: some 15 ms for complex numbers.
+const PANEL_WORK: usize = 60_000_000;
 /// Narrower panels would leave the matrix products inefficient.
 const NARROWEST_PANEL: usize = 32;
 
@@ -361,9 +376,28 @@ pub(super) fn factor_partly<T: ComplexField>(
             rest.submatrix_mut(end - start, 0, size - end, inner - end).split_at_row_mut(inner - end);
         let minus = -T::one_impl();
         add_square(triangle.as_mut(), near, minus.clone(), &mut checkpoint)?;
-        matmul(rectangle, Accum::Add, far, near.adjoint(), minus.clone(), Par::Seq);
+        add_product(rectangle, far, near, minus.clone(), &mut checkpoint)?;
         add_square(right.as_mut(), far, minus, &mut checkpoint)?;
         start = end;
+    }
+    Ok(())
+}
+
+/// Adds `scale · left · rightᴴ` to `target`, some columns at a time.
+fn add_product<T: ComplexField>(
+    mut target: MatMut<'_, T>,
+    left: MatRef<'_, T>,
+    right: MatRef<'_, T>,
+    scale: T,
+    checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
+) -> Result<(), FeError> {
+    let count = target.ncols();
+    let width = (PANEL_WORK / (left.nrows() * left.ncols()).max(1)).max(NARROWEST_PANEL);
+    for start in (0..count).step_by(width) {
+        checkpoint()?;
+        let some = width.min(count - start);
+        let columns = target.as_mut().subcols_mut(start, some);
+        matmul(columns, Accum::Add, left, right.subrows(start, some).adjoint(), scale.clone(), Par::Seq);
     }
     Ok(())
 }

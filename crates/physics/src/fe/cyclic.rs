@@ -117,13 +117,14 @@ pub(super) fn expand(
                 let weights = interpolation(&places, x);
                 let mut guess = (Mat::<f64>::zeros(loads, loads), Mat::<f64>::zeros(loads, loads));
                 for (part, w) in parts.iter().zip(weights) {
+                    watch.checkpoint_quietly()?;
                     add(&mut guess.0, part, w, 0.0);
                     add(&mut guess.1, part, 0.0, -w);
                 }
                 let scale = largest(&exact.0);
-                largest(&(&guess.0 - &exact.0)).max(largest(&(&guess.1 - &exact.1))) / scale
+                Ok(largest(&(&guess.0 - &exact.0)).max(largest(&(&guess.1 - &exact.1))) / scale)
             })
-            .fold(0.0, f64::max);
+            .try_fold(0.0, |worst: f64, error: Result<f64, FeError>| Ok::<_, FeError>(worst.max(error?)))?;
         places.extend(new);
         parts.extend(exact);
         if error <= INTERPOLATION_ERROR {
