@@ -48,10 +48,8 @@ impl From<Canceled> for DistributionError {
 
 const NEWTON_ITERATIONS: u32 = 30;
 /// Change of a force, as a part of the whole, after which Newton's iteration ends: every step leaves at most a tenth of
-/// the change before it. For the table of the contact force, which is interpolated, at prescribed approaches less is
-/// enough.
+/// the change before it. Coarser, the scatter of the table of the contact force excites high mesh orders.
 const TOLERANCE: f64 = 1e-6;
-const TOLERANCE_OF_TABLES: f64 = 1e-5;
 
 /// Prescribed quantity of a distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,9 +88,9 @@ pub(super) fn distribute<P: ContactProblem>(
     let mut active = forces.iter().map(|&f| f > 0.0).collect::<Vec<_>>();
     // Approach and gaps count from the least gap: gaps far above the deflections would drown them in rounding.
     let datum = gaps.iter().copied().fold(f64::INFINITY, f64::min);
-    let (above_datum, tolerance) = match prescribed {
-        Prescribed::Force(_) => (None, TOLERANCE),
-        Prescribed::Approach { approach, .. } => (Some(approach - datum), TOLERANCE_OF_TABLES),
+    let above_datum = match prescribed {
+        Prescribed::Force(_) => None,
+        Prescribed::Approach { approach, .. } => Some(approach - datum),
     };
     let carriers = system.carriers();
     // Changes count as parts of what each of them carries.
@@ -145,7 +143,7 @@ pub(super) fn distribute<P: ContactProblem>(
         if let_go {
             continue;
         }
-        if step < 1.0 || (primal && change > tolerance) {
+        if step < 1.0 || (primal && change > TOLERANCE) {
             continue;
         }
         // Points outside that would penetrate come in.
@@ -182,7 +180,7 @@ pub(super) fn distribute<P: ContactProblem>(
             }
         }
         let rounding = 16.0 * f64::EPSILON * stiffness * approach.abs() / of_carrier;
-        if same && change < tolerance + rounding {
+        if same && change < TOLERANCE + rounding {
             let approach = approach + datum;
             return Ok(Distribution { forces, approach, stiffness, iterations: iteration, linearised_n });
         }
