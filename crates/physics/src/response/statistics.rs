@@ -29,16 +29,14 @@ pub struct Statistics {
     pub max: f64,
 }
 
-/// A rule of N nodes: nodes and weights, and the powers of the nodes, τ_q^n in row n.
+/// A rule of N nodes, exact for the square of a polynomial of degree N − 1: nodes and weights, and the powers of the
+/// nodes, τ_q^n in row n.
 struct Rule<const N: usize> {
     nodes: [(f64, f64); N],
     powers: [[f64; N]; MAX_ORDER + 1],
 }
 
 impl<const N: usize> Rule<N> {
-    /// Highest degree of a polynomial whose square the rule integrates exactly.
-    const DEGREE: usize = N - 1;
-
     fn new() -> Self {
         let nodes: [(f64, f64); N] = gauss_legendre_unit();
         Self { powers: std::array::from_fn(|n| std::array::from_fn(|q| nodes[q].0.powi(n as i32))), nodes }
@@ -82,8 +80,8 @@ impl MomentAccumulator {
     pub(crate) fn add(&mut self, c: &[f64], h: f64, extremes: bool) {
         // Fewer nodes for a lower degree; in lanes the highest coefficients of one can be zeros.
         match c.iter().rposition(|c| *c != 0.0).unwrap_or(0) {
-            0..=Rule::<16>::DEGREE => _ = self.add_by(&RULE_16, c, h, extremes),
-            0..=Rule::<20>::DEGREE => _ = self.add_by(&RULE_20, c, h, extremes),
+            0..16 => _ = self.add_by(&RULE_16, c, h, extremes),
+            16..20 => _ = self.add_by(&RULE_20, c, h, extremes),
             _ => _ = self.add_by(&RULE, c, h, extremes),
         }
     }
