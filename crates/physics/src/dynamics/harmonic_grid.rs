@@ -9,7 +9,7 @@ use super::harmonic_balance::HarmonicBalance;
 use super::harmonic_preconditioner::Preconditioner;
 use super::model::ContactSide;
 use crate::numerics::fourier::Fourier;
-use crate::numerics::gmres::gmres;
+use crate::numerics::gmres::{gmres, norm};
 use crate::simd::vectorised;
 
 type C64 = Complex<f64>;
@@ -235,10 +235,6 @@ fn add_caused(response: &[C64], force: &[C64], out: &mut [f64]) {
             }
         },
     );
-}
-
-fn norm(values: &[f64]) -> f64 {
-    values.iter().map(|value| value * value).sum::<f64>().sqrt()
 }
 
 impl<const D: usize> HarmonicBalance<'_, D> {

@@ -6,7 +6,7 @@ use faer::linalg::cholesky::llt::factor::{LltParams, LltRegularization, cholesky
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul as triangular_matmul};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::traits::ComplexField;
+use faer::traits::{ComplexField, Conjugate};
 use faer::{Accum, Mat, MatMut, MatRef, Par, Spec};
 
 use super::dissection::Dissection;
@@ -376,28 +376,9 @@ pub(super) fn factor_partly<T: ComplexField>(
             rest.submatrix_mut(end - start, 0, size - end, inner - end).split_at_row_mut(inner - end);
         let minus = -T::one_impl();
         add_square(triangle.as_mut(), near, minus.clone(), &mut checkpoint)?;
-        add_product(rectangle, far, near, minus.clone(), &mut checkpoint)?;
+        product(rectangle, Accum::Add, far, near.adjoint(), minus.clone(), &mut checkpoint)?;
         add_square(right.as_mut(), far, minus, &mut checkpoint)?;
         start = end;
-    }
-    Ok(())
-}
-
-/// Adds `scale · left · rightᴴ` to `target`, some columns at a time.
-fn add_product<T: ComplexField>(
-    mut target: MatMut<'_, T>,
-    left: MatRef<'_, T>,
-    right: MatRef<'_, T>,
-    scale: T,
-    checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
-) -> Result<(), FeError> {
-    let count = target.ncols();
-    let width = (PANEL_WORK / (left.nrows() * left.ncols()).max(1)).max(NARROWEST_PANEL);
-    for start in (0..count).step_by(width) {
-        checkpoint()?;
-        let some = width.min(count - start);
-        let columns = target.as_mut().subcols_mut(start, some);
-        matmul(columns, Accum::Add, left, right.subrows(start, some).adjoint(), scale.clone(), Par::Seq);
     }
     Ok(())
 }
@@ -419,12 +400,12 @@ pub(super) fn solve_lower<T: ComplexField>(
 }
 
 /// `target` with `scale · left · right` added to it or in its place, some columns at a time.
-pub(super) fn product(
-    mut target: MatMut<'_, f64>,
+pub(super) fn product<T: ComplexField, R: Conjugate<Canonical = T>>(
+    mut target: MatMut<'_, T>,
     accum: Accum,
-    left: MatRef<'_, f64>,
-    right: MatRef<'_, f64>,
-    scale: f64,
+    left: MatRef<'_, T>,
+    right: MatRef<'_, R>,
+    scale: T,
     checkpoint: &mut dyn FnMut() -> Result<(), FeError>,
 ) -> Result<(), FeError> {
     let count = target.ncols();
@@ -432,7 +413,8 @@ pub(super) fn product(
     for start in (0..count).step_by(width) {
         checkpoint()?;
         let some = width.min(count - start);
-        matmul(target.as_mut().subcols_mut(start, some), accum, left, right.subcols(start, some), scale, Par::Seq);
+        let columns = target.as_mut().subcols_mut(start, some);
+        matmul(columns, accum, left, right.subcols(start, some), scale.clone(), Par::Seq);
     }
     Ok(())
 }
